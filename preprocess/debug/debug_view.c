@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/extent.h"
 #include "base/mem.h"
 #include "base/vec.h"
 #include "field/colormap.h"
@@ -314,18 +315,15 @@ static void draw_sensors(struct drawing *drawing)
 
 static void measure(struct drawing *drawing)
 {
-    double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    struct extent extent = extent_empty();
     for (size_t t = 0; t < drawing->look.tri_count; t++)
         for (int i = 0; i < 3; i++) {
             uint32_t p = drawing->look.tris[t][i];
-            for (int axis = 0; axis < 3; axis++) {
-                low[axis] = min_of(low[axis], drawing->look.points_m[p][axis]);
-                high[axis] = max_of(high[axis], drawing->look.points_m[p][axis]);
-            }
+            extent_add(&extent, drawing->look.points_m[p]);
             double d = drawing->view->distances_m && t < drawing->look.visible_count ? (double)drawing->view->distances_m[p] : 0;
             drawing->farthest_m = isfinite(d) ? max_of(drawing->farthest_m, d) : drawing->farthest_m;
         }
-    drawing->size_m = vec_distance(low, high);
+    drawing->size_m = extent_size(&extent);
     drawing->spacing_m = surface_report(drawing->view->surface)->spacing_m;
 }
 

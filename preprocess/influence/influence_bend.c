@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/extent.h"
 #include "base/mem.h"
 #include "base/vec.h"
 #include "surface/mesh/bvh.h"
@@ -194,13 +195,10 @@ static double take_triangle(struct finding *finding, const float (*positions_m)[
 
 static double size_of(const struct trimesh *mesh)
 {
-    double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    struct extent extent = extent_empty();
     for (size_t i = 0; i < mesh->point_count; i++)
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = min_of(low[axis], mesh->points[i][axis]);
-            high[axis] = max_of(high[axis], mesh->points[i][axis]);
-        }
-    return mesh->point_count ? vec_distance(low, high) : 0;
+        extent_add(&extent, mesh->points[i]);
+    return mesh->point_count ? extent_size(&extent) : 0;
 }
 
 bool influence_bend_init(struct influence_bend *bend, const struct influence_mesh *mesh, const float (*positions_m)[3],
@@ -217,18 +215,15 @@ bool influence_bend_init(struct influence_bend *bend, const struct influence_mes
     finding->off_plane_m = OFF_PLANE * size_of(&mesh->mesh);
     for (size_t t = 0; t < triangle_count && !finding->full; t++) {
         const uint32_t *corners = triangles + 3 * t;
-        double low[3], high[3], area_m2 = take_triangle(finding, positions_m, corners);
+        double area_m2 = take_triangle(finding, positions_m, corners);
+        struct extent extent = extent_empty();
         finding->tri = (uint32_t)t;
         finding->vertices = corners;
         if (area_m2 <= 0)
             continue;
-        for (int axis = 0; axis < 3; axis++) {
-            double a = (double)positions_m[corners[0]][axis], b = (double)positions_m[corners[1]][axis],
-                   c = (double)positions_m[corners[2]][axis];
-            low[axis] = min_of(a, min_of(b, c));
-            high[axis] = max_of(a, max_of(b, c));
-        }
-        bvh_overlaps(bvh, low, high, finding->off_plane_m, visit, finding);
+        for (int i = 0; i < 3; i++)
+            extent_addf(&extent, positions_m[corners[i]]);
+        bvh_overlaps(bvh, extent.low, extent.high, finding->off_plane_m, visit, finding);
         bool covered = fabs(finding->covered_m2 - area_m2) <= COVERED * area_m2 && finding->seen_count < PLACES_OF_TRIANGLE;
         bend->area_m2[t] = covered ? area_m2 : -area_m2;
     }

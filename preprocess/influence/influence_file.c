@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/cache_file.h"
+#include "base/extent.h"
 #include "base/mem.h"
 #include "base/vec.h"
 #include "plant/influence.h"
@@ -61,13 +62,10 @@ bool influence_is_wanted(const struct plant *plant, const struct plant_sensor *s
 /* The diagonal of its box. */
 static double size_m(const struct influence_input *input)
 {
-    double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    struct extent extent = extent_empty();
     for (size_t v = 0; v < input->vertex_count; v++)
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = min_of(low[axis], (double)input->positions_m[v][axis]);
-            high[axis] = max_of(high[axis], (double)input->positions_m[v][axis]);
-        }
-    return vec_distance(low, high);
+        extent_addf(&extent, input->positions_m[v]);
+    return extent_size(&extent);
 }
 
 static const struct plant_asset *asset_of(const struct influence_input *input)

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdatomic.h>
 
+#include "base/extent.h"
 #include "base/mem.h"
 #include "base/vec.h"
 #include "surface/geodesic/laplacian.h"
@@ -136,16 +137,14 @@ static double diffusion_time_m2(const struct transport *transport)
 {
     const struct intrinsic *in = &transport->mesh->intrinsic;
     const struct trimesh *mesh = &transport->mesh->mesh;
-    double sum_m = 0, low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    struct extent extent = extent_empty();
+    double sum_m = 0;
     for (size_t t = 0; t < in->tri_count; t++)
         for (int i = 0; i < 3; i++) {
             sum_m += in->lengths[t][i];
-            for (int c = 0; c < 3; c++) {
-                low[c] = min_of(low[c], mesh->points[in->points[t][i]][c]);
-                high[c] = max_of(high[c], mesh->points[in->points[t][i]][c]);
-            }
+            extent_add(&extent, mesh->points[in->points[t][i]]);
         }
-    double length_m = max_of(sum_m / (3 * (double)in->tri_count), vec_distance(low, high) / LENGTHS);
+    double length_m = max_of(sum_m / (3 * (double)in->tri_count), extent_size(&extent) / LENGTHS);
     length_m = max_of(length_m, longest_way_m(in, mesh->point_count) / LONGEST);
     return length_m * length_m;
 }

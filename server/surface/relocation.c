@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/cache_file.h"
+#include "base/extent.h"
 #include "base/mem.h"
 #include "base/vec.h"
 #include "surface/vertex_embedding.h"
@@ -50,16 +51,10 @@ static void corner(const struct relocation_shape *shape, size_t t, size_t i, dou
 
 static double size_of(const struct relocation_shape *shape)
 {
-    double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY }, p[3];
-    for (size_t t = 0; t < shape->triangle_count; t++)
-        for (size_t i = 0; i < 3; i++) {
-            corner(shape, t, i, p);
-            for (int axis = 0; axis < 3; axis++) {
-                low[axis] = min_of(low[axis], p[axis]);
-                high[axis] = max_of(high[axis], p[axis]);
-            }
-        }
-    return shape->triangle_count ? vec_distance(low, high) : 0;
+    struct extent extent = extent_empty();
+    for (size_t i = 0; i < 3 * shape->triangle_count; i++)
+        extent_addf(&extent, shape->positions_m[shape->triangles[i]]);
+    return shape->triangle_count ? extent_size(&extent) : 0;
 }
 
 /* --- places ----------------------------------------------------------------------------------------------------------------- */

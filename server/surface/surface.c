@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/extent.h"
 #include "base/mem.h"
 #include "base/vec.h"
 #include "surface/repair/interior.h"
@@ -25,13 +26,10 @@
 
 static double size_of(const float (*positions)[3], const uint32_t *triangles, size_t triangle_count)
 {
-    double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    struct extent extent = extent_empty();
     for (size_t i = 0; i < 3 * triangle_count; i++)
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = min_of(low[axis], (double)positions[triangles[i]][axis]);
-            high[axis] = max_of(high[axis], (double)positions[triangles[i]][axis]);
-        }
-    return vec_distance(low, high);
+        extent_addf(&extent, positions[triangles[i]]);
+    return extent_size(&extent);
 }
 
 static double seconds_since(int64_t *since_ns)
