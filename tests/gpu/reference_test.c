@@ -143,6 +143,9 @@ static bool is_inside(const struct scene_asset *asset, const double eye_m[3])
 {
     const struct asset_view *file = &asset->file->view;
     double sum = 0;
+    for (int axis = 0; axis < 3; axis++)
+        if (eye_m[axis] < asset->bounds_min_m[axis] || eye_m[axis] > asset->bounds_max_m[axis])
+            return false;
     for (uint32_t p = 0; p < file->levels[0].primitive_count; p++) {
         const struct asset_primitive *primitive = &file->primitives[file->levels[0].first_primitive + p];
         for (uint32_t i = 0; i < primitive->index_count; i += 3) {
