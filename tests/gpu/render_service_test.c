@@ -18,6 +18,7 @@
 #include "base/mem.h"
 #include "service/render_service.h"
 #include "tests/support/sleep.h"
+#include "tests/support/sweep.h"
 #include "tests/support/toy.h"
 #include "value/quality.h"
 
@@ -345,13 +346,14 @@ static void test_lost_context_is_made_again_under_load(void **state)
 {
     (void)state;
     enum { LOSSES = 3, MOVES = 4 };
+    const int tried = sweep(LOSSES, 2); /* while nothing is under way, then in the middle of a refinement */
     int64_t losses = count_of("plantcast_gl_losses_total"), failures = count_of("plantcast_render_failures_total");
     struct encoded_frame *refined[LOSSES], *moved[MOVES];
-    for (int i = 0; i < LOSSES; i++) /* another each time: the same again would be quick */
+    for (int i = 0; i < tried; i++) /* another each time: the same again would be quick */
         refined[i] = picture_of(REFINER, URGENCY_REFINE, 5 + 0.1 * i);
     for (int i = 0; i < MOVES; i++)
         moved[i] = picture_of(MOVER, URGENCY_INPUT, 6 + i);
-    for (int loss = 0; loss < LOSSES; loss++) {
+    for (int loss = 0; loss < tried; loss++) {
         sleep_ns(RECENT_NS);
         int64_t steps = count_of("plantcast_render_steps_total");
         int refinements = 0;
@@ -378,9 +380,9 @@ static void test_lost_context_is_made_again_under_load(void **state)
         }
         assert_true(render_service_ready(service));
     }
-    assert_true(count_of("plantcast_gl_losses_total") == losses + LOSSES);
+    assert_true(count_of("plantcast_gl_losses_total") == losses + tried);
     assert_true(count_of("plantcast_render_failures_total") == failures);
-    for (int i = 0; i < LOSSES; i++)
+    for (int i = 0; i < tried; i++)
         encoded_frame_destroy(&refined[i]);
     for (int i = 0; i < MOVES; i++)
         encoded_frame_destroy(&moved[i]);
@@ -647,7 +649,6 @@ static void test_changing_readings_leave_pictures_without_room(void **state)
         skip();
     remake(false, (size_t)64 << 20);
     assert_true(refined_comes(LOOK_GLOSSY, 2 * NS_PER_S));
-    remake(false, 0);
 }
 
 /* By GL nothing is kept: a picture is given up for readings a few times, each time later, and comes in the end. */

@@ -99,10 +99,24 @@ static bool upload(const struct environments *environments, struct environment_s
     return slot->irradiance && gl_no_errors();
 }
 
+/* What is the same for every renderer is computed once, and kept until the process ends. */
+static pthread_mutex_t lock_built_in = PTHREAD_MUTEX_INITIALIZER;
+
+static const float (*built_in_brdf(void))[2]
+{
+    static float texels[ENVIRONMENT_BRDF_PX * ENVIRONMENT_BRDF_PX][2]; /* under the lock while they are made */
+    static bool made;
+    pthread_mutex_lock(&lock_built_in);
+    if (!made)
+        environment_brdf(ENVIRONMENT_BRDF_PX, texels);
+    made = true;
+    pthread_mutex_unlock(&lock_built_in);
+    return (const float(*)[2])texels;
+}
+
 static void make_brdf(struct environments *environments)
 {
-    float(*texels)[2] = mem_array(ENVIRONMENT_BRDF_PX * ENVIRONMENT_BRDF_PX, sizeof(*texels));
-    environment_brdf(ENVIRONMENT_BRDF_PX, texels);
+    const float(*texels)[2] = built_in_brdf();
     environments->brdf_texels = texels;
     glCreateTextures(GL_TEXTURE_2D, 1, &environments->brdf);
     glTextureStorage2D(environments->brdf, 1, GL_RG16F, ENVIRONMENT_BRDF_PX, ENVIRONMENT_BRDF_PX);
@@ -112,15 +126,13 @@ static void make_brdf(struct environments *environments)
     glTextureParameteri(environments->brdf, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
-/* It is the same for every renderer: computed once, and kept until the process ends. */
 static const struct environment *built_in_sky(bool y_up, struct workers *workers)
 {
-    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-    static struct environment skies[2]; /* under lock while they are made */
-    pthread_mutex_lock(&lock);
+    static struct environment skies[2]; /* under the lock while they are made */
+    pthread_mutex_lock(&lock_built_in);
     if (!skies[y_up].mirrored)
         environment_init(&skies[y_up], NULL, y_up, workers);
-    pthread_mutex_unlock(&lock);
+    pthread_mutex_unlock(&lock_built_in);
     return &skies[y_up];
 }
 
@@ -147,7 +159,6 @@ void environments_finish(struct environments *environments)
         task_unref(&slot->task);
     }
     glDeleteTextures(1, &environments->brdf);
-    mem_free(environments->brdf_texels);
     *environments = (struct environments){ 0 };
 }
 
@@ -190,7 +201,7 @@ static const struct environment_slot *slot_of(const struct environments *environ
 
 struct environment_light environments_get(const struct environments *environments, int number)
 {
-    return (struct environment_light){ &slot_of(environments, number)->of, (const float(*)[2])environments->brdf_texels };
+    return (struct environment_light){ &slot_of(environments, number)->of, environments->brdf_texels };
 }
 
 void environments_bind(const struct environments *environments, int number)

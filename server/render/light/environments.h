@@ -21,7 +21,7 @@ struct environments {
     struct gl *gl;
     struct environment_slot slots[1 + PLANT_ENVIRONMENTS];
     int count;
-    float (*brdf_texels)[2]; /* environment_brdf() of ENVIRONMENT_BRDF_PX */
+    const float (*brdf_texels)[2]; /* environment_brdf() of ENVIRONMENT_BRDF_PX; of all renderers */
     GLuint brdf;             /* texture of these */
 };
 enum { ENVIRONMENT_BRDF_PX = 48 };
