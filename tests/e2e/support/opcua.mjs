@@ -4,13 +4,11 @@ import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
-import { after, afterEach, before } from 'node:test';
 import { createInterface } from 'node:readline';
 import { fileURLToPath } from 'node:url';
 import { isDeepStrictEqual } from 'node:util';
 import { missingClocks, SetClock } from './clocks.mjs';
 import { freePort } from './ports.mjs';
-import { PublishedPlant } from './published_plant.mjs';
 import { missing, runProgram } from './tiny_plant.mjs';
 
 const HERE = dirname(fileURLToPath(import.meta.url));
@@ -26,24 +24,6 @@ export function missingOpcua() {
 export function opcuaOptions(timeout) {
     const absent = missing();
     return { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingOpcua() ?? false, timeout };
-}
-
-// Has the tests of a file share a server, which does not run yet, and a plant whose source it is: take(server, plant) comes before them.
-// Each test has a daemon of its own.
-export function shareOpcua(options, take) {
-    let server, plant;
-    before(async () => {
-        if (options.skip)
-            return;
-        server = await OpcuaServer.create();
-        plant = await PublishedPlant.create(server);
-        take(server, plant);
-    });
-    afterEach(() => plant?.daemon?.stop());
-    after(async () => {
-        await plant?.destroy();
-        await server?.destroy();
-    });
 }
 
 // NAME.crt and NAME.key in a folder, of its own authority; uri and hosts: among its names; dates: [from, to], as openssl has them.

@@ -4,7 +4,8 @@ import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { makeCertificate, opcuaOptions, shareOpcua } from './support/opcua.mjs';
+import { shareOpcua } from './server.mjs';
+import { makeCertificate, opcuaOptions } from '../support/opcua.mjs';
 
 const options = opcuaOptions(400000);
 const ROWS = ['TI-1,nsu=urn:test:plant%3B1;s=TI-1,,°C,temperature,E-101,0.5,0,0,,,,,,'];

@@ -6,10 +6,11 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { missingClocks } from './support/clocks.mjs';
-import { distort, LIES, tellLies } from './support/lying_server.mjs';
-import { makeCertificate, opcuaOptions, shareOpcua } from './support/opcua.mjs';
-import { freePort } from './support/ports.mjs';
+import { shareOpcua } from './server.mjs';
+import { missingClocks } from '../support/clocks.mjs';
+import { distort, LIES, tellLies } from '../support/lying_server.mjs';
+import { makeCertificate, opcuaOptions } from '../support/opcua.mjs';
+import { freePort } from '../support/ports.mjs';
 
 const options = opcuaOptions(180000);
 const ROWS = ['TI-1,nsu=urn:test:plant%3B1;s=TI-1,,°C,temperature,E-101,0.5,0,0,,,,,,'];

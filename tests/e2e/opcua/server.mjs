@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The server that all subjects of this folder share, which does not run at first, and a plant whose source it is.
+import { after, afterEach, before } from 'node:test';
+import { OpcuaServer } from '../support/opcua.mjs';
+import { PublishedPlant } from '../support/published_plant.mjs';
+
+let making;
+after(async () => {
+    const { server, plant } = await making ?? {};
+    await plant?.destroy();
+    await server?.destroy();
+});
+
+async function make() {
+    const server = await OpcuaServer.create();
+    return { server, plant: await PublishedPlant.create(server) };
+}
+
+// Of a subject: take(server, plant) comes before its tests. Each test has a daemon of its own.
+export function shareOpcua(options, take) {
+    let plant;
+    before(async () => {
+        if (options.skip)
+            return;
+        making ??= make();
+        const made = await making;
+        plant = made.plant;
+        made.server.trust('server');
+        if (made.server.runs)
+            await made.server.restart({});
+        take(made.server, plant);
+    });
+    afterEach(() => plant?.daemon?.stop());
+}

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sources of type opcua, against node-opcua's server: values, status codes and times bit by bit, arrays, namespaces that move, deadbands,
+// browsing, and a server that is killed, frozen, full and started again.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { shareOpcua } from './server.mjs';
+import { opcuaOptions } from '../support/opcua.mjs';
+import { PublishedPlant } from '../support/published_plant.mjs';
+import { sweep } from '../support/sweep.mjs';
+import { BIN, runProgram } from '../support/tiny_plant.mjs';
+
+const options = opcuaOptions(180000);
+const NODE = 'nsu=urn:test:plant%3B1;s=';
+const ROWS = [`TI-1,${NODE}TI-1,,°C,temperature,E-101,0.5,0,0,,,,,,`, `TI-2,${NODE}TI-2,,°C,temperature,E-101,-0.5,0,0,,,,,,`,
+    `PI-1,${NODE}PI-1,,bar,pressure,P-101A,3,0,0.5,,Linear,0,27648,0,10`, `XS-1,${NODE}XS-1,bool,,,,,,,,,,,,`];
+const ROW3 = `ROW-3,${NODE}Row[3],,,,,,,,,,,,,`, TEXT = `TEXT,${NODE}Text,,,,,,,,,,,,,`;
+const TEMPS = [0, 2, 5].map((i) => `T-${i},[${i}]${NODE}Temps,,,,,,,,,,,,,`);
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const good = { quality_name: 'Good' };
+const MANY = sweep(5000, 1200), PATIENCE_MS = 120000;
+let server, plant;
+
+shareOpcua(options, (...made) => { [server, plant] = made; });
+const until = (...args) => plant.until(...args);
+const said = (...args) => plant.said(...args);
+const start = (keys, rows = ROWS) => plant.start(keys, rows);
+const browse = (url, ...more) => runProgram('plantcast', ['tags', '--browse', url, ...more], PATIENCE_MS);
+
+test('values, status codes and times come as they are, and nothing is ever written', options, async () => {
+    await server.anew();
+    await plant.run(server.security(), [...ROWS, ROW3, TEXT, ...TEMPS, `GONE,${NODE}Gone,,,,,,,,,,,,,`], 30);
+    await until('TI-1', { ...good, value: 20 });
+    await until('TI-2', { ...good, value: 21.5 });
+    await until('PI-1', { ...good, value: 5 });
+    await until('XS-1', { ...good, value: 1 });
+    await until('ROW-3', { ...good, value: 7 });
+    await until('T-0', { ...good, value: 1 });
+    await until('T-2', { ...good, value: 3 });
+    await until('T-5', { quality_name: 'Bad' });
+    await until('TEXT', { quality_name: 'Bad_ConfigurationError' });
+    await until('GONE', { quality_name: 'Bad' });
+    await said(/nsu=urn:test:plant;1;s=Gone is refused: BadNodeIdUnknown/);
+    await said(/s=Text: its type is no number/);
+    for (const [status, name] of [[0x40930000, 'Uncertain_SensorNotAccurate'], [0x00960000, 'Good'], [0x808c0000, 'Bad_SensorFailure'],
+        [0x408f0000, 'Uncertain_NoCommunicationLastUsableValue'], [0x80310000, 'Bad_NoCommunication']]) {
+        await server.set('TI-1', 42, { status });
+        await until('TI-1', { quality_name: name, value: status >= 0x80000000 ? null : 42 });
+    }
+    await server.set('TI-2', 43, { at: Date.now() - 1500 });
+    const old = await until('TI-2', { ...good, value: 43 });
+    assert.ok(old.age_ms >= 1500 && old.age_ms < 9000, `${old.age_ms} ms`);
+    await server.set('Temps', [4, 5, 6]);
+    await until('T-2', { ...good, value: 6 });
+    assert.equal(await plant.metric('up{source="plc"}'), 1);
+    assert.equal(await plant.metric('connects_total{source="plc"}'), 1);
+    assert.equal(await plant.metric('nodes_refused{source="plc"}'), 1);
+    const { write, call, sessions } = await server.tell({});
+    assert.deepEqual({ write, call, sessions }, { write: 0, call: 0, sessions: 1 });
+    await plant.daemon.stop();
+    assert.equal((await server.tell({})).sessions, 0, 'the session was closed');
+});
+
+test('all tags are Bad as soon as the server is gone; all is subscribed anew, whatever number its namespace has now', options, async () => {
+    await server.anew();
+    await plant.run(server.security(), ROWS, 30);
+    await until('TI-1', { ...good, value: 20 });
+    await server.kill();
+    const killed = performance.now();
+    await until('TI-1', { quality_name: 'Bad_CommunicationError', value: null }, 2);
+    await until('PI-1', { quality_name: 'Bad_CommunicationError' }, 1);
+    assert.ok(performance.now() - killed < 2000, 'at once');
+    assert.equal(await plant.metric('up{source="plc"}'), 0);
+    await server.restart({ shifted: 3 });
+    await until('TI-1', { ...good, value: 20 }, 40);
+    await server.set('TI-1', 25);
+    await until('TI-1', { ...good, value: 25 });
+    server.freeze();
+    await until('TI-1', { quality_name: 'Bad_CommunicationError' }, 40);
+    server.thaw();
+    await until('TI-1', { ...good, value: 25 }, 60);
+    await said(/no readings[^]*reading[^]*no readings[^]*reading/);
+});
+
+test('a deadband is the server\'s to apply; a node that cannot have one is read without', options, async () => {
+    await server.anew();
+    await plant.run(`${server.security()}, deadband_percent: 10`, [...ROWS, `B,${NODE}Bounded,,,,,,,,,,,,,`], 30);
+    await until('B', { ...good, value: 50 });
+    await server.set('Bounded', 55);
+    await server.set('XS-1', false);
+    await until('XS-1', { ...good, value: 0 });
+    await sleep(500);
+    assert.equal((await plant.tags()).B.value, 50, 'within 10 % of 0 to 100');
+    await server.set('Bounded', 65);
+    await until('B', { ...good, value: 65 });
+});
+
+test('a server that is full is tried again until it has room', options, async () => {
+    await server.anew({ sessions: 1 });
+    await plant.run(server.security(), ROWS, 30);
+    const other = await PublishedPlant.create(server);
+    try {
+        other.write(server.security(), ROWS);
+        other.plant.prepare();
+        await other.plant.startDaemon();
+        await other.daemon.line(/no readings \(BadTooManySessions/, 20000);
+        await plant.daemon.stop();
+        await other.until('TI-1', { ...good, value: 20 }, 40);
+    } finally {
+        await other.destroy();
+    }
+});
+
+test(`${MANY} nodes, and changes of all of them`, options, async () => {
+    const rows = Array.from({ length: MANY }, (_, i) => `N${i},${NODE}N${i},,,,,,,,,,,,,`);
+    await server.anew({ many: MANY });
+    await plant.run(server.security(), rows, 60);
+    for (const each of [0, 1e6, 2e6]) { // all have come before all change: the server keeps only the newest of each
+        if (each > 0)
+            await server.tell({ each });
+        const sent = performance.now();
+        for (const end = sent + 30000; ; await sleep(200)) {
+            const tags = await plant.tags();
+            if (rows.every((_, i) => tags[`N${i}`].value === each + i))
+                break;
+            assert.ok(performance.now() < end, 'all have changed');
+        }
+    }
+    assert.ok(await plant.metric('samples_total{source="plc"}') >= 3 * MANY);
+});
+
+test('plantcast tags --browse writes a tag list that is read as it is', options, async () => {
+    await server.anew({ many: MANY }); // more than come in one answer
+    const url = `opc.tcp://127.0.0.1:${server.port}`, at = (file) => join(server.folder, file);
+    const secure = ['--certificate', at('client.crt'), '--key', at('client.key'), '--trusted', at('trusted')];
+    const { code, out, err } = browse(url, ...secure);
+    assert.equal(code, 0, err);
+    const lines = out.trim().split('\n');
+    assert.equal(lines[0], 'Tag Name,Address,Data Type,Description');
+    for (const line of [`Plant.TI-1,${NODE}TI-1,,`, `Plant.XS-1,${NODE}XS-1,bool,`, `Plant.Row[3],${NODE}Row[3],,`,
+        `Plant.Temps[2],[2]${NODE}Temps,,`, `Plant.N${MANY - 1},${NODE}N${MANY - 1},,`, `Plant.Bounded,${NODE}Bounded,,of 0 to 100 °C`])
+        assert.ok(lines.includes(line), `${line} in\n${out}`);
+    assert.doesNotMatch(out, /Text|EURange/);
+    assert.equal(browse(url).out, out, 'without security, too');
+    plant.write('security: none', []);
+    writeFileSync(join(plant.folder, 'tags.csv'), out);
+    assert.equal(runProgram('plantcastd', ['--check', plant.file]).code, 0);
+    server.trust('client');
+    const refused = browse(url, ...secure);
+    server.trust('server');
+    assert.equal(refused.code, 1);
+    assert.match(refused.err, /BadCertificateUntrusted/);
+    assert.equal(browse('http://127.0.0.1').code, 2);
+});
+
+test('nothing that writes or calls is linked, or could be sent', options, () => {
+    const symbols = spawnSync('nm', [join(BIN, 'plantcastd')], { encoding: 'utf8', maxBuffer: 1 << 27 }).stdout;
+    assert.match(symbols, /UA_Client_run_iterate/);
+    assert.doesNotMatch(symbols, /UA_Client_(write|call)|UA_Client_\w*writeAttribute|UA_Client_(add|delete)\w*(Node|Reference)/);
+    const folder = 'server/value/opcua';
+    const sources = readdirSync(folder).map((name) => readFileSync(join(folder, name), 'utf8')).join('');
+    const sent = new Set([...sources.matchAll(/UA_TYPES_(\w+)REQUEST\b/g)].map((match) => match[1]));
+    assert.deepEqual([...sent].filter((name) => !['GETENDPOINTS', 'READ', 'BROWSE', 'BROWSENEXT'].includes(name)), []);
+});
+
+test('what cannot be is said of the plant file', options, () => {
+    const refused = (keys, row = ROWS[0]) => {
+        plant.write(keys, [row]);
+        const { code, err } = runProgram('plantcastd', ['--check', plant.file]);
+        assert.equal(code, 1, err);
+        return err;
+    };
+    assert.match(refused('queue: 5'), /needs the key 'security'/);
+    assert.match(refused('security: open'), /security: expected none, or a mapping/);
+    assert.match(refused('security: none, login: x'), /with security: none everybody could read the password/);
+    assert.match(refused('security: none, deadband: 1, deadband_percent: 1'), /expected deadband or deadband_percent/);
+    assert.match(refused('security: none, topic: x'), /topic: has no meaning for an opcua source/);
+    assert.match(refused('security: none', 'A,ns=2;s=X,,,,,,,,,,,,,'), /a number of a namespace may be another one/);
+    assert.match(refused('security: none', 'A,s=X,,,,,,,,,,,,,'), /or a key namespace in the source/);
+    assert.match(refused('security: none, namespace: urn:x', 'A,q=X,,,,,,,,,,,,,'),
+        /tags\.csv:2:3: error: Address: 'q=X': expected nsu=URI/);
+    assert.match(refused('security: none', 'A,[x]nsu=urn:x;i=5,,,,,,,,,,,,,'), /expected an element/);
+    assert.match(refused('security: none', 'A,nsu=urn:x;i=5000000000,,,,,,,,,,,,,'), /expected nsu=URI/);
+});
