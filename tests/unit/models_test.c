@@ -192,9 +192,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         WITH_FOLDER(tanker),
         WITH_FOLDER(platform),
-        WITH_FOLDER(plant_in_five_parts),
     };
     const struct CMUnitTest dearest[] = {
+        WITH_FOLDER(plant_in_five_parts),
         WITH_FOLDER(mixers_and_water_tank),
         WITH_FOLDER(plant_with_its_tree),
         WITH_FOLDER(equipment),

@@ -898,7 +898,7 @@ static void random_rings_show_the_field_on_every_level(void **state)
 {
     uint32_t seed = (uint32_t)sweep_seed();
     (void)state;
-    for (int n = 0; n < 3; n++) {
+    for (int n = 0; n < sweep(3, 1); n++) {
         struct body body = { .as_solved = true };
         double points[SENSORS][3];
         make_random_ring(&body, points, &seed);
