@@ -15,7 +15,8 @@
 #include "surface/geodesic/solver.h"
 
 #define BLOCK 32  /* right-hand sides solved together; also samples, so that these do not depend on how many threads there are */
-#define TILE 256  /* vertices that a thread works on at once */
+#define TILE 256  /* points that a thread works on at once */
+#define STRIP 64  /* vertices, too */
 #define FIXED 1e9 /* steps of squares, as shares of the deviation's: whole numbers add up to the same in any order */
 #define FIXED_MOST 1e7
 
@@ -23,14 +24,18 @@ struct solving {
     const struct influence_mesh *mesh;
     const struct influence_anchor *anchors;
     struct influence *influence;
+    struct influence_bend *bend;
     struct gaussian_params params;
     struct laplacian laplacian;
     cholmod_factor *factor;
     struct gaussian_bodies bodies;
     double *covariance;        /* [sensor][sensor], as the system gives it */
+    double *root_mass_m;       /* by row: of the area */
+    double *root_scale;        /* by component: of `scale` */
     double *scale;             /* by component: to that of the stated deviation; 0: no sensor */
     double *means;             /* by sensor: its weight in the mean of its body */
     double *levels;            /* by sensor: S m, of its body */
+    float *at_points;          /* [point of the mesh][sensor]: kernels, then H */
     float *taken;              /* by vertex: the variance that sensors take away */
     _Atomic uint64_t *squares; /* by vertex: of what samples miss */
     atomic_bool failed;
@@ -50,6 +55,10 @@ static bool begin(struct solving *solving, cholmod_common *common)
         laplacian->mass_m2[r] = max_of(laplacian->mass_m2[r], 1e-30);
     gaussian_bodies_init(&solving->bodies, solving->mesh, laplacian);
     solving->scale = mem_array(mesh->point_count, sizeof(*solving->scale));
+    solving->root_scale = mem_array(mesh->point_count, sizeof(*solving->root_scale));
+    solving->root_mass_m = mem_array(laplacian->row_count, sizeof(*solving->root_mass_m));
+    for (size_t r = 0; r < laplacian->row_count; r++)
+        solving->root_mass_m[r] = sqrt(laplacian->mass_m2[r]);
     solving->means = mem_array(count, sizeof(*solving->means));
     solving->covariance = mem_try_array(count * count, sizeof(*solving->covariance));
     double *diagonal = mem_array(laplacian->row_count, sizeof(*diagonal));
@@ -69,9 +78,12 @@ static void finish(struct solving *solving, cholmod_common *common)
     laplacian_finish(&solving->laplacian);
     gaussian_bodies_finish(&solving->bodies);
     mem_free(solving->scale);
+    mem_free(solving->root_scale);
+    mem_free(solving->root_mass_m);
     mem_free(solving->means);
     mem_free(solving->covariance);
     mem_free((void *)solving->squares);
+    mem_free(solving->at_points);
     mem_free(solving->taken);
     mem_free(solving->levels);
 }
@@ -85,15 +97,6 @@ static double on_disc(const struct solving *solving, size_t sensor, const double
     return sum;
 }
 
-static double at_vertex(const struct solving *solving, size_t vertex, const double *u)
-{
-    const struct influence_anchor *at = &solving->anchors[vertex];
-    double sum = 0;
-    for (int i = 0; i < 3; i++)
-        sum += (double)at->weights[i] * u[solving->laplacian.row_of[at->points[i]]];
-    return sum;
-}
-
 static uint32_t body_of_vertex(const struct solving *solving, size_t vertex)
 {
     return solving->bodies.component[solving->anchors[vertex].points[0]];
@@ -102,18 +105,36 @@ static uint32_t body_of_vertex(const struct solving *solving, size_t vertex)
 /* --- the kernel of each sensor ----------------------------------------------------------------------------------------------- */
 
 /* What is the same everywhere on the body is taken out here, where there are digits for it. */
-static void take_kernel(const struct solving *solving, size_t sensor, const double *u)
+static double constant_of(const struct solving *solving, uint32_t body)
+{
+    const double k2 = 8 / (solving->params.range_m * solving->params.range_m);
+    return gaussian_bodies_constant(&solving->bodies, body) / (k2 * k2);
+}
+
+static void take_covariance(const struct solving *solving, size_t sensor, const double *u)
 {
     const size_t count = solving->mesh->source_count;
     const uint32_t body = solving->bodies.of_sensor[sensor];
-    const double k2 = 8 / (solving->params.range_m * solving->params.range_m);
-    const double constant = gaussian_bodies_constant(&solving->bodies, body) / (k2 * k2);
+    const double constant = constant_of(solving, body);
     for (size_t other = 0; other < count; other++)
         solving->covariance[sensor * count + other] = solving->bodies.of_sensor[other] == body ? on_disc(solving, other, u) - constant : 0;
-    const size_t vertices = solving->influence->vertex_count;
-    float *share = solving->influence->shares + sensor * vertices;
-    for (size_t v = 0; v < vertices; v++)
-        share[v] = body_of_vertex(solving, v) == body ? (float)(at_vertex(solving, v, u) - constant) : 0;
+}
+
+/* The same at all points, of `width` sensors from `first` on. u: a column for each. */
+static void take_kernels(const struct solving *solving, size_t first, size_t width, const double *u)
+{
+    const size_t count = solving->mesh->source_count, rows = solving->laplacian.row_count;
+    const uint32_t *component = solving->bodies.component, *body = solving->bodies.of_sensor + first;
+    double constants[BLOCK];
+    for (size_t k = 0; k < width; k++) {
+        take_covariance(solving, first + k, u + k * rows);
+        constants[k] = constant_of(solving, body[k]);
+    }
+    for (size_t p = 0; p < solving->mesh->mesh.point_count; p++) {
+        const uint32_t row = solving->laplacian.row_of[p];
+        for (size_t k = 0; k < width && row != TRIMESH_NONE; k++)
+            solving->at_points[p * count + first + k] = component[p] == body[k] ? (float)(u[k * rows + row] - constants[k]) : 0;
+    }
 }
 
 static void solve_kernels(void *arg, size_t begin, size_t end)
@@ -135,9 +156,9 @@ static void solve_kernels(void *arg, size_t begin, size_t end)
             for (size_t i = 0; i < rows; i++)
                 b[k * rows + i] = u[k * rows + i] * solving->laplacian.mass_m2[i];
         u = u ? solver_solve(&solver, solving->factor) : NULL;
-        for (size_t k = 0; u && k < count; k++)
-            take_kernel(solving, first + k, u + k * rows);
-        if (!u)
+        if (u)
+            take_kernels(solving, first, count, u);
+        else
             solving->failed = true;
     }
     solver_finish(&solver);
@@ -153,7 +174,11 @@ static void over(struct workers *workers, size_t count, size_t grain, void (*bod
 
 /* --- from kernels to influence ----------------------------------------------------------------------------------------------- */
 
-/* H = P k + the weights in the mean, in place of k. Vertices [begin, end) in tiles. */
+static double variance_of(const struct solving *solving, size_t sensor)
+{
+    return solving->params.deviation * solving->params.deviation * solving->scale[solving->bodies.of_sensor[sensor]];
+}
+
 /* S m of a sensor, the same for all of its body: the least variance of a weighted mean of its readings. */
 static double mean_variance(const struct solving *solving, size_t sensor)
 {
@@ -165,40 +190,99 @@ static double mean_variance(const struct solving *solving, size_t sensor)
     return sum;
 }
 
+/* H = P k + the weights in the mean, in place of k. Points [begin, end) in tiles. */
 static void weigh_tiles(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
-    struct influence *influence = solving->influence;
-    const size_t n = influence->count, vertices = influence->vertex_count;
-    const double variance = solving->params.deviation * solving->params.deviation;
+    const size_t n = solving->influence->count, points = solving->mesh->mesh.point_count;
     double *in = mem_array(n * TILE, sizeof(*in)), *out = mem_array(n * TILE, sizeof(*out));
     for (size_t tile = begin; tile < end; tile++) {
-        const size_t first = tile * TILE, width = vertices - first < TILE ? vertices - first : TILE;
-        for (size_t i = 0; i < n; i++)
-            for (size_t v = 0; v < width; v++)
-                in[i * TILE + v] =
-                    variance * solving->scale[solving->bodies.of_sensor[i]] * (double)influence->shares[i * vertices + first + v];
-        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, (int)n, (int)width, (int)n, 1, influence->precision, (int)n, in, TILE, 0,
-                    out, TILE);
-        for (size_t v = 0; v < width; v++) { /* k' P k + 2 m' k - m' S m: what is left of the variance around the body's mean, less that */
-            const uint32_t body = body_of_vertex(solving, first + v);
-            double taken = 0;
-            size_t of_body = n;
+        const size_t first = tile * TILE, width = points - first < TILE ? points - first : TILE;
+        float *at = solving->at_points + first * n;
+        for (size_t p = 0; p < width; p++)
             for (size_t i = 0; i < n; i++)
-                if (solving->bodies.of_sensor[i] == body) {
-                    taken += in[i * TILE + v] * (out[i * TILE + v] + 2 * solving->means[i]);
-                    of_body = i;
-                }
-            solving->taken[first + v] = of_body < n ? (float)(taken - solving->levels[of_body]) : 0;
+                in[p * n + i] = variance_of(solving, i) * (double)at[p * n + i];
+        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, (int)width, (int)n, (int)n, 1, in, (int)n, solving->influence->precision,
+                    (int)n, 0, out, (int)n);
+        for (size_t p = 0; p < width; p++) {
+            const uint32_t body = solving->bodies.component[first + p];
+            for (size_t i = 0; i < n; i++)
+                at[p * n + i] = body == solving->bodies.of_sensor[i] ? (float)(out[p * n + i] + solving->means[i]) : 0;
         }
-        for (size_t i = 0; i < n; i++)
-            for (size_t v = 0; v < width; v++) {
-                bool own = body_of_vertex(solving, first + v) == solving->bodies.of_sensor[i];
-                influence->shares[i * vertices + first + v] = own ? (float)(out[i * TILE + v] + solving->means[i]) : 0;
-            }
     }
     mem_free(in);
     mem_free(out);
+}
+
+static void add_bends(void *arg, size_t begin, size_t end)
+{
+    struct solving *solving = arg;
+    const size_t n = solving->influence->count;
+    for (size_t first = begin; first < end; first += BEND_WIDTH)
+        influence_bend_add(solving->bend, solving->at_points + first, n, end - first < BEND_WIDTH ? end - first : BEND_WIDTH);
+}
+
+/* --- from points to vertices ------------------------------------------------------------------------------------------------- */
+
+static void at_vertex(const struct solving *solving, size_t vertex, float *out)
+{
+    const struct influence_anchor *at = &solving->anchors[vertex];
+    const size_t n = solving->influence->count;
+    const float *a = solving->at_points + at->points[0] * n, *b = solving->at_points + at->points[1] * n;
+    const float *c = solving->at_points + at->points[2] * n;
+    for (size_t i = 0; i < n; i++)
+        out[i] = at->weights[0] * a[i] + at->weights[1] * b[i] + at->weights[2] * c[i];
+}
+
+static void turn_to_shares(const struct solving *solving, size_t first, size_t width, const float *strip)
+{
+    const size_t n = solving->influence->count, vertices = solving->influence->vertex_count;
+    for (size_t i = 0; i < n; i++)
+        for (size_t v = 0; v < width; v++)
+            solving->influence->shares[i * vertices + first + v] = strip[v * n + i];
+}
+
+/* Strips [begin, end) of vertices take kernels for shares until H is known. */
+static void keep_kernels(void *arg, size_t begin, size_t end)
+{
+    struct solving *solving = arg;
+    const size_t n = solving->influence->count, vertices = solving->influence->vertex_count;
+    float *strip_h = mem_array(n * STRIP, sizeof(*strip_h));
+    for (size_t strip = begin; strip < end; strip++) {
+        const size_t first = strip * STRIP, width = vertices - first < STRIP ? vertices - first : STRIP;
+        for (size_t v = 0; v < width; v++)
+            at_vertex(solving, first + v, strip_h + v * n);
+        turn_to_shares(solving, first, width, strip_h);
+    }
+    mem_free(strip_h);
+}
+
+/* Strips [begin, end) of vertices take H in place of their kernels; k' P k + 2 m' k - m' S m: what is left of the variance around the
+   body's mean, less that. */
+static void weigh_strips(void *arg, size_t begin, size_t end)
+{
+    struct solving *solving = arg;
+    const size_t n = solving->influence->count, vertices = solving->influence->vertex_count;
+    float *strip_h = mem_array(n * STRIP, sizeof(*strip_h));
+    double *levels = mem_array(solving->mesh->mesh.point_count, sizeof(*levels));
+    for (size_t i = 0; i < n; i++)
+        levels[solving->bodies.of_sensor[i]] = solving->levels[i];
+    for (size_t strip = begin; strip < end; strip++) {
+        const size_t first = strip * STRIP, width = vertices - first < STRIP ? vertices - first : STRIP;
+        double taken[STRIP] = { 0 };
+        for (size_t v = 0; v < width; v++)
+            at_vertex(solving, first + v, strip_h + v * n);
+        for (size_t i = 0; i < n; i++) /* of other bodies it is 0 */
+            for (size_t v = 0; v < width; v++)
+                if (body_of_vertex(solving, first + v) == solving->bodies.of_sensor[i])
+                    taken[v] += variance_of(solving, i) * (double)solving->influence->shares[i * vertices + first + v] *
+                                ((double)strip_h[v * n + i] + solving->means[i]);
+        for (size_t v = 0; v < width; v++)
+            solving->taken[first + v] = (float)(taken[v] - levels[body_of_vertex(solving, first + v)]);
+        turn_to_shares(solving, first, width, strip_h);
+    }
+    mem_free(strip_h);
+    mem_free(levels);
 }
 
 static bool find_precision(struct solving *solving)
@@ -216,59 +300,81 @@ static bool find_precision(struct solving *solving)
 
 /* --- how far it may err ------------------------------------------------------------------------------------------------------ */
 
-/* SplitMix64 (Steele, Lea & Flood, 2014), two numbers of the normal distribution at a time (Box & Muller, 1958). */
-struct normal {
-    uint64_t state;
-    double spare;
-    bool has_spare;
+/* SplitMix64 (Steele, Lea & Flood, 2014), whose bits are signs by chance. Of what is linear in them, signs give the variance as normal
+   numbers do, with no larger an error (Hutchinson, 1990). */
+struct signs {
+    uint64_t state, bits;
+    int left;
 };
 
-static double uniform(struct normal *normal)
+static double next_sign(struct signs *signs)
 {
-    uint64_t z = normal->state += 0x9e3779b97f4a7c15;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-    z = (z ^ z >> 27) * 0x94d049bb133111eb;
-    return ((double)((z ^ z >> 31) >> 11) + 0.5) * 0x1p-53;
+    if (signs->left == 0) {
+        uint64_t z = signs->state += 0x9e3779b97f4a7c15;
+        z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
+        z = (z ^ z >> 27) * 0x94d049bb133111eb;
+        signs->bits = z ^ z >> 31;
+        signs->left = 64;
+    }
+    double sign = signs->bits & 1 ? 1 : -1;
+    signs->bits >>= 1;
+    signs->left--;
+    return sign;
 }
 
-static double next_normal(struct normal *normal)
-{
-    normal->has_spare = !normal->has_spare;
-    if (!normal->has_spare)
-        return normal->spare;
-    double radius = sqrt(-2 * log(uniform(normal))), turn = 2 * M_PI * uniform(normal);
-    normal->spare = radius * sin(turn);
-    return radius * cos(turn);
-}
-
-/* One field out of the prior (in shares of the deviation) at the vertices, and what the sensors read of it, negative. The constant of each
-   body is of no matter: it is taken out at the first sensor, where there are digits for it. */
-static void take_sample(const struct solving *solving, const double *u, struct normal *normal, float *field, float *readings)
+/* One field out of the prior (in shares of the deviation), and what the sensors read of it, negative. The constant of each body is of no
+   matter: it is taken out at the first sensor, where there are digits for it. levels: of the bodies. */
+static void take_readings(const struct solving *solving, const double *u, struct signs *signs, double *levels, float *readings)
 {
     const size_t n = solving->mesh->source_count;
-    double *level = mem_array(solving->mesh->mesh.point_count, sizeof(*level));
     const double noise = max_of(solving->params.noise / solving->params.deviation, GAUSSIAN_LEAST_NOISE);
     for (size_t i = n; i-- > 0;)
-        level[solving->bodies.of_sensor[i]] = on_disc(solving, i, u);
+        levels[solving->bodies.of_sensor[i]] = on_disc(solving, i, u);
     for (size_t i = 0; i < n; i++) {
         double size = sqrt(solving->scale[solving->bodies.of_sensor[i]]);
-        readings[i] = -(float)(size * (on_disc(solving, i, u) - level[solving->bodies.of_sensor[i]]) + noise * next_normal(normal));
+        readings[i] = -(float)(size * (on_disc(solving, i, u) - levels[solving->bodies.of_sensor[i]]) + noise * next_sign(signs));
     }
-    for (size_t v = 0; v < solving->influence->vertex_count; v++) {
-        uint32_t body = body_of_vertex(solving, v);
-        field[v] = (float)(sqrt(solving->scale[body]) * (at_vertex(solving, v, u) - level[body]));
-    }
-    mem_free(level);
 }
 
-static void add_squares(const struct solving *solving, const float *missed, size_t samples)
+struct samples { /* a block of them; a thread's */
+    float *missed;   /* [point][sample] */
+    float *readings; /* [sample][sensor] */
+    double *levels;  /* by component */
+    struct solver solver;
+};
+
+static bool take_samples(const struct solving *solving, struct samples *samples, size_t block)
 {
-    const size_t vertices = solving->influence->vertex_count;
-    for (size_t v = 0; v < vertices; v++) {
+    const size_t rows = solving->laplacian.row_count, n = solving->influence->count, points = solving->mesh->mesh.point_count;
+    struct signs signs[BLOCK];
+    double *b = solver_begin(&samples->solver, rows, BLOCK);
+    for (size_t k = 0; b && k < BLOCK; k++) {
+        signs[k] = (struct signs){ .state = (block * BLOCK + k) << 32 };
+        for (size_t i = 0; i < rows; i++)
+            b[k * rows + i] = solving->root_mass_m[i] * next_sign(&signs[k]);
+    }
+    const double *u = b ? solver_solve(&samples->solver, solving->factor) : NULL;
+    for (size_t k = 0; u && k < BLOCK; k++) {
+        take_readings(solving, u + k * rows, &signs[k], samples->levels, samples->readings + k * n);
+        for (size_t p = 0; p < points; p++) {
+            const uint32_t body = solving->bodies.component[p], row = solving->laplacian.row_of[p];
+            samples->missed[p * BLOCK + k] =
+                row == TRIMESH_NONE ? 0 : (float)(solving->root_scale[body] * (u[k * rows + row] - samples->levels[body]));
+        }
+    }
+    return u != NULL;
+}
+
+/* At the vertices. */
+static void add_squares(const struct solving *solving, const float *missed)
+{
+    for (size_t v = 0; v < solving->influence->vertex_count; v++) {
+        const struct influence_anchor *at = &solving->anchors[v];
+        const float *a = missed + at->points[0] * BLOCK, *b = missed + at->points[1] * BLOCK, *c = missed + at->points[2] * BLOCK;
         uint64_t sum = 0;
-        for (size_t k = 0; k < samples; k++) {
-            double square = (double)missed[k * vertices + v] * (double)missed[k * vertices + v];
-            sum += (uint64_t)(min_of(square, FIXED_MOST) * FIXED);
+        for (size_t k = 0; k < BLOCK; k++) {
+            double miss = (double)(at->weights[0] * a[k] + at->weights[1] * b[k] + at->weights[2] * c[k]);
+            sum += (uint64_t)(min_of(miss * miss, FIXED_MOST) * FIXED);
         }
         atomic_fetch_add_explicit(&solving->squares[v], sum, memory_order_relaxed);
     }
@@ -278,35 +384,26 @@ static void add_squares(const struct solving *solving, const float *missed, size
 static void sample_blocks(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
-    const struct influence *influence = solving->influence;
-    const size_t rows = solving->laplacian.row_count, n = influence->count, vertices = influence->vertex_count;
-    float *fields = mem_try_array(BLOCK * vertices, sizeof(*fields)), *readings = mem_array(BLOCK * n, sizeof(*readings));
-    struct solver solver;
-    solver_init(&solver);
-    double *b = solver_begin(&solver, rows, BLOCK);
-    bool good = fields && b;
+    const size_t n = solving->influence->count, points = solving->mesh->mesh.point_count;
+    struct samples samples = { .missed = mem_try_array(BLOCK * points, sizeof(*samples.missed)),
+                               .readings = mem_array(BLOCK * n, sizeof(*samples.readings)),
+                               .levels = mem_array(points, sizeof(*samples.levels)) };
+    solver_init(&samples.solver);
+    bool good = samples.missed;
     for (size_t block = begin; good && block < end; block++) {
-        struct normal normals[BLOCK];
-        for (size_t k = 0; k < BLOCK; k++) {
-            normals[k] = (struct normal){ .state = (block * BLOCK + k) << 32 };
-            for (size_t i = 0; i < rows; i++)
-                b[k * rows + i] = sqrt(solving->laplacian.mass_m2[i]) * next_normal(&normals[k]);
+        good = take_samples(solving, &samples, block);
+        if (good) {
+            cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasTrans, (int)points, BLOCK, (int)n, 1, solving->at_points, (int)n,
+                        samples.readings, (int)n, 1, samples.missed, BLOCK);
+            add_squares(solving, samples.missed);
         }
-        const double *u = solver_solve(&solver, solving->factor);
-        good = u != NULL;
-        for (size_t k = 0; good && k < BLOCK; k++)
-            take_sample(solving, u + k * rows, &normals[k], fields + k * vertices, readings + k * n);
-        if (good)
-            cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, BLOCK, (int)vertices, (int)n, 1, readings, (int)n, influence->shares,
-                        (int)vertices, 1, fields, (int)vertices);
-        if (good)
-            add_squares(solving, fields, BLOCK);
     }
     if (!good)
         solving->failed = true;
-    solver_finish(&solver);
-    mem_free(fields);
-    mem_free(readings);
+    solver_finish(&samples.solver);
+    mem_free(samples.missed);
+    mem_free(samples.readings);
+    mem_free(samples.levels);
 }
 
 static void find_deviations(struct solving *solving)
@@ -323,40 +420,58 @@ static void find_deviations(struct solving *solving)
 
 /* --- the whole --------------------------------------------------------------------------------------------------------------- */
 
-bool gaussian_solve(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
-                    const struct gaussian_params *params, const struct influence_anchor *anchors, size_t vertex_count)
+static bool allocate(struct solving *solving)
 {
-    struct solving solving = { .influence = influence, .mesh = mesh, .anchors = anchors, .params = *params };
-    const size_t count = mesh->source_count, tiles = (vertex_count + TILE - 1) / TILE;
+    struct influence *influence = solving->influence;
+    const size_t count = influence->count, vertices = influence->vertex_count;
+    influence->shares = mem_try_array(count * vertices, sizeof(*influence->shares));
+    influence->precision = mem_try_array(count * count, sizeof(*influence->precision));
+    influence->deviations = mem_try_array(2 * vertices + 1, sizeof(*influence->deviations));
+    solving->at_points = mem_try_array(count * solving->mesh->mesh.point_count, sizeof(*solving->at_points));
+    solving->taken = mem_try_array(vertices + 1, sizeof(*solving->taken));
+    solving->levels = mem_array(count + 1, sizeof(*solving->levels));
+    solving->squares = mem_try_array(vertices, sizeof(*solving->squares));
+    return influence->shares && influence->precision && influence->deviations && solving->at_points && solving->squares && solving->taken;
+}
+
+static void weigh(struct solving *solving, struct workers *workers)
+{
+    const size_t points = solving->mesh->mesh.point_count, vertices = solving->influence->vertex_count;
+    for (size_t i = 0; i < solving->influence->count; i++)
+        solving->levels[i] = mean_variance(solving, i);
+    for (size_t i = 0; i < points; i++)
+        solving->root_scale[i] = sqrt(solving->scale[i]);
+    over(workers, (vertices + STRIP - 1) / STRIP, 32, keep_kernels, solving);
+    over(workers, (points + TILE - 1) / TILE, 8, weigh_tiles, solving);
+    over(workers, (vertices + STRIP - 1) / STRIP, 32, weigh_strips, solving);
+    if (solving->bend)
+        over(workers, solving->influence->count, BEND_WIDTH, add_bends, solving);
+    over(workers, GAUSSIAN_SAMPLES / BLOCK, 1, sample_blocks, solving);
+}
+
+bool gaussian_solve(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
+                    const struct gaussian_params *params, const struct influence_anchor *anchors, size_t vertex_count,
+                    struct influence_bend *bend)
+{
+    struct solving solving = { .influence = influence, .mesh = mesh, .anchors = anchors, .params = *params, .bend = bend };
     cholmod_common common;
     laplacian_start(&common);
-    *influence = (struct influence){ .count = count, .vertex_count = vertex_count };
-    influence->shares = mem_try_array(count * vertex_count, sizeof(*influence->shares));
-    influence->precision = mem_try_array(count * count, sizeof(*influence->precision));
-    influence->deviations = mem_try_array(2 * vertex_count + 1, sizeof(*influence->deviations));
-    solving.taken = mem_try_array(vertex_count + 1, sizeof(*solving.taken));
-    solving.levels = mem_array(count + 1, sizeof(*solving.levels));
-    solving.squares = mem_try_array(vertex_count, sizeof(*solving.squares));
-    bool good = influence->shares && influence->precision && influence->deviations && solving.squares && solving.taken;
-    good = good && begin(&solving, &common);
+    *influence = (struct influence){ .count = mesh->source_count, .vertex_count = vertex_count };
+    bool good = allocate(&solving) && begin(&solving, &common);
     if (good)
-        over(workers, count, BLOCK, solve_kernels, &solving);
+        over(workers, influence->count, BLOCK, solve_kernels, &solving);
     good = good && !solving.failed;
     if (good)
-        gaussian_bodies_scale(&solving.bodies, count, solving.covariance, solving.scale);
+        gaussian_bodies_scale(&solving.bodies, influence->count, solving.covariance, solving.scale);
     good = good && find_precision(&solving);
-    if (good) {
-        for (size_t i = 0; i < count; i++)
-            solving.levels[i] = mean_variance(&solving, i);
-        over(workers, tiles, 8, weigh_tiles, &solving);
-        over(workers, GAUSSIAN_SAMPLES / BLOCK, 1, sample_blocks, &solving);
-    }
+    if (good)
+        weigh(&solving, workers);
     good = good && !solving.failed;
     if (good)
         find_deviations(&solving);
     else
-        log_err(log, "Gaussian process between %zu sensors on %zu points, range %g m: %s", count, mesh->mesh.point_count, params->range_m,
-                common.status == CHOLMOD_NOT_POSDEF ? "system is not positive definite" : "out of memory");
+        log_err(log, "Gaussian process between %zu sensors on %zu points, range %g m: %s", influence->count, mesh->mesh.point_count,
+                params->range_m, common.status == CHOLMOD_NOT_POSDEF ? "system is not positive definite" : "out of memory");
     finish(&solving, &common);
     cholmod_finish(&common);
     return good;

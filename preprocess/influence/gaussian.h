@@ -15,16 +15,17 @@
 #include "preprocess/influence/influence.h"
 
 #define GAUSSIAN_LEAST_NOISE 0.005 /* of the deviation: less would make sensors at one place a riddle without a solution */
-#define GAUSSIAN_SAMPLES 256       /* of which the deviation is measured: it errs by 1 / sqrt(2 * 256) = 4.4 % */
+#define GAUSSIAN_SAMPLES 256       /* of which the deviation is measured: it errs by at most 1 / sqrt(2 * 256) = 4.4 % */
 
 struct gaussian_params {
     double range_m, noise, deviation; /* noise and deviation in the unit of the readings */
 };
 
 /* Computes H, P and, by random samples that are always the same, the standard deviation at each vertex. anchors: of vertex_count vertices
-   on the mesh. workers may be NULL. Returns false if out of memory or if the system has no solution, logged. Call influence_finish() in
-   both cases. */
+   on the mesh. bend: takes what all sensors come to between the corners of drawn triangles, or NULL. workers may be NULL. Returns false if
+   out of memory or if the system has no solution, logged. Call influence_finish() in both cases. */
 bool gaussian_solve(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
-                    const struct gaussian_params *params, const struct influence_anchor *anchors, size_t vertex_count);
+                    const struct gaussian_params *params, const struct influence_anchor *anchors, size_t vertex_count,
+                    struct influence_bend *bend);
 
 #endif

@@ -14,13 +14,14 @@
 #define CONTACT 1e5         /* readings are met within about a hundred-thousandth of what neighbours differ by */
 #define REGULARISATION 1e-9 /* in shares of a body's area: rounding leaves no body quite singular */
 #define BLOCK_LEAST 8       /* right-hand sides solved together; with more of them the factor is read less often */
-#define BLOCK_MOST 32
+#define BLOCK_MOST BEND_WIDTH
 #define BLOCK_BYTES (64 << 20) /* of a block above the least; a thread has three */
 
 struct conduct {
     struct influence *influence;
     const struct influence_mesh *mesh;
     const struct influence_anchor *anchors;
+    struct influence_bend *bend;
     struct laplacian laplacian;
     cholmod_factor *factor;
     size_t block; /* right-hand sides solved together */
@@ -89,6 +90,17 @@ static void take(const struct conduct *conduct, size_t sensor, const double *u)
     }
 }
 
+/* What the sensors of a block have at the points of the mesh, for the bend between corners. u: a column for each. */
+static void add_bend(const struct conduct *conduct, const double *u, size_t count, float *at_points)
+{
+    const uint32_t *row_of = conduct->laplacian.row_of;
+    const size_t rows = conduct->laplacian.row_count;
+    for (size_t p = 0; p < conduct->mesh->mesh.point_count; p++)
+        for (size_t k = 0; k < count && row_of[p] != TRIMESH_NONE; k++)
+            at_points[p * count + k] = (float)u[k * rows + row_of[p]];
+    influence_bend_add(conduct->bend, at_points, count, count);
+}
+
 /* As many as fit, but no more than keep all threads busy. */
 static size_t block_of(const struct conduct *conduct, const struct workers *workers)
 {
@@ -103,8 +115,11 @@ static void solve_some(void *arg, size_t begin, size_t end)
 {
     struct conduct *conduct = arg;
     const size_t rows = conduct->laplacian.row_count;
+    float *at_points = conduct->bend ? mem_try_array(conduct->mesh->mesh.point_count * conduct->block, sizeof(*at_points)) : NULL;
     struct solver solver;
     solver_init(&solver);
+    if (conduct->bend && !at_points)
+        conduct->failed = true;
     for (size_t first = begin; first < end && !conduct->failed; first += conduct->block) {
         size_t count = end - first < conduct->block ? end - first : conduct->block;
         double *b = solver_begin(&solver, rows, count);
@@ -116,9 +131,12 @@ static void solve_some(void *arg, size_t begin, size_t end)
         const double *u = b ? solver_solve(&solver, conduct->factor) : NULL;
         for (size_t k = 0; u && k < count; k++)
             take(conduct, first + k, u + k * rows);
+        if (u && conduct->bend)
+            add_bend(conduct, u, count, at_points);
         if (!u)
             conduct->failed = true;
     }
+    mem_free(at_points);
     solver_finish(&solver);
 }
 
@@ -132,9 +150,9 @@ static void make_symmetric(struct influence *influence)
 }
 
 bool influence_conduct(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
-                       double decay_m, const struct influence_anchor *anchors, size_t vertex_count)
+                       double decay_m, const struct influence_anchor *anchors, size_t vertex_count, struct influence_bend *bend)
 {
-    struct conduct conduct = { .influence = influence, .mesh = mesh, .anchors = anchors };
+    struct conduct conduct = { .influence = influence, .mesh = mesh, .anchors = anchors, .bend = bend };
     cholmod_common common;
     laplacian_start(&common);
     *influence = (struct influence){ .count = mesh->source_count, .vertex_count = vertex_count };

@@ -12,6 +12,7 @@
 #define PREPROCESS_INFLUENCE_INFLUENCE_H
 #include "base/log.h"
 #include "base/workers.h"
+#include "preprocess/influence/influence_bend.h"
 #include "preprocess/influence/influence_mesh.h"
 
 struct influence {
@@ -22,10 +23,11 @@ struct influence {
                           sensors; NULL: not known. Room for one more, 0 */
 };
 
-/* Computes the influence by conduction; decay_m: INFINITY for harmonic. anchors: of vertex_count vertices on the mesh. workers may be NULL.
-   Returns false if out of memory, logged. Call influence_finish() in both cases. */
+/* Computes the influence by conduction; decay_m: INFINITY for harmonic. anchors: of vertex_count vertices on the mesh. bend: takes what all
+   sensors come to between the corners of drawn triangles, or NULL. workers may be NULL. Returns false if out of memory, logged. Call
+   influence_finish() in both cases. */
 bool influence_conduct(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
-                       double decay_m, const struct influence_anchor *anchors, size_t vertex_count);
+                       double decay_m, const struct influence_anchor *anchors, size_t vertex_count, struct influence_bend *bend);
 /* Frees the arrays. A zeroed one is fine. */
 void influence_finish(struct influence *influence);
 

@@ -1,44 +1,56 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* By how much a field between the corners of drawn triangles differs from the straight line that is drawn there. Both are straight in
    pieces, on triangles of their own, so their difference is greatest at a corner of where two of these overlap: all of these places are
-   found, and that they cover a drawn triangle is checked by area. Thread: one, unless constant. */
+   found, and what is left of a drawn triangle then is measured. Where a part is inside another one, or against it, nothing is solved.
+   Where bridging a crack has moved corners of the mesh off the drawn triangle, its field is taken from straight above and below. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_BEND_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_BEND_H
-#include "preprocess/influence/influence.h"
+#include <stdatomic.h>
+
+#include "preprocess/influence/influence_mesh.h"
 
 struct bend_place {
-    uint32_t tri;     /* of those that are drawn */
-    uint32_t vertex;  /* that it is at, of all triangles around it; TRIMESH_NONE: at none */
-    float weights[3]; /* of the triangle's corners */
+    uint32_t tri;                   /* of those that are drawn */
+    float weights[3];               /* of the triangle's corners */
+    struct influence_anchor anchor; /* where it is on the mesh */
+};
+
+struct bend_drawn { /* the triangles that are drawn */
+    const float (*positions_m)[3];
+    const uint32_t *triangles; /* 3 indices each */
+    size_t vertex_count, triangle_count;
+    const struct influence_anchor *anchors; /* of the vertices */
 };
 
 struct influence_bend {
-    struct bend_place *places;
-    struct influence_anchor *anchors; /* where each place is on the mesh */
-    size_t count, capacity, anchor_capacity;
-    const uint32_t *triangles;
-    double *area_m2; /* by drawn triangle; negative: not covered, so that nothing is known of it */
-    size_t triangle_count;
+    struct bend_drawn drawn;
+    struct bend_place *places; /* those of a triangle one after the other */
+    size_t count, capacity;
+    double *area_m2, *hidden_m2, *unknown_m2; /* by drawn triangle: all of it, and what of it is not bounded */
+    _Atomic int64_t *plus, *minus;            /* by place: what shares are too small and too large by, added up */
 };
 
-/* Finds the places of triangle_count drawn triangles. Returns false if there are more than `most`. Call influence_bend_finish() in both
-   cases. */
-bool influence_bend_init(struct influence_bend *bend, const struct influence_mesh *mesh, const float (*positions_m)[3],
-                         size_t vertex_count, const uint32_t *triangles, size_t triangle_count, size_t most);
+/* Finds the places of the drawn triangles; these and the anchors must outlive *bend. surface: what the mesh was made from. Returns false if
+   there are more than `most`, or no memory. Call influence_bend_finish() in both cases. Thread: one. */
+bool influence_bend_init(struct influence_bend *bend, const struct influence_mesh *mesh, const struct surface *surface,
+                         const struct bend_drawn *drawn, size_t most);
 void influence_bend_finish(struct influence_bend *bend);
 
+enum { BEND_WIDTH = 32 };
+/* Adds what `width` sensors' shares come to, at most BEND_WIDTH; at_points: [point of the mesh], each with `stride` numbers, of which the
+   first `width` are taken. The sum is the same in any order. Thread: any number of calls at a time. */
+void influence_bend_add(struct influence_bend *bend, const float *at_points, size_t stride, size_t width);
+
 struct bend_report { /* zero: nothing was asked for */
-    size_t measured, unmeasured; /* groups by interpolations: whose bend is bounded; that would have taken too long */
+    size_t measured, unmeasured; /* groups by interpolations: whose bend is bounded; that have too many places */
     double steps;                /* 1/255 of MAX - MIN: what no place is off by more than, whatever good sensors read from MIN to MAX */
     double over_share;           /* of the area: triangles in which some place may be off by over a step */
-    double unknown_share;        /* of the area: triangles of which nothing is known; not in the two above */
+    double hidden_share;         /* of the area: inside another part or against it, where nothing is solved */
+    double unknown_share;        /* of the area: not on the surface that is solved on; as above, not in `steps` and `over_share` */
 };
-/* Adds what an interpolation may be off by to the report, the worst of all; writes the steps of each drawn triangle to `steps` (NULL:
-   nowhere). influence: solved for vertex_count vertices and behind them the places. around: what the field falls to far from sensors, as
-   (value - MIN) / (MAX - MIN); 0 where shares add up to 1. */
-void influence_bend_measure(const struct influence_bend *bend, const struct influence *influence, size_t vertex_count, double around,
-                            float *steps, struct bend_report *report);
-/* Takes the places out of what was solved for them, too. */
-void influence_bend_remove(const struct influence_bend *bend, struct influence *influence, size_t vertex_count);
+/* Adds what an interpolation may be off by to the report, the worst of all, now that the shares of all sensors were added; writes the
+   steps of each drawn triangle to `steps` (NULL: nowhere). Then the next one may begin. around: what the field falls to far from sensors,
+   as (value - MIN) / (MAX - MIN); 0 where shares add up to 1. Thread: one. */
+void influence_bend_measure(struct influence_bend *bend, double around, float *steps, struct bend_report *report);
 
 #endif

@@ -24,7 +24,7 @@
 #define LONGEST 10.0    /* ranges in sizes of the surface; longer ones look the same */
 #define FIT_LEAST 0.05  /* ranges that are tried, in the same */
 #define FIT_MOST 3.0
-enum { BEND_PLACES = 2000000, BEND_SHARES = 64 << 20 }; /* where the bend between corners is looked for: more would take too long */
+enum { BEND_PLACES = 8000000 }; /* where the bend between corners is looked for: more would take too long */
 
 struct making {
     struct log *log;
@@ -136,31 +136,30 @@ static bool range_good(const struct making *making, int group, const struct infl
 }
 
 static bool solve(struct making *making, struct influence *found, enum interpolation interpolation, double decay_m,
-                  const struct influence_mesh *mesh, const struct gaussian_params *gp, const struct influence_anchor *anchors, size_t count)
+                  const struct influence_mesh *mesh, const struct gaussian_params *gp, const struct influence_anchor *anchors,
+                  struct influence_bend *bend)
 {
+    const size_t count = making->input->vertex_count;
     struct gaussian_params taken = *gp;
     taken.range_m = min_of(gp->range_m, LONGEST * size_m(making->input));
     return interpolation == INTERPOLATION_GP
-               ? gaussian_solve(found, making->log, making->workers, mesh, &taken, anchors, count)
-               : influence_conduct(found, making->log, making->workers, mesh, decay_m, anchors, count);
+               ? gaussian_solve(found, making->log, making->workers, mesh, &taken, anchors, count, bend)
+               : influence_conduct(found, making->log, making->workers, mesh, decay_m, anchors, count, bend);
 }
 
 static void bound_bend(const struct making *making, const struct plant_group *group, enum interpolation interpolation,
-                       const struct influence_bend *bend, struct influence *found)
+                       struct influence_bend *bend)
 {
-    const struct influence_input *input = making->input;
     double around = interpolation == INTERPOLATION_FIN ? (group->ambient - group->min) / (group->max - group->min) : 0;
-    if (bend->triangle_count > 0) {
-        influence_bend_measure(bend, found, input->vertex_count, around, NULL, input->bend);
-        influence_bend_remove(bend, found, input->vertex_count);
-    } else {
-        input->bend->unmeasured++;
-    }
+    if (bend)
+        influence_bend_measure(bend, around, NULL, making->input->bend);
+    else
+        making->input->bend->unmeasured++;
 }
 
-/* anchors: of the vertices, and then of the bend's places. */
+/* bend: NULL if there are too many places. */
 static bool add_entry(struct making *making, int group, enum interpolation interpolation, const struct influence_mesh *mesh,
-                      const struct gaussian_params *gp, const struct influence_anchor *anchors, const struct influence_bend *bend)
+                      const struct gaussian_params *gp, const struct influence_anchor *anchors, struct influence_bend *bend)
 {
     const struct influence_input *input = making->input;
     double decay_m = interpolation == INTERPOLATION_FIN ? plant_decay_m(asset_of(input)) : (double)INFINITY;
@@ -178,9 +177,9 @@ static bool add_entry(struct making *making, int group, enum interpolation inter
         making->entries[at].noise = gp->noise;
         making->entries[at].deviation = gp->deviation;
     }
-    bool good = solve(making, &making->found[at], interpolation, decay_m, mesh, gp, anchors, input->vertex_count + bend->count);
+    bool good = solve(making, &making->found[at], interpolation, decay_m, mesh, gp, anchors, bend);
     if (good)
-        bound_bend(making, &input->plant->groups[group], interpolation, bend, &making->found[at]);
+        bound_bend(making, &input->plant->groups[group], interpolation, bend);
     return good;
 }
 
@@ -278,14 +277,6 @@ static bool add_heat(struct making *making, int group, const double (*places_m)[
 
 /* --- groups and the file ---------------------------------------------------------------------------------------------------- */
 
-/* Leaves it empty where that would take too long. */
-static void find_bend(const struct influence_input *input, const struct influence_mesh *mesh, size_t sensors, struct influence_bend *bend)
-{
-    size_t most = BEND_SHARES / sensors < BEND_PLACES ? BEND_SHARES / sensors : BEND_PLACES;
-    if (!influence_bend_init(bend, mesh, input->positions_m, input->vertex_count, input->triangles, input->triangle_count, most))
-        influence_bend_finish(bend);
-}
-
 static bool add_group(struct making *making, int group)
 {
     const struct influence_input *input = making->input;
@@ -299,22 +290,23 @@ static bool add_group(struct making *making, int group)
     if (good && count > 0 && (of->prepared >> INTERPOLATION_HARMONIC || of->directed)) {
         struct influence_anchor *anchors = NULL;
         struct influence_bend bend = { 0 };
+        bool bounded = false;
         struct gaussian_params gp = { .range_m = INFINITY };
         bool has_gp = plant_prepares(of, INTERPOLATION_GP);
         good = (!has_gp || find_params(making, group, (const double(*)[3])places_m, count, &gp)) &&
                influence_mesh_init(&mesh, input->surface, (const double(*)[3])places_m, count, of->disc_m, gp.range_m / EDGES) &&
                range_good(making, group, &mesh, &gp);
-        if (good && of->prepared >> INTERPOLATION_HARMONIC)
-            find_bend(input, &mesh, count, &bend);
-        anchors = good ? mem_try_array(input->vertex_count + bend.count, sizeof(*anchors)) : NULL;
+        anchors = good ? mem_try_array(input->vertex_count, sizeof(*anchors)) : NULL;
         good = anchors != NULL;
-        if (good) {
+        if (good)
             influence_mesh_anchors(&mesh, making->embedding, input->vertex_count, anchors);
-            memcpy(anchors + input->vertex_count, bend.anchors, bend.count * sizeof(*anchors));
+        if (good && of->prepared >> INTERPOLATION_HARMONIC) {
+            const struct bend_drawn drawn = { input->positions_m, input->triangles, input->vertex_count, input->triangle_count, anchors };
+            bounded = influence_bend_init(&bend, &mesh, input->surface, &drawn, BEND_PLACES);
         }
         for (int i = INTERPOLATION_HARMONIC; good && i < INTERPOLATIONS; i++)
             if (plant_prepares(of, (enum interpolation)i))
-                good = add_entry(making, group, (enum interpolation)i, &mesh, &gp, anchors, &bend);
+                good = add_entry(making, group, (enum interpolation)i, &mesh, &gp, anchors, bounded ? &bend : NULL);
         if (good && of->directed)
             good = add_transport(making, group, &mesh, anchors);
         mem_free(anchors);

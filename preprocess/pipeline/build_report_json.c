@@ -85,6 +85,7 @@ static const struct number bend_numbers[] = {
     OF_BUILD("unbounded", bend.unmeasured, COUNT),
     OF_BUILD("steps", bend.steps, METRES),
     OF_BUILD("over_share", bend.over_share, METRES),
+    OF_BUILD("hidden_share", bend.hidden_share, METRES),
     OF_BUILD("unknown_share", bend.unknown_share, METRES),
     { 0 },
 };

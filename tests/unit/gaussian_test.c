@@ -74,7 +74,7 @@ static void prepare_coarse(struct solved *s, const double (*places_m)[3], size_t
 static void solve(struct solved *s, struct gaussian_params params)
 {
     influence_finish(&s->influence);
-    assert_true(gaussian_solve(&s->influence, the_log, workers, &s->mesh, &params, s->anchors, s->shape.vertex_count));
+    assert_true(gaussian_solve(&s->influence, the_log, workers, &s->mesh, &params, s->anchors, s->shape.vertex_count, NULL));
 }
 
 static void finish(struct solved *s)

@@ -34,7 +34,7 @@ static void solve(struct solved *s, const double (*places_m)[3], size_t count, d
     assert_true(influence_mesh_init(&mesh, s->surface, places_m, count, disc_m, INFINITY));
     influence_mesh_anchors(&mesh, embedding, vertices, anchors);
     influence_finish(&s->influence);
-    assert_true(influence_conduct(&s->influence, the_log, workers, &mesh, decay_m, anchors, vertices));
+    assert_true(influence_conduct(&s->influence, the_log, workers, &mesh, decay_m, anchors, vertices, NULL));
     influence_mesh_finish(&mesh);
     mem_free(anchors);
     vertex_embedding_destroy(&embedding);

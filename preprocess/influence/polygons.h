@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Convex polygons in a plane, counter-clockwise: what a triangle leaves of them (Sutherland & Hodgman, Reentrant polygon clipping, 1974).
+   Thread: one. */
+#ifndef PREPROCESS_INFLUENCE_POLYGONS_H
+#define PREPROCESS_INFLUENCE_POLYGONS_H
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { POLYGON_CORNERS = 24 };
+
+struct polygon {
+    double at[POLYGON_CORNERS][2];
+    int count; /* 0: empty */
+};
+
+struct polygons {
+    struct polygon *of;
+    size_t count, capacity;
+};
+
+/* Returns twice the area of a, b, c: above 0 where they go round counter-clockwise. */
+static inline double polygon_cross(const double a[2], const double b[2], const double c[2])
+{
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+double polygon_area(const struct polygon *polygon);
+double polygons_area(const struct polygons *polygons);
+/* Writes what of the polygon is in the triangle. Returns false, and nothing is left, if it would have too many corners. */
+bool polygon_in_triangle(const struct polygon *polygon, const double triangle[3][2], struct polygon *out);
+/* Appends what of the polygon is outside the triangle, in convex pieces; those no larger than least_m2 are left out. */
+void polygons_add_outside(struct polygons *polygons, const struct polygon *polygon, const double triangle[3][2], double least_m2);
+void polygons_add(struct polygons *polygons, const struct polygon *polygon);
+/* Frees the list. */
+void polygons_finish(struct polygons *polygons);
+
+#endif
