@@ -22,7 +22,7 @@ test-long: test-deps
 	@PLANTCAST_FUZZ_ROUNDS=200000 $(out)/tests/unit/rvm_fuzz_test
 	@REPLAY_S=3600 $(out)/tests/unit/modbus_history_test
 	@PLANTCAST_BIN=$(bin) node --test tests/long/replay.mjs
-	@PLANTCAST_BIN=$(bin) USE_S=1800 node --test --test-name-pattern='memory' tests/e2e/assets.mjs
+	@PLANTCAST_BIN=$(bin) USE_S=1800 node --test --test-name-pattern='memory' tests/e2e/list_pages/assets.mjs
 	@PLANTCAST_BIN=$(bin) USES=1440 MEMORY_MB=2048 node --test tests/e2e/memory.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=200 node --test tests/e2e/wall_losses.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=20 node --test tests/e2e/gpu.mjs

@@ -3,5 +3,7 @@
 import { describe } from 'node:test';
 import './support/browser.mjs'; // whose browser ends with the program, not with the first subject
 
-for (const subject of ['start', 'singles', 'roles', 'clip_gizmo', 'handover', 'tour'])
-    describe(subject, () => import(`./pages/${subject}.mjs`));
+describe('pages', { concurrency: 2 }, () => {
+    for (const subject of ['tour', 'start', 'clip_gizmo', 'roles', 'named_views', 'arrows', 'crowd', 'drift', 'singles', 'handover'])
+        describe(subject, { concurrency: 1 }, () => import(`./pages/${subject}.mjs`));
+});

@@ -2,8 +2,8 @@
 // Alarms in the browser: counted and marked in every view, listed, acknowledged, shelved, flown to.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { DESKTOP, openPage, settle, shoot, TABLET, view, waitForHealth, waitForPicture } from './support/browser.mjs';
-import { missing, startPlant } from './support/plant.mjs';
+import { DESKTOP, openPage, settle, shoot, TABLET, view, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { missing, startPlant } from '../support/plant.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };

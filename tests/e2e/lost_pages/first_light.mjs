@@ -4,9 +4,9 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import {
     grab, healthKind, held, markers, openPage, pageOf, settle, shoot, view, waitForChange, waitForHealth, waitForPicture,
-} from './support/browser.mjs';
-import { contrast, countOutside, difference, meanAround } from './support/pixels.mjs';
-import { missing, startPlant } from './support/plant.mjs';
+} from '../support/browser.mjs';
+import { contrast, countOutside, difference, meanAround } from '../support/pixels.mjs';
+import { missing, startPlant } from '../support/plant.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };

@@ -4,9 +4,9 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { drawnAt, openPage, settle, shoot, view, waitForPicture } from './support/browser.mjs';
-import { sweep } from './support/sweep.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { drawnAt, openPage, settle, shoot, view, waitForPicture } from '../support/browser.mjs';
+import { sweep } from '../support/sweep.mjs';
+import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };

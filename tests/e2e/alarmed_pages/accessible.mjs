@@ -4,10 +4,11 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
-import { drawnAt, openPage, PHONE, shoot, TABLET, travel, waitForPicture } from './support/browser.mjs';
-import { everyPanel, startAlarmed } from './support/panels.mjs';
-import { sweep, takes } from './support/sweep.mjs';
-import { missing } from './support/tiny_plant.mjs';
+import { alarmed } from './alarmed.mjs';
+import { drawnAt, openPage, PHONE, shoot, TABLET, travel, waitForPicture } from '../support/browser.mjs';
+import { everyPanel } from '../support/panels.mjs';
+import { sweep, takes } from '../support/sweep.mjs';
+import { missing } from '../support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
@@ -24,19 +25,18 @@ const PARTS = {
     timings: '#timings', help: '#help', cut: '#viewport', measure: '#viewport', share: '#share',
     'engineer-place': '#engineer', 'engineer-gaps': '#engineer', 'engineer-prove': '#engineer', token: '#token',
 };
-let plant, url, browser, page;
+let url, browser, page;
 
 before(async () => {
     if (options.skip)
         return;
-    [plant, url] = await startAlarmed();
+    [, url] = await alarmed();
     browser = await openPage(url, SCREEN);
     page = browser.page;
     await waitForPicture(page);
 });
 after(async () => {
     await browser?.close();
-    await plant?.destroy();
 });
 
 // Within: of what matches that; null: of all.

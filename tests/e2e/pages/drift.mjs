@@ -4,8 +4,8 @@ import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, settle, shoot, waitForHealth, waitForPicture } from './support/browser.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { openPage, settle, shoot, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 120000 };

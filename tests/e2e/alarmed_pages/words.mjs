@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page in its languages: nothing is said but by the files of words, and nothing that is said is cut off.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
-import { DESKTOP, openPage, PHONE, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
-import { everyPanel, startAlarmed } from './support/panels.mjs';
-import { sweep } from './support/sweep.mjs';
-import { missing } from './support/tiny_plant.mjs';
+import { before, test } from 'node:test';
+import { alarmed } from './alarmed.mjs';
+import { DESKTOP, openPage, PHONE, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
+import { everyPanel } from '../support/panels.mjs';
+import { sweep } from '../support/sweep.mjs';
+import { missing } from '../support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
-let plant, url;
+let url;
 
 before(async () => {
     if (!options.skip)
-        [plant, url] = await startAlarmed();
+        [, url] = await alarmed();
 });
-after(() => plant?.destroy());
 
 // With words that are only marks, what else can be read is the plant's own or nobody's.
 const unsaid = (page) => page.evaluate(() => {

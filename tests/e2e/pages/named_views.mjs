@@ -2,8 +2,8 @@
 // Views with names: those of the plant file and those that somebody saves in the page, for all, in one order, with what they were before.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { openPage, settle, shoot, view, waitForPicture } from './support/browser.mjs';
-import { missing, startTiny } from './support/tiny_plant.mjs';
+import { openPage, settle, shoot, view, waitForPicture } from '../support/browser.mjs';
+import { missing, startTiny } from '../support/tiny_plant.mjs';
 
 const absent = missing(), why = absent.length > 0 && `not built: ${absent.join(', ')}`;
 const options = { skip: why, timeout: 200000 };

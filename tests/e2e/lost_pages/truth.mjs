@@ -6,10 +6,10 @@ import { createHash, X509Certificate } from 'node:crypto';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, settle, shoot, TABLET, waitForHealth, waitForPicture } from './support/browser.mjs';
-import { Relay, relayMissing } from './support/relay.mjs';
-import { sweep } from './support/sweep.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { openPage, settle, shoot, TABLET, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { Relay, relayMissing } from '../support/relay.mjs';
+import { sweep } from '../support/sweep.mjs';
+import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = [...missing(), relayMissing()].filter(Boolean);
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
@@ -69,7 +69,7 @@ test(`a wall of ${SIZE.width} pixels: every letter is read from 3 m, alarms are 
         await waitForHealth(page, 'live');
         await page.waitForFunction(() => document.querySelector('#alarm-counts .priority'));
         await settle(page);
-        const { readWall } = await import('../../clients/web/core/wall.js');
+        const { readWall } = await import('../../../clients/web/core/wall.js');
         const seen = await letters(page);
         assert.ok(seen.length > 12, `${seen.length} texts`);
         const small = seen.map(({ text, px }) => ({ text, minutes: letterMinutes(px, readWall('?wall'), WALL.screen) }))

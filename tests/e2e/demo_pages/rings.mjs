@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Alarms in the picture: every ring is in a label or in a call-out, however small the picture, and none of these lies over a legend.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
-import { openPage, PHONE, settle, shoot, waitForPicture } from './support/browser.mjs';
-import { missing, startPlant } from './support/plant.mjs';
-import { sweep } from './support/sweep.mjs';
+import { before, test } from 'node:test';
+import { demo } from './demo.mjs';
+import { openPage, PHONE, settle, shoot, waitForPicture } from '../support/browser.mjs';
+import { missing } from '../support/plant.mjs';
+import { sweep } from '../support/sweep.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
@@ -25,11 +26,10 @@ let plant;
 before(async () => {
     if (why)
         return;
-    plant = await startPlant();
+    plant = await demo();
     for (const tag of ALARMS)
         await plant.ask(`set ${tag} 200`);
 });
-after(() => plant?.stop());
 
 const look = (page) => page.evaluate(() => {
     const { overlay } = globalThis.plantcast, rings = overlay.markers.filter(({ alarm }) => alarm);

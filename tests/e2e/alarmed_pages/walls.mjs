@@ -3,10 +3,10 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { openPage, shoot, waitForPicture } from './support/browser.mjs';
-import { startAlarmed } from './support/panels.mjs';
-import { sweep } from './support/sweep.mjs';
-import { missing } from './support/tiny_plant.mjs';
+import { openPage, shoot, waitForPicture } from '../support/browser.mjs';
+import { startAlarmed } from '../support/panels.mjs';
+import { sweep } from '../support/sweep.mjs';
+import { missing } from '../support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };

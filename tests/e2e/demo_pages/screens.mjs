@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page on a tablet and on a phone, by touch.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
-import { markers, openPage, PHONE, settle, SHARP, shoot, TABLET, view, waitForHealth, waitForPicture } from './support/browser.mjs';
-import { contrastRatio } from './support/pixels.mjs';
-import { missing, startPlant } from './support/plant.mjs';
+import { before, test } from 'node:test';
+import { demo } from './demo.mjs';
+import { markers, openPage, PHONE, settle, SHARP, shoot, TABLET, view, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { contrastRatio } from '../support/pixels.mjs';
+import { missing } from '../support/plant.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
@@ -13,9 +14,8 @@ let plant;
 
 before(async () => {
     if (!why)
-        plant = await startPlant();
+        plant = await demo();
 });
-after(() => plant?.stop());
 
 async function withPage(screen, f) {
     const browser = await openPage(plant.url, screen);

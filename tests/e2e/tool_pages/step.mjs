@@ -3,9 +3,9 @@
 // on the screen has its place, not where the camera is by then.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
-import { Relay, relayMissing } from './support/relay.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
+import { Relay, relayMissing } from '../support/relay.mjs';
+import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = [...missing(), relayMissing()].filter(Boolean);
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };

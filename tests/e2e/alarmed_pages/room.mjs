@@ -2,11 +2,12 @@
 // Room for everything on every screen: lists and panels stand beside the picture, and what it is read by stays whole and in sight.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
-import { arrive, land, openPage, PHONE, shoot, TABLET, waitForPicture } from './support/browser.mjs';
-import { startAlarmed } from './support/panels.mjs';
-import { sweep, takes } from './support/sweep.mjs';
-import { missing } from './support/tiny_plant.mjs';
+import { before, test } from 'node:test';
+import { alarmed } from './alarmed.mjs';
+import { arrive, land, openPage, PHONE, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
+import { startAlarmed } from '../support/panels.mjs';
+import { sweep, takes } from '../support/sweep.mjs';
+import { missing } from '../support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
@@ -20,13 +21,12 @@ const SCREENS = {
 };
 // The way through all panels, by default on these; panels are held to be whole where there is little room.
 const WALKED = sweep(Object.keys(SCREENS), ['tablet upright', 'phone across']);
-let plant, url;
+let url;
 
 before(async () => {
     if (!options.skip)
-        [plant, url] = await startAlarmed();
+        [, url] = await alarmed();
 });
-after(() => plant?.destroy());
 
 // What lies over the picture, or leaves it, and should not; and what of the legend is not there to be read.
 const amiss = (page) => page.evaluate(() => {

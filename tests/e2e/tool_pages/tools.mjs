@@ -6,9 +6,9 @@ import { after, afterEach, before, test } from 'node:test';
 import jsqr from 'jsqr';
 import {
     drawnAt, grab, openPage, PHONE, readPng, settle, shoot, TABLET, view, waitForHealth, waitForPicture,
-} from './support/browser.mjs';
-import { contrast, deltaE } from './support/pixels.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+} from '../support/browser.mjs';
+import { contrast, deltaE } from '../support/pixels.mjs';
+import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };

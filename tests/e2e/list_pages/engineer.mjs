@@ -4,8 +4,8 @@ import assert from 'node:assert/strict';
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { DESKTOP, drawnAt, land, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { DESKTOP, drawnAt, land, openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
+import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync('/usr/bin/chromium') ? 'no chromium' : false;

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page's lists, by one browser: alarms, equipment, and an engineer's tags.
+import { describe } from 'node:test';
+import './support/browser.mjs'; // whose browser ends with the program, not with the first subject
+
+describe('list_pages', { concurrency: 2 }, () => {
+    for (const subject of ['alarms', 'engineer', 'assets'])
+        describe(subject, { concurrency: 1 }, () => import(`./list_pages/${subject}.mjs`));
+});

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the page says and does where something is missing, by one browser: its own parts, its server, the plant's values.
+import { describe } from 'node:test';
+import './support/browser.mjs'; // whose browser ends with the program, not with the first subject
+
+describe('lost_pages', { concurrency: 2 }, () => {
+    for (const subject of ['weight', 'first_light', 'truth'])
+        describe(subject, { concurrency: 1 }, () => import(`./lost_pages/${subject}.mjs`));
+});
