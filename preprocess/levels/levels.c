@@ -11,10 +11,12 @@
 #include "preprocess/levels/levels_impl.h"
 
 #define NEAR_WORTH 0.5      /* of the triangles of the level before, at most; */
-#define FAR_TRIANGLES 16000 /* of those with no more, many instances are drawn in one picture, so these lie closer together: */
-#define FAR_WORTH 0.85      /* likewise, */
-#define STEP 1.3            /* and at so many times its error, at least */
-#define WAIT 1.1            /* times the error, for what else comes until then */
+#define FAR LEVELS_FILLING  /* of the size: of levels that err by more, */
+#define FAR_TRIANGLES 16000 /* and have no more triangles, many are drawn in one picture, so these lie closer together: */
+#define FAR_WORTH 0.9       /* likewise */
+#define STEP 1.4            /* times the error of the level before, at most, where that is worth a level; else the least that is; */
+#define STEP_SMALL 1.7      /* likewise, of levels that err by more than LEVELS_SMALL */
+#define WAIT 1.1            /* times the error of a near one, for what else comes until then; or of what was no level, before the next */
 #define MISSED 1.05f        /* times the error: what is left out may be missed by so much */
 #define MOST_TRIES 2        /* of moving faces: of all parts, then of those that do not err by more because of it */
 
@@ -29,7 +31,6 @@ struct making {
     uint32_t *version; /* of each part; ABSENT: it is left out */
     uint32_t *shown;   /* likewise, in the last level */
     size_t tri_count;
-    float tried_m; /* the error of the last level, or of what was not worth being one */
 };
 
 #define ABSENT VERSIONS_MAX
@@ -76,6 +77,14 @@ static void let_happen(struct making *making, const struct event *event)
     making->tri_count -= tris_of(making, event->part);
     making->version[event->part] = event->version;
     making->tri_count += tris_of(making, event->part);
+}
+
+/* All from events[i] on that this error allows. Returns the index of the next one. */
+static size_t let_all_happen(struct making *making, const struct event *events, size_t i, size_t count, float error_m)
+{
+    for (; i < count && events[i].error_m <= error_m; i++)
+        let_happen(making, &events[i]);
+    return i;
 }
 
 /* --- one level ------------------------------------------------------------------------------------------------------------ */
@@ -228,15 +237,27 @@ static bool bring_back(struct making *making, const float *apart_m, float error_
     return any;
 }
 
+/* What the level after the last one errs by at least. */
+static double step_m(const struct making *making, const struct level *last)
+{
+    double last_m = (double)last->error_m;
+    return last_m * (last_m > LEVELS_SMALL * making->welds.whole_m ? STEP_SMALL : STEP);
+}
+
+static bool is_far(const struct making *making, const struct level *last, float error_m)
+{
+    return making->tri_count <= FAR_TRIANGLES && fmax((double)error_m, step_m(making, last)) >= FAR * making->welds.whole_m;
+}
+
 /* Whether what there is so far is a level that is worth its room after the last one. */
 static bool is_worth(const struct making *making, const struct level *last, float error_m)
 {
     double before = (double)(last->index_count / 3), now = (double)making->tri_count;
-    return now <= NEAR_WORTH * before || (before <= FAR_TRIANGLES && now <= FAR_WORTH * before && error_m >= (float)STEP * last->error_m);
+    return now <= (is_far(making, last, error_m) ? FAR_WORTH : NEAR_WORTH) * before;
 }
 
-/* Not if it is no longer worth it with the parts that come back. */
-static void add_level(struct making *making, struct levels *levels)
+/* Returns false if it is no longer worth it with the parts that come back. Writes what it errs by. */
+static bool add_level(struct making *making, struct levels *levels, float *error_out_m)
 {
     size_t count, parts = making->welds.part_count;
     float *apart_m = mem_array(parts, sizeof(*apart_m)), error_m = error_of_parts(making);
@@ -251,8 +272,9 @@ static void add_level(struct making *making, struct levels *levels)
     for (size_t p = 0; p < parts; p++)
         error_m = fmaxf(error_m, back[p] ? 0 : apart_m[p]);
     error_m = fmaxf(error_m, last->error_m);
-    making->tried_m = error_m;
-    if (is_worth(making, last, error_m)) {
+    *error_out_m = error_m;
+    const bool added = is_worth(making, last, error_m);
+    if (added) {
         struct level *level = &levels->at[levels->count++];
         level->error_m = error_m;
         face_parts(making, welds, count, error_m);
@@ -265,6 +287,7 @@ static void add_level(struct making *making, struct levels *levels)
     mem_free(welds);
     mem_free(apart_m);
     mem_free(back);
+    return added;
 }
 
 /* --- all ------------------------------------------------------------------------------------------------------------------ */
@@ -282,6 +305,7 @@ static void make_coarse(struct making *making, struct levels *levels)
 {
     struct event *events = mem_array(making->welds.part_count * (making->versions.count + 1), sizeof(*events));
     size_t count = list_events(making, events);
+    float error_m, waited_m = 0; /* waited_m: after one that was not worth it */
     making->used = mem_array(making->welds.geometry->vertex_count, 1);
     making->version = mem_array(making->welds.part_count, sizeof(*making->version));
     making->shown = mem_array(making->welds.part_count, sizeof(*making->shown));
@@ -289,16 +313,17 @@ static void make_coarse(struct making *making, struct levels *levels)
     making->contrary = mem_array(making->welds.part_count, 1);
     levels_find_contrary(&making->welds, making->contrary);
     for (size_t i = 0; i < count && levels->count < LEVELS_MAX;) {
-        let_happen(making, &events[i++]);
-        if (events[i - 1].error_m < (float)WAIT * making->tried_m ||
-            !is_worth(making, &levels->at[levels->count - 1], events[i - 1].error_m))
-            continue;
-        float until_m = (float)WAIT * events[i - 1].error_m;
-        while (i < count && events[i].error_m <= until_m)
-            let_happen(making, &events[i++]);
-        if (making->tri_count == 0)
+        const struct level *last = &levels->at[levels->count - 1];
+        i = let_all_happen(making, events, i, count, fmaxf((float)step_m(making, last), waited_m));
+        for (error_m = last->error_m; i < count && !is_worth(making, last, error_m); error_m = events[i++].error_m)
+            let_happen(making, &events[i]);
+        if (!is_far(making, last, error_m))
+            i = let_all_happen(making, events, i, count, (float)WAIT * error_m);
+        if (making->tri_count == 0 || !is_worth(making, last, error_m))
             break;
-        add_level(making, levels);
+        waited_m = 0;
+        if (!add_level(making, levels, &error_m) && i < count)
+            waited_m = fmaxf((float)WAIT * error_m, events[i].error_m);
     }
     mem_free(events);
 }

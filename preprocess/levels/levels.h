@@ -5,7 +5,7 @@
 #include "base/workers.h"
 #include "preprocess/geometry/geometry.h"
 
-#define LEVELS_MAX 16
+#define LEVELS_MAX 24
 
 /* Why an edge is not cut though the field errs along it: the level may not have more triangles; the pieces would be too short; the distance
    along the surface jumps there. */
@@ -34,8 +34,9 @@ struct levels {
     size_t repeated; /* triangles of the finest with the same three corners as one before; 0 once they come out of the cache */
 };
 
-/* Simplifies the geometry into levels, finest first. Each has at most half of the triangles of the one before (0.85 for far levels, which
-   many instances are drawn with). Borders between materials, texture seams and vertex colours stay in place within the error. Parts that
+/* Simplifies the geometry into levels, finest first. Each has at most half of the triangles of the one before. Far levels, which many
+   instances are drawn with, lie closer together: each errs by 1.4 times as much as the one before where that allows 0.9 of its triangles or
+   fewer, else by as little as does. Borders between materials, texture seams and vertex colours stay in place within the error. Parts that
    lie on much larger ones (bolts on a flange) are left out of levels whose error exceeds their height by a tenth, unless what they lie on
    has moved so far that they would be missed by more than the level errs; small isolated parts, of levels whose error is no less than
    their size. Returns false if out of memory, and then there is nothing to finish. workers may be NULL. */

@@ -5,6 +5,8 @@
 #include "preprocess/levels/deviation.h"
 #include "preprocess/levels/levels.h"
 
+#define LEVELS_FILLING 0.001 /* of the size: as a pixel where the asset fills the picture, */
+#define LEVELS_SMALL 0.012   /* likewise, where it is a twelfth of it */
 #define LEVELS_FARTHEST 0.08 /* of the size: a level that errs by more is never drawn larger than a dozen pixels */
 
 /* --- welds and parts (levels_welds.c) --- */

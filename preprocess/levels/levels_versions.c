@@ -13,9 +13,7 @@
 #define HALVED_LEAST 40000    /* triangles: a version with more is halved as a whole, quickly; then edges are collapsed one by one, */
 #define COLLAPSED_MOST 100000 /* also where it could not be halved, but not with more than these */
 #define LEAST 0.00025         /* of the size: the error that the first version made so is allowed; */
-#define STEP 1.3              /* times that, the next one, where many instances are drawn in one picture: */
-#define STEP_LEAST 0.001      /* of the size, as a pixel where the asset fills the picture, */
-#define STEP_MOST 0.012       /* likewise, where it is a twelfth of it; */
+#define STEP 1.3              /* times that, the next one, where many instances are drawn in one picture; */
 #define STEP_ELSE 1.7         /* likewise elsewhere, since each is measured and costs as much as the others */
 #define ALIKE 0.85            /* of the triangles of the version before: one with more is not worth being measured */
 #define LEAST_TRIANGLES 60    /* fewer are not simplified */
@@ -181,7 +179,7 @@ static size_t list_errors(double whole_m, size_t room, double errors_m[VERSIONS_
     size_t count = 0;
     for (double error = LEVELS_FARTHEST; error >= LEAST && count < room; count++) {
         errors_m[count] = error * whole_m;
-        error /= error > STEP_LEAST && error <= STEP_MOST ? STEP : STEP_ELSE;
+        error /= error > LEVELS_FILLING && error <= LEVELS_SMALL ? STEP : STEP_ELSE;
     }
     for (size_t i = 0; i < count / 2; i++) {
         double last = errors_m[count - 1 - i];

@@ -26,7 +26,7 @@
 /* How many triangles the finest level may get more: so much of its own, or so many, whichever is more. */
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
-#define WORTH 0.85          /* a coarser level that would get more than so much of the next finer one is of no use */
+#define WORTH 0.95          /* a coarser level that would get more than so much of the next finer one is of no use */
 #define SAMPLE_WORTH 9000   /* levels of so many triangles or more are first tried on a sample: those of fewer hang on too few of them */
 #define SAMPLE_ROUNDS 4     /* of cuts, then it is known or never will be */
 #define SHORTEST_NEAR 0.125 /* pieces of the finest level, of the tolerance: sensors may stand side by side */
