@@ -177,7 +177,7 @@ static int run(struct player *player, struct screen *screen)
             notify("WATCHDOG=1");
             fed_ns = now_ns;
         }
-        nanosleep(&(struct timespec){ .tv_nsec = now_ns - moved_ns < REST_NS ? FAST_NS : SLOW_NS }, NULL);
+        player_wait(player, now_ns + (now_ns - moved_ns < REST_NS ? FAST_NS : SLOW_NS));
     }
     notify("STOPPING=1");
     return 0;

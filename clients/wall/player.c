@@ -140,7 +140,12 @@ static void view_pong(struct link *link, const json_t *message)
 static bool view_frame(struct link *link, const struct wire_frame *frame, const uint8_t *payload)
 {
     struct player *player = link->arg;
-    return view_pane_decode(&pane_of(link)->view, &player->lock, frame, payload);
+    bool good = view_pane_decode(&pane_of(link)->view, &player->lock, frame, payload);
+    pthread_mutex_lock(&player->lock);
+    player->news = true;
+    pthread_cond_signal(&player->woken);
+    pthread_mutex_unlock(&player->lock);
+    return good;
 }
 
 static void on_walls(struct player *player, const json_t *walls)
@@ -174,7 +179,12 @@ bool player_start(struct player *player)
 {
     static const struct link_events words = { words_hello, words_text, words_pong, words_frame, refused };
     static const struct link_events views = { view_hello, view_text, view_pong, view_frame, refused };
+    pthread_condattr_t monotonic;
     pthread_mutex_init(&player->lock, NULL);
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_cond_init(&player->woken, &monotonic);
+    pthread_condattr_destroy(&monotonic);
     model_init(&player->model);
     player->call.shown = -1;
     player->lost_ns = player->lost_ns ? player->lost_ns : PLAYER_LOST_NS;
@@ -208,6 +218,7 @@ void player_finish(struct player *player)
     json_decref(player->walls);
     text_finish(&player->card);
     cairo_surface_destroy(player->surface);
+    pthread_cond_destroy(&player->woken);
     pthread_mutex_destroy(&player->lock);
 }
 
@@ -261,6 +272,16 @@ bool player_waits(struct player *player)
         waits |= player->panes[i].view.tile.order_count > 0;
     pthread_mutex_unlock(&player->lock);
     return waits;
+}
+
+void player_wait(struct player *player, int64_t until_ns)
+{
+    struct timespec until = { until_ns / NS_PER_S, until_ns % NS_PER_S };
+    pthread_mutex_lock(&player->lock);
+    while (!player->news && pthread_cond_timedwait(&player->woken, &player->lock, &until) == 0)
+        continue;
+    player->news = false;
+    pthread_mutex_unlock(&player->lock);
 }
 
 double player_brightness(struct player *player)
@@ -407,7 +428,7 @@ static void draw_state(struct player *player, struct pane *pane, cairo_t *cairo,
     cairo_save(cairo);
     cairo_rectangle(cairo, body.x, body.y, body.width, body.height);
     cairo_clip(cairo);
-    if (is_picture && view_pane_draw(&pane->view, &player->model, cairo, body.x, body.y)) {
+    if (is_picture && view_pane_draw(&pane->view, &player->model, cairo, (int)body.x, (int)body.y)) {
         notes_draw(&pane->view, &player->model, cairo, body.x, body.y);
         if (player->pointed == pane && now_ns - player->pointed_ns < POINT_NS)
             notes_draw_pointer(&pane->view, cairo, body.x, body.y, player->pointed_m, player->pointed_by);

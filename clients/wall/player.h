@@ -68,7 +68,9 @@ struct player {
     int width_px, height_px, display_width_px, display_height_px; /* of the window, and of all of the display */
     pthread_mutex_t lock;
     struct links links;
+    pthread_cond_t woken; /* with the lock: there is news */
     /* --- below: under lock */
+    bool news; /* a picture came since player_wait() */
     struct model model;
     json_t *wall, *walls; /* that which is shown, NULL: none; and all */
     struct pane panes[WALL_PANES];
@@ -76,7 +78,7 @@ struct player {
     double unit;
     char wrong[600]; /* what is wrong, instead of panes */
     struct rules_call call;
-    int64_t others_asked_ns; /* when the server was last asked about other plants */
+    int64_t others_asked_ns;   /* when the server was last asked about other plants */
     int64_t begun_ns, said_ns; /* said: when the server of the words last spoke */
     bool denied;
     uint32_t ground;  /* what is around the picture: the drawing thread alone */
@@ -102,6 +104,8 @@ bool player_is_tile(struct player *player);
 bool player_waits(struct player *player);
 /* Returns by how much the picture is moved now, by the plant's clock: all displays of a wall are moved alike. */
 struct rules_shift player_shift(struct player *player);
+/* Waits until that time, monotonic, or until a picture comes. */
+void player_wait(struct player *player, int64_t until_ns);
 /* Returns how bright the display is to be now, up to 1. */
 double player_brightness(struct player *player);
 /* Has it fit another size. */

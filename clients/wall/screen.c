@@ -33,8 +33,24 @@ static bool make_texture(struct screen *screen)
         SDL_DestroyTexture(screen->texture);
     SDL_GetRendererOutputSize(screen->renderer, &screen->width_px, &screen->height_px);
     screen->texture =
-        SDL_CreateTexture(screen->renderer, SDL_PIXELFORMAT_ARGB8888, SDL_TEXTUREACCESS_STREAMING, screen->width_px, screen->height_px);
+        SDL_CreateTexture(screen->renderer, SDL_PIXELFORMAT_RGB888, SDL_TEXTUREACCESS_STREAMING, screen->width_px, screen->height_px);
     return screen->texture != NULL;
+}
+
+/* Whether OpenGL is there, but without a GPU: plain pixels take a third of what it does then. */
+static bool draws_by_processor(SDL_Renderer *renderer)
+{
+    static const char *const rasterizers[] = { "llvmpipe", "softpipe", "swrast", "Software Rasterizer" };
+    enum { NAME_OF_RENDERER = 0x1F01 }; /* GL_RENDERER */
+    SDL_RendererInfo info;
+    if (SDL_GetRendererInfo(renderer, &info) != 0 || strncmp(info.name, "opengl", 6) != 0)
+        return false;
+    const unsigned char *(*get_string)(unsigned) = (const unsigned char *(*)(unsigned))SDL_GL_GetProcAddress("glGetString");
+    const char *name = get_string ? (const char *)get_string(NAME_OF_RENDERER) : NULL;
+    for (size_t i = 0; name && i < sizeof(rasterizers) / sizeof(rasterizers[0]); i++)
+        if (strstr(name, rasterizers[i]))
+            return true;
+    return false;
 }
 
 /* The first that works: by a GPU, else by the processor alone. */
@@ -43,7 +59,9 @@ static bool make_renderer(struct screen *screen)
     static const Uint32 ways[] = { SDL_RENDERER_ACCELERATED, SDL_RENDERER_SOFTWARE };
     for (size_t i = 0; i < sizeof(ways) / sizeof(ways[0]); i++) {
         screen->renderer = SDL_CreateRenderer(screen->window, -1, ways[i]);
-        if (screen->renderer && make_texture(screen))
+        bool wasted =
+            screen->renderer && ways[i] == SDL_RENDERER_ACCELERATED && !getenv("SDL_RENDER_DRIVER") && draws_by_processor(screen->renderer);
+        if (screen->renderer && !wasted && make_texture(screen))
             return true;
         if (screen->renderer)
             SDL_DestroyRenderer(screen->renderer);
@@ -83,6 +101,7 @@ struct screen *screen_open(int width_px, int height_px, int monitor)
     SDL_SetHint(SDL_HINT_VIDEO_MINIMIZE_ON_FOCUS_LOSS, "0");
     SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "0");
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+    SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0"); /* plain pixels go to the display as they are, not by OpenGL after all */
     if (!survives_wayland()) {
         if (getenv("SDL_VIDEODRIVER"))
             goto error;

@@ -31,13 +31,18 @@ static void forget_markers(struct view_pane *pane)
     pane->frame = (struct frame){ .oldest_age_ns = INT64_MAX };
 }
 
-void view_pane_clear(struct view_pane *pane)
+static void drop_picture(struct view_pane *pane)
 {
     if (pane->picture)
         cairo_surface_destroy(pane->picture);
-    if (pane->overlay)
-        cairo_surface_destroy(pane->overlay);
-    pane->picture = pane->overlay = NULL;
+    mem_free(pane->pixels);
+    pane->picture = NULL;
+    pane->pixels = NULL;
+}
+
+void view_pane_clear(struct view_pane *pane)
+{
+    drop_picture(pane);
     pane->is_current = pane->greeted = false;
     pane->coming_count = 0;
     json_decref(pane->coming_markers);
@@ -272,8 +277,8 @@ static void take_labels(struct view_pane *pane, const json_t *rows, bool arrows)
         for (size_t k = 0; k < 8; k++)
             numbers[k] = json_number_value(json_array_get(row, k));
         const double *n = numbers;
-        labels[count++] = arrows ? (struct frame_label){ n[4], (float)n[0], (float)n[1], (float)n[2], (float)n[3], n[6] != 0, 1, n[5] != 0,
-                                                            (uint16_t)n[7] }
+        labels[count++] = arrows ? (struct frame_label){ n[4],      (float)n[0], (float)n[1], (float)n[2],   (float)n[3],
+                                                         n[6] != 0, 1,           n[5] != 0,   (uint16_t)n[7] }
                                  : (struct frame_label){ .value = n[0], .x_px = (float)n[1], .y_px = (float)n[2], .half = n[3] != 0 };
     }
     mem_free(frame->labels);
@@ -392,25 +397,36 @@ static void put_part(struct view_pane *pane, const struct wire_frame *frame)
         memcpy(pane->canvas + (frame->y_px + y) * stride + (size_t)frame->x_px * 4, from + y * row_bytes, row_bytes);
 }
 
-/* model: of a tile. */
-static void show_pixels(struct view_pane *pane, const struct model *model, const struct wire_frame *frame, const uint8_t *pixels)
+/* Whether what is seen is that large. */
+static bool has_size(const struct view_pane *pane, int width_px, int height_px)
+{
+    return pane->picture && cairo_image_surface_get_width(pane->picture) == width_px &&
+           cairo_image_surface_get_height(pane->picture) == height_px;
+}
+
+/* The canvas holds the picture before the one that is seen, where the two were exchanged: a part is to be put over the newest. */
+static void renew_canvas(struct view_pane *pane, pthread_mutex_t *lock, const struct wire_frame *frame)
+{
+    bool is_all = frame->width_px == frame->full_width_px && frame->height_px == frame->full_height_px;
+    if (!is_all && pane->canvas_is_old) {
+        pthread_mutex_lock(lock);
+        if (has_size(pane, pane->canvas_width_px, pane->canvas_height_px))
+            memcpy(pane->canvas, pane->pixels, (size_t)pane->canvas_width_px * (size_t)pane->canvas_height_px * 4);
+        pthread_mutex_unlock(lock);
+    }
+    pane->canvas_is_old = false;
+}
+
+/* Takes the pixels over, of mem_try_array(). Returns those that were seen before, if they are as large; else NULL. model: of a tile. */
+static uint8_t *show_pixels(struct view_pane *pane, const struct model *model, const struct wire_frame *frame, uint8_t *pixels)
 {
     int width_px = frame->full_width_px, height_px = frame->full_height_px;
-    if (pane->picture &&
-        (cairo_image_surface_get_width(pane->picture) != width_px || cairo_image_surface_get_height(pane->picture) != height_px)) {
-        cairo_surface_destroy(pane->picture);
-        pane->picture = NULL;
-    }
-    if (!pane->picture)
-        pane->picture = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px);
-    if (cairo_surface_status(pane->picture) != CAIRO_STATUS_SUCCESS)
-        return;
-    cairo_surface_flush(pane->picture);
-    uint8_t *to = cairo_image_surface_get_data(pane->picture);
-    size_t stride = (size_t)cairo_image_surface_get_stride(pane->picture);
-    for (int y = 0; y < height_px; y++)
-        memcpy(to + (size_t)y * stride, pixels + (size_t)y * (size_t)width_px * 4, (size_t)width_px * 4);
-    cairo_surface_mark_dirty(pane->picture);
+    uint8_t *before = has_size(pane, width_px, height_px) ? pane->pixels : NULL;
+    if (before)
+        pane->pixels = NULL;
+    drop_picture(pane);
+    pane->pixels = pixels;
+    pane->picture = cairo_image_surface_create_for_data(pixels, CAIRO_FORMAT_RGB24, width_px, height_px, 4 * width_px);
     struct camera *camera = &pane->frame.view.camera;
     for (int i = 0; i < 3; i++) {
         camera->eye_m[i] = (double)frame->eye_m[i];
@@ -430,6 +446,7 @@ static void show_pixels(struct view_pane *pane, const struct model *model, const
     pane->shown_ns = clock_mono_ns();
     pane->frames++;
     pane->overlay_due = true;
+    return before;
 }
 
 bool view_pane_decode(struct view_pane *pane, pthread_mutex_t *lock, const struct wire_frame *frame, const uint8_t *payload)
@@ -441,15 +458,19 @@ bool view_pane_decode(struct view_pane *pane, pthread_mutex_t *lock, const struc
     if (!decoder_decode(pane->decoder, frame, payload) || !reserve_canvas(pane, frame->full_width_px, frame->full_height_px))
         return false;
     bool last = !(frame->flags & WIRE_FLAG_MORE);
-    if (frame->codec != WIRE_CODEC_H264 || last)
+    if (frame->codec != WIRE_CODEC_H264 || last) {
+        renew_canvas(pane, lock, frame);
         put_part(pane, frame);
+    }
     if (!last)
         return true;
     pthread_mutex_lock(lock);
-    if (pane->greeted && pane->tile.display)
+    if (pane->greeted && pane->tile.display) {
         view_tile_keep(&pane->tile, frame, pane->canvas);
-    else if (pane->greeted)
-        show_pixels(pane, NULL, frame, pane->canvas);
+    } else if (pane->greeted) {
+        pane->canvas = show_pixels(pane, NULL, frame, pane->canvas);
+        pane->canvas_is_old = true;
+    }
     pthread_mutex_unlock(lock);
     return true;
 }
@@ -459,8 +480,7 @@ bool view_pane_flip(struct view_pane *pane, const struct model *model, int64_t n
     struct tile_picture picture;
     if (!view_tile_take(&pane->tile, now_us, &picture))
         return false;
-    show_pixels(pane, model, &picture.frame, picture.pixels);
-    mem_free(picture.pixels);
+    mem_free(show_pixels(pane, model, &picture.frame, picture.pixels));
     return true;
 }
 
@@ -504,7 +524,7 @@ bool view_pane_project(const struct view_pane *pane, const double place_m[3], do
 static void collect_markers(const struct view_pane *pane, const struct model *model, struct frame *frame)
 {
     double x, y, across = (double)pane->width_px / cairo_image_surface_get_width(pane->picture),
-           down = (double)pane->height_px / cairo_image_surface_get_height(pane->picture);
+                 down = (double)pane->height_px / cairo_image_surface_get_height(pane->picture);
     frame->markers = mem_array(pane->frame.marker_count + model->list_count + 1, sizeof(*frame->markers));
     frame->labels = mem_array(pane->frame.label_count + 1, sizeof(*frame->labels));
     for (size_t i = 0; i < pane->frame.marker_count; i++) {
@@ -534,45 +554,42 @@ static void collect_markers(const struct view_pane *pane, const struct model *mo
     }
 }
 
-static void draw_overlay(struct view_pane *pane, const struct model *model)
+/* Onto the picture that was drawn with the upper left corner there, in whole pixels of an image. */
+static void draw_overlay(struct view_pane *pane, const struct model *model, cairo_surface_t *image, int x, int y)
 {
     struct frame frame = { .width_px = pane->width_px, .height_px = pane->height_px, .view = pane->told, .oldest_age_ns = INT64_MAX };
-    if (!pane->overlay)
-        pane->overlay = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, pane->width_px, pane->height_px);
-    cairo_t *cairo = cairo_create(pane->overlay);
-    cairo_set_operator(cairo, CAIRO_OPERATOR_CLEAR);
-    cairo_paint(cairo);
-    cairo_destroy(cairo);
+    int stride = cairo_image_surface_get_stride(image);
+    cairo_surface_flush(image);
+    cairo_surface_t *part = cairo_image_surface_create_for_data(cairo_image_surface_get_data(image) + (ptrdiff_t)y * stride + 4 * x,
+                                                                CAIRO_FORMAT_RGB24, pane->width_px, pane->height_px, stride);
     frame.view.camera = pane->frame.view.camera;
     frame.view.width_px = pane->width_px;
     frame.view.height_px = pane->height_px;
     collect_markers(pane, model, &frame);
     if (pane->tile.display && pane->tile.display != pane->tile.columns * pane->tile.rows)
         frame.view.look = LOOK_MATERIALS; /* the legend stands once on the wall: at its right edge */
-    overlay_draw_pane(pane->overlay, &frame, &model->scene, model->snapshot, pane->unit);
+    overlay_draw_pane(part, &frame, &model->scene, model->snapshot, pane->unit);
     mem_free(frame.markers);
     mem_free(frame.labels);
+    cairo_surface_finish(part);
+    cairo_surface_destroy(part);
+    cairo_surface_mark_dirty(image);
     pane->overlay_due = false;
 }
 
-bool view_pane_draw(struct view_pane *pane, const struct model *model, cairo_t *cairo, double x, double y)
+bool view_pane_draw(struct view_pane *pane, const struct model *model, cairo_t *cairo, int x, int y)
 {
     if (!pane->picture || !pane->is_current || !view_pane_fits(pane, model))
         return false;
-    if (pane->overlay_due || !pane->overlay)
-        draw_overlay(pane, model);
+    int width_px = cairo_image_surface_get_width(pane->picture), height_px = cairo_image_surface_get_height(pane->picture);
     cairo_save(cairo);
     cairo_translate(cairo, x, y);
-    cairo_save(cairo);
-    cairo_scale(cairo, (double)pane->width_px / cairo_image_surface_get_width(pane->picture),
-                (double)pane->height_px / cairo_image_surface_get_height(pane->picture));
+    cairo_scale(cairo, (double)pane->width_px / width_px, (double)pane->height_px / height_px);
     cairo_set_source_surface(cairo, pane->picture, 0, 0);
     cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
-    cairo_rectangle(cairo, 0, 0, cairo_image_surface_get_width(pane->picture), cairo_image_surface_get_height(pane->picture));
+    cairo_rectangle(cairo, 0, 0, width_px, height_px);
     cairo_fill(cairo);
     cairo_restore(cairo);
-    cairo_set_source_surface(cairo, pane->overlay, 0, 0);
-    cairo_paint(cairo);
-    cairo_restore(cairo);
+    draw_overlay(pane, model, cairo_get_target(cairo), x, y);
     return true;
 }

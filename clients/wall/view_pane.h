@@ -33,11 +33,12 @@ struct view_pane {
     uint32_t told_seq;
     struct told_view coming[TOLD_COMING]; /* of a tile: of pictures that are not shown yet, the newest last */
     int coming_count;
-    json_t *coming_markers; /* likewise, messages */
+    json_t *coming_markers;    /* likewise, messages */
     uint32_t shown_params_seq; /* of a tile's picture */
-    char refused[200];                  /* why the server does not show what was asked for; "": it does */
-    cairo_surface_t *picture, *overlay; /* NULL: none came yet. The overlay is as large as the pane */
-    bool is_current;                    /* the picture is of what was asked for */
+    char refused[200];         /* why the server does not show what was asked for; "": it does */
+    cairo_surface_t *picture;  /* of `pixels`; NULL: none came yet */
+    uint8_t *pixels;
+    bool is_current; /* the picture is of what was asked for */
     bool overlay_due;
     int64_t shown_ns; /* when the last picture came */
     uint32_t frames;
@@ -46,7 +47,8 @@ struct view_pane {
     struct view_tile tile;
     /* --- below: of the network's thread */
     struct decoder *decoder;
-    uint8_t *canvas; /* what parts of pictures are put together in */
+    uint8_t *canvas;    /* what parts of pictures are put together in; NULL: none yet */
+    bool canvas_is_old; /* it holds the picture before the one that is seen, or none */
     int canvas_width_px, canvas_height_px;
 };
 
@@ -69,8 +71,9 @@ void view_pane_show_tag(struct view_pane *pane, const struct model *model, int t
 bool view_pane_fits(const struct view_pane *pane, const struct model *model);
 /* Of a tile: shows the picture whose time has come. Returns whether one came. */
 bool view_pane_flip(struct view_pane *pane, const struct model *model, int64_t now_us);
-/* Draws picture and overlay with the upper left corner there. Returns false if there is no picture of what was asked for. */
-bool view_pane_draw(struct view_pane *pane, const struct model *model, cairo_t *cairo, double x, double y);
+/* Draws picture and overlay onto an image, all of them within it, with the upper left corner there. Returns false if there is no picture of
+   what was asked for. */
+bool view_pane_draw(struct view_pane *pane, const struct model *model, cairo_t *cairo, int x, int y);
 /* Returns whether a place of the plant is in the picture, which for a tile goes on beyond its pane; where it is in pixels of the pane. */
 bool view_pane_project(const struct view_pane *pane, const double place_m[3], double *x, double *y);
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One picture over the displays of a wall, whose camera moves (wall_tiles.mjs)."""
+"""One picture over the displays of a wall, whose camera moves (wall_tiles.mjs); the player of a display, and chromium (wall_player.mjs)."""
 
 import json
 import os
@@ -8,13 +8,19 @@ import subprocess
 from rows import row
 
 
+def script_rows(bin_folder, name, script, *args):
+    env = dict(os.environ, PLANTCAST_BIN=bin_folder)
+    done = subprocess.run(["node", "tests/bench/" + script] + list(args), stdout=subprocess.PIPE, text=True, env=env)
+    lines = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+    if done.returncode or not lines:
+        yield row(name, None, "", why="exit status %d, %d rows" % (done.returncode, len(lines)))
+    for found in lines:
+        goal = found.get("goal")
+        extras = {"note": found["note"]} if "note" in found else None
+        yield row(found["name"], found["value"], found["unit"], tuple(goal) if goal else None, found.get("p95"), found.get("why"), extras)
+
+
 def wall_rows(bin_folder):
     for codec in ("h264", "jpeg"):
-        env = dict(os.environ, PLANTCAST_BIN=bin_folder)
-        done = subprocess.run(["node", "tests/bench/wall_tiles.mjs", codec], stdout=subprocess.PIPE, text=True, env=env)
-        lines = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
-        if done.returncode or not lines:
-            yield row("wall_3x2_1080p_%s" % codec, None, "", why="exit status %d, %d rows" % (done.returncode, len(lines)))
-        for found in lines:
-            goal = found.get("goal")
-            yield row(found["name"], found["value"], found["unit"], tuple(goal) if goal else None, found.get("p95"), found.get("why"))
+        yield from script_rows(bin_folder, "wall_3x2_1080p_%s" % codec, "wall_tiles.mjs", codec)
+    yield from script_rows(bin_folder, "wall_1080p60", "wall_player.mjs")

@@ -3,9 +3,9 @@
 // six tiles showed, what one cost of a processor, how even they came, and in which quality.
 // SECONDS=10 by default. REALTIME=1: daemon and clients go before whatever else runs (as root; with a few SECONDS only).
 import { spawnSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
 import { PlainClient } from '../e2e/support/plain_client.mjs';
 import { missing, startPlant } from '../e2e/support/plant.mjs';
+import { cpuMs } from './processes.mjs';
 
 const [COLUMNS, ROWS, WIDTH, HEIGHT] = [3, 2, 1920, 1080], HZ = 30;
 const SECONDS = Number(process.env.SECONDS) || 10, SETTLE_S = process.env.REALTIME ? 4 : 8;
@@ -13,11 +13,6 @@ const codec = process.argv[2] ?? 'h264', name = `wall_3x2_1080p_${codec}`;
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const say = (what, value, unit, more = {}) => console.log(JSON.stringify({ name: `${name}_${what}`, value, unit, ...more }));
 const why = missing();
-
-function cpuMs(pid) {
-    const [, user, system] = readFileSync(`/proc/${pid}/stat`, 'utf8').match(/\) .(?: \S+){10} (\d+) (\d+)/);
-    return 10 * (Number(user) + Number(system));
-}
 
 async function measure(plant) {
     const port = Number(new URL(plant.url).port);

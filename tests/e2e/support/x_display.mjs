@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An X display without a screen, by Xvfb, and what is seen on it.
 import { spawn } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { closeSync, existsSync, mkdirSync, mkdtempSync, openSync, readFileSync, readSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { deflateSync } from 'node:zlib';
@@ -10,7 +10,7 @@ import { crc } from './png_chunks.mjs';
 const PROGRAM = '/usr/bin/Xvfb';
 export const missingDisplay = () => (existsSync(PROGRAM) ? null : 'no Xvfb');
 
-// { name, grab(): { width, height, at(x, y): [r, g, b] }, stop }.
+// { name, pid, grab(): { width, height, at(x, y): [r, g, b] }, row(y): its bytes, B, G, R and one more, until the next call; stop }.
 export async function startDisplay(width, height, more = []) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-display-'));
     const args = ['-displayfd', '3', '-screen', '0', `${width}x${height}x24`, '-fbdir', folder, '-nolisten', 'tcp', ...more];
@@ -19,10 +19,19 @@ export async function startDisplay(width, height, more = []) {
         child.stdio[3].once('data', (text) => done(Number(text)));
         child.once('exit', (code) => fail(new Error(`Xvfb ended with ${code}`)));
     });
+    const path = join(folder, 'Xvfb_screen0'), file = openSync(path, 'r'), head = Buffer.alloc(80);
+    readSync(file, head, 0, head.length, 0);
+    const { from, stride } = layoutOf(head), bytes = Buffer.alloc(4 * width);
     return {
         name: `:${number}`,
-        grab: () => readXwd(readFileSync(join(folder, 'Xvfb_screen0'))),
+        pid: child.pid,
+        grab: () => readXwd(readFileSync(path)),
+        row: (y) => {
+            readSync(file, bytes, 0, bytes.length, from + y * stride);
+            return bytes;
+        },
         async stop() {
+            closeSync(file);
             const gone = new Promise((done) => child.once('exit', done));
             child.kill();
             await gone;
@@ -32,9 +41,13 @@ export async function startDisplay(width, height, more = []) {
 }
 
 // X window dump, as Xvfb keeps it: a header of big-endian numbers, colours, then rows of B, G, R and one more.
+function layoutOf(bytes) {
+    const number = (i) => bytes.readUInt32BE(4 * i);
+    return { width: number(4), height: number(5), stride: number(12), from: number(0) + 12 * number(19) };
+}
+
 function readXwd(bytes) {
-    const number = (i) => bytes.readUInt32BE(4 * i), [width, height, stride] = [number(4), number(5), number(12)];
-    const from = number(0) + 12 * number(19);
+    const { width, height, stride, from } = layoutOf(bytes);
     const at = (x, y) => {
         const i = from + Math.floor(y) * stride + 4 * Math.floor(x);
         return [bytes[i + 2], bytes[i + 1], bytes[i]];
