@@ -15,8 +15,9 @@ const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : 
 const SCREEN = { viewport: sweep({ width: 1680, height: 1000 }, { width: 1280, height: 800 }) };
 const UPRIGHT = { ...TABLET, viewport: { width: 768, height: 1024 } };
 const RULES = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
-// By default all rules in one theme, and what colours can break in the other: nothing else differs.
+// By default all rules in one theme, and what colours can break in the other, too, at each look: nothing else differs.
 const COLOURS = { type: 'rule', values: ['color-contrast', 'link-in-text-block'] };
+const WALKS = sweep([['dark', RULES], ['light', RULES]], [['dark', RULES, 'light']]);
 const THEMES = { dark: RULES, light: sweep(RULES, COLOURS) };
 // What has opened, by the name of the look at it: by default the rest of the page is not looked at again.
 const PARTS = {
@@ -44,26 +45,35 @@ async function findings(on, rules = RULES, within = null) {
     if (!await on.evaluate(() => globalThis.axe !== undefined))
         await on.evaluate(readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8'));
     const { violations } = await on.evaluate(([runOnly, part]) =>
-        globalThis.axe.run(part ? { include: [[part]] } : document, { runOnly, resultTypes: ['violations'] }), [rules, within]);
+        globalThis.axe.run(part ? { include: [[part]] } : document, { runOnly, resultTypes: ['violations'], preload: !part }),
+    [rules, within]); // style sheets are loaded once more for a rule of the whole page
     return violations.flatMap(({ id, nodes }) => nodes.map((node) => `${id}: ${node.target.join(' ')} ${node.any[0]?.message ?? ''}`));
 }
 
-for (const [theme, rules] of Object.entries(THEMES)) {
-    test(`axe-core finds nothing on any panel or dialog, ${theme}`, options, async () => {
+for (const [theme, rules, other] of WALKS) {
+    test(`axe-core finds nothing on any panel or dialog, ${theme}${other ? `, nor in colours, ${other}` : ''}`, options, async () => {
         await page.goto(`${url}?theme=${theme}`);
         await waitForPicture(page);
-        await lookAtEverything(theme, rules);
+        await lookAtEverything(theme, rules, other);
     });
 }
 
-async function lookAtEverything(theme, rules) {
+const wear = (theme) => page.evaluate((name) => { document.documentElement.dataset.theme = name; }, theme);
+
+async function lookAtEverything(theme, rules, other) {
     const seen = [];
     const look = async (name) => {
         if (name === 'closed')
             return;
         seen.push(name);
         await shoot(page, `axe-${theme}-${name}`);
-        assert.deepEqual(await findings(page, rules, sweep(null, PARTS[name] ?? null)), [], name);
+        const part = sweep(null, PARTS[name] ?? null);
+        assert.deepEqual(await findings(page, rules, part), [], name);
+        if (!other)
+            return;
+        await wear(other);
+        assert.deepEqual(await findings(page, COLOURS, part), [], `${name}, ${other}`);
+        await wear(theme);
     };
     await everyPanel(page, look);
     await travel(page, await page.evaluate(() => globalThis.plantcast.session.clockUs() - 5e6));

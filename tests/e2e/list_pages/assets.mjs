@@ -136,7 +136,7 @@ test('by the keyboard alone', options, async () => {
 
 // What the page itself does for each picture of a list that scrolls, every asset of it open; drawing is the browser's and the processor's.
 test('20,000 tags scroll smoothly', options, async (t) => {
-    const { frames, work, rows } = await page.evaluate(async () => {
+    const { frames, work, rows } = await page.evaluate(async (steps) => {
         const { assets, session } = globalThis.plantcast;
         for (const asset of session.model.assets)
             assets.tree.unfold(asset);
@@ -145,15 +145,15 @@ test('20,000 tags scroll smoothly', options, async (t) => {
         const show = list.show.bind(list);
         list.show = () => { const began = performance.now(); show(); took.push(performance.now() - began); };
         const stamps = [];
-        for (let n = 0; n < 200; n++) {
-            root.scrollTop = (all * n) / 200;
+        for (let n = 0; n < steps; n++) {
+            root.scrollTop = (all * n) / steps;
             stamps.push(await new Promise((done) => requestAnimationFrame(done)));
         }
         list.show = show;
-        const steps = stamps.slice(1).map((at, i) => at - stamps[i]);
+        const between = stamps.slice(1).map((at, i) => at - stamps[i]);
         const inPage = root.querySelectorAll('[role="treeitem"]').length;
-        return { frames: steps.sort((a, b) => a - b), work: took.sort((a, b) => a - b), rows: inPage };
-    });
+        return { frames: between.sort((a, b) => a - b), work: took.sort((a, b) => a - b), rows: inPage };
+    }, sweep(200, 80));
     const middle = (list, part = 0.5) => list[Math.floor(list.length * part)];
     t.diagnostic(`pictures every ${middle(frames).toFixed(1)} ms (95 %: ${middle(frames, 0.95).toFixed(1)}), of which the list takes ` +
         `${middle(work).toFixed(2)} ms (95 %: ${middle(work, 0.95).toFixed(2)}); ${rows} rows in the page`);
@@ -162,8 +162,8 @@ test('20,000 tags scroll smoothly', options, async (t) => {
     await shoot(page, 'assets-20000');
 });
 
-// Forced collections before each measure; three seconds here, half an hour in `make test-long`.
-const USE_S = Number(process.env.USE_S ?? sweep(10, 3));
+// Forced collections before each measure; a second or two here, half an hour in `make test-long`.
+const USE_S = Number(process.env.USE_S ?? sweep(10, 1.5)), EACH = sweep(4, 2); // a panel is pressed at each so many-th of what is done
 test('memory does not grow with use', { ...options, timeout: options.timeout + 2000 * USE_S }, async (t) => {
     const client = await page.context().newCDPSession(page);
     const heap = async () => {
@@ -172,16 +172,16 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 2
         const { nodes } = await client.send('Memory.getDOMCounters');
         return { megabytes: usedSize / 1e6, nodes };
     };
-    const use = (ms) => page.evaluate(async (long) => {
+    const use = (ms) => page.evaluate(async ([long, each]) => {
         const { assets, session, modules, selectTag, showTrend } = globalThis.plantcast, { root } = assets.list;
         const search = document.getElementById('assets-search');
         const press = (key) => document.getElementById('viewport').dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
         // Every panel that opens and shuts, trends of some tags and their cards.
         const panels = ['e', 'v', 'p', 'm', 'b', 'b', 'm', 'p', 'v', 'e'];
-        for (let n = 0, end = performance.now() + long; performance.now() < end || n < 4 * panels.length; n++) {
-            if (n % 4 === 0) {
+        for (let n = 0, end = performance.now() + long; performance.now() < end || n < each * panels.length; n++) {
+            if (n % each === 0) {
                 const tag = session.model.tags[100 * Math.floor(Math.random() * 200)];
-                press(panels[(n / 4) % panels.length]);
+                press(panels[(n / each) % panels.length]);
                 selectTag(tag);
                 showTrend(tag);
             }
@@ -195,7 +195,7 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 2
         search.value = '';
         search.dispatchEvent(new Event('input'));
         await new Promise((done) => setTimeout(done, 500));
-    }, ms);
+    }, [ms, EACH]);
     await use(sweep(3000, 1000)); // what is made once is made
     let before = await heap(), after;
     // A busy machine makes part of that later. What grows with use grows each time.

@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { arrive, FLYING, openPage, SCREENSHOTS, settle, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { arrive, openPage, SCREENSHOTS, settle, SHOOTS, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { missing, startPlant } from '../support/plant.mjs';
 import { runProgram } from '../support/tiny_plant.mjs';
 
@@ -32,7 +32,7 @@ before(async () => {
     if (why)
         return;
     plant = await startPlant('\nalarms: local\n', remember);
-    browser = await openPage(plant.url, { viewport: { width: 1280, height: 800 }, ...FLYING });
+    browser = await openPage(plant.url, { viewport: { width: 1280, height: 800 } });
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');
@@ -45,6 +45,8 @@ after(async () => {
 
 async function keep(name) {
     await arrive(page);
+    if (!SHOOTS)
+        return;
     mkdirSync(SCREENSHOTS, { recursive: true });
     await page.screenshot({ path: join(SCREENSHOTS, `tour-${name}.jpg`), type: 'jpeg', quality: 62 });
 }

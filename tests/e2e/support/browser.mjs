@@ -105,8 +105,10 @@ export async function openPage(url, screen = DESKTOP, before = null, arrange = (
 }
 
 // Of what is to be looked at: in `make test-long`, or with PLANTCAST_SHOTS=1. Many would take longer than all else that a test does.
+export const SHOOTS = sweep(true, process.env.PLANTCAST_SHOTS === '1');
+
 export async function shoot(page, name) {
-    if (!sweep(true, process.env.PLANTCAST_SHOTS === '1'))
+    if (!SHOOTS)
         return;
     mkdirSync(SCREENSHOTS, { recursive: true });
     await page.screenshot({ path: join(SCREENSHOTS, `${name}.png`) });

@@ -51,6 +51,7 @@ export function contrast({ rgba }) {
 }
 
 const toLinear = (v) => (v <= 10.31475 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4);
+const LINEAR = Float64Array.from({ length: 256 }, (_, v) => toLinear(v));
 
 // Of two colours by WCAG: 1 (none) to 21.
 export function contrastRatio(a, b) {
@@ -59,7 +60,7 @@ export function contrastRatio(a, b) {
 }
 
 function lab(r, g, b) {
-    const linear = [r, g, b].map(toLinear);
+    const linear = [LINEAR[r], LINEAR[g], LINEAR[b]];
     const xyz = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]].map((row, i) =>
         row.reduce((sum, k, c) => sum + k * linear[c], 0) / [0.9505, 1, 1.089][i]);
     const [x, y, z] = xyz.map((t) => (t > 216 / 24389 ? Math.cbrt(t) : (24389 / 27 * t + 16) / 116));
@@ -70,9 +71,15 @@ function lab(r, g, b) {
 export function deltaE(a, b) {
     if (a.width !== b.width || a.height !== b.height)
         throw new Error(`${a.width}x${a.height} is not ${b.width}x${b.height}`);
-    const all = new Float64Array(a.width * a.height);
+    const all = new Float64Array(a.width * a.height), known = new Map(); // pictures have far fewer colours than pixels
+    const at = ({ rgba }, i) => {
+        const [r, g, b] = [rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]], key = r << 16 | g << 8 | b;
+        if (!known.has(key))
+            known.set(key, lab(r, g, b));
+        return known.get(key);
+    };
     for (let i = 0; i < all.length; i++) {
-        const p = lab(...a.rgba.subarray(4 * i, 4 * i + 3)), q = lab(...b.rgba.subarray(4 * i, 4 * i + 3));
+        const p = at(a, i), q = at(b, i);
         all[i] = Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
     }
     const mean = all.reduce((sum, value) => sum + value, 0) / all.length;
