@@ -23,7 +23,7 @@ void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_
     out[STORE_FIELDS] = renderer->fields.bytes + pool_bytes_taken(renderer->fields.pool);
     out[STORE_LIGHT] = renderer->light.bytes;
     out[STORE_PICTURES] = 0;
-    out[STORE_TARGETS] = targets_bytes(&renderer->by_gl->targets);
+    out[STORE_TARGETS] = renderer->by_gl ? targets_bytes(&renderer->by_gl->targets) : 0;
     out[STORE_ROOM] = room_bytes(renderer);
     out[STORE_MODELS] = 0;
     if (renderer->by_soft) {
@@ -42,7 +42,8 @@ void renderer_bound_memory(struct renderer *renderer, size_t bytes)
     double left = (double)(room < bytes - least ? bytes - room : least);
     renderer->fields.bound_bytes = (size_t)(FIELDS_SHARE * left / 2);
     light_bound(&renderer->light, (size_t)(LIGHT_SHARE * left));
-    targets_bound(&renderer->by_gl->targets, (size_t)(TARGETS_SHARE * left));
+    if (renderer->by_gl)
+        targets_bound(&renderer->by_gl->targets, (size_t)(TARGETS_SHARE * left));
     if (renderer->by_soft) {
         soft_bound(renderer->by_soft, TIER_PREVIEW, (size_t)(PREVIEWS_SHARE * left));
         soft_bound(renderer->by_soft, TIER_REFINED, (size_t)(REFINED_SHARE * left));
@@ -54,7 +55,8 @@ void renderer_drop_caches(struct renderer *renderer)
     struct light_key usual = renderer_usual_light(renderer);
     fields_drop(&renderer->fields);
     light_drop(&renderer->light, &usual);
-    targets_finish(&renderer->by_gl->targets);
+    if (renderer->by_gl)
+        targets_finish(&renderer->by_gl->targets);
     if (renderer->by_soft)
         soft_rest(renderer->by_soft);
 }

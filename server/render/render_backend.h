@@ -14,7 +14,7 @@ struct renderer;
 struct render_backend {
     const char *name;
     bool draws_from_gpu; /* fields, and so copies of them */
-    /* Makes what it draws with. Returns false on failure, logged; finish copes with what is half-made. */
+    /* Makes what it draws with, unless it is made: before the first frame that it draws. Returns false on failure, logged. */
     bool (*init)(struct renderer *renderer);
     void (*finish)(struct renderer *renderer);
     /* Returns whether it draws such frames. */

@@ -30,7 +30,7 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     struct environment_light sky = environments_get(&renderer->environments, 0);
     good = good && gpu_scene_init(&renderer->gpu_scene, gl, scene, &sky) &&
            light_init(&renderer->light, &renderer->gpu_scene, &renderer->environments) && sky_init(&renderer->sky, log) &&
-           render_backend_gl.init(renderer) && (!gl->software || render_backend_soft.init(renderer));
+           (gl->software ? render_backend_soft : render_backend_gl).init(renderer);
     if (!good)
         renderer_destroy(&renderer);
     return renderer;
@@ -147,7 +147,8 @@ bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan)
 {
     struct frame_context context;
     init_context(renderer, plan, &context);
-    return choose_backend(renderer, &context)->is_quick(renderer, &context);
+    const struct render_backend *backend = choose_backend(renderer, &context);
+    return backend->init(renderer) && backend->is_quick(renderer, &context);
 }
 
 /* --- jobs ------------------------------------------------------------------------------------------------------------------- */
@@ -162,7 +163,7 @@ static struct render_job *begin(struct renderer *renderer, const struct frame_pl
     struct render_job *job = mem_new(sizeof(*job));
     render_job_init(job, &context, frame);
     job->backend = choose_backend(renderer, &context);
-    bool good = job->backend->begin(renderer, job, plan, at_once);
+    bool good = job->backend->init(renderer) && job->backend->begin(renderer, job, plan, at_once);
     if (good)
         isolines_collect(&renderer->isolines, &job->context, &job->isolines);
     if (!good || (!at_once && !render_job_hold_fields(job, job->backend->draws_from_gpu)))
@@ -287,8 +288,8 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
     fields_upload(&renderer->fields, plan->visible, plan->visible_count, plan->fields);
     init_context(renderer, plan, &context);
     context.measured = true;
-    bool good =
-        gl_backend_take_up(renderer, &context) && measure_target_begin(&measure, renderer->gl->log, view->width_px, view->height_px);
+    bool good = render_backend_gl.init(renderer) && gl_backend_take_up(renderer, &context) &&
+                measure_target_begin(&measure, renderer->gl->log, view->width_px, view->height_px);
     if (good) {
         surface_pass_draw(&renderer->by_gl->surface_pass, &context);
         measure_target_read(&measure, out);
@@ -301,4 +302,6 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
 void renderer_use_gl(struct renderer *renderer, bool always)
 {
     renderer->always_gl = always;
+    if (always)
+        render_backend_gl.init(renderer);
 }

@@ -38,21 +38,6 @@ struct gl_job {
 
 /* --- life ------------------------------------------------------------------------------------------------------------------- */
 
-static bool init(struct renderer *renderer)
-{
-    struct log *log = renderer->gl->log;
-    struct gl_backend *backend = mem_new(sizeof(*backend));
-    renderer->by_gl = backend;
-    memcpy(backend->pixel_ns, FIRST_PIXEL_NS, sizeof(backend->pixel_ns));
-    backend->frame_buffer = mesh_buffer(log, "frame block", sizeof(struct frame_uniforms), NULL, GL_DYNAMIC_STORAGE_BIT);
-    if (!backend->frame_buffer || !surface_pass_init(&backend->surface_pass, log) || !lines_init(&backend->lines, log) ||
-        !ghosts_init(&backend->ghosts, log) || !section_caps_init(&backend->section_caps, log) ||
-        !frames_in_flight_init(&backend->frames_in_flight, log))
-        return false;
-    backend->surface_pass.least_hiding = renderer->gl->software ? INT_MAX : LEAST_HIDING;
-    return true;
-}
-
 static void finish(struct renderer *renderer)
 {
     struct gl_backend *backend = renderer->by_gl;
@@ -67,6 +52,25 @@ static void finish(struct renderer *renderer)
     surface_pass_finish(&backend->surface_pass);
     mem_free(backend);
     renderer->by_gl = NULL;
+}
+
+static bool init(struct renderer *renderer)
+{
+    struct log *log = renderer->gl->log;
+    if (renderer->by_gl)
+        return true;
+    struct gl_backend *backend = mem_new(sizeof(*backend));
+    renderer->by_gl = backend;
+    memcpy(backend->pixel_ns, FIRST_PIXEL_NS, sizeof(backend->pixel_ns));
+    backend->frame_buffer = mesh_buffer(log, "frame block", sizeof(struct frame_uniforms), NULL, GL_DYNAMIC_STORAGE_BIT);
+    if (!backend->frame_buffer || !surface_pass_init(&backend->surface_pass, log) || !lines_init(&backend->lines, log) ||
+        !ghosts_init(&backend->ghosts, log) || !section_caps_init(&backend->section_caps, log) ||
+        !frames_in_flight_init(&backend->frames_in_flight, log)) {
+        finish(renderer);
+        return false;
+    }
+    backend->surface_pass.least_hiding = renderer->gl->software ? INT_MAX : LEAST_HIDING;
+    return true;
 }
 
 static bool can(const struct frame_context *context)

@@ -14,7 +14,8 @@ struct soft_job {
 static bool init(struct renderer *renderer)
 {
     struct workers *workers = field_workers(renderer->fields.field);
-    renderer->by_soft = soft_create(workers, &renderer->gpu_scene, &renderer->sky, &renderer->environments);
+    if (!renderer->by_soft)
+        renderer->by_soft = soft_create(workers, &renderer->gpu_scene, &renderer->sky, &renderer->environments);
     return renderer->by_soft != NULL;
 }
 
