@@ -5,12 +5,13 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { arrive, openPage, PHONE, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { startAlarmed } from './support/panels.mjs';
+import { sweep } from './support/sweep.mjs';
 import { missing } from './support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
-const SCREENS = { desk: { viewport: { width: 1280, height: 800 } }, 'large desk': { viewport: { width: 1920, height: 1080 } },
-    tablet: TABLET,
+const SCREENS = { desk: { viewport: { width: 1280, height: 800 } },
+    ...sweep({ 'large desk': { viewport: { width: 1920, height: 1080 } }, tablet: TABLET }, {}),
     'tablet upright': { ...TABLET, viewport: { width: 768, height: 1024 } }, phone: PHONE,
     'phone across': { ...PHONE, viewport: { width: 844, height: 390 } } };
 let plant, url;

@@ -437,7 +437,9 @@ test('an import that fails says why in one line', options, async () => {
     assert.deepEqual(browser.errors, []);
 });
 
-for (const [name, language, screen, dark] of [['dark, German', 'de', DESK, true], ['Korean on a tablet', 'ko', TABLET, false]])
+const READERS = sweep([['dark, German', 'de', DESK, true], ['Korean on a tablet', 'ko', TABLET, false]],
+    [['dark, German, on a tablet', 'de', TABLET, true]]);
+for (const [name, language, screen, dark] of READERS)
     test(`the panel in ${name}`, options, async () => {
         const other = await openPage(`${served.url}?lang=${language}${dark ? '&theme=dark' : ''}`, screen);
         try {
