@@ -176,7 +176,7 @@ test('panels and the help are whole, on every screen', options, async (t) => {
 test('what says that the picture is old lies over no legend', options, async () => {
     const most = sweep(SCREENS, { phone: PHONE, 'phone across': SCREENS['phone across'] });
     const wall = { viewport: sweep({ width: 3840, height: 2160 }, { width: 1920, height: 1080 }) };
-    const more = { 'large desk': { viewport: { width: 1440, height: 900 } }, wall };
+    const more = { ...sweep({ 'large desk': { viewport: { width: 1440, height: 900 } } }, {}), wall };
     for (const [name, screen] of Object.entries({ ...more, ...most })) {
         const { page, close } = await openPage(`${url}?lang=de${name === 'wall' ? '&wall' : ''}`, screen);
         try {

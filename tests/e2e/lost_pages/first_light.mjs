@@ -7,10 +7,12 @@ import {
 } from '../support/browser.mjs';
 import { contrast, countOutside, difference, meanAround } from '../support/pixels.mjs';
 import { missing, startPlant } from '../support/plant.mjs';
+import { sweep } from '../support/sweep.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
 const GROUP = 'temperature';
+const SCREEN = { viewport: sweep({ width: 1920, height: 1080 }, { width: 1024, height: 640 }) };
 const QUIET_MS = 1500; // longer than any picture takes that is still under way
 let plant, browser, page;
 
@@ -18,7 +20,7 @@ before(async () => {
     if (why)
         return;
     plant = await startPlant();
-    browser = await openPage(plant.url);
+    browser = await openPage(plant.url, SCREEN);
     page = browser.page;
 });
 after(async () => {

@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
 import { Relay, relayMissing } from '../support/relay.mjs';
+import { sweep } from '../support/sweep.mjs';
 import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = [...missing(), relayMissing()].filter(Boolean);
@@ -101,7 +102,7 @@ async function look(page) {
 // step(i): the hand goes on, until enough was seen.
 async function move(page, step) {
     const enough = () => page.evaluate((least) => new Set(globalThis.frames.map(({ eye }) => eye.join())).size >= least, LEAST_VIEWS);
-    for (let i = 1; i < 100 || (i < 4000 && !await enough()); i++) {
+    for (let i = 1; i < sweep(100, 50) || (i < 4000 && !await enough()); i++) {
         await step(i);
         await page.waitForTimeout(8);
     }
