@@ -266,7 +266,7 @@ $(out)/tests/unit/rvm_test $(out)/tests/unit/rvm_fuzz_test: $(out)/lib/import.a
 $(out)/tests/unit/revision_test: $(out)/lib/import.a $(out)/lib/match.a
 $(out)/tests/unit/rvm_test $(out)/tests/unit/rvm_fuzz_test $(out)/tests/unit/revision_test: pkg_libs += -lGLU
 $(out)/tests/unit/revision_test: pkg_libs += -lminizip -lexpat
-$(out)/tests/unit/wall_rules_test: $(call objects,clients/wall/rules.c clients/wall/view_address.c)
+$(out)/tests/unit/wall_rules_test: $(call objects,clients/wall/rules.c clients/wall/view_address.c clients/wall/approach.c)
 $(out)/tests/unit/wall_tile_test: $(call objects,clients/wall/view_tile.c)
 $(out)/tests/unit/wall_link_test: $(call objects,clients/wall/link.c) $(out)/lib/link.a
 $(out)/tests/unit/wall_model_test: $(call objects,clients/wall/model.c clients/wall/model_plant.c)

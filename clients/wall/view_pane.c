@@ -43,7 +43,7 @@ static void drop_picture(struct view_pane *pane)
 void view_pane_clear(struct view_pane *pane)
 {
     drop_picture(pane);
-    pane->is_current = pane->greeted = false;
+    pane->is_current = pane->greeted = pane->sight.looks = false;
     pane->coming_count = 0;
     json_decref(pane->coming_markers);
     pane->coming_markers = NULL;
@@ -141,7 +141,7 @@ static json_t *vector_of(const double v[3])
     return json_pack("[f,f,f]", v[0], v[1], v[2]);
 }
 
-static json_t *message_of(const struct camera *camera)
+json_t *view_pane_camera_message(const struct camera *camera)
 {
     json_t *o =
         json_pack("{s:o,s:o,s:o}", "eye", vector_of(camera->eye_m), "target", vector_of(camera->target_m), "up", vector_of(camera->up));
@@ -150,7 +150,7 @@ static json_t *message_of(const struct camera *camera)
 }
 
 /* From home, or of a tag: -1. The legend hides nothing of it. */
-static json_t *find_camera(const struct view_pane *pane, const struct model *model, const json_t *params, int tag)
+static struct camera find_camera(const struct view_pane *pane, const struct model *model, const json_t *params, int tag)
 {
     const struct plant_view *home = &model->plant.view;
     struct camera camera = { .up = { 0, model->plant.up == AXIS_Y, model->plant.up == AXIS_Z }, .fov_deg = home->fov_deg };
@@ -169,17 +169,28 @@ static json_t *find_camera(const struct view_pane *pane, const struct model *mod
         framing_keep(&model->scene, aspect, &framing.window, &camera);
     else
         framing_look(&model->scene, &framing, aspect, &camera);
-    return message_of(&camera);
+    return camera;
+}
+
+static void post_camera(struct view_pane *pane, json_t *camera)
+{
+    json_object_update_new(camera, json_pack("{s:s,s:I}", "type", "camera", "seq", (json_int_t)++pane->camera_seq));
+    pane->is_current = false;
+    link_post(pane->link, camera);
 }
 
 static void ask(struct view_pane *pane, json_t *params, json_t *camera)
 {
     json_object_update_new(params, json_pack("{s:s,s:I}", "type", "params", "seq", (json_int_t)++pane->params_seq));
-    json_object_update_new(camera, json_pack("{s:s,s:I}", "type", "camera", "seq", (json_int_t)++pane->camera_seq));
-    pane->is_current = false;
     pane->refused[0] = 0;
+    pane->sight.looks = false;
     link_post(pane->link, params);
-    link_post(pane->link, camera);
+    post_camera(pane, camera);
+}
+
+void view_pane_look(struct view_pane *pane, const struct camera *camera)
+{
+    post_camera(pane, view_pane_camera_message(camera));
 }
 
 void view_pane_show(struct view_pane *pane, const struct model *model, const char *address)
@@ -191,14 +202,21 @@ void view_pane_show(struct view_pane *pane, const struct model *model, const cha
     json_decref(given);
     for (size_t i = 0; i < sizeof(engineers) / sizeof(engineers[0]) && !pane->engineer; i++)
         json_object_del(params, engineers[i]);
-    ask(pane, params, camera ? camera : find_camera(pane, model, params, -1));
+    if (!camera) {
+        struct camera whole = find_camera(pane, model, params, -1);
+        camera = view_pane_camera_message(&whole);
+    }
+    ask(pane, params, camera);
 }
 
 void view_pane_show_tag(struct view_pane *pane, const struct model *model, int tag)
 {
     const struct plant_tag *of = &model->plant.tags[tag];
     json_t *params = plain_params(pane, model, of->group >= 0 ? model->plant.groups[of->group].id : NULL);
-    ask(pane, params, find_camera(pane, model, params, tag));
+    struct camera camera = find_camera(pane, model, params, tag);
+    ask(pane, params, view_pane_camera_message(&camera));
+    if (!pane->tile.display) /* the page's tiles do not either */
+        view_sight_begin(pane, model, tag, &camera);
 }
 
 /* --- what comes --------------------------------------------------------------------------------------------------------------------- */
@@ -356,7 +374,12 @@ void view_pane_hear(struct view_pane *pane, const struct model *model, const jso
     if (!strcmp(type, "welcome")) {
         on_welcome(pane, message);
     } else if (!strcmp(type, "error")) {
-        const char *text = json_string_value(json_object_get(message, "text"));
+        const char *text = json_string_value(json_object_get(message, "text")),
+                   *about = json_string_value(json_object_get(message, "about"));
+        if (about && !strcmp(about, "pick")) {
+            pane->sight.looks = false;
+            return;
+        }
         snprintf(pane->refused, sizeof(pane->refused), "%s", text ? text : "?");
     } else if (!view_pane_fits(pane, model)) { /* the one of two sessions was told of a new plant, the other will be */
         pane->missed = true;
@@ -366,6 +389,8 @@ void view_pane_hear(struct view_pane *pane, const struct model *model, const jso
         hear_told(pane, model, message, (uint32_t)json_integer_value(json_object_get(message, "params_seq")));
     } else if (pane->tile.display && !strcmp(type, "params")) {
         hear_told(pane, model, message, (uint32_t)json_integer_value(json_object_get(message, "seq")));
+    } else if (!strcmp(type, "picked")) {
+        view_sight_hear(pane, model, message);
     } else if (!strcmp(type, "params")) {
         if (read_view(model, message, pane->width_px, pane->height_px, &pane->told))
             pane->told_seq = (uint32_t)json_integer_value(json_object_get(message, "seq"));
@@ -503,6 +528,11 @@ static bool project(const struct camera *camera, double width_px, double height_
     *x = 0.5 * width_px + at[0] / high_m * height_px;
     *y = 0.5 * height_px - at[1] / high_m * height_px;
     return true;
+}
+
+bool view_pane_project_by(const struct view_pane *pane, const struct camera *camera, const double place_m[3], double *x, double *y)
+{
+    return project(camera, pane->width_px, pane->height_px, place_m, x, y);
 }
 
 /* Of the picture that a tile is a part of; of others the picture is the pane. A split one has the place in its left half. */

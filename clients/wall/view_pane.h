@@ -10,6 +10,7 @@
 #include "link.h"
 #include "model.h"
 #include "render/frame.h"
+#include "view_sight.h"
 #include "view_tile.h"
 
 enum { TOLD_COMING = 8, MARKERS_COMING = 32 };
@@ -45,6 +46,7 @@ struct view_pane {
     struct frame frame; /* what the picture shows; its pixels are not used */
     bool by_gpu;
     struct view_tile tile;
+    struct view_sight sight;
     /* --- below: of the network's thread */
     struct decoder *decoder;
     uint8_t *canvas;    /* what parts of pictures are put together in; NULL: none yet */
@@ -65,8 +67,14 @@ void view_pane_hear(struct view_pane *pane, const struct model *model, const jso
 bool view_pane_decode(struct view_pane *pane, pthread_mutex_t *lock, const struct wire_frame *frame, const uint8_t *payload);
 /* Asks for a view: what a page's address has after `#`. One without a camera shows the whole plant. */
 void view_pane_show(struct view_pane *pane, const struct model *model, const char *address);
-/* Asks for the place of a tag. */
+/* Asks for the place of a tag, and then for another side of it where something stands before it. */
 void view_pane_show_tag(struct view_pane *pane, const struct model *model, int tag);
+/* Asks for another camera, by what is shown else. */
+void view_pane_look(struct view_pane *pane, const struct camera *camera);
+/* Returns a camera as it is said to the server, without its type; the caller owns it. */
+json_t *view_pane_camera_message(const struct camera *camera);
+/* Returns whether a place of the plant is before that camera, and where in pixels of the pane, which may be outside of it. No tiles. */
+bool view_pane_project_by(const struct view_pane *pane, const struct camera *camera, const double place_m[3], double *x, double *y);
 /* Returns whether it speaks of the same plant as the model. */
 bool view_pane_fits(const struct view_pane *pane, const struct model *model);
 /* Of a tile: shows the picture whose time has come. Returns whether one came. */

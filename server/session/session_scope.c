@@ -245,7 +245,8 @@ bool session_scope_allows(const struct session *session, const struct message *m
     const struct token_holder *holder = &session->identity.holder;
     if (holder->views[0] && !is_in(message->type, views, sizeof(views) / sizeof(views[0])))
         message_fail(error, "not_allowed", "this token is for pictures of the views %.150s: hello or look names one", holder->views);
-    else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])))
+    else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])) &&
+             (message->type != MESSAGE_PICK || session->scope.tags)) /* where there are pictures it looks for a side of an alarm's place */
         message_fail(error, "not_allowed", "this token is that of display %d of wall %s, and does what that does", holder->display,
                      holder->wall);
     else

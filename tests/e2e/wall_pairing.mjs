@@ -204,6 +204,8 @@ test('its secret reads nothing but its display, before it has said a word', opti
     }
     await pictures.hello({ width: 640, height: 480 });
     assert.equal((await pictures.text('tags', 20000)).values.length, 3); // an alarm may call any place of the plant into its picture
+    pictures.say({ type: 'pick', seq: 1, x: 320, y: 240 }); // and it looks for a side from which that is seen
+    assert.equal((await pictures.text('picked', 20000)).seq, 1);
     assert.deepEqual((await pictures.text('views', 20000)).list.map(({ id: view }) => view), ['whole']);
     pictures.close();
 

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "clients/wall/approach.h"
 #include "clients/wall/rules.h"
 #include "clients/wall/view_address.h"
 
@@ -126,12 +127,46 @@ static void letters_are_as_large_as_on_the_page(void **state)
     json_decref(all);
 }
 
+static void take(const json_t *from, double to[3])
+{
+    for (size_t i = 0; i < 3; i++)
+        to[i] = json_number_value(json_array_get(from, i));
+}
+
+static void places_are_looked_at_from_the_sides_of_the_page(void **state)
+{
+    json_t *all = cases("approaches");
+    (void)state;
+    assert_true(json_array_size(all) > 0);
+    for (size_t i = 0; i < json_array_size(all); i++) {
+        const json_t *one = json_array_get(all, i), *given = json_object_get(one, "camera"), *sides = json_object_get(one, "sides");
+        struct camera first = { .fov_deg = number(given, "fov") };
+        double place_m[3];
+        take(json_object_get(given, "eye"), first.eye_m);
+        take(json_object_get(given, "target"), first.target_m);
+        take(json_object_get(given, "up"), first.up);
+        take(json_object_get(one, "place"), place_m);
+        assert_int_equal(json_array_size(sides), APPROACH_SIDES);
+        for (int side = 0; side < APPROACH_SIDES; side++) {
+            struct camera camera = approach_camera(&first, place_m, side);
+            double eye_m[3], target_m[3];
+            take(json_array_get(json_array_get(sides, (size_t)side), 0), eye_m);
+            take(json_array_get(json_array_get(sides, (size_t)side), 1), target_m);
+            for (int k = 0; k < 3; k++)
+                if (fabs(camera.eye_m[k] - eye_m[k]) > 1e-6 || fabs(camera.target_m[k] - target_m[k]) > 1e-6)
+                    fail_msg("case %zu, side %d", i, side);
+        }
+    }
+    json_decref(all);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(alarms_call_as_on_the_page),
         cmocka_unit_test(addresses_read_as_on_the_page),
         cmocka_unit_test(letters_are_as_large_as_on_the_page),
+        cmocka_unit_test(places_are_looked_at_from_the_sides_of_the_page),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

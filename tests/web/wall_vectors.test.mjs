@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { readAddress } from '../../clients/web/core/address.js';
+import { sidesOf } from '../../clients/web/core/approach.js';
 import { AlarmCall } from '../../clients/web/core/alarm_call.js';
 import { cameraMessage } from '../../clients/web/core/camera.js';
 import { brightness, wallFit } from '../../clients/web/core/wall.js';
@@ -41,4 +42,13 @@ test('how large letters are, and how bright a display', () => {
     }
     for (const { minute, calls, light, ...dim } of dimming)
         assert.equal(brightness(dim, minute, calls), light, JSON.stringify({ ...dim, minute }));
+});
+
+test('from which sides a place is looked at', () => {
+    for (const { camera, place, sides } of cases('approaches')) {
+        const all = sidesOf(camera, place);
+        assert.equal(all.length, sides.length);
+        for (const [i, { eye, target }] of all.entries())
+            [...eye, ...target].forEach((m, k) => assert.ok(Math.abs(m - sides[i].flat()[k]) < 1e-6, `side ${i}`));
+    }
 });

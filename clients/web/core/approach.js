@@ -16,8 +16,8 @@ export function approachDistance({ min, max }) {
     return Math.max(LEAST_M, Math.min(MOST_M, PART * middle));
 }
 
+// Returns the cameras that a first one becomes, turned about a point. clients/wall/approach.c does the same.
+export const sidesOf = (first, point) => TURNS.map(([azimuth, rise]) => orbit(first, azimuth, rise, point));
+
 // Returns the cameras for a point of equipment with these bounds.
-export function approaches(camera, point, bounds) {
-    const first = face(camera, point, bounds, approachDistance(bounds));
-    return TURNS.map(([azimuth, rise]) => orbit(first, azimuth, rise));
-}
+export const approaches = (camera, point, bounds) => sidesOf(face(camera, point, bounds, approachDistance(bounds)), point);
