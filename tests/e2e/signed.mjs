@@ -7,6 +7,7 @@ import { appendFileSync, chmodSync, mkdirSync, readdirSync, readFileSync, writeF
 import { get } from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { openPage, shoot, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { chunksOf, pngOf, textOf, withRows, withText } from './support/png_chunks.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
@@ -189,6 +190,52 @@ test('a session says what it wants signed, and is told why something is not', { 
     const unsigned = await client.frameWhere('an unsigned frame', (one) => still(one) && one.params_seq === 3);
     assert.equal(unsigned.flags & FLAG.signed, 0);
     client.close();
+});
+
+test('the page saves what is on its screen, signed, and a picture with legend and markers', { skip, timeout: 120000 }, async () => {
+    const browser = await openPage(url(), { viewport: { width: 1280, height: 800 } }), { page } = browser;
+    try {
+        await waitForPicture(page);
+        await waitForHealth(page, 'live');
+        await page.evaluate(() => { // the pixels on the screen when a signed frame was drawn there, as the statement has them
+            const { session, viewport: { context, canvas } } = globalThis.plantcast, { drawn } = session;
+            session.drawn = (of, ...more) => {
+                drawn.call(session, of, ...more);
+                if (!(of.flags & 64))
+                    return;
+                const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+                globalThis.signedPixels = crypto.subtle.digest('SHA-256', data.filter((_, i) => i % 4 !== 3))
+                    .then((hash) => Array.from(new Uint8Array(hash), (byte) => byte.toString(16).padStart(2, '0')).join(''));
+            };
+        });
+        const save = async (choice) => {
+            await page.locator('#snapshot').click();
+            const download = page.waitForEvent('download');
+            await page.locator(`#snapshot-${choice}`).click();
+            return readFileSync(await (await download).path());
+        };
+        const shown = await save('shown'), again = redraw(shown), statement = JSON.parse(textOf(shown, STATEMENT));
+        assert.equal(again.code, 0, again.out + again.err);
+        assert.match(again.out, /a frame of a session: refined, without legend, markers and clock/);
+        assert.match(again.out, new RegExp(`  ${statement.width * statement.height} of ${statement.width * statement.height} pixels`));
+        assert.equal(await page.evaluate(() => globalThis.signedPixels), statement.pixels_sha256, 'the pixels that were on the screen');
+        await plant.tell('set TI-1 70');
+        await page.waitForFunction(() => !(globalThis.plantcast.session.picture.flags & 64)); // it goes on as before
+        await plant.tell('set TI-1 80');
+        const whole = await save('again'), { code, out, err } = redraw(whole);
+        assert.equal(code, 0, out + err);
+        assert.equal(JSON.parse(textOf(whole, STATEMENT)).overlay, 'full');
+        await page.locator('#snapshot').click();
+        await shoot(page, 'signed-choice');
+        await page.keyboard.press('Escape');
+        await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'difference', baseline: 'now' }));
+        await page.locator('#snapshot').click();
+        await page.locator('#snapshot-shown').click();
+        await page.waitForFunction(() => /refused: .*has no name/.test(document.getElementById('toast').textContent));
+        assert.deepEqual(browser.errors, []);
+    } finally {
+        await browser.close();
+    }
 });
 
 test('a plant that was changed since is said to be another', { skip }, () => {

@@ -20,14 +20,16 @@ for (const name of names('frame/')) {
         }
         const frame = decodeFrame(data);
         assert.deepEqual({
-            codec: frame.codec, key: frame.key, still: frame.still, noLiveData: frame.noLiveData, more: frame.more, seq: frame.seq,
+            codec: frame.codec, flags: frame.flags,
+            key: frame.key, still: frame.still, noLiveData: frame.noLiveData, more: frame.more, seq: frame.seq,
             cameraSeq: frame.cameraSeq, paramsSeq: frame.paramsSeq, oldestAgeMs: frame.oldestAgeMs,
             dataTimeUs: frame.dataTimeUs, sentTimeUs: frame.sentTimeUs,
             stages: [frame.waitUs, frame.fieldUs, frame.renderUs, frame.encodeUs],
             part: [frame.x, frame.y, frame.width, frame.height, frame.fullWidth, frame.fullHeight],
             camera: frame.camera, payload: frame.payload.length,
         }, {
-            codec: CODECS[want.codec], key: (want.flags & 1) !== 0, still: (want.flags & 2) !== 0, noLiveData: (want.flags & 4) !== 0,
+            codec: CODECS[want.codec], flags: want.flags,
+            key: (want.flags & 1) !== 0, still: (want.flags & 2) !== 0, noLiveData: (want.flags & 4) !== 0,
             more: (want.flags & 8) !== 0,
             seq: want.seq, cameraSeq: want.camera_seq, paramsSeq: want.params_seq,
             oldestAgeMs: want.oldest_age_ms === 0xffffffff ? null : want.oldest_age_ms,

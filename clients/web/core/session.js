@@ -412,6 +412,7 @@ const HANDLERS = {
         this.anew = false;
         this.role = message.role ?? null;
         this.imports = message.imports === true;
+        this.signs = message.signing_key;
         this.codec = message.codec;
         this.connection.settle();
         this.confirmed = this.params = pick(message.view, SAID);

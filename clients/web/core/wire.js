@@ -48,11 +48,13 @@ export function decodeFrame(bytes) {
     need(view.getUint8(0) === 1, `message type ${view.getUint8(0)} is unknown`);
     const flags = u16(2);
     const frame = {
-        codec: CODECS[view.getUint8(1)],
+        flags, codec: CODECS[view.getUint8(1)],
         key: (flags & FLAG_KEY) !== 0, still: (flags & FLAG_STILL) !== 0, noLiveData: (flags & FLAG_NO_LIVE_DATA) !== 0,
         data: (flags & FLAG_DATA) !== 0,
-        past: (flags & FLAG_PAST) !== 0, // it shows the instant dataTimeUs, not now
-        more: (flags & FLAG_MORE) !== 0, // another part of the same picture follows
+        // It shows the instant dataTimeUs, not now.
+        past: (flags & FLAG_PAST) !== 0,
+        // Another part of the same picture follows.
+        more: (flags & FLAG_MORE) !== 0,
         seq: u32(8), cameraSeq: u32(12), paramsSeq: u32(16),
         oldestAgeMs: u32(20) === NO_AGE ? null : u32(20),
         dataTimeUs: time(view, 24), sentTimeUs: time(view, 32),

@@ -510,6 +510,11 @@ parts: waagrecht {level} m, Höhe {rise} m
 [snapshot]
 failed: Kein Bild: {why}
 unnamed: ein Vergleich braucht Werte, die unter einem Namen behalten wurden
+shown: Speichern, was zu sehen ist
+shown.note: Pixel für Pixel, mit den Werten, die es zeigt; ohne Legende, Marken und Uhr.
+again: Mit Legende und Marken speichern
+again.note: Vom Server noch einmal gezeichnet. Beide sind signiert: „plantcast verify“ findet, was daran geändert wurde.
+late: es kam kein signiertes Bild
 
 [share]
 title: Teilen

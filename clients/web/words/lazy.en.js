@@ -508,6 +508,11 @@ parts: level {level} m, rise {rise} m
 [snapshot]
 failed: No picture: {why}
 unnamed: a comparison needs readings that were kept under a name
+shown: Save what is on the screen
+shown.note: Pixel for pixel, with the readings that it shows; without legend, markers and clock.
+again: Save with legend and markers
+again.note: Drawn once more by the server. Both are signed: “plantcast verify” finds whatever is changed in them.
+late: no signed picture came
 
 [share]
 title: Share

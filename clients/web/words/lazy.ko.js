@@ -506,6 +506,11 @@ parts: 수평 {level} m, 높이 {rise} m
 [snapshot]
 failed: 그림 없음: {why}
 unnamed: 비교하려면 이름을 붙여 보관한 값이 필요합니다
+shown: 화면 그대로 저장
+shown.note: 화면에 보이는 값과 픽셀 그대로이며, 범례, 표시, 시계는 없습니다.
+again: 범례와 표시를 넣어 저장
+again.note: 서버가 다시 그립니다. 둘 다 서명되어 있어, 바뀐 곳은 “plantcast verify”가 찾아냅니다.
+late: 서명된 그림이 오지 않았습니다
 
 [share]
 title: 공유

@@ -1,29 +1,98 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture to keep: what is shown, drawn once more by the server.
+// A picture to keep: the plant drawn once more by the server; or, where it signs, the very frame that is on the screen.
 import { ask } from '../../core/history.js';
 import { snapshotQuery } from '../../core/query.js';
 import { say } from '../../core/words.js';
-import { make } from '../common/dom.js';
+import { make, styled } from '../common/dom.js';
+import { closeButton } from '../common/widgets.js';
+
+const FLAG_SIGNED = 64; // the payload is a signed PNG file
+const SIGNED_WAIT_MS = 15000;
 
 export class Snapshot {
     constructor({ session, tell }) {
-        Object.assign(this, { session, tell });
+        Object.assign(this, { session, tell, pending: null });
+        session.on('frame', (frame) => frame.flags & FLAG_SIGNED && this.pending?.frames.set(frame.seq, frame));
+        session.on('hello', () => this.pending?.fail(new Error(say('reason.unreachable'))));
+        // Why not is told by who tells all refusals.
+        session.on('error', ({ about, code }) => (about === 'sign' || code === 'not_signed') && this.pending?.fail(null));
     }
 
-    async save() {
-        const { session } = this, { camera, size, time, model } = session;
+    save() {
+        if (!this.session.signs)
+            this.saveBy(() => this.drawnAgain());
+        else if (!this.pending)
+            this.choose();
+    }
+
+    async choose() {
+        await styled('help/help').catch(() => {}); // the server is away: plain, then
+        this.dialog ??= this.makeDialog();
+        this.dialog.showModal();
+    }
+
+    makeDialog() {
+        const choice = (name, of) => [make('p', { class: 'note', id: `snapshot-${name}-note` }, say(`snapshot.${name}.note`)),
+            make('button', { type: 'button', id: `snapshot-${name}`, 'aria-describedby': `snapshot-${name}-note`, onclick: () => {
+                dialog.close();
+                this.saveBy(of);
+            } }, say(`snapshot.${name}`))];
+        const dialog = make('dialog', { class: 'help ask', 'aria-labelledby': 'snapshot-title' },
+            make('h2', { id: 'snapshot-title' }, say('bar.snapshot')), closeButton('close', () => dialog.close()),
+            make('form', {}, ...choice('shown', () => this.onScreen()), ...choice('again', () => this.drawnAgain())));
+        dialog.addEventListener('click', (event) => event.target === dialog && dialog.close());
+        document.body.append(dialog);
+        return dialog;
+    }
+
+    // picture(): a promise of { blob, us }: a PNG file, and its instant.
+    async saveBy(picture) {
+        const { model } = this.session;
         try {
             if (!model)
                 return;
-            if (session.params.show === 'difference' && !session.params.baseline?.name)
-                throw new Error(say('snapshot.unnamed'));
-            const query = snapshotQuery({ carried: { ...session.carried(), backdrop: null }, camera, size, time });
-            const answer = await ask('snapshot.png', query, session.token);
-            const url = URL.createObjectURL(await answer.blob()), at = new Date((time.atUs ?? session.clockUs()) / 1000).toISOString();
+            const { blob, us } = await picture(), url = URL.createObjectURL(blob), at = new Date(us / 1000).toISOString();
             make('a', { href: url, download: `${model.plant.name} ${at.slice(0, 19).replace(/:/g, '-')}Z.png` }).click();
             setTimeout(() => URL.revokeObjectURL(url), 10000);
         } catch (error) {
-            this.tell(say('snapshot.failed', { why: error.message }));
+            if (error)
+                this.tell(say('snapshot.failed', { why: error.message }));
+        }
+    }
+
+    async drawnAgain() {
+        const { session } = this, { camera, size, time } = session;
+        if (session.params.show === 'difference' && !session.params.baseline?.name)
+            throw new Error(say('snapshot.unnamed'));
+        const query = snapshotQuery({ carried: { ...session.carried(), backdrop: null }, camera, size, time });
+        const answer = await ask('snapshot.png', query, session.token);
+        return { blob: await answer.blob(), us: time.atUs ?? session.clockUs() };
+    }
+
+    // The next refined frame comes signed; once it is on the screen, its file is what is saved.
+    async onScreen() {
+        const { session } = this, frames = new Map();
+        let timer;
+        const drawn = new Promise((done, fail) => {
+            const look = () => {
+                const frame = frames.get(session.picture?.seq);
+                if (frame)
+                    done(frame);
+                else if (this.pending)
+                    requestAnimationFrame(look);
+            };
+            this.pending = { frames, fail };
+            timer = setTimeout(() => fail(new Error(say('snapshot.late'))), SIGNED_WAIT_MS);
+            session.post({ type: 'sign', frames: 'refined' });
+            look();
+        });
+        try {
+            const frame = await drawn;
+            return { blob: new Blob([frame.payload], { type: 'image/png' }), us: frame.dataTimeUs };
+        } finally {
+            clearTimeout(timer);
+            this.pending = null;
+            session.post({ type: 'sign', frames: 'none' });
         }
     }
 }
