@@ -191,7 +191,7 @@ $(out)/lib/$(1).a: $(call objects,$(filter-out $(without),$(wildcard $(foreach d
 endef
 $(foreach l,$(layers),$(eval $(call archive_rule,$(l))))
 # Loops of the software rasterizer once more for machines with AVX2, and for those with AVX-512 (render/soft/kernels.h).
-wide_sources := $(foreach f,faces kernels raster resolve_preview,server/render/soft/$(f).c)
+wide_sources := $(foreach f,faces feature_edges kernels raster resolve_field resolve_preview resolve_surfaces,server/render/soft/$(f).c)
 wide_objects := $(foreach w,wide widest,$(patsubst %.c,$(out)/obj/%.$(w).o,$(wide_sources)))
 $(out)/lib/render.a: $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/null)),$(wide_objects))
 $(out)/lib/protocol.a: $(call objects,$(wildcard protocol/*.c))

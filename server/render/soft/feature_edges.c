@@ -2,6 +2,7 @@
 /* Thin dark lines around shapes, found in depth: shaders/edges.frag once more. */
 #include <math.h>
 
+#include "render/soft/kernels.h"
 #include "render/soft/refined_impl.h"
 
 struct view_of_depth {
@@ -60,7 +61,7 @@ SOFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes her
     return lines * (1.0f / (EDGE_WIDE_PX - EDGE_THIN_PX + 1));
 }
 
-SOFT_KERNEL void refined_ink_band(const struct refined *refined, int number)
+void refined_ink_band(const struct refined *refined, int number)
 {
     const struct raster *raster = &refined->raster;
     struct view_of_depth view = { raster->depth, raster->width_px, raster->height_px, raster->pitch_px, raster->block.back[3] };

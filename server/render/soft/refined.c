@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "render/pick/markers.h"
 #include "render/matrix.h"
+#include "render/soft/kernels.h"
 #include "render/soft/refined_impl.h"
 #include "render/gl/ghosts.h"
 
@@ -214,7 +215,7 @@ static void ink_some(void *arg, size_t begin, size_t end)
 {
     const struct piece *piece = arg;
     for (size_t band = begin; band < end; band++)
-        refined_ink_band(piece->refined, (int)(piece->first + band));
+        piece->refined->raster.soft->kernels->ink_band(piece->refined, (int)(piece->first + band));
 }
 
 /* The next of `all` pieces of work, so many for each core. True: that was the last. */

@@ -63,18 +63,8 @@ struct shaded_items { /* per item of the field */
 void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES],
                          struct soft_fragments *fragments);
 bool refined_shade_band(const struct refined *refined, int band); /* false: out of memory */
-void refined_ink_band(const struct refined *refined, int band);
 /* Keeps the number in the band of the item's triangle, and where on it the item is: at that place of `out`. */
 void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct item *item, float w1, float w2,
                         const struct shaded_items *out, size_t at);
-/* Eight items or fewer at a time. */
-void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
-                         const struct shaded_items *out);
-/* Likewise in a glossy look: fills out->gloss, too. */
-void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
-                         const struct shaded_items *out);
-/* alphas: NULL: not asked for. */
-void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors, float *alphas);
-void refined_shade_sky(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
 
 #endif

@@ -1,26 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Light on what shows the field, and on sky and ground, eight pixels at a time: shaders/refined.frag, shadow.glsl, sky.frag and ground.frag
    once more. */
+#include "render/soft/kernels.h"
 #include "render/soft/surface_points.h"
 
 /* --- the field --------------------------------------------------------------------------------------------------------------- */
 
-void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct item *item, float w1, float w2,
-                        const struct shaded_items *out, size_t at)
-{
-    const struct soft_mesh *mesh = &refined->raster.meshes[item->triangle.mesh];
-    const uint32_t *v = item->triangle.vertices, first = mesh->first_vertex;
-    size_t before = band->triangle_count;
-    out->triangles[at] = visibility_add_triangle(band, (uint32_t[3]){ first + v[0], first + v[1], first + v[2] });
-    out->weights[at] = (uint32_t)(w1 * 65535 + 0.5f) | (uint32_t)(w2 * 65535 + 0.5f) << 16;
-    if (refined->buffer->lined && band->triangle_count > before) {
-        double weights[3][3];
-        soft_weights(mesh, v, weights);
-        visibility_add_slopes(band, weights);
-    }
-}
-
-SOFT_KERNEL void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
+void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
                                      const struct shaded_items *out)
 {
     const float *shade = refined->raster.block.shade;
@@ -85,7 +71,7 @@ SOFT_INLINE lanes_int ground_at(const struct refined *refined, lanes x, float y)
     return lanes_choose_int(inside, lanes_whole((1.0f - margin(u) * margin(v) * dark) * 256.0f + 0.5f), whole);
 }
 
-SOFT_KERNEL void refined_shade_sky(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors)
+void refined_shade_sky(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors)
 {
     const struct raster *raster = &refined->raster;
     struct heights heights = { 0 };

@@ -5,8 +5,9 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "render/soft/section_colors.h"
+#include "render/soft/kernels.h"
 #include "render/soft/refined_impl.h"
+#include "render/soft/section_colors.h"
 
 struct group { /* samples of a pixel that show one surface */
     const struct soft_triangle *triangle;
@@ -170,7 +171,7 @@ static void shade_layers(struct recent *recent, struct layers *layers, int top, 
     }
     mem_grow(&layers->colors, &layers->color_capacity, layers->count, sizeof(*layers->colors));
     mem_grow(&layers->alphas, &layers->alpha_capacity, layers->count, sizeof(*layers->alphas));
-    refined_shade_surfaces(refined, layers->items, layers->count, layers->colors, layers->alphas);
+    refined->raster.soft->kernels->shade_surfaces(refined, layers->items, layers->count, layers->colors, layers->alphas);
     qsort(fragments, count, sizeof(*fragments), by_depth);
 }
 
@@ -352,22 +353,38 @@ static void keep_row(const struct refined *refined, struct visibility_band *band
         surfaces[row->mixed[i].column] = keep_mixed(refined, band, row, &row->mixed[i], y);
 }
 
+void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct item *item, float w1, float w2,
+                        const struct shaded_items *out, size_t at)
+{
+    const struct soft_mesh *mesh = &refined->raster.meshes[item->triangle.mesh];
+    const uint32_t *v = item->triangle.vertices, first = mesh->first_vertex;
+    size_t before = band->triangle_count;
+    out->triangles[at] = visibility_add_triangle(band, (uint32_t[3]){ first + v[0], first + v[1], first + v[2] });
+    out->weights[at] = (uint32_t)(w1 * 65535 + 0.5f) | (uint32_t)(w2 * 65535 + 0.5f) << 16;
+    if (refined->buffer->lined && band->triangle_count > before) {
+        double weights[3][3];
+        soft_weights(mesh, v, weights);
+        visibility_add_slopes(band, weights);
+    }
+}
+
 static void shade_rows(struct recent *recent, int number, const struct soft_sample samples[SAMPLES], struct row *row,
                        const struct layers *layers)
 {
     size_t layered = 0;
     const struct refined *refined = recent->refined;
     const struct raster *raster = &refined->raster;
+    const struct soft_kernels *kernels = raster->soft->kernels;
     struct visibility_band *band = &refined->buffer->bands[number];
     int top = number * REFINED_ROWS, end = top + REFINED_ROWS < raster->height_px ? top + REFINED_ROWS : raster->height_px;
     for (int y = top; y < end; y++) {
         size_t start = (size_t)(y - top) * (size_t)raster->pitch_px;
         struct shaded_items shaded = { row->triangles, row->weights, row->rows, row->gloss };
         sort_row(recent, row, samples, start, y, layers, &layered);
-        (refined->buffer->gloss ? refined_shade_gloss : refined_shade_field)(refined, band, row->field, row->field_count, &shaded);
-        refined_shade_surfaces(refined, row->surfaces, row->surface_count, row->colors, NULL);
+        (refined->buffer->gloss ? kernels->shade_gloss : kernels->shade_field)(refined, band, row->field, row->field_count, &shaded);
+        kernels->shade_surfaces(refined, row->surfaces, row->surface_count, row->colors, NULL);
         if (row->any_sky)
-            refined_shade_sky(refined, y, row->sky, row->sky_colors);
+            kernels->shade_sky(refined, y, row->sky, row->sky_colors);
         keep_row(refined, band, row, y);
         memcpy(raster->depth + (size_t)y * (size_t)raster->pitch_px, samples[0].depth + start, (size_t)raster->pitch_px * sizeof(float));
     }

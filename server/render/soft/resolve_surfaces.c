@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Light on surfaces, eight at a time, but for fields whose light is a row of the colour map: shaders/refined.frag, light.glsl, pbr.glsl and
    environment.glsl once more. */
+#include "render/soft/kernels.h"
 #include "render/soft/pbr.h"
 #include "render/soft/section_colors.h"
 #include "render/soft/surface_points.h"
@@ -143,7 +144,7 @@ SOFT_INLINE void see(const struct refined *refined, const struct item *items, si
     wear(refined, items, count, spot, &lit->surface, &lit->glow, alphas);
 }
 
-SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors,
+void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors,
                                         float *alphas)
 {
     const struct soft_tones *tones = refined->raster.soft->tones;
@@ -182,7 +183,7 @@ SOFT_INLINE vec glossy_light(const struct lit *lit, const struct sky_light *sky,
 }
 
 /* What comes back of a surface that is no metal is linear in its colour. */
-SOFT_KERNEL void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
+void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
                                      const struct shaded_items *out)
 {
     for (size_t first = 0; first < count; first += LANES) {
