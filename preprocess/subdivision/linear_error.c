@@ -9,7 +9,7 @@
 #include "base/vec.h"
 #include "plant/singles.h"
 
-#define MOST_SLACK (2 / 255.0) /* of the range */
+#define MOST_SLACK (1 / 255.0) /* of the range */
 #define MANY 64 /* sensors: with more, each has so small a share in paper that its bends are far below shepard's, and are not looked at */
 
 static double factor_of(double x)

@@ -64,7 +64,7 @@ double linear_error_rim_of(const struct linear_error *linear, const struct inter
 double linear_error_nearest_of(const struct linear_error *linear, const struct interp_norm *norms);
 /* Errors in parts of the range: a sample at a point against the line between two others, at fraction t; against the plane
    through three corners, with these weights.
-   modes: on which distances. Less what a value may change over slack_m, up to two steps of colour. Farther than wide_m from where a group
+   modes: on which distances. Less what a value may change over slack_m, up to one step of colour. Farther than wide_m from where a group
    has data, it does not err; nearer, what is shown there goes into what is shown of the data, if the edge or triangle is so wide. */
 enum linear_error_modes {
     LINEAR_ERROR_GEODESIC = 1 << DISTANCE_GEODESIC,
