@@ -20,7 +20,7 @@ before(() => {
         return;
     folder = mkdtempSync(join(tmpdir(), 'plantcast-validation-'));
     const { status, stderr } = spawnSync('tests/validation/run', [OUT, BIN, '--folder', folder, '--parts', 'bent', '--sensors', '5,20',
-        '--coarser', '2.5', '--prepare', 'harmonic, fin', '--no-pictures'], { encoding: 'utf8', timeout: 240000 });
+        '--coarser', '2.5', '--prepare', 'harmonic, fin, gp', '--no-pictures'], { encoding: 'utf8', timeout: 240000 });
     assert.equal(status, 0, stderr);
     [part] = JSON.parse(readFileSync(join(folder, 'validation.json'), 'utf8'));
 });
@@ -38,6 +38,7 @@ test('CalculiX solves what was asked', { skip }, () => {
 // In kelvin, of 180 between hottest and coldest. Bounds are a third above what was measured.
 for (const [sensors, interpolation, distance, mean, p95] of [
     [20, 'shepard', 'geodesic', 6.3, 18.6], [20, 'harmonic', '', 4.6, 13], [20, 'fin', '', 4.8, 27], [5, 'fin', '', 11.8, 54],
+    [20, 'gp', '', 3.3, 6.8], [5, 'gp', '', 21.7, 93],
 ]) {
     test(`${interpolation} from ${sensors} sensors`, { skip }, () => {
         const { mean: is, p95: high, unknown } = errors(sensors, interpolation, distance);
