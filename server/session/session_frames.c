@@ -240,6 +240,10 @@ bool session_choose_signed(struct session *session, enum signed_frames frames, s
         message_fail(error, "bad_field", "signed: such frames are PNG, which has to be among codecs");
         return false;
     }
+    if (frames && session_is_tile(session)) {
+        message_fail(error, "not_allowed", "signed: frames of tiles are not signed");
+        return false;
+    }
     session->demand.any |= session->codec.signed_frames != frames;
     session->codec.signed_frames = frames;
     session->codec.unsigned_said = false;

@@ -56,6 +56,7 @@ before(async () => {
 - { id: pump, title: Pump, view: "camera=5,-4,3,3,0,0,0,0,1,45&group=pressure" }
 tours:
 - { id: round, stops: [{ view: warm, dwell_s: 1, text: "Is it < 90 °C & good?" }, { view: pump, dwell_s: 1 }] }
+walls: [{ id: tiled, tile: { columns: 2, rows: 1, views: warm } }]
 `);
     makeKey('server');
     makeKey('other');
@@ -325,6 +326,22 @@ test('a tour is filmed signed, with its texts beside it; its views are printed',
     const strict = check();
     assert.equal(strict.code, 1, strict.out);
     assert.match(strict.err, /picture 3: its view is another one/);
+});
+
+test('frames of a tile are not signed, whenever it is asked', { skip }, async () => {
+    const asks = async (hello, after) => {
+        const client = await PlainClient.open(plant.port);
+        client.say({ type: 'hello', width: 320, height: 200, codecs: ['png'], tile: { wall: 'tiled', display: 1 }, ...hello });
+        if (after)
+            client.say(after);
+        const { code, text } = await client.text('error');
+        client.close();
+        return [code, text];
+    };
+    for (const [code, text] of [await asks({ signed: 'all' }), await asks({}, { type: 'sign', frames: 'all' })]) {
+        assert.equal(code, 'not_allowed');
+        assert.match(text, /are not signed/);
+    }
 });
 
 test('who may see no readings is told none', { skip }, async () => {

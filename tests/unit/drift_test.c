@@ -112,7 +112,7 @@ static void test_jumps_are_no_drift(void **state)
     assert_true(found >= 75 && accused <= 16);
 }
 
-/* What is changed and changed back, as for a trial of a day or two: two jumps, of which the second undoes the first but for `left` of it. */
+/* What is changed and changed back, as for a trial of a day or two: two jumps, of which the second undoes the first, or most of it. */
 static void test_a_jump_and_back_is_no_drift(void **state)
 {
     double values[DRIFT_HOURS], predicted[DRIFT_HOURS];
@@ -384,8 +384,8 @@ static void test_held_out_series(void **state)
             told += drifts[i].verdict == DRIFT_NONE;
         leave(&row);
     }
-    printf("# held out: %d of %d mixers accused in a week, %d times of %d; of %d it is said that they do not drift\n", sensors, MIXERS, times,
-           MIXERS * (DRIFT_HOURS - DRIFT_HOURS_LEAST + 1), told);
+    printf("# held out: %d of %d mixers accused in a week, %d times of %d; of %d it is said that they do not drift\n", sensors, MIXERS,
+           times, MIXERS * (DRIFT_HOURS - DRIFT_HOURS_LEAST + 1), told);
     assert_true(sensors == 0 && told == MIXERS);
 }
 
