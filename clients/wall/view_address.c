@@ -8,7 +8,6 @@
 #include "base/mem.h"
 #include "message/view_address.h"
 #include "message/view_query.h"
-#include "scene/camera.h"
 #include "scene/visibility.h"
 
 /* Of several of one name the first counts. */
@@ -209,6 +208,17 @@ static json_t *vector_of(const double v[3])
     return json_pack("[f,f,f]", v[0], v[1], v[2]);
 }
 
+json_t *view_address_camera_message(const struct camera *camera)
+{
+    json_t *o =
+        json_pack("{s:o,s:o,s:o}", "eye", vector_of(camera->eye_m), "target", vector_of(camera->target_m), "up", vector_of(camera->up));
+    if (camera->height_m > 0)
+        json_object_update_new(o, json_pack("{s:s,s:f}", "projection", "orthographic", "height_m", camera->height_m));
+    else
+        json_object_set_new(o, "fov", json_real(camera->fov_deg));
+    return o;
+}
+
 json_t *view_address_camera(const char *text)
 {
     json_t *fields = fields_of(text), *list = numbers_of(fields, "camera", 0), *o = NULL;
@@ -217,13 +227,8 @@ json_t *view_address_camera(const char *text)
     copy_vector(list, 0, camera.eye_m);
     copy_vector(list, 3, camera.target_m);
     copy_vector(list, 6, camera.up);
-    if ((count == 10 || (count == 11 && camera.height_m > 0)) && camera_valid(&camera)) {
-        o = json_pack("{s:o,s:o,s:o}", "eye", vector_of(camera.eye_m), "target", vector_of(camera.target_m), "up", vector_of(camera.up));
-        if (count == 11)
-            json_object_update_new(o, json_pack("{s:s,s:f}", "projection", "orthographic", "height_m", camera.height_m));
-        else
-            json_object_set_new(o, "fov", json_real(camera.fov_deg));
-    }
+    if ((count == 10 || (count == 11 && camera.height_m > 0)) && camera_valid(&camera))
+        o = view_address_camera_message(&camera);
     json_decref(list);
     json_decref(fields);
     return o;

@@ -136,7 +136,7 @@ void pane_choose(struct player *player, struct pane *pane, int64_t now_ns)
         else
             view_pane_show(&pane->view, model, address);
     }
-    view_sight_tick(&pane->view, model, now_ns);
+    view_pane_tick(&pane->view, now_ns);
     text_finish(&wanted);
     mem_free(alarms);
 }

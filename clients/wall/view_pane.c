@@ -43,7 +43,8 @@ static void drop_picture(struct view_pane *pane)
 void view_pane_clear(struct view_pane *pane)
 {
     drop_picture(pane);
-    pane->is_current = pane->greeted = pane->sight.looks = false;
+    pane->is_current = pane->greeted = false;
+    view_sight_end(&pane->sight);
     pane->coming_count = 0;
     json_decref(pane->coming_markers);
     pane->coming_markers = NULL;
@@ -136,17 +137,23 @@ static json_t *plain_params(const struct view_pane *pane, const struct model *mo
     return params;
 }
 
-static json_t *vector_of(const double v[3])
+/* Of its camera; behind the eye: false. */
+static bool project(const struct camera *camera, double width_px, double height_px, const double point_m[3], double *x, double *y)
 {
-    return json_pack("[f,f,f]", v[0], v[1], v[2]);
-}
-
-json_t *view_pane_camera_message(const struct camera *camera)
-{
-    json_t *o =
-        json_pack("{s:o,s:o,s:o}", "eye", vector_of(camera->eye_m), "target", vector_of(camera->target_m), "up", vector_of(camera->up));
-    json_object_set_new(o, "fov", json_real(camera->fov_deg));
-    return o;
+    double right[3], up[3], forward[3], at[3] = { 0, 0, 0 };
+    camera_basis(camera, right, up, forward);
+    for (int i = 0; i < 3; i++) {
+        double from_m = point_m[i] - camera->eye_m[i];
+        at[0] += from_m * right[i];
+        at[1] += from_m * up[i];
+        at[2] += from_m * forward[i];
+    }
+    double high_m = camera->height_m > 0 ? camera->height_m : 2 * at[2] * tan(camera->fov_deg * M_PI / 360);
+    if (!(high_m > 0))
+        return false;
+    *x = 0.5 * width_px + at[0] / high_m * height_px;
+    *y = 0.5 * height_px - at[1] / high_m * height_px;
+    return true;
 }
 
 /* From home, or of a tag: -1. The legend hides nothing of it. */
@@ -183,14 +190,33 @@ static void ask(struct view_pane *pane, json_t *params, json_t *camera)
 {
     json_object_update_new(params, json_pack("{s:s,s:I}", "type", "params", "seq", (json_int_t)++pane->params_seq));
     pane->refused[0] = 0;
-    pane->sight.looks = false;
+    view_sight_end(&pane->sight);
     link_post(pane->link, params);
     post_camera(pane, camera);
 }
 
-void view_pane_look(struct view_pane *pane, const struct camera *camera)
+/* Another side may be better. A tile stays with the first, as in the page. */
+static void begin_sight(struct view_pane *pane, const struct model *model, int tag, const struct camera *camera)
 {
-    post_camera(pane, view_pane_camera_message(camera));
+    const struct plant_tag *of = &model->plant.tags[tag];
+    struct view_sight *sight = &pane->sight;
+    if (pane->tile.display || !of->has_position || of->asset < 0 ||
+        !project(camera, pane->width_px, pane->height_px, of->position_m, &sight->x_px, &sight->y_px))
+        return;
+    snprintf(sight->tag, sizeof(sight->tag), "%s", of->name);
+    snprintf(sight->asset, sizeof(sight->asset), "%s", model->plant.assets[of->asset].id);
+    memcpy(sight->place_m, of->position_m, sizeof(sight->place_m));
+    sight->width_px = pane->width_px;
+    sight->height_px = pane->height_px;
+    sight->first = *camera;
+    view_sight_begin(sight, pane->link);
+}
+
+void view_pane_tick(struct view_pane *pane, int64_t now_ns)
+{
+    struct camera better;
+    if (view_sight_tick(&pane->sight, pane->link, now_ns, &better))
+        post_camera(pane, view_address_camera_message(&better));
 }
 
 void view_pane_show(struct view_pane *pane, const struct model *model, const char *address)
@@ -204,7 +230,7 @@ void view_pane_show(struct view_pane *pane, const struct model *model, const cha
         json_object_del(params, engineers[i]);
     if (!camera) {
         struct camera whole = find_camera(pane, model, params, -1);
-        camera = view_pane_camera_message(&whole);
+        camera = view_address_camera_message(&whole);
     }
     ask(pane, params, camera);
 }
@@ -214,9 +240,8 @@ void view_pane_show_tag(struct view_pane *pane, const struct model *model, int t
     const struct plant_tag *of = &model->plant.tags[tag];
     json_t *params = plain_params(pane, model, of->group >= 0 ? model->plant.groups[of->group].id : NULL);
     struct camera camera = find_camera(pane, model, params, tag);
-    ask(pane, params, view_pane_camera_message(&camera));
-    if (!pane->tile.display) /* the page's tiles do not either */
-        view_sight_begin(pane, model, tag, &camera);
+    ask(pane, params, view_address_camera_message(&camera));
+    begin_sight(pane, model, tag, &camera);
 }
 
 /* --- what comes --------------------------------------------------------------------------------------------------------------------- */
@@ -377,7 +402,7 @@ void view_pane_hear(struct view_pane *pane, const struct model *model, const jso
         const char *text = json_string_value(json_object_get(message, "text")),
                    *about = json_string_value(json_object_get(message, "about"));
         if (about && !strcmp(about, "pick")) {
-            pane->sight.looks = false;
+            view_sight_end(&pane->sight);
             return;
         }
         snprintf(pane->refused, sizeof(pane->refused), "%s", text ? text : "?");
@@ -390,7 +415,9 @@ void view_pane_hear(struct view_pane *pane, const struct model *model, const jso
     } else if (pane->tile.display && !strcmp(type, "params")) {
         hear_told(pane, model, message, (uint32_t)json_integer_value(json_object_get(message, "seq")));
     } else if (!strcmp(type, "picked")) {
-        view_sight_hear(pane, model, message);
+        struct camera better;
+        if (view_sight_hear(&pane->sight, pane->link, message, &better))
+            post_camera(pane, view_address_camera_message(&better));
     } else if (!strcmp(type, "params")) {
         if (read_view(model, message, pane->width_px, pane->height_px, &pane->told))
             pane->told_seq = (uint32_t)json_integer_value(json_object_get(message, "seq"));
@@ -510,30 +537,6 @@ bool view_pane_flip(struct view_pane *pane, const struct model *model, int64_t n
 }
 
 /* --- drawing ------------------------------------------------------------------------------------------------------------------------ */
-
-/* Of its camera; behind the eye: false. */
-static bool project(const struct camera *camera, double width_px, double height_px, const double point_m[3], double *x, double *y)
-{
-    double right[3], up[3], forward[3], at[3] = { 0, 0, 0 };
-    camera_basis(camera, right, up, forward);
-    for (int i = 0; i < 3; i++) {
-        double from_m = point_m[i] - camera->eye_m[i];
-        at[0] += from_m * right[i];
-        at[1] += from_m * up[i];
-        at[2] += from_m * forward[i];
-    }
-    double high_m = camera->height_m > 0 ? camera->height_m : 2 * at[2] * tan(camera->fov_deg * M_PI / 360);
-    if (!(high_m > 0))
-        return false;
-    *x = 0.5 * width_px + at[0] / high_m * height_px;
-    *y = 0.5 * height_px - at[1] / high_m * height_px;
-    return true;
-}
-
-bool view_pane_project_by(const struct view_pane *pane, const struct camera *camera, const double place_m[3], double *x, double *y)
-{
-    return project(camera, pane->width_px, pane->height_px, place_m, x, y);
-}
 
 /* Of the picture that a tile is a part of; of others the picture is the pane. A split one has the place in its left half. */
 bool view_pane_project(const struct view_pane *pane, const double place_m[3], double *x, double *y)

@@ -69,12 +69,8 @@ bool view_pane_decode(struct view_pane *pane, pthread_mutex_t *lock, const struc
 void view_pane_show(struct view_pane *pane, const struct model *model, const char *address);
 /* Asks for the place of a tag, and then for another side of it where something stands before it. */
 void view_pane_show_tag(struct view_pane *pane, const struct model *model, int tag);
-/* Asks for another camera, by what is shown else. */
-void view_pane_look(struct view_pane *pane, const struct camera *camera);
-/* Returns a camera as it is said to the server, without its type; the caller owns it. */
-json_t *view_pane_camera_message(const struct camera *camera);
-/* Returns whether a place of the plant is before that camera, and where in pixels of the pane, which may be outside of it. No tiles. */
-bool view_pane_project_by(const struct view_pane *pane, const struct camera *camera, const double place_m[3], double *x, double *y);
+/* To be called as time goes by. */
+void view_pane_tick(struct view_pane *pane, int64_t now_ns);
 /* Returns whether it speaks of the same plant as the model. */
 bool view_pane_fits(const struct view_pane *pane, const struct model *model);
 /* Of a tile: shows the picture whose time has come. Returns whether one came. */

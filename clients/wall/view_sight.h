@@ -8,13 +8,16 @@
 #include <stdint.h>
 
 #include "approach.h"
+#include "link.h"
 
-struct view_pane;
-struct model;
 struct view_sight {
+    char tag[260], asset[260]; /* its name; the id of the equipment that it stands on */
+    double place_m[3];
+    double x_px, y_px; /* where the place is in the picture, whichever the side */
+    int width_px, height_px;
+    struct camera first; /* what is shown meanwhile */
+    /* --- below: of view_sight.c */
     bool looks;
-    int tag;
-    struct camera first;     /* what is shown meanwhile */
     int side, around;        /* what was asked; around -1: the place itself */
     int covered;             /* of the places around it, so far */
     int best, least_covered; /* the best side so far; -1: none */
@@ -24,11 +27,12 @@ struct view_sight {
     int64_t begun_ns, asked_ns;
 };
 
-/* Begins to look. first: a camera that was asked for. */
-void view_sight_begin(struct view_pane *pane, const struct model *model, int tag, const struct camera *first);
-/* Takes an answer in; asks on, or has the pane show the best side. */
-void view_sight_hear(struct view_pane *pane, const struct model *model, const json_t *picked);
-/* Asks again where no answer came. To be called as time goes by. */
-void view_sight_tick(struct view_pane *pane, const struct model *model, int64_t now_ns);
+/* Begins to look; what stands above in the struct is set. */
+void view_sight_begin(struct view_sight *sight, struct link *link);
+void view_sight_end(struct view_sight *sight);
+/* Takes an answer in, and asks on. Returns true once if another camera than the first is to be shown. */
+bool view_sight_hear(struct view_sight *sight, struct link *link, const json_t *picked, struct camera *out);
+/* Asks again where no answer came. To be called as time goes by. Returns the same. */
+bool view_sight_tick(struct view_sight *sight, struct link *link, int64_t now_ns, struct camera *out);
 
 #endif
