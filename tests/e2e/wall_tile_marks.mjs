@@ -101,7 +101,7 @@ test('alarms are marked behind something, and of a quantity that is not shown', 
     await plant.tell('set PI-1 5');
     for (const i of [0, 1])
         await pages[i].page.waitForFunction(() => !document.querySelector('.marks .alarm'), null, { timeout: 30000 });
-    assert.match(await titleOf(), /^All of it · Temperature/);
+    await pages[0].page.locator('.picture > h2', { hasText: /^All of it · Temperature/ }).waitFor({ timeout: 10000 });
 });
 
 test('notes and where a desk points stand where they are', options, async () => {

@@ -386,8 +386,10 @@ test('others follow; the lead is handed over, and what is shown stays', options,
 
 test('dark, and light again; it stays as it was left', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature' }));
+    // What keys and buttons do is loaded when it is first needed: it may come a little later.
+    const waitForTheme = (name) => page.waitForFunction((is) => document.documentElement.dataset.theme === is, name);
     await page.keyboard.press('z');
-    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
+    await waitForTheme('dark');
     await settle(page);
     await page.waitForFunction(() => { // what is behind the plant, too
         const canvas = document.getElementById('picture');
@@ -400,6 +402,6 @@ test('dark, and light again; it stays as it was left', options, async () => {
     await waitForPicture(page);
     assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
     await page.locator('#theme').click();
-    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'light');
+    await waitForTheme('light');
     assert.deepEqual(browser.errors, []);
 });
