@@ -52,7 +52,6 @@ after(() => plant?.destroy());
 const said = (text) => crew.say({ seq: ++seq, ...text });
 const note = (text, place) => said({ type: 'note', text, ...place });
 const point = (position, wall = 'wide') => crew.say({ type: 'point', wall, display: 1, area: 'main', desk: 'Desk 2', position });
-const titleOf = () => pages[0].page.locator('.picture > h2').textContent();
 const mark = (i, text) => pages[i].page.locator('.marks .alarm', { hasText: text });
 const count = (i, what) => pages[i].page.locator(what).count();
 
