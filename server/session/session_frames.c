@@ -232,16 +232,17 @@ bool session_choose_codec(struct session *session, const struct codec_list *code
 
 bool session_choose_signed(struct session *session, enum signed_frames frames, struct message_error *error)
 {
+    const struct token_holder *holder = &session->identity.holder;
+    if (frames && (holder->views[0] || holder->display || session_is_tile(session))) {
+        message_fail(error, "not_allowed", "signed: frames of displays, and of tokens for some views, are not signed");
+        return false;
+    }
     if (frames && !session->context->signing_key) {
         message_fail(error, "bad_field", "signed: this server has no key to sign with (plantcastd --signing-key)");
         return false;
     }
     if (frames && !decodes(session, WIRE_CODEC_PNG)) {
         message_fail(error, "bad_field", "signed: such frames are PNG, which has to be among codecs");
-        return false;
-    }
-    if (frames && session_is_tile(session)) {
-        message_fail(error, "not_allowed", "signed: frames of tiles are not signed");
         return false;
     }
     session->demand.any |= session->codec.signed_frames != frames;

@@ -153,16 +153,6 @@ static bool find_resumed(const struct session *session, const char *token, int64
     return view_token_read(context->token_keys, token, session, now_utc_ns, out) && !resumes_has_live(context->resumes, out->called);
 }
 
-static bool choose_signed(struct session *session, const struct message *message, struct message_error *error)
-{
-    const struct token_holder *holder = &session->identity.holder;
-    if (message->signed_frames && (holder->views[0] || holder->display || message->tile.display)) {
-        message_fail(error, "not_allowed", "signed: frames of displays, and of tokens for some views, are not signed");
-        return false;
-    }
-    return session_choose_signed(session, message->signed_frames, error);
-}
-
 bool session_hello(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -181,7 +171,7 @@ bool session_hello(struct session *session, const struct message *message, int64
     const struct resumed *before = back && !message->anew ? &resumed : NULL; /* of which the view is taken, too */
     if (!begin_view(session, message, before, &view, error) ||
         !session_choose_codec(session, message->codecs.count ? &message->codecs : &resumed.codecs, error) ||
-        !choose_signed(session, message, error) ||
+        !session_choose_signed(session, message->signed_frames, error) ||
         !admit(session, message, &view, error))
         return false;
     if (back)
