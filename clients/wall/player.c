@@ -179,12 +179,8 @@ bool player_start(struct player *player)
 {
     static const struct link_events words = { words_hello, words_text, words_pong, words_frame, refused };
     static const struct link_events views = { view_hello, view_text, view_pong, view_frame, refused };
-    pthread_condattr_t monotonic;
     pthread_mutex_init(&player->lock, NULL);
-    pthread_condattr_init(&monotonic);
-    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
-    pthread_cond_init(&player->woken, &monotonic);
-    pthread_condattr_destroy(&monotonic);
+    clock_cond_init(&player->woken);
     model_init(&player->model);
     player->call.shown = -1;
     player->lost_ns = player->lost_ns ? player->lost_ns : PLAYER_LOST_NS;
@@ -276,9 +272,8 @@ bool player_waits(struct player *player)
 
 void player_wait(struct player *player, int64_t until_ns)
 {
-    struct timespec until = { until_ns / NS_PER_S, until_ns % NS_PER_S };
     pthread_mutex_lock(&player->lock);
-    while (!player->news && pthread_cond_timedwait(&player->woken, &player->lock, &until) == 0)
+    while (!player->news && clock_cond_wait(&player->woken, &player->lock, until_ns))
         continue;
     player->news = false;
     pthread_mutex_unlock(&player->lock);
