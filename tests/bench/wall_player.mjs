@@ -11,8 +11,8 @@ import { browserOn } from '../e2e/support/browser.mjs';
 import { residentKb } from '../e2e/support/crowd.mjs';
 import { PlainClient } from '../e2e/support/plain_client.mjs';
 import { BIN, missing, startPlant } from '../e2e/support/plant.mjs';
+import { cpuMs, family } from '../e2e/support/processes.mjs';
 import { missingDisplay, savePng, startDisplay } from '../e2e/support/x_display.mjs';
-import { cpuMs, family } from './processes.mjs';
 
 const PLAYER = join(BIN, 'plantcast-wall'), [WIDTH, HEIGHT] = [1920, 1080], HZ = 60;
 const SECONDS = Number(process.env.SECONDS) || 8, PICTURES = 60, STEP_RAD = Math.PI / 180, CAMERAS = 20;
@@ -31,6 +31,13 @@ const orbit = (turn) => ({ eye: [8 + 38 * Math.sin(turn), 6 - 38 * Math.cos(turn
 function goFirst(does) {
     for (const pid of process.env.REALTIME ? family(process.pid) : [])
         spawnSync('chrt', ['-a', ...(does ? ['-r', '-p', '1'] : ['-o', '-p', '0']), String(pid)]);
+}
+
+// Gives others a turn, before it goes first.
+async function letOthers() {
+    goFirst(false);
+    await sleep(1000);
+    goFirst(true);
 }
 
 function startPlayer(port, display, args, core = null) {
@@ -75,9 +82,9 @@ async function settled(display, before) {
 // --- 60 pictures a second
 
 // Between the player and its server: passes everything on, until it plays in a session what was recorded.
-class Player {
+class PlayerProxy {
     static async open(to) {
-        const between = Object.assign(new Player(), { pane: null, hello: null, asked: {}, played: false });
+        const between = Object.assign(new PlayerProxy(), { pane: null, hello: null, asked: {}, played: false });
         between.server = createServer((near) => {
             const far = connect(to, '127.0.0.1'), own = { near, far };
             let rest = Buffer.alloc(0);
@@ -167,11 +174,8 @@ async function record(port, hello, params) {
 async function learn(display, play) {
     const known = [];
     for (let i = 0; i < PICTURES; i++) {
-        if (i % 15 === 0) { // others are to have a turn
-            goFirst(false);
-            await sleep(1000);
-            goFirst(true);
-        }
+        if (i % 15 === 0)
+            await letOthers();
         const before = look(display);
         play(i);
         known.push(await settled(display, before));
@@ -181,7 +185,7 @@ async function learn(display, play) {
 }
 
 async function measurePlayer(plant, display) {
-    const port = Number(new URL(plant.url).port), between = await Player.open(port);
+    const port = Number(new URL(plant.url).port), between = await PlayerProxy.open(port);
     const player = startPlayer(between.port, display, ['--wall', 'room'], 0);
     let heard;
     try {
@@ -217,7 +221,6 @@ async function measurePlayer(plant, display) {
         await player.stop();
     }
 }
-
 
 // [{ picture, sent, seen }, ...] of all that were sent; seen: undefined if it was not.
 async function watch(display, known, play, pid) {
@@ -276,11 +279,8 @@ async function leader(port) {
 async function delays(client, display) {
     const out = [];
     for (let i = 0; i < CAMERAS; i++) {
-        if (i % 5 === 0) { // others are to have a turn
-            goFirst(false);
-            await sleep(1000);
-            goFirst(true);
-        }
+        if (i % 5 === 0)
+            await letOthers();
         client.look(0.3 * (i % 2));
         await sleep(900 + 37 * (i % 7)); // until it is refined, and not in step with what is drawn
         const before = look(display), begin = performance.now();

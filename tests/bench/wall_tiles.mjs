@@ -5,7 +5,7 @@
 import { spawnSync } from 'node:child_process';
 import { PlainClient } from '../e2e/support/plain_client.mjs';
 import { missing, startPlant } from '../e2e/support/plant.mjs';
-import { cpuMs } from './processes.mjs';
+import { cpuMs } from '../e2e/support/processes.mjs';
 
 const [COLUMNS, ROWS, WIDTH, HEIGHT] = [3, 2, 1920, 1080], HZ = 30;
 const SECONDS = Number(process.env.SECONDS) || 10, SETTLE_S = process.env.REALTIME ? 4 : 8;

@@ -2,7 +2,7 @@
 // The fleet page: what it says of real servers, of those that are silent, and of two hundred; how often it asks, and what it costs.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer, get } from 'node:http';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -10,6 +10,7 @@ import { after, before, test } from 'node:test';
 import { chooseLanguage, keys, languages } from '../../clients/fleet/words.js';
 import { openPage, shoot } from './support/browser.mjs';
 import { freePort } from './support/ports.mjs';
+import { cpuMs } from './support/processes.mjs';
 import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -207,17 +208,15 @@ test('two hundred plants take two hundredths of a core', options, async () => {
     for (let i = 0; i < COUNT; i++)
         all.push(await pretend(`${lines.join('\n')}\nplantcast_alarms_shown{priority="2"} ${i % 3}\n`));
     const fleet = await serve(write(`plants:\n${all.map(({ url }, i) => `- { id: p${i}, url: "${url}" }`).join('\n')}\n`));
-    const ticks = () => readFileSync(`/proc/${fleet.pid}/stat`, 'utf8').split(') ')[1].split(' ').slice(11, 13)
-        .reduce((sum, each) => sum + Number(each), 0);
     try {
         await until('all answer', async () => (await fleet.state()).plants.every(({ answers }) => answers));
         await sleep(2000);
-        const before = ticks();
+        const before = cpuMs(fleet.pid);
         for (let s = 0; s < SECONDS; s += 5) { // as a page does
             await fleet.state();
             await sleep(5000);
         }
-        const percent = (ticks() - before) / SECONDS; // of hundredths of a second
+        const percent = (cpuMs(fleet.pid) - before) / 10 / SECONDS;
         console.log(`# fleet of ${COUNT}: ${percent.toFixed(2)} % of a core`);
         assert.ok(percent <= 2, `${percent} %`);
     } finally {

@@ -3,12 +3,13 @@
 // daemon has what it had.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { readdirSync, readFileSync } from 'node:fs';
+import { readdirSync } from 'node:fs';
 import { connect } from 'node:net';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { encodeFrame, get, PlainClient } from './support/plain_client.mjs';
 import { missing as missingDemo, startPlant } from './support/plant.mjs';
+import { cpuMs } from './support/processes.mjs';
 import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -44,11 +45,7 @@ async function reaches(is) {
     for (const end = performance.now() + PATIENCE_MS; !await is() && performance.now() < end;)
         await sleep(100);
 }
-// Seconds of a processor that a daemon has taken: utime and stime, in ticks of 10 ms.
-const cpuSeconds = ({ daemon }) => {
-    const fields = readFileSync(`/proc/${daemon.child.pid}/stat`, 'utf8').replace(/^.*\) /, '').split(' ');
-    return (Number(fields[11]) + Number(fields[12])) / 100;
-};
+const cpuSeconds = ({ daemon }) => cpuMs(daemon.child.pid) / 1000;
 const descriptors = () => readdirSync(`/proc/${plant.daemon.child.pid}/fd`).length;
 
 // A socket that says what it is told, and when it was closed.

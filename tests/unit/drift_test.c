@@ -87,54 +87,68 @@ static void test_fit_is_least_squares(void **state)
     }
 }
 
-/* Where the plant was changed, a sensor stands elsewhere beside the others from one hour to the next: that is no drift, and hides none. */
-static void test_jumps_are_no_drift(void **state)
+/* --- jumps, where the plant was changed ------------------------------------------------------------------------------------------ */
+
+struct jump { /* by `after` noises' worth from the hour `begins` on, and by `left` of that from `ends` on */
+    double after, left;
+    int begins, ends;
+};
+
+/* Sensors made up by chance, of which every other one drifts by six times its noise, up or down. jump_of: draws a jump. */
+static void fit_after_jumps(const char *what, void (*jump_of)(int round, struct jump *jump), int least_found, int most_accused)
 {
     double values[DRIFT_HOURS], predicted[DRIFT_HOURS];
     int found = 0, accused = 0;
-    (void)state;
-    srand(2);
     for (int round = 0; round < 200; round++) {
         double noise = random_in(0.1, 1), change = round % 2 ? (round % 4 == 1 ? 6 : -6) * noise : 0, at = 50;
-        double jump = random_in(8, 20) * noise * (rand() % 2 ? 1 : -1);
-        int hour = 30 + rand() % 108;
+        struct jump jump;
         struct drift drift;
+        jump_of(round, &jump);
         for (int h = 0; h < DRIFT_HOURS; h++) {
+            double by = h >= jump.ends ? jump.left : h >= jump.begins ? 1 : 0;
             at += random_in(-noise, noise) / 3;
             predicted[h] = at;
-            values[h] = at + change * h / DRIFT_HOURS + random_in(-noise, noise) + (h >= hour ? jump : 0);
+            values[h] = at + change * h / DRIFT_HOURS + random_in(-noise, noise) + by * (jump.after * noise);
         }
         drift_fit(values, predicted, DRIFT_HOURS, 0.01, &drift);
         found += change != 0 && drift.verdict == DRIFT_FOUND && fabs(drift.change - change) < 3 * noise;
         accused += change == 0 && drift.verdict == DRIFT_FOUND;
     }
-    printf("# after a jump: %d of 100 drifts found, %d of 100 sensors accused that do not drift\n", found, accused);
-    assert_true(found >= 75 && accused <= 16);
+    printf("# after %s: %d of 100 drifts found, %d of 100 sensors accused that do not drift\n", what, found, accused);
+    assert_true(found >= least_found && accused <= most_accused);
 }
 
-/* What is changed and changed back, as for a trial of a day or two: two jumps, of which the second undoes the first, or most of it. */
+static void one_jump(int round, struct jump *jump)
+{
+    (void)round;
+    *jump = (struct jump){ .after = random_in(8, 20), .ends = DRIFT_HOURS };
+    jump->after *= rand() % 2 ? 1 : -1;
+    jump->begins = 30 + rand() % 108;
+}
+
+/* As for a trial of a day or two: the second undoes the first, or most of it. */
+static void jump_and_back(int round, struct jump *jump)
+{
+    *jump = (struct jump){ .after = random_in(8, 20) };
+    jump->after *= rand() % 2 ? 1 : -1;
+    jump->left = round % 8 < 4 ? 0 : random_in(-0.5, 0.5);
+    jump->begins = 24 + rand() % 60;
+    jump->ends = jump->begins + 24 + rand() % 36;
+}
+
+/* A sensor stands elsewhere beside the others from one hour to the next: that is no drift, and hides none. */
+static void test_jumps_are_no_drift(void **state)
+{
+    (void)state;
+    srand(2);
+    fit_after_jumps("a jump", one_jump, 75, 16);
+}
+
 static void test_a_jump_and_back_is_no_drift(void **state)
 {
-    double values[DRIFT_HOURS], predicted[DRIFT_HOURS];
-    int found = 0, accused = 0;
     (void)state;
     srand(3);
-    for (int round = 0; round < 200; round++) {
-        double noise = random_in(0.1, 1), change = round % 2 ? (round % 4 == 1 ? 6 : -6) * noise : 0, at = 50;
-        double jump = random_in(8, 20) * noise * (rand() % 2 ? 1 : -1), left = round % 8 < 4 ? 0 : random_in(-0.5, 0.5);
-        int begins = 24 + rand() % 60, ends = begins + 24 + rand() % 36;
-        struct drift drift;
-        for (int h = 0; h < DRIFT_HOURS; h++) {
-            at += random_in(-noise, noise) / 3;
-            predicted[h] = at;
-            values[h] = at + change * h / DRIFT_HOURS + random_in(-noise, noise) + (h >= ends ? left : h >= begins ? 1 : 0) * jump;
-        }
-        drift_fit(values, predicted, DRIFT_HOURS, 0.01, &drift);
-        found += change != 0 && drift.verdict == DRIFT_FOUND && fabs(drift.change - change) < 3 * noise;
-        accused += change == 0 && drift.verdict == DRIFT_FOUND;
-    }
-    printf("# after a jump and back: %d of 100 drifts found, %d of 100 sensors accused that do not drift\n", found, accused);
-    assert_true(found >= 68 && accused <= 12);
+    fit_after_jumps("a jump and back", jump_and_back, 68, 12);
 }
 
 /* No drift can be told from readings that are not there, or from a plant that itself went one way all week. */
