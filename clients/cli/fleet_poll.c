@@ -2,29 +2,27 @@
 /* The thread that asks. */
 #include "fleet_poll.h"
 
-#include <curl/curl.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/http_request.h"
 #include "base/mem.h"
+#include "base/secret.h"
 
-enum { METRICS_BYTES = 4 << 20, PICTURE_BYTES = 2 << 20, TIMEOUT_S = 15, PICTURE_TIMEOUT_S = 60, AT_ONCE = 16, TOKEN_BYTES = 4096 };
+enum { METRICS_BYTES = 4 << 20, PICTURE_BYTES = 2 << 20, TIMEOUT_S = 15, PICTURE_TIMEOUT_S = 60, AT_ONCE = 16 };
 #define PICTURE_PATH "snapshot.png?width=320&height=180"
 
 enum kind { METRICS, PICTURE, KINDS };
 
 struct request {
-    CURL *handle; /* kept from one request to the next, with its connection; NULL: not made yet */
-    struct curl_slist *headers;
-    struct text answer;
+    struct http_request http; /* kept from one request to the next, with its connection */
     int plant;
     enum kind kind;
     int64_t due_ns;
     bool running;
-    char why[CURL_ERROR_SIZE];
 };
 
 struct picture {
@@ -49,58 +47,33 @@ struct fleet_poll {
 
 /* --- one request ------------------------------------------------------------------------------------------------------------ */
 
-static size_t take(char *bytes, size_t size, size_t count, void *arg)
-{
-    struct request *request = arg;
-    size_t most = request->kind == METRICS ? METRICS_BYTES : PICTURE_BYTES;
-    if (request->answer.length + size * count > most)
-        return 0;
-    text_add_bytes(&request->answer, bytes, size * count);
-    return size * count;
-}
-
 static bool set_token(struct request *request, const struct fleet_plant *plant)
 {
-    size_t bytes;
-    curl_slist_free_all(request->headers);
-    request->headers = NULL;
-    char *token = plant->token_file ? text_read_file(plant->token_file, TOKEN_BYTES, &bytes) : NULL;
-    if (plant->token_file && !token)
-        return false;
-    if (token) {
-        token[strcspn(token, "\r\n")] = 0;
-        char *header = mem_printf("Authorization: Bearer %s", token);
-        request->headers = curl_slist_append(NULL, header);
-        explicit_bzero(header, strlen(header));
-        explicit_bzero(token, bytes);
-        mem_free(header);
-    }
-    mem_free(token);
-    curl_easy_setopt(request->handle, CURLOPT_HTTPHEADER, request->headers);
-    return true;
+    char *why = NULL, *token = plant->token_file ? secret_read(plant->token_file, &why) : NULL;
+    http_request_authorize(&request->http, "Bearer ", token);
+    secret_forget(token);
+    if (why)
+        snprintf(request->http.error, sizeof(request->http.error), "%s", why);
+    mem_free(why);
+    return token || !plant->token_file;
 }
 
-static CURL *make_handle(const struct fleet_plant *plant, struct request *request)
+static bool make_request(const struct fleet_plant *plant, struct request *request)
 {
-    CURL *handle = curl_easy_init();
-    char *url = mem_printf("%s%s", plant->url, request->kind == METRICS ? "metrics" : PICTURE_PATH);
+    bool metrics = request->kind == METRICS;
+    request->http.most_bytes = metrics ? METRICS_BYTES : PICTURE_BYTES;
+    if (!http_request_make(&request->http, "plantcast-fleet", plant->ca_file))
+        return false;
+    CURL *handle = request->http.handle;
+    char *url = mem_printf("%s%s", plant->url, metrics ? "metrics" : PICTURE_PATH);
     curl_easy_setopt(handle, CURLOPT_URL, url);
     mem_free(url);
-    curl_easy_setopt(handle, CURLOPT_NOSIGNAL, 1L);
-    curl_easy_setopt(handle, CURLOPT_PROTOCOLS_STR, "http,https");
-    curl_easy_setopt(handle, CURLOPT_ERRORBUFFER, request->why);
     curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)TIMEOUT_S);
-    curl_easy_setopt(handle, CURLOPT_TIMEOUT, (long)(request->kind == METRICS ? TIMEOUT_S : PICTURE_TIMEOUT_S));
+    curl_easy_setopt(handle, CURLOPT_TIMEOUT, (long)(metrics ? TIMEOUT_S : PICTURE_TIMEOUT_S));
     curl_easy_setopt(handle, CURLOPT_FAILONERROR, 1L);
     curl_easy_setopt(handle, CURLOPT_ACCEPT_ENCODING, "");
-    curl_easy_setopt(handle, CURLOPT_USERAGENT, "plantcast-fleet");
-    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L);
-    curl_easy_setopt(handle, CURLOPT_WRITEFUNCTION, take);
-    curl_easy_setopt(handle, CURLOPT_WRITEDATA, request);
     curl_easy_setopt(handle, CURLOPT_PRIVATE, (void *)request);
-    if (plant->ca_file)
-        curl_easy_setopt(handle, CURLOPT_CAINFO, plant->ca_file);
-    return handle;
+    return true;
 }
 
 /* Returns NULL, or what is wrong with an answer that came whole. */
@@ -109,16 +82,16 @@ static const char *note_answer(struct fleet_poll *poll, struct request *request)
     struct fleet_plant_state *known = &poll->states[request->plant];
     struct picture *picture = &poll->pictures[request->plant];
     if (request->kind == PICTURE) {
-        if (request->answer.length <= 8 || memcmp(request->answer.at, "\x89PNG\r\n\x1a\n", 8) != 0)
+        if (request->http.answer.length <= 8 || memcmp(request->http.answer.at, "\x89PNG\r\n\x1a\n", 8) != 0)
             return "its picture is none";
         mem_free(picture->at);
-        *picture = (struct picture){ request->answer.at, request->answer.length, picture->number + 1 };
-        request->answer = (struct text){ 0 };
+        *picture = (struct picture){ request->http.answer.at, request->http.answer.length, picture->number + 1 };
+        request->http.answer = (struct text){ 0 };
         known->picture = picture->number;
         return NULL;
     }
     struct fleet_state state;
-    if (!fleet_state_read(request->answer.at ? request->answer.at : "", &state))
+    if (!fleet_state_read(request->http.answer.at ? request->http.answer.at : "", &state))
         return "it is no server of Plantcast";
     known->state = state;
     known->answers = true;
@@ -149,7 +122,7 @@ static int64_t pause_ns(const struct fleet_poll *poll, const struct request *req
 {
     const struct fleet_plant *plant = &poll->file->plants[request->plant];
     curl_off_t later_s = 0;
-    curl_easy_getinfo(request->handle, CURLINFO_RETRY_AFTER, &later_s);
+    curl_easy_getinfo(request->http.handle, CURLINFO_RETRY_AFTER, &later_s);
     double s = request->kind == METRICS ? plant->poll_s : plant->picture_s;
     s = (double)later_s > s ? (double)(later_s < 3600 ? later_s : 3600) : s;
     return (int64_t)(s * 1e9);
@@ -157,14 +130,14 @@ static int64_t pause_ns(const struct fleet_poll *poll, const struct request *req
 
 static void on_end(struct fleet_poll *poll, struct request *request, CURLcode code)
 {
-    const char *why = code == CURLE_OK ? NULL : request->why[0] ? request->why : curl_easy_strerror(code);
+    const char *why = code == CURLE_OK ? NULL : http_request_why(&request->http, code);
     pthread_mutex_lock(&poll->lock);
     if (!why)
         why = note_answer(poll, request);
     if (why)
         note_failure(poll, request, why);
     pthread_mutex_unlock(&poll->lock);
-    text_finish(&request->answer);
+    text_finish(&request->http.answer);
     request->running = false;
     request->due_ns = clock_mono_ns() + pause_ns(poll, request);
     poll->running--;
@@ -173,20 +146,18 @@ static void on_end(struct fleet_poll *poll, struct request *request, CURLcode co
 static void begin(struct fleet_poll *poll, struct request *request)
 {
     const struct fleet_plant *plant = &poll->file->plants[request->plant];
-    if (!request->handle)
-        request->handle = make_handle(plant, request);
-    request->why[0] = 0;
+    request->http.error[0] = 0;
     request->running = true;
     poll->running++;
     pthread_mutex_lock(&poll->lock);
     poll->states[request->plant].asked++;
     pthread_mutex_unlock(&poll->lock);
-    if (!set_token(request, plant)) {
-        snprintf(request->why, sizeof(request->why), "%s cannot be read", plant->token_file);
+    if (!request->http.handle && !make_request(plant, request))
+        on_end(poll, request, CURLE_OUT_OF_MEMORY);
+    else if (!set_token(request, plant))
         on_end(poll, request, CURLE_READ_ERROR);
-    } else {
-        curl_multi_add_handle(poll->multi, request->handle);
-    }
+    else
+        curl_multi_add_handle(poll->multi, request->http.handle);
 }
 
 /* --- the thread ------------------------------------------------------------------------------------------------------------- */
@@ -273,10 +244,8 @@ void fleet_poll_stop(struct fleet_poll **pointer)
     for (size_t i = 0; i < poll->file->count * KINDS; i++) {
         struct request *request = &poll->requests[i];
         if (request->running)
-            curl_multi_remove_handle(poll->multi, request->handle);
-        curl_easy_cleanup(request->handle);
-        curl_slist_free_all(request->headers);
-        text_finish(&request->answer);
+            curl_multi_remove_handle(poll->multi, request->http.handle);
+        http_request_finish(&request->http);
     }
     curl_multi_cleanup(poll->multi);
     for (size_t i = 0; i < poll->file->count; i++)

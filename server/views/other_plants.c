@@ -2,7 +2,6 @@
 /* The thread that asks. A picture counts from when it was asked for: what the server took to make it is part of its age. */
 #include "views/other_plants.h"
 
-#include <curl/curl.h>
 #include <jansson.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -11,6 +10,7 @@
 #include <strings.h>
 
 #include "base/clock.h"
+#include "base/http_request.h"
 #include "base/json_text.h"
 #include "base/mem.h"
 #include "base/secret.h"
@@ -29,11 +29,8 @@ static const char *const why_names[] = { [WHY_NONE] = "",     [WHY_WAITING] = "w
 
 struct other {
     const struct other_plant *plant;
-    CURL *handle; /* with its connection; NULL: not made yet */
-    struct curl_slist *headers;
-    struct text body;
-    char header[HEADER_BYTES]; /* Plantcast-Frame of the answer */
-    char error[CURL_ERROR_SIZE];
+    struct http_request request; /* its answer: the picture */
+    char header[HEADER_BYTES];   /* Plantcast-Frame of the answer */
     int64_t due_ns, begun_ns, begun_us; /* begun_us: the plant's time */
     bool running, failing;
     /* --- below: under lock */
@@ -59,15 +56,6 @@ struct other_plants {
 
 /* --- one request ------------------------------------------------------------------------------------------------------------ */
 
-static size_t take_body(char *bytes, size_t size, size_t count, void *arg)
-{
-    struct other *other = arg;
-    if (other->body.length + size * count > PICTURE_BYTES)
-        return 0;
-    text_add_bytes(&other->body, bytes, size * count);
-    return size * count;
-}
-
 static size_t take_header(char *bytes, size_t size, size_t count, void *arg)
 {
     static const char name[] = "plantcast-frame:";
@@ -77,47 +65,33 @@ static size_t take_header(char *bytes, size_t size, size_t count, void *arg)
     return size * count;
 }
 
-static CURL *make_handle(struct other *other)
+static bool make_request(struct other *other)
 {
     const struct other_plant *plant = other->plant;
-    CURL *handle = curl_easy_init();
+    other->request.most_bytes = PICTURE_BYTES;
+    if (!http_request_make(&other->request, "plantcastd", plant->ca_file))
+        return false;
+    CURL *handle = other->request.handle;
     bool slash = plant->url[strlen(plant->url) - 1] == '/';
     char *url = mem_printf("%s%ssnapshot.png?width=%d&height=%d%s%s", plant->url, slash ? "" : "/", plant->width_px, plant->height_px,
                            plant->view ? "&view=" : "", plant->view ? plant->view : "");
     curl_easy_setopt(handle, CURLOPT_URL, url);
     mem_free(url);
-    curl_easy_setopt(handle, CURLOPT_NOSIGNAL, 1L);
-    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* a name server that hangs does not keep the daemon from ending */
-    curl_easy_setopt(handle, CURLOPT_PROTOCOLS_STR, "http,https");
-    curl_easy_setopt(handle, CURLOPT_SSLVERSION, (long)CURL_SSLVERSION_TLSv1_2);
-    curl_easy_setopt(handle, CURLOPT_ERRORBUFFER, other->error);
     curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
     curl_easy_setopt(handle, CURLOPT_TIMEOUT, (long)TIMEOUT_S);
     curl_easy_setopt(handle, CURLOPT_MAXFILESIZE, (long)PICTURE_BYTES);
-    curl_easy_setopt(handle, CURLOPT_USERAGENT, "plantcastd");
-    curl_easy_setopt(handle, CURLOPT_WRITEFUNCTION, take_body);
-    curl_easy_setopt(handle, CURLOPT_WRITEDATA, other);
     curl_easy_setopt(handle, CURLOPT_HEADERFUNCTION, take_header);
     curl_easy_setopt(handle, CURLOPT_HEADERDATA, other);
     curl_easy_setopt(handle, CURLOPT_PRIVATE, (void *)other);
-    if (plant->ca_file)
-        curl_easy_setopt(handle, CURLOPT_CAINFO, plant->ca_file);
-    return handle;
+    return true;
 }
 
 /* Reads the token anew. Returns NULL, or why it cannot (mem_free). */
 static char *set_token(struct other *other)
 {
     char *why = NULL, *token = other->plant->token_file ? secret_read(other->plant->token_file, &why) : NULL;
-    curl_slist_free_all(other->headers);
-    other->headers = NULL;
-    if (token) {
-        char *header = mem_printf("Authorization: Bearer %s", token);
-        other->headers = curl_slist_append(NULL, header);
-        secret_forget(header);
-    }
+    http_request_authorize(&other->request, "Bearer ", token);
     secret_forget(token);
-    curl_easy_setopt(other->handle, CURLOPT_HTTPHEADER, other->headers);
     return why;
 }
 
@@ -126,7 +100,7 @@ static enum why why_of(CURLcode code)
     switch (code) {
     case CURLE_OK: return WHY_NONE;
     case CURLE_OPERATION_TIMEDOUT: return WHY_SLOW;
-    case CURLE_WRITE_ERROR: /* take_body() took no more */
+    case CURLE_WRITE_ERROR: /* longer than may be */
     case CURLE_FILESIZE_EXCEEDED: return WHY_LARGE;
     case CURLE_PEER_FAILED_VERIFICATION:
     case CURLE_SSL_CACERT_BADFILE:
@@ -147,17 +121,17 @@ static enum why why_of_status(long status)
 static enum why judge(struct other *other, struct other_picture *about, char said[160])
 {
     const struct other_plant *plant = other->plant;
+    const struct text *body = &other->request.answer;
+    const char *text = body->at ? body->at : "";
     long status = 0;
-    curl_easy_getinfo(other->handle, CURLINFO_RESPONSE_CODE, &status);
+    curl_easy_getinfo(other->request.handle, CURLINFO_RESPONSE_CODE, &status);
     enum why why = why_of_status(status);
     if (why != WHY_NONE) {
-        snprintf(said, 160, "it answers %ld: %.*s", status, (int)strcspn(other->body.at ? other->body.at : "", "\r\n"),
-                 other->body.at ? other->body.at : "");
+        snprintf(said, 160, "it answers %ld: %.*s", status, (int)strcspn(text, "\r\n"), text);
     } else if (!other_picture_read_header(other->header, about)) {
         snprintf(said, 160, "it does not say how old its readings are, as servers of Plantcast do");
         why = WHY_NO_PICTURE;
-    } else if (!other->body.at ||
-               !other_picture_is_png((const uint8_t *)other->body.at, other->body.length, plant->width_px, plant->height_px)) {
+    } else if (!other_picture_is_png((const uint8_t *)text, body->length, plant->width_px, plant->height_px)) {
         snprintf(said, 160, "what it sends is no PNG file of %d x %d", plant->width_px, plant->height_px);
         why = WHY_NO_PICTURE;
     }
@@ -183,14 +157,14 @@ static void note_picture(struct other_plants *others, struct other *other, const
 {
     pthread_mutex_lock(&others->lock);
     mem_free(other->png);
-    other->png = other->body.at;
-    other->bytes = other->body.length;
+    other->png = other->request.answer.at;
+    other->bytes = other->request.answer.length;
     other->about = *about;
     other->asked_ns = other->begun_ns;
     other->asked_us = other->since_us = other->begun_us;
     other->why = WHY_NONE;
     pthread_mutex_unlock(&others->lock);
-    other->body = (struct text){ 0 };
+    other->request.answer = (struct text){ 0 };
     if (other->failing)
         log_info(others->log, "plant %s: pictures come again", other->plant->id);
     other->failing = false;
@@ -202,7 +176,7 @@ static void rest(struct other *other, bool good)
     curl_off_t pause_s = 1;
     int64_t next_ns = other->begun_ns + (int64_t)(other->plant->every_s * 1e9);
     if (!good) {
-        curl_easy_getinfo(other->handle, CURLINFO_RETRY_AFTER, &pause_s);
+        curl_easy_getinfo(other->request.handle, CURLINFO_RETRY_AFTER, &pause_s);
         pause_s = pause_s < LEAST_PAUSE_S ? LEAST_PAUSE_S : pause_s > MOST_PAUSE_S ? MOST_PAUSE_S : pause_s;
     }
     int64_t least_ns = clock_mono_ns() + pause_s * NS_PER_S;
@@ -214,7 +188,7 @@ static void on_end(struct other_plants *others, struct other *other, CURLcode co
     struct other_picture about;
     char said[CURL_ERROR_SIZE + 160];
     enum why why = why_of(code);
-    snprintf(said, sizeof(said), "%s", other->error[0] ? other->error : curl_easy_strerror(code));
+    snprintf(said, sizeof(said), "%s", http_request_why(&other->request, code));
     if (why == WHY_LARGE)
         snprintf(said, sizeof(said), "it sends more than %d bytes", PICTURE_BYTES);
     if (why == WHY_NONE)
@@ -223,18 +197,21 @@ static void on_end(struct other_plants *others, struct other *other, CURLcode co
         note_picture(others, other, &about);
     else
         note_failure(others, other, why, said);
-    text_finish(&other->body);
+    text_finish(&other->request.answer);
     rest(other, why == WHY_NONE);
     other->running = false;
 }
 
 static void begin(struct other_plants *others, struct other *other)
 {
-    if (!other->handle)
-        other->handle = make_handle(other);
     other->begun_ns = clock_mono_ns();
     other->begun_us = clock_plant_ns() / 1000;
-    other->error[0] = other->header[0] = 0;
+    other->request.error[0] = other->header[0] = 0;
+    if (!other->request.handle && !make_request(other)) {
+        note_failure(others, other, WHY_UNREACHABLE, "no memory");
+        rest(other, false);
+        return;
+    }
     char *why = set_token(other);
     if (why) {
         note_failure(others, other, WHY_TOKEN, why);
@@ -243,7 +220,7 @@ static void begin(struct other_plants *others, struct other *other)
         return;
     }
     other->running = true;
-    curl_multi_add_handle(others->multi, other->handle);
+    curl_multi_add_handle(others->multi, other->request.handle);
 }
 
 /* --- the thread ------------------------------------------------------------------------------------------------------------- */
@@ -379,10 +356,8 @@ void other_plants_stop(struct other_plants **pointer)
     for (size_t i = 0; i < others->count; i++) {
         struct other *other = &others->at[i];
         if (other->running)
-            curl_multi_remove_handle(others->multi, other->handle);
-        curl_easy_cleanup(other->handle);
-        curl_slist_free_all(other->headers);
-        text_finish(&other->body);
+            curl_multi_remove_handle(others->multi, other->request.handle);
+        http_request_finish(&other->request);
         mem_free(other->png);
     }
     curl_multi_cleanup(others->multi);
