@@ -147,7 +147,7 @@ static void tick(struct net *net, int64_t now_ns)
         streams_on_readings(&net->server, false, true);
     streams_on_tick(&net->server);
     http_on_tick(&net->server, now_ns);
-    net_wake_render_service(&net->server);
+    render_service_wake(net->server.params.plant.render_service);
     say_status(&net->server);
     net->ticked_ns = now_ns;
 }
@@ -278,7 +278,7 @@ static void collect(struct net *net)
         else
             http_on_frame(server, encoded);
     }
-    net_wake_render_service(server);
+    render_service_wake(server->params.plant.render_service);
     do_what_is_due(net);
 }
 

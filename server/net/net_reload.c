@@ -104,7 +104,7 @@ bool net_take_plant(struct net *net, const struct net_plant *plant)
     }
     net_watch_readings(net);
     streams_on_alarms(server);
-    net_wake_render_service(server);
+    render_service_wake(server->params.plant.render_service);
     return good;
 }
 
@@ -117,5 +117,5 @@ void net_report_save(struct net *net, uint64_t client, const char *text)
 {
     net->server.session_context.saving = false;
     stream_say(&net->server, client, text);
-    net_wake_render_service(&net->server);
+    render_service_wake(net->server.params.plant.render_service);
 }

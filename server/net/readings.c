@@ -74,7 +74,7 @@ static void take(struct net *net)
         streams_on_readings(server, data_changed, links_changed);
     if (data_changed || links_changed)
         renderers_on_change(server);
-    net_wake_render_service(server);
+    render_service_wake(server->params.plant.render_service);
     int64_t stale_ns = server->next_change_ns < INT64_MAX ? server->next_change_ns + NS_PER_MS : INT64_MAX; /* the loop may be early */
     net->readings_ns = later(stale_ns, server->snapshot->taken_mono_ns + BETWEEN_NS);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the parts of the loop share: writing to a socket, and letting the render thread begin. */
+/* What the parts of the loop share: writing to a socket. */
 #include "net/server_context.h"
 
 #include <string.h>
@@ -8,11 +8,4 @@ bool net_write(struct server_context *server, struct lws *wsi, const void *bytes
 {
     memcpy(server->out + LWS_PRE, bytes, count);
     return lws_write(wsi, server->out + LWS_PRE, count, how) >= (int)count;
-}
-
-void net_wake_render_service(struct server_context *server)
-{
-    if (server->asked)
-        render_service_wake(server->params.plant.render_service);
-    server->asked = false;
 }

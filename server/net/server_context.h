@@ -85,7 +85,6 @@ struct server_context {
     int64_t drain_ns;  /* monotonic: since when sessions are sent elsewhere; 0: they are not */
     int64_t looked_ns; /* when the files of tokens and certificate were last looked at */
     uint64_t next_client;
-    bool asked;                         /* requests were made: net_wake_render_service is due */
     char goodbye[64];                   /* what streams are closed with at the end */
     int start_s;                        /* that the daemon took to get ready, rounded up; 0: it is not ready */
     bool restless;                      /* a session waits for what time brings: a tick is due soon */
@@ -116,8 +115,6 @@ static inline struct server_context *server_context_of(struct lws *wsi)
 
 /* Writes up to SLICE_BYTES to a connection. Returns false when it is gone. */
 bool net_write(struct server_context *server, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how);
-/* Lets the render thread begin with the requests that were made. To be called at the end of each event. */
-void net_wake_render_service(struct server_context *server);
 
 /* --- readings.c --- */
 

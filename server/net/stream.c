@@ -158,7 +158,6 @@ static void pump(struct server_context *server, struct stream *stream)
         enum request_outcome answer = render_service_request(server->params.plant.render_service, session->id, &request);
         if (answer != REQUEST_REFUSED)
             session_requested(session, &request, answer == REQUEST_REPLACED);
-        server->asked = true;
     }
     struct pick_query query;
     if (session_next_pick(session, &query))
@@ -476,7 +475,7 @@ static int on_writeable(struct server_context *server, struct stream *stream)
     if (!stream_send(server, stream))
         return -1;
     pump(server, stream);
-    net_wake_render_service(server);
+    render_service_wake(server->params.plant.render_service);
     return 0;
 }
 
@@ -488,12 +487,12 @@ int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *use
     case LWS_CALLBACK_CLOSED: on_close(server_context_of(wsi), slot); break;
     case LWS_CALLBACK_RECEIVE:
         on_receive(server_context_of(wsi), *slot, in, len);
-        net_wake_render_service(server_context_of(wsi));
+        render_service_wake(server_context_of(wsi)->params.plant.render_service);
         break;
     case LWS_CALLBACK_RECEIVE_PONG:
         stream_on_pong(*slot, in, len);
         pump(server_context_of(wsi), *slot);
-        net_wake_render_service(server_context_of(wsi));
+        render_service_wake(server_context_of(wsi)->params.plant.render_service);
         break;
     case LWS_CALLBACK_SERVER_WRITEABLE: return on_writeable(server_context_of(wsi), *slot);
     default: break;

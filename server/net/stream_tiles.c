@@ -127,7 +127,6 @@ static void request(struct server_context *server, struct tile_wall *wall, const
     for (size_t i = 0; i < tiles->count; i++)
         if (outcomes[i] != REQUEST_REFUSED)
             session_requested(tiles->members[i], &requests[i], outcomes[i] == REQUEST_REPLACED);
-    server->asked = true;
 }
 
 void tiles_pump(struct server_context *server, const struct stream *stream)

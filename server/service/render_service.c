@@ -27,6 +27,7 @@ static void replace(struct frame_request *old, const struct frame_request *reque
 static enum request_outcome put(struct render_service *service, uint64_t id, const struct frame_request *request)
 {
     struct render_client *client = render_service_find(service, id);
+    service->has_news = true;
     if (client && client->pending) {
         replace(&client->request, request);
         return REQUEST_REPLACED;
@@ -65,14 +66,18 @@ void render_service_request_all(struct render_service *service, size_t count, co
 void render_service_wake(struct render_service *service)
 {
     pthread_mutex_lock(&service->lock);
-    pthread_cond_broadcast(&service->wake);
+    if (service->has_news)
+        pthread_cond_broadcast(&service->wake);
+    service->has_news = false;
     pthread_mutex_unlock(&service->lock);
 }
 
 void render_service_pick(struct render_service *service, const struct pick_query *query)
 {
     pick_queue_ask(service->picks, query);
-    render_service_wake(service);
+    pthread_mutex_lock(&service->lock);
+    pthread_cond_broadcast(&service->wake);
+    pthread_mutex_unlock(&service->lock);
 }
 
 struct pick_answer *render_service_collect_picks(struct render_service *service)

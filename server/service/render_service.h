@@ -49,7 +49,8 @@ enum request_outcome render_service_request(struct render_service *service, uint
 /* Does the same for several clients at once: requests for equal views are begun together, so that one frame answers all of them. */
 void render_service_request_all(struct render_service *service, size_t count, const uint64_t *clients, const struct frame_request *requests,
                                 enum request_outcome *outcomes);
-/* Lets the render thread begin. To be called after all requests of one event, so that equal ones share a frame. */
+/* Lets the render thread begin with the requests that came since the last call, if any did. To be called after all requests of one event,
+   so that equal ones share a frame. */
 void render_service_wake(struct render_service *service);
 /* Drops all that is waiting or encoded for the client. */
 void render_service_forget(struct render_service *service, uint64_t client);

@@ -31,6 +31,7 @@ struct render_service {
     pthread_cond_t wake;
     /* --- below: under lock */
     enum { STARTING, RUNNING, FAILED, STOPPING } state;
+    bool has_news;                         /* requests came since the render thread was last woken for them */
     bool new_data;                         /* readings changed since the last snapshot */
     const struct loop_checks *loop_checks; /* NULL: no tag is marked as unchecked */
     bool lost;                             /* the GL context is being made anew */
