@@ -78,7 +78,7 @@ notify:
             assert.equal(first.subject, '[Two boxes] P3 TI-1 high, left');
             assert.match(first.body, /^P3 {2}[\d-]+ [\d:]+ {2}TI-1 high, left: 55 °C \(limit 50 °C\); E-101, Tank farm\r$/m);
             assert.match(first.body, /https:\/\/p\.example\//);
-            assert.match(plant.daemon.said, /warn +notify: ops: the mail server refuses <gone@p\.example>: 550 5\.1\.1 no such mailbox/);
+            await plant.daemon.line(/warn +notify: ops: the mail server refuses <gone@p\.example>: 550 5\.1\.1 no such mailbox/);
             await until('it is counted', async () => await metric(plant, 'plantcast_notify_sent_total{recipient="ops"}') === 1);
             await plant.daemon.stop('SIGKILL');
             await plant.startDaemon();
@@ -109,7 +109,7 @@ test('a certificate that nobody trusts gets no mail, and no password', options, 
         await set(plant, 'TI-1', limits.high);
         await plant.startDaemon();
         await until('it fails', async () => await metric(plant, 'plantcast_notify_failed_total{recipient="ops"}') >= 1);
-        assert.match(plant.daemon.said, /ops cannot be told: .*certificate/i);
+        await plant.daemon.line(/ops cannot be told: .*certificate/i);
         assert.equal(mail.mails.length, 0);
         assert.ok(!plant.daemon.said.includes('sesame'));
     } finally {

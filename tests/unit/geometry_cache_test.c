@@ -38,14 +38,26 @@ static const char plant_text[] = "plant: { name: Stock test }\n"
                                  "tags: tags.csv\n";
 static const char first_tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n";
 
-static int set_up(void **state)
+/* What several tests begin with, or compare with, is prepared once: of first_tags, and anew of tags that were asked for. */
+static struct {
+    struct prep_case *c; /* the plant of all tests */
+    json_t *first;       /* report of the asset in FOLDER/first */
+    struct {
+        char *tags, *bytes;
+        size_t size;
+        json_t *levels;
+    } fresh[16];
+    size_t fresh_count;
+} made;
+
+static int make_plant(void **state)
 {
     struct cad torus = { 0 };
     struct cad_random chance = { 3 };
     struct maker maker;
     size_t size;
     prep_case_set_up(state);
-    struct prep_case *c = *state;
+    struct prep_case *c = made.c = *state;
     cad_torus(&torus, &chance, AROUND, TUBE, 0.3, 0.4);
     assert_true(torus.triangle_count >= GEOMETRY_CACHE_TRIANGLES);
     maker_init(&maker);
@@ -62,7 +74,33 @@ static int set_up(void **state)
     mem_free(glb);
     maker_finish(&maker);
     cad_finish(&torus);
-    prep_case_plant(c, plant_text);
+    return 0;
+}
+
+static int remove_plant(void **state)
+{
+    for (size_t i = 0; i < made.fresh_count; i++) {
+        mem_free(made.fresh[i].tags);
+        mem_free(made.fresh[i].bytes);
+        json_decref(made.fresh[i].levels);
+    }
+    json_decref(made.first);
+    return prep_case_tear_down(state);
+}
+
+static void in_folder(const struct prep_case *c, const char *command)
+{
+    char *whole = mem_printf("cd '%s' && %s", c->folder, command);
+    assert_int_equal(system(whole), 0);
+    mem_free(whole);
+}
+
+/* Nothing is prepared. */
+static int set_up(void **state)
+{
+    *state = made.c;
+    in_folder(made.c, "rm -rf kept fresh");
+    prep_case_plant(made.c, plant_text);
     return 0;
 }
 
@@ -85,30 +123,54 @@ static char *path_of(const struct prep_case *c, const char *folder, const json_t
     return mem_printf("%s/%s/%s", c->folder, folder, json_string_value(json_object_get(asset, "file")));
 }
 
+/* As prepare(first_tags, "kept") leaves it where nothing was; the asset's report. */
+static json_t *prepare_first(struct prep_case *c)
+{
+    bool model_read;
+    if (!made.first) {
+        made.first = prepare(c, first_tags, "first", &model_read);
+        assert_true(model_read);
+    }
+    prep_case_tags(c, first_tags);
+    in_folder(c, "rm -rf kept && cp -a first kept");
+    return json_incref(made.first);
+}
+
+/* Into a folder where nothing is. Its number in made.fresh. */
+static size_t prepare_fresh(struct prep_case *c, const char *tags)
+{
+    bool model_read;
+    size_t i = 0;
+    while (i < made.fresh_count && strcmp(made.fresh[i].tags, tags) != 0)
+        i++;
+    if (i < made.fresh_count)
+        return i;
+    assert_in_range(i, 0, sizeof(made.fresh) / sizeof(*made.fresh) - 1);
+    json_t *fresh = prepare(c, tags, "fresh", &model_read);
+    assert_true(model_read);
+    char *path = path_of(c, "fresh", fresh);
+    made.fresh[i].tags = mem_strdup(tags);
+    made.fresh[i].bytes = text_read_file(path, (size_t)1 << 30, &made.fresh[i].size);
+    made.fresh[i].levels = json_incref(json_object_get(fresh, "levels"));
+    assert_non_null(made.fresh[i].bytes);
+    made.fresh_count++;
+    mem_free(path);
+    json_decref(fresh);
+    in_folder(c, "rm -r fresh");
+    return i;
+}
+
 /* Into a folder where nothing is, the same bytes come; nothing of what the levels and the surface are in the report differs either. */
 static void assert_as_fresh(struct prep_case *c, const char *tags, const json_t *found)
 {
-    bool model_read;
-    size_t sizes[2];
-    json_t *fresh = prepare(c, tags, "fresh", &model_read);
-    assert_true(model_read);
-    char *paths[2] = { path_of(c, "fresh", fresh), path_of(c, "kept", found) }, *bytes[2];
-    for (int i = 0; i < 2; i++) {
-        bytes[i] = text_read_file(paths[i], (size_t)1 << 30, &sizes[i]);
-        assert_non_null(bytes[i]);
-    }
-    assert_int_equal(sizes[0], sizes[1]);
-    assert_memory_equal(bytes[0], bytes[1], sizes[0]);
-    assert_true(json_equal(json_object_get(fresh, "levels"), json_object_get(found, "levels")));
-    for (int i = 0; i < 2; i++) {
-        mem_free(bytes[i]);
-        mem_free(paths[i]);
-    }
-    json_decref(fresh);
-    char *folder = temp_path(c->folder, "fresh"), *remove = mem_printf("rm -r '%s'", folder);
-    assert_int_equal(system(remove), 0);
-    mem_free(remove);
-    mem_free(folder);
+    size_t i = prepare_fresh(c, tags), size;
+    char *path = path_of(c, "kept", found), *bytes = text_read_file(path, (size_t)1 << 30, &size);
+    assert_non_null(bytes);
+    assert_int_equal(size, made.fresh[i].size);
+    assert_memory_equal(bytes, made.fresh[i].bytes, size);
+    assert_true(json_equal(made.fresh[i].levels, json_object_get(found, "levels")));
+    mem_free(bytes);
+    mem_free(path);
 }
 
 /* Where each group had one sensor, nothing was drawn from distances, and they were not checked. */
@@ -190,9 +252,9 @@ static void what_is_damaged_is_made_anew(void **state)
 {
     struct prep_case *c = *state;
     for (int cut = 0; cut < 2; cut++) {
-        char *tags = mem_printf("a,,,,t,A,,1.3,0,0.0%d\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 2 + cut);
+        char *tags = mem_printf("a,,,,t,A,,1.3,0,0.0%d\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", cut ? 5 : 2);
         bool model_read;
-        json_decref(prepare(c, first_tags, "kept", &model_read));
+        json_decref(prepare_first(c));
         char *stock = kept_file(c, cut ? ".surface" : ".stock"), *columns = kept_file(c, ".columns");
         damage(stock, cut);
         damage(columns, cut);
@@ -221,7 +283,7 @@ static void points_are_found_once(void **state)
     static const char *const places[] = { "1.3,0,0.02", "1.3,0,0.05", "0.8,0.8,0" };
     struct prep_case *c = *state;
     bool model_read;
-    json_decref(prepare(c, first_tags, "kept", &model_read));
+    json_decref(prepare_first(c));
     char *spots = kept_file(c, ".spots");
     for (int i = 0; i < 3; i++) {
         char *tags = mem_printf("a,,,,t,A,,%s\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", places[i]);
@@ -284,7 +346,7 @@ static void killed_midway_it_goes_on(void **state)
 {
     struct prep_case *c = *state;
     bool model_read;
-    json_t *first = prepare(c, first_tags, "kept", &model_read);
+    json_t *first = prepare_first(c);
     char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns"), *folder = temp_path(c->folder, "kept"), why[200];
     const size_t limits[] = { bytes_of(columns) - bytes_of(columns) / 8, bytes_of(before) / 2 };
     struct folder_file mapped;
@@ -322,7 +384,7 @@ static void without_room_the_old_file_stays(void **state)
     static const char tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,,0.1,-1.2,0\n";
     struct prep_case *c = *state;
     bool model_read;
-    json_t *first = prepare(c, first_tags, "kept", &model_read);
+    json_t *first = prepare_first(c);
     char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns");
     char *drafts = mem_printf("ls '%s'/kept | grep -q asset.*new", c->folder);
     char *names_folder = mem_printf("grep -q 'cannot be written into %s/kept: File too large' '%s'/said", c->folder, c->folder);
@@ -347,7 +409,7 @@ static void what_nothing_needs_any_more_is_removed(void **state)
 {
     struct prep_case *c = *state;
     bool model_read;
-    json_decref(prepare(c, first_tags, "kept", &model_read));
+    json_decref(prepare_first(c));
     char *stock = kept_file(c, ".stock"), *surface = kept_file(c, ".surface"), *columns = kept_file(c, ".columns");
     char *spots = kept_file(c, ".spots");
     char *other = mem_strdup(plant_text);
@@ -548,7 +610,7 @@ static void a_surface_comes_back_whole(void **state)
     cad_finish(&torus);
 }
 
-#define WITH_PLANT(test) cmocka_unit_test_setup_teardown(test, set_up, prep_case_tear_down)
+#define WITH_PLANT(test) cmocka_unit_test_setup(test, set_up)
 
 int main(void)
 {
@@ -564,5 +626,5 @@ int main(void)
         WITH_PLANT(one_of_many_sensors_is_split_for_alone),
         cmocka_unit_test(a_surface_comes_back_whole),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_plant, remove_plant);
 }
