@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Least squares by orthogonal columns; a column that says nothing new is left out. Jumps are looked for in what is left of values without
-   a line in time: a drift changes little within hours. */
+/* Weighted least squares by orthogonal columns; a column that says nothing new is left out. Jumps are looked for in what is left of values
+   without a line in time: a drift changes little within hours. */
 #include "field/drift.h"
 
 #include <math.h>
@@ -9,15 +9,26 @@
 
 #include "base/mem.h"
 
-enum { JUMPS = 2, COLUMNS = 3 + JUMPS, SENSORS_LEAST = 3, ROUNDS = 20 };
+enum { JUMPS = 2, COLUMNS = 3 + DRIFT_NEAREST + JUMPS, SENSORS_LEAST = 3, ROUNDS = 20 };
+enum { CHANGE_BEFORE = 3, CHANGE_AFTER = 1 }; /* hours that count for how fast the plant changes at one */
+static const double FAST = 2;              /* times the usual change: such an hour counts half */
+static const double STILL = 0.1;           /* part of the noise: a change by less an hour is none */
+static const double MEAN_PART = 0.25;      /* of the noise is left in an hourly mean: it is of 16 readings or more that err by themselves */
 enum { BESIDE = 3, WITHIN = 2 };           /* hours: of the means before and after a jump, and between the two */
 static const double JUMP = 6;              /* as many times what residuals usually change by in as many hours */
 static const double LAG_HOURS = 12;        /* heat takes its time from the others' places to this one */
 static const double DEPENDENT_PART = 1. / 6; /* of the time: residuals farther apart count as independent */
 static const double NEW_PART = 1e-3;       /* of a column's length that has to be left beside the other columns */
 
-struct rows { /* where there are both, value and prediction; hour by hour */
+struct week { /* of one sensor, by hour */
+    const double *values, *predicted, *nearest; /* nearest: [nearest_count][hours] */
+    int nearest_count, hours;
+    double noise, root[DRIFT_HOURS]; /* root: of what an hour counts */
+};
+
+struct rows { /* where there are values of all; hour by hour, each times its root */
     double at[COLUMNS][DRIFT_HOURS], time[DRIFT_HOURS], value[DRIFT_HOURS];
+    double counted; /* the sum of what hours count */
     int hour[DRIFT_HOURS], count, columns;
 };
 
@@ -37,28 +48,41 @@ static void take_out(double *of, const double *unit, int count)
         of[i] -= part * unit[i];
 }
 
-static void collect(const double *values, const double *predicted, int hours, struct rows *rows)
+static bool is_whole(const struct week *week, int hour)
+{
+    bool whole = isfinite(week->values[hour]) && isfinite(week->predicted[hour]);
+    for (int k = 0; k < week->nearest_count; k++)
+        whole &= isfinite(week->nearest[k * week->hours + hour]);
+    return whole;
+}
+
+static void collect(const struct week *week, struct rows *rows)
 {
     double lagging = NAN;
     rows->count = 0;
-    for (int h = 0; h < hours; h++) {
-        if (isfinite(predicted[h]))
-            lagging = isnan(lagging) ? predicted[h] : lagging + (predicted[h] - lagging) / LAG_HOURS;
-        if (!isfinite(values[h]) || !isfinite(predicted[h]))
+    rows->counted = 0;
+    for (int h = 0; h < week->hours; h++) {
+        const double predicted = week->predicted[h], root = week->root[h];
+        if (isfinite(predicted))
+            lagging = isnan(lagging) ? predicted : lagging + (predicted - lagging) / LAG_HOURS;
+        if (!is_whole(week, h))
             continue;
         int i = rows->count++;
         rows->hour[i] = h;
-        rows->time[i] = (h + 0.5) / hours - 0.5;
-        rows->value[i] = values[h];
-        rows->at[0][i] = 1;
-        rows->at[1][i] = predicted[h];
-        rows->at[2][i] = lagging;
+        rows->counted += root * root;
+        rows->time[i] = root * ((h + 0.5) / week->hours - 0.5);
+        rows->value[i] = root * week->values[h];
+        rows->at[0][i] = root;
+        rows->at[1][i] = root * predicted;
+        rows->at[2][i] = root * lagging;
+        for (int k = 0; k < week->nearest_count; k++)
+            rows->at[3 + k][i] = root * week->nearest[k * week->hours + h];
     }
-    rows->columns = COLUMNS - JUMPS;
+    rows->columns = 3 + week->nearest_count;
 }
 
-/* The columns become orthonormal; what they explain goes out of time and value. Returns how many are left. */
-static int reduce(struct rows *rows)
+/* The columns become orthonormal; what they explain goes out of time and value. largest: of the values. Returns how many are left. */
+static int reduce(struct rows *rows, double largest)
 {
     int kept = 0, n = rows->count;
     for (int c = 0; c < rows->columns; c++) {
@@ -67,7 +91,7 @@ static int reduce(struct rows *rows)
             take_out(column, rows->at[k], n);
         double length = sqrt(dot(column, column, n));
         /* of readings that hardly differ only rounding is left; the first column is 1 */
-        if (c > 0 && !(length > 1e-9 * sqrt(n) * (1 + fabs(rows->value[0]))))
+        if (c > 0 && !(length > 1e-9 * sqrt(n) * (1 + largest)))
             continue;
         for (int i = 0; i < n; i++)
             rows->at[kept][i] = column[i] / length;
@@ -119,17 +143,43 @@ static int find_jump(const struct rows *rows, double noise)
     return at;
 }
 
-/* Collects and reduces, with a column for each jump: from there on the level is another one. Returns how many columns are left. */
-static int reduce_with_jumps(const double *values, const double *predicted, int hours, double noise, struct rows *rows)
+/* What each hour counts: half where what the others say changes FAST times as much as it usually does, and all where it is still. */
+static void weigh(struct week *week)
 {
-    int jumps[JUMPS], columns = reduce(rows);
-    for (int count = 0; count < JUMPS && (jumps[count] = find_jump(rows, noise)) > 0;) {
+    double change[DRIFT_HOURS], sorted[DRIFT_HOURS];
+    int known = 0;
+    for (int h = 0; h < week->hours; h++) {
+        double sum = 0;
+        int count = 0;
+        for (int k = h - CHANGE_BEFORE; k <= h + CHANGE_AFTER; k++) {
+            if (k < 1 || k >= week->hours || !isfinite(week->predicted[k]) || !isfinite(week->predicted[k - 1]))
+                continue;
+            sum += fabs(week->predicted[k] - week->predicted[k - 1]);
+            count++;
+        }
+        change[h] = count ? sum / count : 0;
+        if (is_whole(week, h))
+            sorted[known++] = change[h];
+    }
+    double usual = fmax(known ? median(sorted, known) : 0, STILL * week->noise);
+    for (int h = 0; h < week->hours; h++)
+        week->root[h] = 1 / hypot(1, change[h] / (FAST * usual));
+}
+
+/* Collects and reduces, with a column for each jump: from there on the level is another one. Returns how many columns are left. */
+static int reduce_with_jumps(const struct week *week, struct rows *rows)
+{
+    double largest = 0;
+    for (int h = 0; h < week->hours; h++)
+        largest = isfinite(week->values[h]) ? fmax(largest, fabs(week->values[h])) : largest;
+    int jumps[JUMPS], columns = reduce(rows, largest);
+    for (int count = 0; count < JUMPS && (jumps[count] = find_jump(rows, week->noise)) > 0;) {
         count++;
-        collect(values, predicted, hours, rows);
+        collect(week, rows);
         for (int k = 0; k < count; k++, rows->columns++)
             for (int i = 0; i < rows->count; i++)
-                rows->at[rows->columns][i] = i >= jumps[k];
-        columns = reduce(rows);
+                rows->at[rows->columns][i] = i >= jumps[k] ? week->root[rows->hour[i]] : 0;
+        columns = reduce(rows, largest);
     }
     return columns;
 }
@@ -147,27 +197,30 @@ static double slope_variance(const struct rows *rows, double time_square, int ho
     return fmax(sum, 0);
 }
 
-void drift_fit(const double *values, const double *predicted, int hours, double noise, struct drift *out)
+void drift_fit(const double *values, const double *predicted, const double *nearest, int nearest_count, int hours, double noise,
+               struct drift *out)
 {
+    struct week week = { values, predicted, nearest, nearest_count, hours, noise, { 0 } };
     struct rows rows;
     *out = (struct drift){ DRIFT_UNKNOWN, NAN, NAN, NAN, 0 };
-    collect(values, predicted, hours, &rows);
+    weigh(&week);
+    collect(&week, &rows);
     out->hours = rows.count;
     if (rows.count < DRIFT_HOURS_LEAST)
         return;
     double span = dot(rows.time, rows.time, rows.count);
-    int columns = reduce_with_jumps(values, predicted, hours, noise, &rows);
+    int columns = reduce_with_jumps(&week, &rows);
     double left = dot(rows.time, rows.time, rows.count);
     if (!(left > NEW_PART * NEW_PART * span))
         return;
     double slope = dot(rows.time, rows.value, rows.count) / left;
     for (int i = 0; i < rows.count; i++)
         rows.value[i] -= slope * rows.time[i];
-    double residual = sqrt(dot(rows.value, rows.value, rows.count) / (rows.count - columns - 1));
+    double residual = sqrt(dot(rows.value, rows.value, rows.count) / fmax(rows.counted - columns - 1, 1));
     out->change = slope;
     out->scatter = hypot(residual, noise);
-    out->error = sqrt(slope_variance(&rows, left, hours) + noise * noise / left);
-    if (fabs(slope) >= DRIFT_SIGMAS * out->scatter && fabs(slope) >= DRIFT_ERRORS * out->error)
+    out->error = sqrt(slope_variance(&rows, left, hours) + MEAN_PART * noise * (MEAN_PART * noise) / left);
+    if (fabs(slope) >= DRIFT_SIGMAS_LEAST * out->scatter && fabs(slope) >= DRIFT_ERRORS * out->error)
         out->verdict = DRIFT_FOUND;
     else if (DRIFT_SIGMAS * out->scatter >= DRIFT_ERRORS * out->error)
         out->verdict = DRIFT_NONE;
@@ -230,23 +283,57 @@ static void predict(const struct search *search, const struct drift *drifts)
     mem_free(said);
 }
 
+/* What a sensor read; where it read nothing what the others say, by as much higher or lower as they are otherwise. */
+static void read_filled(const struct search *search, size_t sensor, double *out)
+{
+    const double *said = search->said + sensor * (size_t)search->hours;
+    double off = 0;
+    int known = 0;
+    for (int h = 0; h < search->hours; h++) {
+        out[h] = search->values[(size_t)h * search->count + sensor];
+        if (isfinite(out[h]) && isfinite(said[h])) {
+            off += out[h] - said[h];
+            known++;
+        }
+    }
+    for (int h = 0; h < search->hours && known; h++)
+        out[h] = isfinite(out[h]) ? out[h] : said[h] + off / known;
+}
+
+/* Neither found nor silent for half of the time: it can be held against others. */
+static bool is_of_use(const struct search *search, size_t sensor, const struct drift *drift)
+{
+    int known = 0;
+    for (int h = 0; h < search->hours; h++)
+        known += isfinite(search->values[(size_t)h * search->count + sensor]);
+    return drift->verdict != DRIFT_FOUND && 2 * known >= search->hours;
+}
+
 /* Judges all that were not found yet. Returns the one that drifts most clearly; count: none. */
 static size_t judge(const struct search *search, const double *noise, struct drift *out)
 {
-    double own[DRIFT_HOURS];
+    double own[DRIFT_HOURS], nearest[DRIFT_NEAREST * DRIFT_HOURS];
+    bool *apart = mem_array(search->count, sizeof(*apart));
     size_t clearest = search->count;
+    for (size_t i = 0; i < search->count; i++)
+        apart[i] = !is_of_use(search, i, &out[i]);
     for (size_t i = 0; i < search->count; i++) {
+        size_t near[DRIFT_NEAREST];
         if (out[i].verdict == DRIFT_FOUND)
             continue;
         for (int h = 0; h < search->hours; h++)
             own[h] = search->values[(size_t)h * search->count + i];
-        drift_fit(own, search->said + i * (size_t)search->hours, search->hours, noise[i], &out[i]);
+        size_t count = neighbours_nearest(search->neighbours, i, apart, DRIFT_NEAREST, near);
+        for (size_t k = 0; k < count; k++)
+            read_filled(search, near[k], nearest + k * (size_t)search->hours);
+        drift_fit(own, search->said + i * (size_t)search->hours, nearest, (int)count, search->hours, noise[i], &out[i]);
         if (out[i].verdict != DRIFT_FOUND)
             continue;
         out[i].verdict = DRIFT_NONE; /* not yet */
         if (clearest == search->count || fabs(out[i].change) / out[i].error > fabs(out[clearest].change) / out[clearest].error)
             clearest = i;
     }
+    mem_free(apart);
     return clearest;
 }
 

@@ -160,6 +160,30 @@ void neighbours_predict(const struct neighbours *neighbours, const double *value
     mem_free(used);
 }
 
+size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, const bool *apart, size_t most, size_t *out)
+{
+    const struct layout *layout = neighbours->layout;
+    double *away_m = mem_array(most, sizeof(*away_m));
+    size_t count = 0;
+    for (size_t j = 0; j < layout->sensor_count; j++) {
+        double m = j == sensor || apart[j] ? INFINITY : along_m(layout, j, sensor);
+        size_t at = count;
+        while (at > 0 && m < away_m[at - 1])
+            at--;
+        if (!isfinite(m) || at == most)
+            continue;
+        count += count < most;
+        for (size_t k = count - 1; k > at; k--) {
+            away_m[k] = away_m[k - 1];
+            out[k] = out[k - 1];
+        }
+        away_m[at] = m;
+        out[at] = j;
+    }
+    mem_free(away_m);
+    return count;
+}
+
 size_t neighbours_find(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct neighbour **out)
 {
     struct neighbours *neighbours = neighbours_create(scene, asset, group);

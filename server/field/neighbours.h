@@ -31,6 +31,10 @@ double neighbours_level(const struct neighbours *neighbours);
 /* Says what the others say of each sensor. values: by sensor; NaN: it cannot be used. out: by sensor. */
 void neighbours_predict(const struct neighbours *neighbours, const double *values, struct neighbour *out);
 
+/* Lists the sensors nearest to one along the surface, the nearest first, without those that stand apart ([sensor]); not those that no way
+   leads to. out: room for `most`. Returns their number. */
+size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, const bool *apart, size_t most, size_t *out);
+
 /* Lists the sensors of the group on the asset whose places are known, in their order. Returns their number; 0: there are none. The caller
    frees *out (mem_free). */
 size_t neighbours_find(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct neighbour **out);

@@ -30,41 +30,70 @@ static double random_in(double low, double high)
     return low + (high - low) * rand() / (double)RAND_MAX;
 }
 
+enum { UNKNOWNS = 5 };
+
 /* Gauss' elimination of the normal equations. */
-static void solve(double a[4][5])
+static void solve(double a[UNKNOWNS][UNKNOWNS + 1])
 {
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < UNKNOWNS; i++) {
         int pivot = i;
-        for (int r = i + 1; r < 4; r++)
+        for (int r = i + 1; r < UNKNOWNS; r++)
             pivot = fabs(a[r][i]) > fabs(a[pivot][i]) ? r : pivot;
-        for (int c = 0; c < 5; c++) {
+        for (int c = 0; c <= UNKNOWNS; c++) {
             double x = a[i][c];
             a[i][c] = a[pivot][c];
             a[pivot][c] = x;
         }
-        for (int r = 0; r < 4; r++)
-            for (int c = 4; c >= i && r != i; c--)
+        for (int r = 0; r < UNKNOWNS; r++)
+            for (int c = UNKNOWNS; c >= i && r != i; c--)
                 a[r][c] -= a[r][i] / a[i][i] * a[i][c];
     }
 }
 
-static double slow_change(const double *values, const double *predicted, int hours)
+/* The mean change an hour, from the third hour before to the one after. */
+static double change_at(const double *predicted, int hours, int hour)
 {
-    double a[4][5] = { 0 }, lagging = predicted[0];
+    double sum = 0;
+    int count = 0;
+    for (int h = hour - 3; h <= hour + 1; h++)
+        if (h >= 1 && h < hours) {
+            sum += fabs(predicted[h] - predicted[h - 1]);
+            count++;
+        }
+    return sum / count;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The change in time, where an hour counts 1 / (1 + (change / 2 usual changes)^2). */
+static double slow_change(const double *values, const double *predicted, const double *nearest, int hours)
+{
+    double a[UNKNOWNS][UNKNOWNS + 1] = { 0 }, changes[DRIFT_HOURS], lagging = predicted[0];
+    int known = 0;
+    for (int h = 0; h < hours; h++)
+        if (isfinite(values[h]))
+            changes[known++] = change_at(predicted, hours, h);
+    qsort(changes, (size_t)known, sizeof(*changes), ascending);
+    double usual = (changes[(known - 1) / 2] + changes[known / 2]) / 2;
     for (int h = 0; h < hours; h++) {
         lagging += h > 0 ? (predicted[h] - lagging) / 12 : 0;
-        const double row[] = { 1, predicted[h], lagging, (h + 0.5) / hours - 0.5, values[h] };
-        for (int r = 0; r < 4 && isfinite(values[h]); r++)
-            for (int c = 0; c < 5; c++)
-                a[r][c] += row[r] * row[c];
+        const double row[] = { 1, predicted[h], lagging, nearest[h], (h + 0.5) / hours - 0.5, values[h] };
+        double fast = change_at(predicted, hours, h) / (2 * usual);
+        for (int r = 0; r < UNKNOWNS && isfinite(values[h]); r++)
+            for (int c = 0; c <= UNKNOWNS; c++)
+                a[r][c] += row[r] * row[c] / (1 + fast * fast);
     }
     solve(a);
-    return a[3][4] / a[3][3];
+    return a[UNKNOWNS - 1][UNKNOWNS] / a[UNKNOWNS - 1][UNKNOWNS - 1];
 }
 
 static void test_fit_is_least_squares(void **state)
 {
-    double values[DRIFT_HOURS], predicted[DRIFT_HOURS];
+    double values[DRIFT_HOURS], predicted[DRIFT_HOURS], nearest[DRIFT_HOURS];
     (void)state;
     srand(1);
     for (int round = 0; round < 200; round++) {
@@ -73,13 +102,14 @@ static void test_fit_is_least_squares(void **state)
         for (int h = 0; h < DRIFT_HOURS; h++) {
             at += random_in(-1, 1);
             predicted[h] = at;
-            values[h] = gain * at + change * h / DRIFT_HOURS + random_in(-noise, noise);
+            nearest[h] = at + random_in(-3, 3); /* it tells what no other does, half of which is seen here, too */
+            values[h] = gain * at + (nearest[h] - at) / 2 + change * h / DRIFT_HOURS + random_in(-noise, noise);
             if (h % 9 == round % 9)
                 values[h] = NAN;
         }
-        drift_fit(values, predicted, DRIFT_HOURS, 0.01, &drift);
+        drift_fit(values, predicted, nearest, 1, DRIFT_HOURS, 0.01, &drift);
         assert_int_equal(drift.hours, DRIFT_HOURS - (DRIFT_HOURS + 8 - round % 9) / 9);
-        assert_true(fabs(drift.change - slow_change(values, predicted, DRIFT_HOURS)) < 1e-6);
+        assert_true(fabs(drift.change - slow_change(values, predicted, nearest, DRIFT_HOURS)) < 1e-6);
         assert_true(fabs(drift.change - change) < 10 * drift.error);
         assert_true(fabs(drift.scatter - hypot(noise / sqrt(3), 0.01)) < 0.2 * drift.scatter); /* of an even distribution */
         if (fabs(change) > 4 * drift.scatter && fabs(change) > 10 * drift.error)
@@ -110,7 +140,7 @@ static void fit_after_jumps(const char *what, void (*jump_of)(int round, struct 
             predicted[h] = at;
             values[h] = at + change * h / DRIFT_HOURS + random_in(-noise, noise) + by * (jump.after * noise);
         }
-        drift_fit(values, predicted, DRIFT_HOURS, 0.01, &drift);
+        drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.01, &drift);
         found += change != 0 && drift.verdict == DRIFT_FOUND && fabs(drift.change - change) < 3 * noise;
         accused += change == 0 && drift.verdict == DRIFT_FOUND;
     }
@@ -161,18 +191,18 @@ static void test_what_cannot_be_told_is_unknown(void **state)
         values[h] = h < DRIFT_HOURS_LEAST - 1 ? 50 + h : NAN;
         predicted[h] = 50;
     }
-    drift_fit(values, predicted, DRIFT_HOURS, 0.2, &drift);
+    drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_UNKNOWN);
     assert_true(isnan(drift.change) && drift.hours == DRIFT_HOURS_LEAST - 1);
     for (int h = 0; h < DRIFT_HOURS; h++) {
         predicted[h] = 50 + h;
         values[h] = 50 + 1.1 * h;
     }
-    drift_fit(values, predicted, DRIFT_HOURS, 0.2, &drift);
+    drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_UNKNOWN);
     for (int h = 0; h < DRIFT_HOURS; h++) /* stuck, like all others: no drift, and it would have been seen */
         values[h] = predicted[h] = 50;
-    drift_fit(values, predicted, DRIFT_HOURS, 0.2, &drift);
+    drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_NONE);
 }
 
@@ -330,11 +360,13 @@ static struct series all_series[] = {
     { RIG, 1464 / 2205., 1, { { 0 } } },
     { RIG, 0, 1464 / 2205., { { 0 } } },
     { RIG, 732 / 2205., 1, { { 0 } } },
+    { RIG, 0, 0.5, { { 0 } } }, /* by this half it was chosen what counts beside others, and how much a fast hour does; */
+    { RIG, 0.5, 1, { { 0 } } }, /* this one was held out */
 };
 
 static void test_false_accusations_are_counted(void **state)
 {
-    static const int most[] = { 0, 0, 0, 0, 2, 1, 0, 1, 0 }; /* sensors */
+    static const int most[] = { 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0 }; /* sensors */
     for (size_t k = 0; k < sizeof(all_series) / sizeof(*all_series); k++) {
         struct series *s = &all_series[k];
         struct row_of_sensors row;
@@ -430,12 +462,26 @@ static struct search search(const struct row_of_sensors *row, const struct serie
     return out;
 }
 
+/* Returns whether, at the week's end, another sensor is accused than the one that drifts. */
+static bool accuses_another(const struct row_of_sensors *row, const struct series *s, int sensor, double change)
+{
+    struct drift drifts[SENSORS];
+    bool another = false;
+    find(row, s, DRIFT_HOURS, sensor, change, drifts);
+    for (int k = 0; k < s->count; k++)
+        another |= k != sensor && drifts[k].verdict == DRIFT_FOUND;
+    return another;
+}
+
 /* sigma: the scatter of the sensor without a drift. */
 static void test_a_drift_is_found_before_its_alarm(void **state)
 {
-    static const double sizes[] = { 4, 8 }; /* sigmas in a week */
+    enum { SIZES = 3 };
+    static const double sizes[SIZES] = { 3, 4, 8 }; /* sigmas in a week */
     /* of the rig its own changes hide some; where the process has a fault, none is looked for */
-    static const int least[][2] = { { 4, 8 }, { 10, 10 }, { 0 }, { 0 }, { 4, 7 }, { 6, 7 }, { 8, 8 }, { 5, 7 }, { 3, 8 } };
+    static const int least[][SIZES] = { { 2, 7, 8 }, { 10, 10, 10 }, { 0 },       { 0 },       { 8, 8, 8 }, { 7, 8, 8 },
+                                        { 8, 8, 8 }, { 6, 7, 8 },    { 6, 7, 8 }, { 5, 6, 8 }, { 8, 8, 8 } };
+    int others = 0; /* accused in place of the one that drifts, or beside it */
     for (size_t k = 0; k < sizeof(all_series) / sizeof(*all_series); k++) {
         struct series *s = &all_series[k];
         if (least[k][0] == 0)
@@ -445,13 +491,14 @@ static void test_a_drift_is_found_before_its_alarm(void **state)
         read_series(s);
         stand_sensors(*state, s->count, &row);
         find(&row, s, DRIFT_HOURS, 0, 0, none);
-        for (int size = 0; size < 2; size++) {
+        for (int size = 0; size < SIZES; size++) {
             int found = 0, tries = 0;
             double most_sigmas = 0, least_limit = INFINITY;
             for (int i = 0; i < s->count; i++)
                 for (int sign = -1; sign <= 1; sign += 2, tries++) {
                     struct search at = search(&row, s, i, sign * sizes[size] * none[i].scatter);
                     found += at.hours > 0;
+                    others += accuses_another(&row, s, i, sign * sizes[size] * none[i].scatter);
                     if (at.hours == 0)
                         continue;
                     assert_true(at.limit > 0); /* no alarm by then */
@@ -461,11 +508,13 @@ static void test_a_drift_is_found_before_its_alarm(void **state)
             printf("# %s, %.0f to %.0f %%, %g sigma in a week: %d of %d found, at %.1f sigma at most, %.1f K or more before the alarm\n",
                    s->file, 100 * s->from, 100 * s->to, sizes[size], found, tries, most_sigmas, least_limit);
             assert_true(found >= least[k][size]);
-            if (k == 1 && size == 0)
-                assert_true(most_sigmas < 3.7);
+            if (k == 1 && sizes[size] < 8)
+                assert_true(most_sigmas <= DRIFT_SIGMAS);
         }
         leave(&row);
     }
+    printf("# at the week's end another than the one that drifts is accused: %d times\n", others);
+    assert_true(others <= 27);
 }
 
 /* With the drifting one left out, the others are judged by each other: none of them is accused for it. */
@@ -506,6 +555,40 @@ static void test_one_that_is_lost_for_a_while_accuses_nobody(void **state)
     leave(&row);
 }
 
+/* Of one that never reads anything nothing is said, and the others are held against those that do. */
+static void test_one_that_is_silent_hides_nothing(void **state)
+{
+    struct series s = all_series[1];
+    struct row_of_sensors row;
+    struct drift drifts[SENSORS];
+    read_series(&s);
+    stand_sensors(*state, s.count, &row);
+    for (int i = 0; i < s.count; i++) {
+        struct series silent = s;
+        int drifting = (i + 1) % s.count;
+        for (int h = 0; h < DRIFT_HOURS; h++)
+            silent.hours[h][i] = NAN;
+        find(&row, &silent, DRIFT_HOURS, drifting, 20, drifts);
+        for (int k = 0; k < s.count; k++)
+            assert_int_equal(drifts[k].verdict, k == i ? DRIFT_UNKNOWN : k == drifting ? DRIFT_FOUND : DRIFT_NONE);
+    }
+    leave(&row);
+}
+
+static void test_the_nearest_are_found(void **state)
+{
+    struct row_of_sensors row;
+    size_t near[SENSORS];
+    bool apart[SENSORS] = { false };
+    stand_sensors(*state, SENSORS, &row);
+    assert_int_equal(neighbours_nearest(row.neighbours, 0, apart, 2, near), 2);
+    assert_true(near[0] == 1 && near[1] == 2);
+    apart[3] = true;
+    assert_int_equal(neighbours_nearest(row.neighbours, 4, apart, SENSORS, near), 3);
+    assert_true(near[0] == 2 && near[1] == 1 && near[2] == 0);
+    leave(&row);
+}
+
 static void test_of_two_nobody_can_tell_which(void **state)
 {
     struct series two = all_series[1];
@@ -532,6 +615,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_tear_down),
         cmocka_unit_test_setup_teardown(test_one_that_drifts_does_not_accuse_others, prep_case_set_up, prep_case_tear_down),
         cmocka_unit_test_setup_teardown(test_one_that_is_lost_for_a_while_accuses_nobody, prep_case_set_up, prep_case_tear_down),
+        cmocka_unit_test_setup_teardown(test_one_that_is_silent_hides_nothing, prep_case_set_up, prep_case_tear_down),
+        cmocka_unit_test_setup_teardown(test_the_nearest_are_found, prep_case_set_up, prep_case_tear_down),
         cmocka_unit_test_setup_teardown(test_of_two_nobody_can_tell_which, prep_case_set_up, prep_case_tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
