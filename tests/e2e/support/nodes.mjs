@@ -94,21 +94,24 @@ export class Nodes {
         return this.start(['--role', 'render', ...urls, '--core-token-file', this.rendererFile, '--node', name, '--port', '0', ...more]);
     }
 
-    // How many connections there are to the device, by whom ever.
+    // Connections to the device, by whom ever: the address that each comes from.
     pollers() {
         const port = this.plant.modbusPort.toString(16).toUpperCase().padStart(4, '0'), established = '01';
         const lines = ['/proc/net/tcp', '/proc/net/tcp6'].filter(existsSync).flatMap((path) => readFileSync(path, 'utf8').split('\n'));
         return lines.map((line) => line.trim().split(/\s+/))
-            .filter(([, , remote, state]) => remote?.endsWith(`:${port}`) && state === established).length;
+            .filter(([, , remote, state]) => remote?.endsWith(`:${port}`) && state === established).map(([, local]) => local);
     }
 
-    // Waits until there is one; never two, and none only while it connects anew.
+    // Waits until there is one; never two, and none only while it connects anew. The system lists connections piece by piece, so that one
+    // that ends meanwhile can stand beside the one that follows it: two are those that are both there at a second look.
     onePoller() {
+        let before = [];
         return until('one poller', () => {
-            const count = this.pollers();
-            if (count > 1)
-                throw new Error(`${count} pollers`);
-            return count === 1;
+            const now = this.pollers(), both = now.filter((local) => before.includes(local));
+            if (both.length > 1)
+                throw new Error(`${both.length} pollers: ${both}`);
+            before = now;
+            return now.length === 1;
         });
     }
 

@@ -3,7 +3,7 @@
 // knows who polls, and when.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { Network } from './network_thread.mjs';
 import { Node, Nodes, sleep, until } from './nodes.mjs';
@@ -45,6 +45,7 @@ export class TwoCores {
   deadband_percent: 0
   postgres: { url: "${url}", login: login }
 ${more}`);
+        cpSync(plant.prepared, join(plant.folder, 'two.prepared'), { recursive: true }); // it has another port, and the same equipment
         const prepared = runProgram('plantcast-prep', [two.file], 60000);
         if (prepared.code !== 0)
             throw new Error(prepared.err);

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tests of all modules in one program: to start node costs more than most of them take.
+import { readdirSync } from 'node:fs';
+
+for (const name of readdirSync(import.meta.dirname).filter((file) => file.endsWith('.test.mjs')).sort())
+    await import(`./${name}`);
