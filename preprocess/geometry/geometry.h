@@ -22,15 +22,16 @@ struct geometry {
     struct text names;
     uint32_t vertex_count, index_count, primitive_count, material_count, texture_count;
     size_t texel_bytes;
-    /* For the report: nodes taken, triangles without area, primitives that had no normals, primitives that are no triangles. */
-    uint32_t node_count, degenerate_triangles, computed_normals, skipped_lines, skipped_points;
+    /* For the report: nodes taken, triangles without area, triangles that were turned (winding.h), places that were moved (gaps.h),
+       primitives that had no normals, primitives that are no triangles. */
+    uint32_t node_count, degenerate_triangles, turned_triangles, closed_gaps, computed_normals, skipped_lines, skipped_points;
 };
 
 struct geometry_params {
     const char *nodes; /* patterns (plant/nodes.h); NULL: all */
     double unit_m;
     enum axis up;
-    double tolerance_m; /* not for cutting: gaps up to this are closed when distances are found; 0: chosen from the model */
+    double tolerance_m; /* no wider gaps are closed, in what is drawn and when distances are found; 0: chosen from the model */
 };
 
 /* Builds the asset's mesh from the model. Returns false with the reason in why, and then there is nothing to finish. */

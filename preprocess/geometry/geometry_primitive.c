@@ -6,8 +6,10 @@
 
 #include "base/mem.h"
 #include "plant/transform.h"
+#include "preprocess/geometry/gaps.h"
 #include "preprocess/geometry/geometry_impl.h"
 #include "preprocess/geometry/normals.h"
+#include "preprocess/geometry/winding.h"
 
 #include "base/vec.h"
 
@@ -162,7 +164,9 @@ bool primitive_mesh(struct primitive_mesh *mesh, const struct node_primitive *pa
     if (good) {
         const float(*places)[3] = (const float(*)[3])positions;
         mesh->index_count = take_triangles(primitive, places, determinant(world) < 0, indices, &geometry->degenerate_triangles);
-        good = normals_compute(places, primitive->vertex_count, indices, mesh->index_count, computed);
+        good = gaps_close(positions, primitive->vertex_count, indices, mesh->index_count, params->tolerance_m, &geometry->closed_gaps) &&
+               winding_mend(places, primitive->vertex_count, indices, mesh->index_count, &geometry->turned_triangles) &&
+               normals_compute(places, primitive->vertex_count, indices, mesh->index_count, computed);
         for (size_t i = 0; good && i < mesh->index_count; i++)
             fill_vertex(primitive, indices[i], places, normals, computed[i], &mesh->vertices[i]);
         geometry->computed_normals += !primitive->normals;

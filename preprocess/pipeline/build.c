@@ -499,6 +499,8 @@ static bool begin(struct build *build)
                                      .materials = g->material_count,
                                      .textures = g->texture_count,
                                      .degenerate_triangles = g->degenerate_triangles,
+                                     .turned_triangles = g->turned_triangles,
+                                     .closed_gaps = g->closed_gaps,
                                      .computed_normals = g->computed_normals,
                                      .skipped_lines = g->skipped_lines,
                                      .skipped_points = g->skipped_points,

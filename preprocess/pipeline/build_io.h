@@ -31,6 +31,7 @@ struct build_level {
 
 struct build_report {
     uint32_t nodes, triangles, vertices, primitives, materials, textures, degenerate_triangles, repeated_triangles, computed_normals;
+    uint32_t turned_triangles, closed_gaps;
     uint32_t skipped_lines, skipped_points; /* primitives that are no triangles */
     struct surface_report surface;          /* zero where the asset has no sensor */
     size_t unreachable_vertices;            /* no sensor's distance is finite there */

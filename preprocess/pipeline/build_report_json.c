@@ -25,6 +25,8 @@ static const struct number build_numbers[] = {
     OF_BUILD("textures", textures, COUNT32),
     OF_BUILD("zero_area_triangles", degenerate_triangles, COUNT32),
     OF_BUILD("repeated_triangles", repeated_triangles, COUNT32),
+    OF_BUILD("turned_triangles", turned_triangles, COUNT32),
+    OF_BUILD("closed_gaps", closed_gaps, COUNT32),
     OF_BUILD("computed_normals", computed_normals, COUNT32),
     OF_BUILD("skipped_lines", skipped_lines, COUNT32),
     OF_BUILD("skipped_points", skipped_points, COUNT32),

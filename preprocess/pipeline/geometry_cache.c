@@ -51,7 +51,7 @@ void geometry_cache_close(struct geometry_cache *cache)
 
 struct geometry_numbers {
     double origin_m[3];
-    uint32_t node_count, degenerate_triangles, computed_normals, skipped_lines, skipped_points;
+    uint32_t node_count, degenerate_triangles, turned_triangles, closed_gaps, computed_normals, skipped_lines, skipped_points;
 };
 
 static void pack_geometry(struct text *to, const struct geometry *g)
@@ -59,6 +59,8 @@ static void pack_geometry(struct text *to, const struct geometry *g)
     const struct geometry_numbers numbers = { { g->origin_m[0], g->origin_m[1], g->origin_m[2] },
                                               g->node_count,
                                               g->degenerate_triangles,
+                                              g->turned_triangles,
+                                              g->closed_gaps,
                                               g->computed_normals,
                                               g->skipped_lines,
                                               g->skipped_points };
@@ -90,6 +92,8 @@ static void unpack_geometry(struct unpack *from, struct geometry *g)
     unpack_into(from, &numbers, 1, sizeof(numbers));
     *g = (struct geometry){ .node_count = numbers.node_count,
                             .degenerate_triangles = numbers.degenerate_triangles,
+                            .turned_triangles = numbers.turned_triangles,
+                            .closed_gaps = numbers.closed_gaps,
                             .computed_normals = numbers.computed_normals,
                             .skipped_lines = numbers.skipped_lines,
                             .skipped_points = numbers.skipped_points };

@@ -240,6 +240,17 @@ void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
     }
 }
 
+void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct repair_report *report)
+{
+    struct borders borders;
+    size_t target_count = mesh->point_count;
+    for (uint32_t i = 0; i < target_count; i++)
+        target[i] = i;
+    borders_init(&borders, mesh);
+    seam_round(mesh, &borders, tolerance_m, 0, true, false, target, target_count, report);
+    borders_finish(&borders);
+}
+
 /* --- rims ------------------------------------------------------------------------------------------------------------------- */
 
 /* Takes the triangles with hidden[tri] == which. */

@@ -25,6 +25,10 @@ struct repair_report {
    gap are left alone, so that nothing small collapses. target[point], of the points before: receives what it has become. */
 void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct repair_report *report);
 
+/* Only merges points on border edges with others on border edges, as one round of repair_seams(), but none where faces that lie on each
+   other would be joined. target: as repair_seams(). */
+void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct repair_report *report);
+
 /* Joins parts in contact: where an edge passes through a face (also of its own part, parts->crossed), a point is inserted into both, and
    both are cut along the line where two faces cross; where a point lies within both parts' reach of another body, or within the tolerance
    and both face each other (line_of_sight.h), it is inserted there; where the rim of a face that lies on another part crosses an edge, a
