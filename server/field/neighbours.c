@@ -13,6 +13,12 @@
 
 #define AT_ONE_PLACE 1e-6 /* metres */
 
+struct neighbours {
+    struct layout *layout;
+    const struct influence_entry *entry; /* NULL: from distances */
+    float *along_m;                      /* [to][from]; INFINITY: no way leads, or it is not known. NULL: too many sensors */
+};
+
 static const struct influence_entry *entry_of(const struct layout *layout)
 {
     static const enum interpolation order[] = { INTERPOLATION_GP, INTERPOLATION_HARMONIC, INTERPOLATION_FIN };
@@ -25,21 +31,29 @@ static const struct influence_entry *entry_of(const struct layout *layout)
     return NULL;
 }
 
-/* INFINITY: no way leads, or it is not known yet. */
-static double along_m(const struct layout *layout, size_t from, size_t to)
+/* Looked up once: each is in a column of all vertices. The caller frees it (mem_free). */
+static float *distances_between(const struct layout *layout)
 {
-    const struct layout_sensor *sensor = &layout->sensors[from];
-    float room;
-    if (!layout_along(sensor, DISTANCE_GEODESIC) && !layout_is_in_file(sensor, DISTANCE_GEODESIC))
-        return INFINITY;
-    return (double)*layout_distances(layout, DISTANCE_GEODESIC, from, layout->sensors[to].vertex, 1, &room);
+    const size_t n = layout->sensor_count;
+    float *along_m = mem_array(n * n, sizeof(*along_m));
+    for (size_t from = 0; from < n; from++) {
+        const struct layout_sensor *sensor = &layout->sensors[from];
+        bool known = layout_along(sensor, DISTANCE_GEODESIC) || layout_is_in_file(sensor, DISTANCE_GEODESIC);
+        for (size_t to = 0; to < n; to++) {
+            float room;
+            along_m[to * n + from] =
+                known ? *layout_distances(layout, DISTANCE_GEODESIC, from, layout->sensors[to].vertex, 1, &room) : (float)INFINITY;
+        }
+    }
+    return along_m;
 }
 
 /* Some other good one is on its body; else nothing follows but rounding. */
-static bool is_told(const struct layout *layout, const uint8_t *used, size_t sensor)
+static bool is_told(const struct neighbours *neighbours, const uint8_t *used, size_t sensor)
 {
-    for (size_t j = 0; j < layout->sensor_count; j++)
-        if (j != sensor && used[j] && isfinite(along_m(layout, j, sensor)))
+    const size_t n = neighbours->layout->sensor_count;
+    for (size_t j = 0; j < n; j++)
+        if (j != sensor && used[j] && isfinite(neighbours->along_m[sensor * n + j]))
             return true;
     return false;
 }
@@ -49,8 +63,10 @@ static double level_of(const struct layout *layout, const struct influence_entry
     return entry && entry->interpolation == INTERPOLATION_FIN ? layout->group->ambient : 0;
 }
 
-static void predict_prepared(const struct layout *layout, const struct influence_entry *entry, const uint8_t *used, struct neighbour *out)
+static void predict_prepared(const struct neighbours *neighbours, const uint8_t *used, struct neighbour *out)
 {
+    const struct layout *layout = neighbours->layout;
+    const struct influence_entry *entry = neighbours->entry;
     const size_t n = layout->sensor_count;
     const double *precision = influence_array(&layout->file->influence, entry->precision);
     const double around = level_of(layout, entry);
@@ -65,7 +81,7 @@ static void predict_prepared(const struct layout *layout, const struct influence
         for (size_t j = 0; j < n; j++)
             pull += precision[i * n + j] * values[j];
         out[i].by = (enum interpolation)entry->interpolation;
-        if (!(own[i] > 0) || !is_told(layout, used, i))
+        if (!(own[i] > 0) || !is_told(neighbours, used, i))
             continue;
         out[i].predicted = around + (used[i] ? values[i] - pull / own[i] : values[i]);
         if (entry->interpolation == INTERPOLATION_GP)
@@ -76,13 +92,15 @@ static void predict_prepared(const struct layout *layout, const struct influence
     mem_free(own);
 }
 
-static void predict_by_distance(const struct layout *layout, const uint8_t *used, struct neighbour *out)
+static void predict_by_distance(const struct neighbours *neighbours, const uint8_t *used, struct neighbour *out)
 {
+    const struct layout *layout = neighbours->layout;
     for (size_t i = 0; i < layout->sensor_count; i++) {
+        const float *along_m = neighbours->along_m + i * layout->sensor_count;
         double sum = 0, whole = 0, least_m = INFINITY;
         for (size_t j = 0; j < layout->sensor_count; j++) {
             const struct layout_sensor *other = &layout->sensors[j];
-            double away_m = along_m(layout, j, i);
+            double away_m = (double)along_m[j];
             if (j == i || !used[j] || !(away_m <= layout->group->reach_m) || !isfinite(away_m) || other->strength <= 0)
                 continue;
             away_m = fmax(away_m, AT_ONE_PLACE);
@@ -104,11 +122,6 @@ static void predict_by_distance(const struct layout *layout, const uint8_t *used
     }
 }
 
-struct neighbours {
-    struct layout *layout;
-    const struct influence_entry *entry; /* NULL: from distances */
-};
-
 struct neighbours *neighbours_create(const struct scene *scene, int asset, int group)
 {
     struct layout *layout = layout_create(scene, asset, group, NULL);
@@ -117,14 +130,18 @@ struct neighbours *neighbours_create(const struct scene *scene, int asset, int g
         return NULL;
     }
     struct neighbours *neighbours = mem_new(sizeof(*neighbours));
-    *neighbours = (struct neighbours){ layout, entry_of(layout) };
+    *neighbours = (struct neighbours){ layout, entry_of(layout), NULL };
+    if (layout->sensor_count <= NEIGHBOURS_MOST)
+        neighbours->along_m = distances_between(layout);
     return neighbours;
 }
 
 void neighbours_destroy(struct neighbours **neighbours)
 {
-    if (*neighbours)
+    if (*neighbours) {
         layout_destroy(&(*neighbours)->layout);
+        mem_free((*neighbours)->along_m);
+    }
     mem_free(*neighbours);
     *neighbours = NULL;
 }
@@ -153,10 +170,10 @@ void neighbours_predict(const struct neighbours *neighbours, const double *value
         used[i] = isfinite(values[i]);
         out[i] = (struct neighbour){ layout->sensors[i].tag, INTERPOLATION_SHEPARD, used[i] ? values[i] : (double)NAN, NAN, NAN };
     }
-    if (neighbours->entry && count <= NEIGHBOURS_MOST)
-        predict_prepared(layout, neighbours->entry, used, out);
-    else if (count <= NEIGHBOURS_MOST)
-        predict_by_distance(layout, used, out);
+    if (neighbours->along_m && neighbours->entry)
+        predict_prepared(neighbours, used, out);
+    else if (neighbours->along_m)
+        predict_by_distance(neighbours, used, out);
     mem_free(used);
 }
 
@@ -165,8 +182,8 @@ size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, co
     const struct layout *layout = neighbours->layout;
     double *away_m = mem_array(most, sizeof(*away_m));
     size_t count = 0;
-    for (size_t j = 0; j < layout->sensor_count; j++) {
-        double m = j == sensor || apart[j] ? INFINITY : along_m(layout, j, sensor);
+    for (size_t j = 0; j < layout->sensor_count && neighbours->along_m; j++) {
+        double m = j == sensor || apart[j] ? INFINITY : (double)neighbours->along_m[sensor * layout->sensor_count + j];
         size_t at = count;
         while (at > 0 && m < away_m[at - 1])
             at--;
@@ -184,21 +201,26 @@ size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, co
     return count;
 }
 
-size_t neighbours_find(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct neighbour **out)
+/* Of all its sensors; the caller frees what it returns (mem_free). */
+static struct neighbour *predict_from(const struct neighbours *neighbours, const struct snapshot *snapshot)
 {
-    struct neighbours *neighbours = neighbours_create(scene, asset, group);
-    *out = NULL;
-    if (!neighbours)
-        return 0;
     const size_t count = neighbours_count(neighbours);
     double *values = mem_array(count, sizeof(*values));
-    *out = mem_array(count, sizeof(**out));
+    struct neighbour *out = mem_array(count, sizeof(*out));
     for (size_t i = 0; i < count; i++) {
         const struct reading *reading = &snapshot->readings[neighbours_tag(neighbours, i)];
         values[i] = quality_is_bad(reading->quality) ? (double)NAN : reading->value;
     }
-    neighbours_predict(neighbours, values, *out);
+    neighbours_predict(neighbours, values, out);
     mem_free(values);
+    return out;
+}
+
+size_t neighbours_find(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct neighbour **out)
+{
+    struct neighbours *neighbours = neighbours_create(scene, asset, group);
+    size_t count = neighbours ? neighbours_count(neighbours) : 0;
+    *out = neighbours ? predict_from(neighbours, snapshot) : NULL;
     neighbours_destroy(&neighbours);
     return count;
 }
@@ -214,8 +236,11 @@ const struct neighbours_kept *neighbours_look(struct neighbours_cache *cache, co
     struct neighbours_kept *kept = &cache->kept[(size_t)asset * groups + (size_t)group];
     if (kept->taken_mono_ns && snapshot->taken_mono_ns - kept->taken_mono_ns < NEIGHBOURS_FRESH_NS)
         return kept;
+    if (!kept->taken_mono_ns)
+        kept->of = neighbours_create(scene, asset, group);
     mem_free(kept->list);
-    kept->count = neighbours_find(scene, asset, group, snapshot, &kept->list);
+    kept->list = kept->of ? predict_from(kept->of, snapshot) : NULL;
+    kept->count = kept->of ? neighbours_count(kept->of) : 0;
     kept->taken_mono_ns = snapshot->taken_mono_ns;
     kept->taken_utc_ns = snapshot->taken_utc_ns;
     return kept;
@@ -223,8 +248,10 @@ const struct neighbours_kept *neighbours_look(struct neighbours_cache *cache, co
 
 void neighbours_cache_finish(struct neighbours_cache *cache)
 {
-    for (size_t i = 0; i < cache->count; i++)
+    for (size_t i = 0; i < cache->count; i++) {
+        neighbours_destroy(&cache->kept[i].of);
         mem_free(cache->kept[i].list);
+    }
     mem_free(cache->kept);
     *cache = (struct neighbours_cache){ 0 };
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Predicted without it: what the other good sensors of a group say at each sensor's place (leave-one-out). By the first of these that is
    prepared for the group: gp, harmonic, fin, from the precision P of the prepared sensors, v_i - (P v)_i / P_ii (Dubrule, Cross validation
-   of kriging in a unique neighborhood, 1983); else by shepard from distances along the surface. Takes (sensors * sensors) steps, and
-   nothing of it is kept: of more than NEIGHBOURS_MOST sensors on an asset nothing is said. Thread: any that may read the scene. */
+   of kriging in a unique neighborhood, 1983); else by shepard from distances along the surface. Takes (sensors * sensors) steps, and as
+   many numbers are kept: of more than NEIGHBOURS_MOST sensors on an asset nothing is said. Thread: any that may read the scene. */
 #ifndef FIELD_NEIGHBOURS_H
 #define FIELD_NEIGHBOURS_H
 #include "scene/scene.h"
@@ -38,9 +38,10 @@ size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, co
 /* Lists the sensors of the group on the asset whose places are known, in their order. Returns their number; 0: there are none. The caller
    frees *out (mem_free). */
 size_t neighbours_find(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct neighbour **out);
-/* What was found last, of each asset and group; zero-initialise. Thread: one. */
+/* What was found last, of each asset and group; zero-initialise. The scene must outlive what is kept. Thread: one. */
 struct neighbours_cache {
     struct neighbours_kept {
+        struct neighbours *of; /* NULL: there are none */
         struct neighbour *list;
         size_t count;
         int64_t taken_mono_ns, taken_utc_ns; /* the snapshot; 0: none yet */
