@@ -114,12 +114,35 @@ test('so is a statement of another picture, and a signature of another key', { s
         /the signature is wrong/);
 });
 
+// The picture with another statement, signed by the server's key.
+function resigned(png, change) {
+    const key = createPrivateKey(readFileSync(path('server.pem'))), text = change(textOf(png, STATEMENT));
+    assert.notEqual(text, textOf(png, STATEMENT));
+    const by = textOf(png, SIGNATURE).split(' ')[1], signature = sign(null, Buffer.from(text), key).toString('base64');
+    return withText(withText(png, STATEMENT, () => text), SIGNATURE, () => `ed25519 ${by} ${signature}`);
+}
+
 test('a statement of another version is signed well, and not understood', { skip }, () => {
-    const key = createPrivateKey(readFileSync(path('server.pem'))), text = textOf(picture, STATEMENT)
-        .replace('"plantcast_statement":2', '"plantcast_statement":3');
-    const by = textOf(picture, SIGNATURE).split(' ')[1], signature = sign(null, Buffer.from(text), key).toString('base64');
-    const changed = withText(withText(picture, STATEMENT, () => text), SIGNATURE, () => `ed25519 ${by} ${signature}`);
-    refused(changed, /the statement is of version 3; this program understands versions 1 to 2/);
+    for (const version of [0, 3, 1e9])
+        refused(resigned(picture, (text) => text.replace('"plantcast_statement":2', `"plantcast_statement":${version}`)),
+            new RegExp(`the statement is of version ${version}; this program understands versions 1 to 2`));
+    for (const [from, to] of [['"plantcast_statement":2', '"plantcast_statement":"2"'], ['"plantcast_statement":2,', '']])
+        refused(resigned(picture, (text) => text.replace(from, to)), /the statement is none of Plantcast's/);
+});
+
+// Until pictures of sessions were signed, statements said nothing of overlay and tier: all were whole pictures of /snapshot.png.
+test('a statement of version 1 is verified, and its picture drawn again', { skip }, () => {
+    const first = resigned(picture, (text) => text.replace('"plantcast_statement":2', '"plantcast_statement":1')
+        .replace('"overlay":"full",', '').replace('"tier":"refined",', ''));
+    assert.deepEqual(Object.keys(JSON.parse(textOf(first, STATEMENT))).sort(), ['assets', 'at_us', 'bare', 'clock_unset', 'configuration',
+        'height', 'pixels_sha256', 'plant', 'plantcast_statement', 'query', 'readings', 'readings_sha256', 'server', 'taken_ns', 'width']);
+    const { code, out, err } = redraw(first);
+    assert.equal(code, 0, out + err);
+    assert.match(out, /signature is good/);
+    assert.doesNotMatch(out, /a frame of a session/);
+    assert.match(out, / {2}256000 of 256000 pixels agree within 1\/255/);
+    refused(withRows(first, (rows) => { rows[2000] ^= 1; }), /the pixels are not those that were signed/);
+    refused(withText(first, STATEMENT, (text) => text.replace('"TI-1",80.0', '"TI-1",79.0')), /the signature is wrong/);
 });
 
 test('no file that would show something else is good', { skip }, () => {
@@ -170,6 +193,28 @@ test('a changed pixel, reading, time or camera of a frame is found', { skip }, (
         assert.notDeepEqual(changed, withText(frame, STATEMENT, (text) => text), what);
         refused(changed, /the signature is wrong/);
     }
+});
+
+test('sessions of one view get one signed frame, drawn and encoded once', { skip }, async () => {
+    const hello = { type: 'hello', width: 320, height: 200, codecs: ['png'], signed: 'refined' };
+    const clients = await Promise.all([1, 2].map(() => PlainClient.open(plant.port)));
+    for (const seq of [1, 2]) {
+        for (const client of clients) {
+            if (seq === 1)
+                client.say(hello);
+            client.say({ type: 'camera', seq, eye: [4, -3, 1 + seq], target: [1, 0, 0], up: [0, 0, 1], fov: 40 });
+        }
+        const frames = await Promise.all(clients.map((client) =>
+            client.frameWhere('a signed frame', (one) => one.flags & FLAG.signed && one.flags & FLAG.still && one.camera_seq === seq)));
+        const [first, second] = frames.map(({ data_time_us, render_us, encode_us }) => [data_time_us, render_us, encode_us]);
+        assert.deepEqual(first, second, 'drawn and encoded once: it took as long, to the microsecond');
+        assert.deepEqual(frames[0].payload, frames[1].payload);
+        for (const { payload } of frames) {
+            const { code, out, err } = redraw(payload);
+            assert.equal(code, 0, out + err);
+        }
+    }
+    clients.forEach((client) => client.close());
 });
 
 test('a session says what it wants signed, and is told why something is not', { skip }, async () => {
