@@ -137,8 +137,6 @@ static void draw_picture(cairo_t *cairo, const struct canvas *canvas, const stru
     if (look->shift_x || look->shift_y)
         brush_fill(cairo, &(struct box){ 0, 0, canvas->width_px, height }, GROUND);
     cairo_set_source_surface(cairo, look->picture, look->shift_x, look->shift_y);
-    if (look->whole) /* else there would be a line where it ends before the next one */
-        cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
     cairo_paint(cairo);
     if (look->dim > 0) {
         cairo_set_source_rgba(cairo, 0, 0, 0, look->dim);

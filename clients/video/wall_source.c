@@ -112,7 +112,7 @@ void wall_source_look(struct wall_source *source, struct shown *out)
              player->model.welcome ? " \u00b7 " : "", player->wall_id, player->display);
     int64_t age_ns = source->card ? -1 : oldest_ns(&player->model, now_ns);
     pthread_mutex_unlock(&player->lock);
-    struct rules_shift shift = player_shift(player);
+    struct burn_shift shift = player_shift(player);
     *out = (struct shown){
         .picture = source->card ? NULL : player->surface,
         .headline = source->headline,
@@ -121,8 +121,8 @@ void wall_source_look(struct wall_source *source, struct shown *out)
         .title = source->options->title ? source->options->title : source->title,
         .age_ms = age_ns < 0 ? -1 : age_ns / 1000000,
         .zone = source->zone,
-        .shift_x = shift.x,
-        .shift_y = shift.y,
+        .shift_x = shift.x_px,
+        .shift_y = shift.y_px,
         .dim = source->card ? 0 : 1 - player_brightness(player),
         .whole = tile,
     };

@@ -125,7 +125,7 @@ static int take_options(int argc, char **argv, struct options *options)
 
 struct shown {
     int64_t at_ns;
-    struct rules_shift shift;
+    struct burn_shift shift;
     double light;
 };
 
@@ -137,10 +137,10 @@ static bool show(struct player *player, struct screen *screen, int64_t now_ns, b
     *changed = player_draw(player, now_ns, &dirty);
     if (*changed)
         screen_update(screen, player->surface, &dirty);
-    if (!*changed && !exposed && now.shift.x == shown->shift.x && now.shift.y == shown->shift.y && now.light == shown->light)
+    if (!*changed && !exposed && now.shift.x_px == shown->shift.x_px && now.shift.y_px == shown->shift.y_px && now.light == shown->light)
         return true;
     *shown = now;
-    return screen_present(screen, now.shift.x, now.shift.y, now.light, player->ground);
+    return screen_present(screen, now.shift.x_px, now.shift.y_px, now.light, player->ground);
 }
 
 static bool take_events(struct player *player, struct screen *screen, bool *exposed)

@@ -239,17 +239,23 @@ static int minute_of(const struct player *player)
     return localtime_r(&seconds, &local) ? local.tm_hour * 60 + local.tm_min : 0;
 }
 
-struct rules_shift player_shift(struct player *player)
-{
-    pthread_mutex_lock(&player->lock);
-    struct rules_shift shift = rules_shift(model_now_us(&player->model) * 1000);
-    pthread_mutex_unlock(&player->lock);
-    return shift;
-}
-
 static bool is_tile(const struct player *player)
 {
     return player->pane_count > 0 && player->panes[0].view.tile.display > 0;
+}
+
+static struct burn_shift shift_now(const struct player *player)
+{
+    return burn_shift_at(model_now_us(&player->model) * 1000);
+}
+
+struct burn_shift player_shift(struct player *player)
+{
+    pthread_mutex_lock(&player->lock);
+    bool moves_within = is_tile(player) && player->card.length == 0;
+    struct burn_shift shift = moves_within ? (struct burn_shift){ 0 } : shift_now(player);
+    pthread_mutex_unlock(&player->lock);
+    return shift;
 }
 
 bool player_is_tile(struct player *player)
@@ -370,7 +376,7 @@ static void draw_banner(const struct player *player, cairo_t *cairo, const struc
     brush_text(cairo, &box, size, true, WHITE, ALIGN_CENTRE, false, text);
 }
 
-/* On the first tile alone. */
+/* On the first tile alone. It is moved, and its ground goes on to the display's edge. */
 static void draw_tile_title(const struct player *player, const struct pane *pane, cairo_t *cairo)
 {
     double size = 13 * player->unit;
@@ -381,10 +387,11 @@ static void draw_tile_title(const struct player *player, const struct pane *pane
                  about + 1);
     if (!title[0])
         return;
-    struct box box = { 0, 0, brush_measure(cairo, size, true, title).width + 2 * size, 1.9 * size };
+    const struct burn_shift *shift = &pane->view.shift;
+    struct box box = { 0, 0, shift->x_px + brush_measure(cairo, size, true, title).width + 2 * size, shift->y_px + 1.9 * size };
     brush_fill(cairo, &box, SURFACE);
-    box.x += size;
-    box.y += 0.25 * size;
+    box.x += shift->x_px + size;
+    box.y += shift->y_px + 0.25 * size;
     brush_text(cairo, &box, size, true, INK, ALIGN_LEFT, false, title);
 }
 
@@ -423,19 +430,20 @@ static void draw_state(struct player *player, struct pane *pane, cairo_t *cairo,
     cairo_save(cairo);
     cairo_rectangle(cairo, body.x, body.y, body.width, body.height);
     cairo_clip(cairo);
+    struct box moved = { body.x + pane->view.shift.x_px, body.y + pane->view.shift.y_px, body.width, body.height };
     if (is_picture && view_pane_draw(&pane->view, &player->model, cairo, (int)body.x, (int)body.y)) {
         notes_draw(&pane->view, &player->model, cairo, body.x, body.y);
         if (player->pointed == pane && now_ns - player->pointed_ns < POINT_NS)
             notes_draw_pointer(&pane->view, cairo, body.x, body.y, player->pointed_m, player->pointed_by);
         if (*text)
-            draw_banner(player, cairo, &body, text);
+            draw_banner(player, cairo, &moved, text);
         if (pane->view.tile.display == 1)
             draw_tile_title(player, pane, cairo);
     } else {
         bool lost = !strncmp(pane->state.at, "lost", 4);
         double size = (lost ? 24 : 13) * player->unit;
         brush_fill(cairo, &body, lost ? 0x000000 : SURFACE);
-        struct box box = { body.x + size, body.y + 0.4 * body.height, body.width - 2 * size, 0.6 * body.height };
+        struct box box = { moved.x + size, moved.y + 0.4 * body.height, body.width - 2 * size, 0.6 * body.height };
         brush_text(cairo, &box, size, lost, lost ? WHITE : INK_2, ALIGN_CENTRE, true, is_picture ? "\u2026" : text);
     }
     if (pane->called) {
@@ -466,8 +474,10 @@ static void draw_view(struct player *player, struct pane *pane, cairo_t *cairo, 
 {
     struct text said = { 0 }, state = { 0 };
     pane_choose(player, pane, now_ns);
-    if (pane->view.tile.display)
+    if (pane->view.tile.display) {
+        view_pane_move(&pane->view, shift_now(player));
         view_pane_flip(&pane->view, &player->model, model_now_us(&player->model));
+    }
     say_view_title(player, pane, now_ns, &said);
     say_state(player, pane, now_ns, &state);
     bool was_called = pane->said.at && pane->said.at[0] == '1';

@@ -9,6 +9,7 @@
 #include "link.h"
 #include "model.h"
 #include "notes.h"
+#include "plant/burn_shift.h"
 #include "plant/wall.h"
 #include "render/overlay/labels.h"
 #include "rules.h"
@@ -102,8 +103,9 @@ bool player_draw(struct player *player, int64_t now_ns, struct box *dirty);
 bool player_is_tile(struct player *player);
 /* Returns whether a tile is to show a picture at an instant that is near. */
 bool player_waits(struct player *player);
-/* Returns by how much the picture is moved now, by the plant's clock: all displays of a wall are moved alike. */
-struct rules_shift player_shift(struct player *player);
+/* Returns by how much player->surface is to be moved now. A tile is not: the server moves its picture within the one that all tiles share,
+   so that there is no gap beside it, and player_draw() what lies over it. */
+struct burn_shift player_shift(struct player *player);
 /* Waits until that time, monotonic, or until a picture comes. */
 void player_wait(struct player *player, int64_t until_ns);
 /* Returns how bright the display is to be now, up to 1. */

@@ -9,7 +9,7 @@ static const double MINUTES = 16, CAPITAL = 0.72,
                     SMALLEST_PX = 12.5;                    /* capital: of a letter's size; smallest: what is written on a desk's page */
 static const double LEAST_WIDTH = 560, LEAST_HEIGHT = 315; /* units that a display has at the least */
 static const int FLOOD = 10;                               /* more alarms than that, in ten minutes */
-static const int64_t FLOOD_US = 600000000, SHIFT_NS = 180000000000;
+static const int64_t FLOOD_US = 600000000;
 
 double rules_millimetres(double inches, double width_px, double height_px)
 {
@@ -27,12 +27,6 @@ double rules_brightness(double from_min, double to_min, double percent, double m
 {
     bool within = from_min <= to_min ? minute >= from_min && minute < to_min : minute >= from_min || minute < to_min;
     return within && !calls ? percent / 100 : 1;
-}
-
-struct rules_shift rules_shift(int64_t now_ns)
-{
-    static const struct rules_shift shifts[] = { { 0, 0 }, { 2, 1 }, { 3, -1 }, { 1, -3 }, { -1, -2 }, { -3, 0 }, { -2, 2 }, { 0, 3 } };
-    return shifts[(size_t)(now_ns / SHIFT_NS) % (sizeof(shifts) / sizeof(shifts[0]))];
 }
 
 bool rules_is_flood(const struct rules_alarm *alarms, size_t count, int64_t now_us)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rules of a wall that the page follows too, tested with the same cases (protocol/vectors/wall): how large letters are, how bright a
-   display is, where its picture lies, and which alarm takes the place of a view. Pure. */
+   display is, and which alarm takes the place of a view. Pure. */
 #ifndef WALL_RULES_H
 #define WALL_RULES_H
 #include <stdbool.h>
@@ -16,12 +16,6 @@ double rules_unit(double inches, double metres, double display_width_px, double 
 double rules_millimetres(double inches, double width_px, double height_px);
 /* Returns how bright a display is at a minute of the day, up to 1; as the hours of the wall say, or 1 while an alarm calls. */
 double rules_brightness(double from_min, double to_min, double percent, double minute, bool calls);
-
-/* Returns by how much the picture is moved now, so that nothing burns in: at most 3 pixels. */
-struct rules_shift {
-    int x, y;
-};
-struct rules_shift rules_shift(int64_t now_ns);
 
 struct rules_alarm {
     int id; /* of tag and kind */

@@ -527,6 +527,12 @@ bool view_pane_decode(struct view_pane *pane, pthread_mutex_t *lock, const struc
     return true;
 }
 
+void view_pane_move(struct view_pane *pane, struct burn_shift shift)
+{
+    pane->overlay_due |= shift.x_px != pane->shift.x_px || shift.y_px != pane->shift.y_px;
+    pane->shift = shift;
+}
+
 bool view_pane_flip(struct view_pane *pane, const struct model *model, int64_t now_us)
 {
     struct tile_picture picture;
@@ -601,7 +607,7 @@ static void draw_overlay(struct view_pane *pane, const struct model *model, cair
     collect_markers(pane, model, &frame);
     if (pane->tile.display && pane->tile.display != pane->tile.columns * pane->tile.rows)
         frame.view.look = LOOK_MATERIALS; /* the legend stands once on the wall: at its right edge */
-    overlay_draw_pane(part, &frame, &model->scene, model->snapshot, pane->unit);
+    overlay_draw_pane(part, &frame, &model->scene, model->snapshot, pane->unit, &pane->shift);
     mem_free(frame.markers);
     mem_free(frame.labels);
     cairo_surface_finish(part);

@@ -9,6 +9,7 @@
 #include "clients/link/decoder.h"
 #include "link.h"
 #include "model.h"
+#include "plant/burn_shift.h"
 #include "render/frame.h"
 #include "view_sight.h"
 #include "view_tile.h"
@@ -45,6 +46,7 @@ struct view_pane {
     uint32_t frames;
     struct frame frame; /* what the picture shows; its pixels are not used */
     bool by_gpu;
+    struct burn_shift shift; /* of a tile: of what stands at the edges of the display; the picture comes moved */
     struct view_tile tile;
     struct view_sight sight;
     /* --- below: of the network's thread */
@@ -73,6 +75,8 @@ void view_pane_show_tag(struct view_pane *pane, const struct model *model, int t
 void view_pane_tick(struct view_pane *pane, int64_t now_ns);
 /* Returns whether it speaks of the same plant as the model. */
 bool view_pane_fits(const struct view_pane *pane, const struct model *model);
+/* Of a tile: moves what stands at the edges of the display. */
+void view_pane_move(struct view_pane *pane, struct burn_shift shift);
 /* Of a tile: shows the picture whose time has come. Returns whether one came. */
 bool view_pane_flip(struct view_pane *pane, const struct model *model, int64_t now_us);
 /* Draws picture and overlay onto an image, all of them within it, with the upper left corner there. Returns false if there is no picture of

@@ -92,12 +92,22 @@ static void tell(struct server_context *server, const struct tile_wall *wall, co
         }
 }
 
+/* Before the first picture of one that has just come, too. */
+static void move_all(struct server_context *server, const char *wall)
+{
+    struct burn_shift shift = burn_shift_at(clock_plant_ns());
+    for (struct stream *stream = server->streams; stream; stream = stream->next)
+        if (is_of(stream, wall))
+            session_tile_move(stream->session, shift, clock_mono_ns());
+}
+
 void tiles_gather(struct server_context *server, const char *name, const struct stream *leaving)
 {
     struct tile_wall *wall = find(server, name);
     struct session *leader = wall ? choose(server, wall, leaving) : NULL;
     if (!wall)
         return;
+    move_all(server, name);
     if (!leader)
         wall->leader = 0;
     else if (leader->id != wall->leader)

@@ -154,6 +154,8 @@ void session_say_followers(struct session *session, const uint64_t *sessions, si
 /* --- tiles of one picture (session_tiles.h) ---------------------------------------------------------------------------- */
 
 bool session_is_tile(const struct session *session);
+/* Moves what the display shows of the picture, with the next one, which is sent for that. */
+void session_tile_move(struct session *session, struct burn_shift shift, int64_t now_ns);
 /* Leaves the session out if it has held up the others for too long, and lets it in again after a while. Returns whether that changed. */
 bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc_ns);
 /* Tells the session which displays of its wall are there, if that changed. there, late_us: by display, from 0; late_us: since when it is

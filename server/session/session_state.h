@@ -162,6 +162,7 @@ struct session_tile {
         uint32_t seq;     /* of the frame of this session that shows it */
     } held[TILE_HELD];    /* sent and not presented, oldest first */
     int held_count;
+    bool moved;         /* since a picture was asked for: it is to be sent though nothing in it changed */
     uint64_t unchanged; /* the picture that is the same as the frame that is awaited; 0: none */
     uint32_t presented_seq;
     int64_t made_ns;       /* how long the server takes for a preview from when it is asked for, smoothed; 0: not known */

@@ -22,10 +22,24 @@ bool session_tile_fit(const struct session *session, const struct wall_place *pl
     const struct wall *wall = wall_find(session->context->plant, place->wall);
     if (!wall || place->display > wall->tile.columns * wall->tile.rows)
         return false;
+    struct burn_shift shift = layout->shift;
     tile_layout_init(layout, wall, width_px, height_px, session->context->quotas->at[QUOTA_SESSION_PIXELS]);
+    layout->shift = shift;
     view->width_px = tile_layout_width(layout);
     view->height_px = tile_layout_height(layout);
     return true;
+}
+
+void session_tile_move(struct session *session, struct burn_shift shift, int64_t now_ns)
+{
+    struct burn_shift *mine = &session->tile.layout.shift;
+    if (mine->x_px == shift.x_px && mine->y_px == shift.y_px)
+        return;
+    *mine = shift;
+    session->tile.moved = true;
+    if (!session->demand.data)
+        session->demand.data_ns = now_ns;
+    session->demand.data = true; /* the picture as it is, cut anew */
 }
 
 void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq)

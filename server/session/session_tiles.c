@@ -69,7 +69,7 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
         if (wants && (!any || goes_first(request, &first)))
             first = *request;
         any |= wants;
-        always |= wants && request->always;
+        always |= (wants && request->always) || tiles->members[i]->tile.moved;
     }
     if (!any)
         return false;

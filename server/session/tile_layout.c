@@ -8,12 +8,12 @@ enum { LEAST_PX = 16 };
 
 int tile_layout_width(const struct tile_layout *layout)
 {
-    return layout->columns * layout->width_px + (layout->columns - 1) * layout->gap_px[0];
+    return layout->columns * layout->width_px + (layout->columns - 1) * layout->gap_px[0] + 2 * layout->margin_px[0];
 }
 
 int tile_layout_height(const struct tile_layout *layout)
 {
-    return layout->rows * layout->height_px + (layout->rows - 1) * layout->gap_px[1];
+    return layout->rows * layout->height_px + (layout->rows - 1) * layout->gap_px[1] + 2 * layout->margin_px[1];
 }
 
 /* Even: what an encoder of half the colours makes of an odd one would end in the next tile's pixels. */
@@ -28,8 +28,13 @@ struct tile_layout tile_layout_scale(const struct tile_layout *layout, double sc
     struct tile_layout out = *layout;
     out.width_px = scaled(layout->width_px, scale);
     out.height_px = scaled(layout->height_px, scale);
-    out.gap_px[0] = (int)lround((double)layout->gap_px[0] * out.width_px / layout->width_px);
-    out.gap_px[1] = (int)lround((double)layout->gap_px[1] * out.height_px / layout->height_px);
+    double across = (double)out.width_px / layout->width_px, down = (double)out.height_px / layout->height_px;
+    out.gap_px[0] = (int)lround(layout->gap_px[0] * across);
+    out.gap_px[1] = (int)lround(layout->gap_px[1] * down);
+    out.margin_px[0] = (int)lround(layout->margin_px[0] * across);
+    out.margin_px[1] = (int)lround(layout->margin_px[1] * down);
+    out.shift.x_px = (int)lround(layout->shift.x_px * across);
+    out.shift.y_px = (int)lround(layout->shift.y_px * down);
     return out;
 }
 
@@ -37,7 +42,11 @@ void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int w
 {
     const struct wall_tile *tile = &wall->tile;
     double px_per_mm = hypot(width_px, height_px) / (wall->inches * MM_PER_INCH);
-    struct tile_layout full = { .columns = tile->columns, .rows = tile->rows, .width_px = width_px, .height_px = height_px };
+    struct tile_layout full = { .columns = tile->columns,
+                                .rows = tile->rows,
+                                .width_px = width_px,
+                                .height_px = height_px,
+                                .margin_px = { BURN_SHIFT_PX, BURN_SHIFT_PX } };
     for (int i = 0; i < 2; i++)
         full.gap_px[i] = (int)lround(tile->bezel_mm[i] * px_per_mm);
     double width = tile_layout_width(&full), height = tile_layout_height(&full), side = fmax(width, height);
@@ -51,8 +60,8 @@ void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int w
 struct frame_part tile_layout_part(const struct tile_layout *layout, int display)
 {
     int column = (display - 1) % layout->columns, row = (display - 1) / layout->columns;
-    return (struct frame_part){ .x_px = column * (layout->width_px + layout->gap_px[0]),
-                                .y_px = row * (layout->height_px + layout->gap_px[1]),
+    return (struct frame_part){ .x_px = layout->margin_px[0] - layout->shift.x_px + column * (layout->width_px + layout->gap_px[0]),
+                                .y_px = layout->margin_px[1] - layout->shift.y_px + row * (layout->height_px + layout->gap_px[1]),
                                 .width_px = layout->width_px,
                                 .height_px = layout->height_px };
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the tiles of one picture over many displays lie in it, in pixels. Behind bezels the picture goes on, unseen. Pure; any thread. */
+/* Where the tiles of one picture over many displays lie in it, in pixels. Behind bezels the picture goes on, unseen, and around all tiles,
+   so that they can be moved together without a gap. Pure; any thread. */
 #ifndef SESSION_TILE_LAYOUT_H
 #define SESSION_TILE_LAYOUT_H
+#include "plant/burn_shift.h"
 #include "plant/wall.h"
 #include "render/frame.h"
 
@@ -9,6 +11,8 @@ struct tile_layout {
     int columns, rows;
     int width_px, height_px; /* of a tile */
     int gap_px[2];           /* between two of them: across, down */
+    int margin_px[2];        /* around all of them: left and right, above and below */
+    struct burn_shift shift; /* by which all tiles see the picture moved: at most the margin */
 };
 
 /* Lays out the tiles of a wall that has some, for displays of that size. Where the picture would have more than most_px pixels or too long

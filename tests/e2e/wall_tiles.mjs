@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { burnShift } from '../../clients/web/core/wall.js';
 import { Canvas } from './support/png_pixels.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { Relay, relayMissing } from './support/relay.mjs';
@@ -98,11 +99,15 @@ async function whole(width, height, still) {
     return canvas;
 }
 
-// Readings stand still meanwhile, and so does what is seen. Fewer pixels, as a loaded machine has it, would be compared with others.
+// What all tiles see is moved within the large picture, by the clock.
+const MARGIN = 3, shiftNow = () => burnShift(Date.now() * 1000), margins = (size) => size + 2 * MARGIN;
+
+// Readings stand still meanwhile, and so does what is seen, between two moves. Fewer pixels, as a loaded machine has it, would be compared
+// with others.
 async function compare(wall, columns, rows, [across, down]) {
     const width = columns * WIDTH + (columns - 1) * across, height = rows * HEIGHT + (rows - 1) * down;
     for (const still of [false, true]) {
-        const clients = await tilesOf(wall, columns * rows), leader = await leaderOf(clients);
+        const clients = await tilesOf(wall, columns * rows), leader = await leaderOf(clients), shift = shiftNow();
         await picture(clients);
         const told = (frame) => presents(leader).find(({ seq }) => seq === frame.seq);
         const all = (frame) => told(frame) && clients.map((client) => presents(client).find((one) => one.picture === told(frame).picture));
@@ -111,21 +116,50 @@ async function compare(wall, columns, rows, [across, down]) {
         const canvases = clients.map((client, i) => canvasAt(client, shown[i].seq));
         assert.equal(new Set(shown.map(({ at_us: us }) => us)).size, 1);
         close(clients);
-        const large = await whole(width, height, still);
+        if (`${shiftNow()}` !== `${shift}`)
+            return compare(wall, columns, rows, [across, down]);
+        const large = await whole(margins(width), margins(height), still);
         for (const [i, tile] of canvases.entries()) {
-            const x = (i % columns) * (WIDTH + across), y = Math.floor(i / columns) * (HEIGHT + down);
+            const x = MARGIN - shift[0] + (i % columns) * (WIDTH + across);
+            const y = MARGIN - shift[1] + Math.floor(i / columns) * (HEIGHT + down);
             assert.deepEqual([tile.width, tile.height], [WIDTH, HEIGHT]);
             assert.equal(tile.differsFrom(large, x, y), 0, `display ${i + 1} of ${wall}, ${still ? 'refined' : 'preview'}`);
         }
         const colours = new Set(Array.from({ length: large.rgb.length / 3 }, (_, i) => large.rgb.readUIntBE(3 * i, 3)));
         assert.ok(colours.size > 100, `${colours.size} colours: there is something to compare`);
     }
+    return undefined;
 }
 
 test('six tiles are the large picture, pixel by pixel, preview and refined', options, () => compare('seamless', 3, 2, [0, 0]));
 test('behind bezels the picture goes on', options, async () => {
     assert.ok(BEZEL[0] > 20 && BEZEL[1] > 10);
     await compare('framed', 2, 2, BEZEL);
+});
+
+test('every 3 minutes all tiles are moved at one instant', { ...options, timeout: 400000,
+    skip: options.skip || (process.env.PLANTCAST_LONG === '1' ? false : 'PLANTCAST_LONG=1') }, async () => {
+    const clients = await tilesOf('seamless', 6), leader = await leaderOf(clients);
+    const refined = () => presents(leader).some(({ seq }) => leader.frames.find((frame) => frame.seq === seq)?.flags & STILL);
+    await leader.until('a refined picture', refined, 60000);
+    await sleep(2000);
+    const before = presents(leader).at(-1), shift = shiftNow(), drawn = await metric('plantcast_renders_total');
+    const canvases = clients.map((client) => canvasAt(client, presents(client).at(-1).seq));
+    await leader.until('the next move', () => `${shiftNow()}` !== `${shift}`, 190000);
+    await leader.until('another picture', () => presents(leader).at(-1).picture > before.picture, 3000);
+    const shown = await picture(clients), [x, y] = shiftNow();
+    assert.equal(new Set(shown.map(({ at_us: us }) => us)).size, 1);
+    assert.ok(shown[0].at_us % 180e6 < 5e6, `${shown[0].at_us % 180e6 / 1e6} s after the clock says so`);
+    const more = await metric('plantcast_renders_total') - drawn;
+    assert.ok(more <= 6, `${more} pictures were drawn`); // not one for each tile and step
+    for (const [i, client] of clients.entries()) { // what was within it then, and is now
+        const now = canvasAt(client, shown[i].seq), was = canvases[i], edge = 8, bytes = (WIDTH - 2 * edge) * 3;
+        for (let row = edge; row < HEIGHT - edge; row++) {
+            const at = (row * WIDTH + edge) * 3, then = ((row + shift[1] - y) * WIDTH + edge + shift[0] - x) * 3;
+            assert.equal(now.rgb.compare(was.rgb, then, then + bytes, at, at + bytes), 0, `display ${i + 1}, row ${row}`);
+        }
+    }
+    close(clients);
 });
 
 const metric = async (name) => Number((await get(plant.port, '/metrics')).body.toString().match(new RegExp(`^${name} (\\S+)`, 'm'))[1]);

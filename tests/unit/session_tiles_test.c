@@ -103,6 +103,48 @@ static void test_an_answer_without_a_frame_overtakes_one(void **state)
     tear_down(&wall);
 }
 
+/* The picture is larger than all tiles by what it is moved, at any size, so that no tile ever sees beyond its edge. */
+static void test_tiles_are_moved_within_the_picture(void **state)
+{
+    struct wall wall = { .inches = 10, .tile = { .columns = 3, .rows = 2, .bezel_mm = { 20, 0 } } };
+    struct tile_layout full;
+    (void)state;
+    tile_layout_init(&full, &wall, 320, 180, 1 << 24);
+    for (int i = 0; i < 8 * 4; i++) {
+        full.shift = burn_shift_at(i / 4 * 180 * NS_PER_S);
+        struct tile_layout layout = tile_layout_scale(&full, 1 - 0.17 * (i % 4));
+        struct frame_part first = tile_layout_part(&layout, 1), second = tile_layout_part(&layout, 2), last = tile_layout_part(&layout, 6);
+        assert_true(first.x_px >= 0 && first.y_px >= 0);
+        assert_true(last.x_px + last.width_px <= tile_layout_width(&layout));
+        assert_true(last.y_px + last.height_px <= tile_layout_height(&layout));
+        assert_int_equal(second.x_px - first.x_px, layout.width_px + layout.gap_px[0]);
+        assert_int_equal(last.y_px - first.y_px, layout.height_px);
+        if (i % 4 == 0) {
+            assert_int_equal(first.x_px, BURN_SHIFT_PX - full.shift.x_px);
+            assert_int_equal(first.y_px, BURN_SHIFT_PX - full.shift.y_px);
+        }
+    }
+}
+
+static void test_a_move_is_sent_once(void **state)
+{
+    struct wall_case wall;
+    struct frame_request request = { .view.tier = TIER_REFINED };
+    struct session *first;
+    (void)state;
+    set_up(&wall);
+    first = wall.members[0];
+    session_tile_move(first, (struct burn_shift){ 0 }, 5);
+    assert_false(first->tile.moved || first->demand.data);
+    session_tile_move(first, (struct burn_shift){ 2, 1 }, 6);
+    assert_true(first->tile.moved && first->demand.data);
+    assert_int_equal(first->demand.data_ns, 6);
+    session_requested(first, &request, true);
+    session_tile_move(first, (struct burn_shift){ 2, 1 }, 7);
+    assert_false(first->tile.moved || first->demand.data);
+    tear_down(&wall);
+}
+
 /* Returns the size after pictures that took so long, one in 50 ms. */
 static int size_after(struct quality_ladder *ladder, int64_t made_ms, int64_t from_ms, int64_t to_ms)
 {
@@ -131,6 +173,8 @@ int main(void)
         cmocka_unit_test(test_what_all_have_is_shown),
         cmocka_unit_test(test_of_two_pictures_none_is_waited_for),
         cmocka_unit_test(test_an_answer_without_a_frame_overtakes_one),
+        cmocka_unit_test(test_tiles_are_moved_within_the_picture),
+        cmocka_unit_test(test_a_move_is_sent_once),
         cmocka_unit_test(test_a_server_that_takes_long_makes_smaller_pictures),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -13,6 +14,7 @@
 #include "clients/wall/approach.h"
 #include "clients/wall/rules.h"
 #include "clients/wall/view_address.h"
+#include "plant/burn_shift.h"
 
 static json_t *cases(const char *name)
 {
@@ -127,6 +129,21 @@ static void letters_are_as_large_as_on_the_page(void **state)
     json_decref(all);
 }
 
+static void what_is_shown_is_moved_as_in_the_page(void **state)
+{
+    json_t *all = cases("shifts");
+    (void)state;
+    assert_true(json_array_size(all) > 8);
+    for (size_t i = 0; i < json_array_size(all); i++) {
+        const json_t *o = json_array_get(all, i), *wanted = json_object_get(o, "shift");
+        struct burn_shift shift = burn_shift_at((int64_t)json_integer_value(json_object_get(o, "us")) * 1000);
+        assert_int_equal(shift.x_px, json_integer_value(json_array_get(wanted, 0)));
+        assert_int_equal(shift.y_px, json_integer_value(json_array_get(wanted, 1)));
+        assert_true(abs(shift.x_px) <= BURN_SHIFT_PX && abs(shift.y_px) <= BURN_SHIFT_PX);
+    }
+    json_decref(all);
+}
+
 static void take(const json_t *from, double to[3])
 {
     for (size_t i = 0; i < 3; i++)
@@ -166,6 +183,7 @@ int main(void)
         cmocka_unit_test(alarms_call_as_on_the_page),
         cmocka_unit_test(addresses_read_as_on_the_page),
         cmocka_unit_test(letters_are_as_large_as_on_the_page),
+        cmocka_unit_test(what_is_shown_is_moved_as_in_the_page),
         cmocka_unit_test(places_are_looked_at_from_the_sides_of_the_page),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -7,7 +7,7 @@ import { readAddress } from '../../clients/web/core/address.js';
 import { sidesOf } from '../../clients/web/core/approach.js';
 import { AlarmCall } from '../../clients/web/core/alarm_call.js';
 import { cameraMessage } from '../../clients/web/core/camera.js';
-import { brightness, wallFit } from '../../clients/web/core/wall.js';
+import { brightness, burnShift, wallFit } from '../../clients/web/core/wall.js';
 
 const cases = (name) => JSON.parse(readFileSync(new URL(`../../protocol/vectors/wall/${name}.json`, import.meta.url)));
 const NOW_US = 1e15;
@@ -42,6 +42,11 @@ test('how large letters are, and how bright a display', () => {
     }
     for (const { minute, calls, light, ...dim } of dimming)
         assert.equal(brightness(dim, minute, calls), light, JSON.stringify({ ...dim, minute }));
+});
+
+test('by how much what is shown is moved', () => {
+    for (const { us, shift } of cases('shifts'))
+        assert.deepEqual(burnShift(us), shift, `${us}`);
 });
 
 test('from which sides a place is looked at', () => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How large everything on a control room's wall must be to be read from where people sit.
+// How large everything on a control room's wall must be to be read from where people sit, how bright, and where it lies.
 
 // ISO 9241-303: a capital letter is well read from 20 minutes of arc on, and no smaller than 16.
 export const MINUTES = 16;
@@ -43,6 +43,10 @@ export function brightness(dim, minute, calls) {
     const within = from <= to ? minute >= from && minute < to : minute >= from || minute < to;
     return within && !calls ? percent / 100 : 1;
 }
+
+// By how much all that a wall shows is moved now, so that nothing burns in: [to the right, down] in pixels, at a time of the plant's clock.
+const SHIFT_US = 180e6, SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]];
+export const burnShift = (us) => SHIFTS[Math.floor(us / SHIFT_US) % SHIFTS.length];
 
 // Whether legends lie below the picture or stand beside it, on a wall so many units wide and high.
 export const legendsLie = (width, height, split) => width < height || (split && width < 800);

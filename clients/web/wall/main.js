@@ -6,7 +6,7 @@ import { zoneClock } from '../core/format.js';
 import { health } from '../core/health.js';
 import { ask } from '../core/history.js';
 import { Session } from '../core/session.js';
-import { brightness, millimetresPerPx, SPREAD_MS, wallFit } from '../core/wall.js';
+import { brightness, burnShift, millimetresPerPx, SPREAD_MS, wallFit } from '../core/wall.js';
 import { language, learnWords, say } from '../core/words.js';
 import { clock, keepScreenOn, watchSleep } from '../app/common/clock.js';
 import { byId, make, setText, setVariable } from '../app/common/dom.js';
@@ -17,8 +17,7 @@ import { areaOf, paneOf } from './panes.js';
 import { Pairing } from './pairing.js';
 import { tileOf } from './tile.js';
 
-const TICK_MS = 250, LOST_MS = 3000, SHIFT_MS = 180000;
-const SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]]; // pixels, by the plant's clock: nothing burns in
+const TICK_MS = 250, LOST_MS = 3000;
 const LEAST = { width: 560, height: 315 }, LETTERS_MM = 100; // units that a display has at the least; of what is said of a lost server
 const query = new URLSearchParams(location.search), number = Math.max(1, Number(query.get('display')) || 1);
 
@@ -116,13 +115,15 @@ function tick() {
     const heard = model && session.freshAt !== null;
     if (!byId('lost').hidden)
         setText(byId('lost'), heard ? say('walls.lost', { time: timeOf(session.clockUs(session.freshAt)) }) : say('walls.never'));
-    if (!model || gone)
+    if (!model)
+        return;
+    const [x, y] = burnShift(session.clockUs());
+    setVariable(document.body, '--shift-x', `${x}px`);
+    setVariable(document.body, '--shift-y', `${y}px`);
+    if (gone)
         return;
     for (const pane of panes)
         pane.tick(now);
-    const [x, y] = SHIFTS[Math.floor(session.clockUs() / 1000 / SHIFT_MS) % SHIFTS.length];
-    setVariable(document.body, '--x', `${x}px`);
-    setVariable(document.body, '--y', `${y}px`);
     if (wall) {
         const [hours, minutes] = timeOf(session.clockUs()).split(':').map(Number);
         const calls = model.alarms.list().some(({ waiting }) => waiting);

@@ -299,12 +299,13 @@ static void draw(struct frame *frame, const struct scene *scene, const struct sn
 }
 
 void overlay_draw_pane(cairo_surface_t *surface, const struct frame *frame, const struct scene *scene, const struct snapshot *snapshot,
-                       double unit)
+                       double unit, const struct burn_shift *legend)
 {
     struct pen *pen = mem_new(sizeof(*pen));
     pen_init(pen, surface, frame, scene, snapshot, NULL);
     pen_scale(pen, unit);
     pen->calm = true;
+    pen->legend_shift = legend ? *legend : (struct burn_shift){ 0 };
     draw_rest(pen);
     cairo_destroy(pen->cairo);
     mem_free(pen);

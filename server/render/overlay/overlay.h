@@ -5,6 +5,7 @@
 #include <cairo.h>
 
 #include "loopcheck/loop_checks.h"
+#include "plant/burn_shift.h"
 #include "render/frame.h"
 
 /* Draws over frame->bgrx. The frame must not be shared yet. The clock is shown in the time zone of the process (TZ), which its main
@@ -18,9 +19,9 @@ void overlay_draw_bare(struct frame *frame, const struct scene *scene, const str
 
 /* Draws markers, labels and legend over a surface, which may be transparent, as a pane of a wall has them: only what has an alarm or is bad
    has a label, and what the pane says itself (what plant, when, how old) is left out. Of the frame, pixels are not looked at. unit: pixels
-   of the surface that are one at 1280x720. */
+   of the surface that are one at 1280x720. legend: by how much the legend is moved; NULL: not. */
 void overlay_draw_pane(cairo_surface_t *surface, const struct frame *frame, const struct scene *scene, const struct snapshot *snapshot,
-                       double unit);
+                       double unit, const struct burn_shift *legend);
 
 /* Computes the part of the view, or of each half of a split view, that legend and clock leave free. Pure. */
 void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out);

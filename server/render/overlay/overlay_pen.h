@@ -8,6 +8,7 @@
 #include <cairo.h>
 
 #include "loopcheck/loop_checks.h"
+#include "plant/burn_shift.h"
 #include "render/frame.h"
 #include "render/overlay/labels.h"
 #include "value/alarm.h"
@@ -27,6 +28,7 @@ struct pen {
     bool bare;                             /* draws nothing about sensors and alarms */
     bool calm;                             /* only what is abnormal has a label */
     double unit, text_px;
+    struct burn_shift legend_shift; /* of the legend, within the margin around it */
     struct box taken[PEN_MAX_TAKEN]; /* occupied areas */
     int taken_count;
 };

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Displays beside each other, as they are seen: the picture goes on from one to the next, though it is moved so that nothing burns in.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { burnShift } from '../../clients/web/core/wall.js';
+import { openPage, SCREENSHOTS, shoot } from './support/browser.mjs';
+import { PlainClient } from './support/plain_client.mjs';
+import { pixelsOf } from './support/png_pixels.mjs';
+import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
+import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
+
+const absent = missing(), PLAYER = join(BIN, 'plantcast-wall');
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 240000 };
+const noPlayer = (existsSync(PLAYER) ? null : 'not built: plantcast-wall') ?? missingDisplay();
+const [WIDTH, HEIGHT] = [640, 360], SCREEN = { viewport: { width: WIDTH, height: HEIGHT } }, MARGIN = 3, STILL = 2;
+const WALLS = `
+views: [{ id: all, title: All, view: "group=temperature&camera=3.5,-7,1,1.5,0,0,0,0,1,30" }]
+walls: [{ id: wide, tile: { columns: 2, rows: 1, views: all } }]
+`;
+const CAMERA = { type: 'camera', seq: 1, eye: [3.5, -7, 1], target: [1.5, 0, 0], up: [0, 0, 1], fov: 30 };
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms)), shiftNow = () => burnShift(Date.now() * 1000);
+let plant;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    const tags = join(plant.folder, 'tags.csv'); // no reading goes stale because the machine is busy
+    writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1$/gm, ',600'));
+    writeFileSync(plant.file, readFileSync(plant.file, 'utf8') + WALLS);
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    await plant.startDaemon();
+    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
+        await plant.tell(`set ${tag} ${value}`);
+});
+after(() => plant?.destroy());
+
+// All of the picture, as one client of that size has it: { width, at(x, y) }.
+async function wholePicture() {
+    const client = await PlainClient.open(plant.port), width = 2 * WIDTH + 2 * MARGIN, height = HEIGHT + 2 * MARGIN;
+    await client.hello({ width, height, codecs: ['png'] });
+    client.say({ type: 'params', seq: 1, group: 'temperature' });
+    client.say(CAMERA);
+    const frame = await client.frameWhere('a refined picture', (one) =>
+        one.camera_seq === 1 && one.params_seq === 1 && one.flags & STILL && one.width === width && one.height === height, 60000);
+    client.close();
+    return pictureOf(pixelsOf(frame.payload));
+}
+
+const pictureOf = ({ width, height, rgb }) => ({ width, height, at: (x, y) => [0, 1, 2].map((i) => rgb[3 * (y * width + x) + i]) });
+const isNear = (a, b) => a.every((value, i) => Math.abs(value - b[i]) < 40); // pictures are sent as JPEG or H.264
+
+// Which parts of two displays are those of the large picture, as the least share of pixels: beside the seam, at the lower edge between
+// legend and corner, and where a box stands, which is neither white nor gray.
+function agreement(screens, large, [x0, y0]) {
+    const parts = { edges: [0, 0], box: [0, 0] };
+    const look = (i, x, y, part = parts.edges) => {
+        part[0] += isNear(screens[i].at(x, y), large.at(MARGIN - x0 + i * WIDTH + x, MARGIN - y0 + y));
+        part[1]++;
+    };
+    for (let y = 0.35 * HEIGHT; y < 0.65 * HEIGHT; y += 4) {
+        for (let x = 0.7 * WIDTH; x < 0.85 * WIDTH; x += 4)
+            look(0, Math.round(x), Math.round(y), parts.box);
+    }
+    for (let k = 0; k < MARGIN; k++) {
+        for (let y = Math.round(0.15 * HEIGHT); y < HEIGHT; y++) {
+            look(0, WIDTH - 1 - k, y);
+            look(1, k, y);
+        }
+        for (let x = Math.round(0.6 * WIDTH); x < Math.round(0.9 * WIDTH); x++)
+            look(0, x, HEIGHT - 1 - k);
+    }
+    return Math.min(...Object.values(parts).map(([same, all]) => same / all));
+}
+
+// Until they are refined; a move meanwhile, every 3 minutes, is waited for.
+async function expectOnePicture(grab, name) {
+    const large = await wholePicture();
+    let share = 0, screens;
+    for (const end = performance.now() + 60000; share < 0.97 && performance.now() < end; await sleep(500)) {
+        screens = await grab();
+        share = agreement(screens, large, shiftNow());
+    }
+    if (share < 0.97 || process.env.PLANTCAST_SHOTS === '1')
+        screens.forEach((screen, i) => savePng(screen, join(SCREENSHOTS, `wall-seam-${name}-${i + 1}.png`)));
+    assert.ok(share >= 0.97, `${share} of the pixels are those of the large picture`);
+}
+
+test('pages: no line between them', options, async () => {
+    const url = (display) => `http://127.0.0.1:${plant.port}/wall.html?wall=wide&display=${display}`;
+    const pages = [await openPage(url(1), SCREEN), await openPage(url(2), SCREEN)];
+    for (const { page } of pages)
+        await page.waitForFunction(() => globalThis.wall?.panes[0]?.session?.picture, null, { timeout: 60000 });
+    await expectOnePicture(() => Promise.all(pages.map(async ({ page }) => pictureOf(pixelsOf(await page.screenshot())))), 'page');
+    for (const [i, { page }] of pages.entries())
+        await shoot(page, `wall-seam-${i + 1}`);
+    await Promise.all(pages.map(({ close }) => close()));
+});
+
+test('players: likewise', { ...options, skip: options.skip || (noPlayer ?? false) }, async () => {
+    const screens = [await startDisplay(WIDTH, HEIGHT), await startDisplay(WIDTH, HEIGHT)];
+    const url = `http://127.0.0.1:${plant.port}/`;
+    const players = screens.map((screen, i) => spawn(PLAYER, [url, '--wall', 'wide', '--display', String(i + 1)],
+        { env: { ...process.env, DISPLAY: screen.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' }, stdio: 'ignore' }));
+    try {
+        await expectOnePicture(() => screens.map((screen) => screen.grab()), 'player');
+    } finally {
+        for (const player of players) {
+            const gone = new Promise((done) => player.once('exit', done));
+            player.kill();
+            await gone;
+        }
+        for (const screen of screens)
+            await screen.stop();
+    }
+});
