@@ -60,6 +60,7 @@ static const char view_usage[] =
     "  --environment NAME      surroundings that light the plant: sky, or one of the plant file\n"
     "  --backdrop NAME         light or dark: what is behind the plant\n"
     "  --strip legend          a strip below, from which `plantcast read` tells values in a copy of the picture\n"
+    "  --language L            of legend and labels: en, ko or de\n"
     "  --arrows NAME           arrows, strokes, none: how directions are drawn\n"
     "  --select ASSET          outline this asset\n"
     "  --split \"NAME=V;...\"    a second picture beside it, under the same camera; names as above without dashes, but\n"
@@ -97,6 +98,7 @@ static const struct {
     { "light", "light" },
     { "backdrop", "backdrop" },
     { "strip", "strip" },
+    { "language", "language" },
     { "arrows", "arrows" },
     { "environment", "environment" },
     { "select", "selected" },

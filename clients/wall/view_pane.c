@@ -13,6 +13,7 @@
 #include "scene/framing.h"
 #include "value/quality.h"
 #include "view_address.h"
+#include "words.h"
 
 void view_pane_init(struct view_pane *pane, struct link *link, int width_px, int height_px, double unit, bool by_gpu)
 {
@@ -89,6 +90,7 @@ static bool read_view(const struct model *model, const json_t *params, int width
     if (is_distance || is_difference)
         json_object_del(plain, "show");
     view_default(&model->scene, width_px, height_px, view);
+    view->language = words_language();
     bool good = params_parse(&model->plant, plain, &change, &error) && params_apply(&context, &change, view, &error);
     json_decref(plain);
     int tag = good && is_distance && sensor ? plant_find_tag(&model->plant, sensor) : -1;

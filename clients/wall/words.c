@@ -16,6 +16,7 @@
 enum { TEXTS = 32, TEXT_BYTES = 512, FILES = 2, MOST_PAIRS = 8 };
 static const char *files[FILES];
 static bool has_plurals = true;
+static enum language chosen;
 
 static char *next_text(void)
 {
@@ -23,6 +24,11 @@ static char *next_text(void)
     static int next;
     next = (next + 1) % TEXTS;
     return texts[next];
+}
+
+enum language words_language(void)
+{
+    return chosen;
 }
 
 bool words_choose(const char *language)
@@ -36,8 +42,8 @@ bool words_choose(const char *language)
         mem_free(name);
     }
     has_plurals = strcmp(language, "ko") != 0;
-    overlay_words_choose(language);
-    if (!text_face_has(overlay_word(WORD_NO_DATA)))
+    overlay_language_find(language, &chosen);
+    if (!text_face_has(overlay_word(chosen, WORD_NO_DATA)))
         fprintf(stderr, "no installed font has the letters of --language %s: boxes stand in their place (package fonts-nanum)\n", language);
     return files[0] && files[1];
 }

@@ -5,9 +5,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "render/view.h"
+
 /* Chooses the language, also of legends and labels: en, ko or de. Says if no font has its letters. Returns false if it is none of them.
    Before say(). */
 bool words_choose(const char *language);
+/* Returns it; English until one is chosen. */
+enum language words_language(void);
 /* Returns the text of a key, with pairs of name and value put in, ended by NULL: say("walls.since", "time", "10:00", NULL). The plural is
    that
    of `count`, where there is one. Returned texts are used again after 32 others. */

@@ -82,6 +82,7 @@ enum params_given { /* which members a params message had */
                     GIVEN_BACKDROP = 1 << 26,
                     GIVEN_STRIP = 1 << 27,
                     GIVEN_ARROWS = 1 << 28,
+                    GIVEN_LANGUAGE = 1 << 29,
 };
 
 enum baseline_change { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_NOW, BASELINE_SET, BASELINE_REMOVE };
@@ -99,6 +100,7 @@ struct params_change {
     double range_min, range_max;
     enum look look;
     bool dark, strip;
+    enum language language;
     enum directions_look directions;
     double light_dir[3];
     int environment;

@@ -33,6 +33,7 @@ const struct name names_arrows[] = {
     { "arrows", DIRECTIONS_ARROWS }, { "strokes", DIRECTIONS_STROKES }, { "none", DIRECTIONS_NONE }, { NULL, 0 }
 };
 const struct name names_strip[] = { { "none", false }, { "legend", true }, { NULL, 0 } };
+const struct name names_language[] = { { "en", LANGUAGE_EN }, { "ko", LANGUAGE_KO }, { "de", LANGUAGE_DE }, { NULL, 0 } };
 const struct name names_backdrop[] = { { "light", false }, { "dark", true }, { NULL, 0 } };
 const struct name names_codec[] = { { "jpeg", WIRE_CODEC_JPEG }, { "png", WIRE_CODEC_PNG }, { "h264", WIRE_CODEC_H264 }, { NULL, 0 } };
 const struct name names_projection[] = { { "perspective", PROJECTION_PERSPECTIVE },

@@ -39,6 +39,7 @@ static bool parse_names(const json_t *o, struct params_change *out, struct messa
         { "backdrop", names_backdrop, GIVEN_BACKDROP, 0 },
         { "strip", names_strip, GIVEN_STRIP, 0 },
         { "arrows", names_arrows, GIVEN_ARROWS, 0 },
+        { "language", names_language, GIVEN_LANGUAGE, 0 },
     };
     for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++) {
         bool given;
@@ -53,6 +54,7 @@ static bool parse_names(const json_t *o, struct params_change *out, struct messa
     out->dark = all[4].value;
     out->strip = all[5].value;
     out->directions = (enum directions_look)all[6].value;
+    out->language = (enum language)all[7].value;
     return true;
 }
 
@@ -236,6 +238,8 @@ static void apply_look(const struct scene *scene, const struct params_change *ch
         view->dark = change->dark;
     if (change->given & GIVEN_STRIP)
         view->strip = change->strip;
+    if (change->given & GIVEN_LANGUAGE)
+        view->language = change->language;
     if (change->given & GIVEN_ARROWS)
         view->directions = change->directions;
     if (change->given & GIVEN_LIGHT)

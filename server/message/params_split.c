@@ -5,8 +5,8 @@
 #include "message/json_fields.h"
 
 /* What both halves have in common is said outside. */
-static const char *const common[] = { "light",  "environment", "backdrop", "strip", "arrows", "selected",
-                                      "hidden", "isolate",     "ghost",    "clip",  "split" };
+static const char *const common[] = { "light",    "environment", "backdrop", "strip", "language", "arrows",
+                                      "selected", "hidden",      "isolate",  "ghost", "clip",     "split" };
 
 bool split_parse(const struct plant *plant, const json_t *o, struct split_change *out, struct message_error *error)
 {

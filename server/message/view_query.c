@@ -41,6 +41,7 @@ static const struct {
     { "environment", STRING },
     { "backdrop", STRING },
     { "strip", STRING },
+    { "language", STRING },
     { "arrows", STRING },
     { "sensors", SENSORS },
     { "baseline", STRING },

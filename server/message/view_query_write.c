@@ -179,6 +179,7 @@ static bool put_common(struct view_address *out, const struct plant *plant, cons
            view_address_add(out, "backdrop", name_of(names_backdrop, view->dark)) &&
            view_address_add(out, "arrows", name_of(names_arrows, (int)view->directions)) &&
            view_address_add(out, "strip", name_of(names_strip, view->strip)) &&
+           (view->language == LANGUAGE_EN || view_address_add(out, "language", name_of(names_language, (int)view->language))) &&
            (view->selected_asset < 0 || view_address_add(out, "selected", plant->assets[view->selected_asset].id)) &&
            put_set(out, plant, "hidden", &view->visibility.hidden) && put_set(out, plant, "isolate", &view->visibility.isolated) &&
            put_set(out, plant, "ghost", &view->visibility.ghosts) && put_clip(out, &view->visibility.clip);

@@ -208,7 +208,7 @@ bool view_equal(const struct view *a, const struct view *b)
     get_half(b, &b_shown);
     return a->width_px == b->width_px && a->height_px == b->height_px && same_camera(&a->camera, &b->camera) && a->tier == b->tier &&
            a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir) && a->environment == b->environment &&
-           a->dark == b->dark && a->strip == b->strip && a->directions == b->directions && same_half(&a_shown, &b_shown) &&
-           visibility_equal(&a->visibility, &b->visibility) && a->at_us == b->at_us && a->split == b->split &&
-           (!a->split || same_half(&a->right, &b->right));
+           a->dark == b->dark && a->strip == b->strip && a->language == b->language && a->directions == b->directions &&
+           same_half(&a_shown, &b_shown) && visibility_equal(&a->visibility, &b->visibility) && a->at_us == b->at_us &&
+           a->split == b->split && (!a->split || same_half(&a->right, &b->right));
 }

@@ -40,6 +40,8 @@ struct split_half { /* what the right half of a split view shows; the names are 
     enum look look;
 };
 
+enum language { LANGUAGE_EN, LANGUAGE_KO, LANGUAGE_DE, LANGUAGES };
+
 struct view {
     int width_px, height_px; /* 16..VIEW_MAX_SIDE_PX, at most VIEW_MAX_PIXELS */
     struct camera camera;
@@ -58,6 +60,7 @@ struct view {
     double light_dir[3]; /* towards the sun, plant frame, unit length */
     bool dark;           /* a dark backdrop; colours of the field stay what they are */
     enum directions_look directions;
+    enum language language; /* of what an overlay says, where one is drawn */
     bool strip;          /* a legend strip for programs, where an overlay is drawn */
     int environment;     /* surroundings: 0 the built-in sky, then the plant's own */
     struct visibility visibility;

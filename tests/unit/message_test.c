@@ -443,7 +443,7 @@ static void views_are_written_as_queries(void **state)
 {
     (void)state;
     static const char *const views[][4] = {
-        { "width=640" },
+        { "width=640", "language=ko" },
         { "group=pressure", "range=1,2.5", "reach_m=3", "selected=E-101" },
         { "show=distance", "sensor=TI-1", "sensors=TI-1=2:0.5", "backdrop=dark" },
         { "sensors=TI-1=:0.1", "isolines=every:7", "light=0.1,0.2,0.3", "strip=legend" },

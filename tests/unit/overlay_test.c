@@ -311,66 +311,120 @@ static void halves_say_what_they_differ_in(void **state)
     frame_unref(&plain);
 }
 
-/* Returns what tells one legend from another. *right: where what it leaves free ends. */
-static int legend_sum(double *right)
+/* Returns what tells one part of a picture from another. */
+static unsigned sum_of(const struct frame *frame, const struct box *box)
 {
-    struct frame *frame = draw(0, false, false);
-    struct camera_window window;
-    struct view distance; /* whose title is a sentence */
-    int sum = 0;
-    view_default(&stand.toy->scene, WIDTH, HEIGHT, &distance);
-    distance.field.show = SHOW_DISTANCE;
-    distance.field.sensor = 0;
-    overlay_window(&stand.toy->scene, &distance, &window);
-    *right = window.right;
-    for (int y = 0; y < HEIGHT; y++)
-        for (int x = WIDTH / 2; x < WIDTH; x++)
-            sum = (sum * 31 + frame->bgrx[y * frame->stride_bytes + 4 * x]) & 0xffffff;
-    frame_unref(&frame);
+    unsigned sum = 0;
+    for (int y = (int)box->y; y < (int)(box->y + box->height); y++)
+        for (int x = (int)box->x; x < (int)(box->x + box->width); x++)
+            sum = sum * 31 + frame->bgrx[y * frame->stride_bytes + 4 * x];
     return sum;
 }
 
-/* And leaves the plant as much room as it then takes. */
-static void the_legend_speaks_the_language(void **state)
+/* Header, captions of both halves, list of alarms, legend, each apart; what a picture of the past says. */
+static void all_speaks_the_language(void **state)
 {
-    static const char *const languages[] = { "en", "ko", "de" };
-    double right[3];
-    int sums[3];
+    static const struct box parts[] = {
+        { 0, 0, 300, 56 }, { 8, 70, 300, 60 }, { WIDTH / 2 + 8, 10, 300, 60 }, { 0, 500, 300, 220 }, { 1020, 0, 260, HEIGHT }
+    };
+    enum { PARTS = sizeof(parts) / sizeof(parts[0]) };
+    unsigned sums[LANGUAGES][PARTS + 1];
     (void)state;
-    for (int i = 0; i < 3; i++) {
-        assert_true(overlay_words_choose(languages[i]));
-        sums[i] = legend_sum(&right[i]);
+    stand.snapshot->readings[1].alarm = ALARM_H;
+    for (int i = 0; i < LANGUAGES; i++) {
+        struct view view, right;
+        view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+        view_default(&stand.toy->scene, WIDTH, HEIGHT, &right);
+        view.field.interpolation = INTERPOLATION_PAPER;
+        right.field.interpolation = INTERPOLATION_GP;
+        view_split(&view, &right);
+        view.language = (enum language)i;
+        struct frame *frame = draw_view(0, false, &view);
+        for (int part = 0; part < PARTS; part++)
+            sums[i][part] = sum_of(frame, &parts[part]);
+        frame_unref(&frame);
+        view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+        view.language = (enum language)i;
+        view.at_us = 1;
+        frame = draw_view(0, false, &view);
+        sums[i][PARTS] = sum_of(frame, &(struct box){ 300, 0, 700, 120 });
+        frame_unref(&frame);
     }
-    assert_false(overlay_words_choose("fr"));
-    assert_true(overlay_words_choose("en"));
-    assert_int_equal(legend_sum(&right[1]), sums[0]);
-    assert_true(sums[1] != sums[0] && sums[2] != sums[0] && sums[1] != sums[2]);
-    assert_true(right[2] < right[0]); /* German is longer */
+    stand.snapshot->readings[1].alarm = ALARM_NONE;
+    for (int part = 0; part <= PARTS; part++)
+        if (sums[0][part] == sums[1][part] || sums[0][part] == sums[2][part] || sums[1][part] == sums[2][part])
+            fail_msg("part %d is in one language", part);
+}
+
+/* And leaves the plant as much room as it then takes. */
+static void a_longer_legend_takes_more_room(void **state)
+{
+    struct view view; /* whose title is a sentence */
+    struct camera_window english, german;
+    (void)state;
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+    view.field.show = SHOW_DISTANCE;
+    view.field.sensor = 0;
+    overlay_window(&stand.toy->scene, &view, &english);
+    view.language = LANGUAGE_DE;
+    overlay_window(&stand.toy->scene, &view, &german);
+    assert_true(german.right < english.right);
+}
+
+static int count_places(const char *text)
+{
+    int count = 0;
+    for (; (text = strstr(text, "{}")) != NULL; text += 2)
+        count++;
+    return count;
+}
+
+static void each_word_is_in_all_languages(void **state)
+{
+    enum language found;
+    (void)state;
+    for (int word = 0; word < OVERLAY_WORDS; word++) {
+        const char *english = overlay_word(LANGUAGE_EN, (enum overlay_word)word);
+        for (int i = 0; i < LANGUAGES; i++) {
+            const char *text = overlay_word((enum language)i, (enum overlay_word)word);
+            if (!text || !text[0] || count_places(text) != count_places(english))
+                fail_msg("word %d, language %d: %s", word, i, text ? text : "missing");
+        }
+    }
+    assert_true(overlay_language_find("ko", &found) && found == LANGUAGE_KO);
+    assert_false(overlay_language_find("fr", &found));
 }
 
 static void values_are_put_in(void **state)
 {
     char text[80], small[8];
     (void)state;
-    overlay_say(WORD_HOT_SPOT_SIZE, "2", "30", text, sizeof(text));
+    overlay_say(LANGUAGE_EN, WORD_HOT_SPOT_SIZE, "2", "30", text, sizeof(text));
     assert_string_equal(text, "of 2 m, as 30 % of the range");
-    overlay_say(WORD_ALARMS, "12", NULL, text, sizeof(text));
+    overlay_say(LANGUAGE_EN, WORD_ALARMS, "12", NULL, text, sizeof(text));
     assert_string_equal(text, "12 alarms");
-    overlay_say(WORD_FROM, "%s{}%n", NULL, text, sizeof(text));
+    overlay_say(LANGUAGE_EN, WORD_FROM, "%s{}%n", NULL, text, sizeof(text));
     assert_string_equal(text, "From %s{}%n");
-    overlay_say(WORD_HOT_SPOT, "x", NULL, small, sizeof(small));
+    overlay_say(LANGUAGE_EN, WORD_HOT_SPOT, "x", NULL, small, sizeof(small));
     assert_string_equal(small, "Hot spo");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(halves_say_what_they_differ_in),    cmocka_unit_test(halves_share_a_legend_that_says_the_same),
-        cmocka_unit_test(alarms_out_of_sight_are_listed),    cmocka_unit_test(any_number_of_alarms_fits),
-        cmocka_unit_test(a_bare_one_tells_of_no_sensor),     cmocka_unit_test(the_legend_says_glossy),
+        cmocka_unit_test(halves_say_what_they_differ_in),
+        cmocka_unit_test(halves_share_a_legend_that_says_the_same),
+        cmocka_unit_test(alarms_out_of_sight_are_listed),
+        cmocka_unit_test(any_number_of_alarms_fits),
+        cmocka_unit_test(a_bare_one_tells_of_no_sensor),
+        cmocka_unit_test(the_legend_says_glossy),
         cmocka_unit_test(the_legend_lists_unknown_directions_where_there_are_any),
-        cmocka_unit_test(the_legend_speaks_the_language),    cmocka_unit_test(values_are_put_in),
-        cmocka_unit_test(what_rounds_to_nought_has_no_sign), cmocka_unit_test(the_window_is_what_is_left_free),
+        cmocka_unit_test(all_speaks_the_language),
+        cmocka_unit_test(a_longer_legend_takes_more_room),
+        cmocka_unit_test(each_word_is_in_all_languages),
+        cmocka_unit_test(values_are_put_in),
+        cmocka_unit_test(what_rounds_to_nought_has_no_sign),
+        cmocka_unit_test(the_window_is_what_is_left_free),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     stand.toy = toy_unit();

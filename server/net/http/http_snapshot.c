@@ -39,18 +39,25 @@ static const struct named_view *find_view(const struct server_context *server, c
     return named;
 }
 
-/* A view of the plant file, whose author may say all that there is to say, at a size. */
+/* A view of the plant file, whose author may say all that there is to say, at a size and in a language. */
 static bool expand(const struct named_view *named, const struct args *args, struct view_address *out, struct message_error *error)
 {
+    static const char *const mine[] = { "width", "height", "language" };
     bool good = view_address_read(out, named->address, error);
     for (size_t i = 0; i < args->count && good; i++) {
         char name[48];
-        good = !strncmp(args->list[i], "width=", 6) || !strncmp(args->list[i], "height=", 7) || !strncmp(args->list[i], "view=", 5);
+        size_t length = strcspn(args->list[i], "=");
+        good = length == 4 && !strncmp(args->list[i], "view", length);
+        for (size_t k = 0; k < sizeof(mine) / sizeof(mine[0]) && !good; k++)
+            good = strlen(mine[k]) == length && !strncmp(args->list[i], mine[k], length);
         if (!good)
-            message_fail(error, "bad_field", "'%s': beside view, a query has width and height only", quoted(args->list[i], name));
+            message_fail(error, "bad_field", "'%s': beside view, a query has width, height and language only", quoted(args->list[i], name));
     }
-    const char *width = arg_of(args, "width"), *height = arg_of(args, "height");
-    return good && (!width || view_address_add(out, "width", width)) && (!height || view_address_add(out, "height", height));
+    for (size_t k = 0; k < sizeof(mine) / sizeof(mine[0]) && good; k++) {
+        const char *value = arg_of(args, mine[k]);
+        good = !value || view_address_add(out, mine[k], value);
+    }
+    return good;
 }
 
 /* What the picture is drawn from goes to `address`, for view_address_finish, where a view is named; else it is args. */

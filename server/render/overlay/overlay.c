@@ -109,17 +109,25 @@ int pen_decimals(double range)
     return (int)fmin(fmax(ceil(-log10(range / 500)), 0), 6);
 }
 
-static void format_age(int64_t age_ns, char out[40])
+const char *pen_word(const struct pen *pen, enum overlay_word word)
+{
+    return overlay_word(pen->frame->view.language, word);
+}
+
+void pen_say(const struct pen *pen, enum overlay_word word, const char *a, const char *b, char *out, size_t size)
+{
+    overlay_say(pen->frame->view.language, word, a, b, out, size);
+}
+
+enum { AGE_BYTES = 80 };
+
+static void format_age(const struct pen *pen, int64_t age_ns, char out[AGE_BYTES])
 {
     double age_s = (double)age_ns / NS_PER_S;
-    if (age_s < 10)
-        snprintf(out, 40, "%.1f s old", age_s);
-    else if (age_s < 120)
-        snprintf(out, 40, "%.0f s old", age_s);
-    else if (age_s < 7200)
-        snprintf(out, 40, "%.0f min old", age_s / 60);
-    else
-        snprintf(out, 40, "%.0f h old", age_s / 3600);
+    bool in_hours = age_s >= 7200, in_minutes = !in_hours && age_s >= 120;
+    char number[40];
+    snprintf(number, sizeof(number), age_s < 10 ? "%.1f" : "%.0f", in_hours ? age_s / 3600 : in_minutes ? age_s / 60 : age_s);
+    pen_say(pen, in_hours ? WORD_OLD_H : in_minutes ? WORD_OLD_MIN : WORD_OLD_S, number, NULL, out, AGE_BYTES);
 }
 
 enum { CLOCK_BYTES = 64 };
@@ -158,18 +166,20 @@ static double header_height(const struct pen *pen, int lines)
    that were not measured. It has a line of its own, so that the card hides less of the plant. */
 static void draw_header(struct pen *pen)
 {
-    char clock[CLOCK_BYTES], lines[2][120], age[40] = "no values";
+    char clock[CLOCK_BYTES], lines[2][160], age[AGE_BYTES];
     format_clock(pen->frame->data_utc_ns, clock);
-    if (pen->frame->oldest_age_ns != INT64_MAX)
-        format_age(pen->frame->oldest_age_ns, age);
     if (pen->frame->view.at_us)
-        snprintf(age, sizeof(age), "configuration %s", pen->scene->plant->hash);
+        pen_say(pen, WORD_CONFIGURATION, pen->scene->plant->hash, NULL, age, sizeof(age));
+    else if (pen->frame->oldest_age_ns != INT64_MAX)
+        format_age(pen, pen->frame->oldest_age_ns, age);
+    else
+        snprintf(age, sizeof(age), "%s", pen_word(pen, WORD_NO_VALUES));
     const struct view *view = &pen->frame->view;
     bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS); /* else no value takes part */
     bool unset = pen->frame->clock_unset, simulated = has_age && shows_simulated(pen);
     snprintf(lines[0], sizeof(lines[0]), "%s%s%s", clock, has_age ? "  ·  " : "", has_age ? age : "");
-    snprintf(lines[1], sizeof(lines[1]), "%s%s%s", unset ? "CLOCK NOT SYNCHRONISED" : "", unset && simulated ? "  ·  " : "",
-             simulated ? "SIMULATED" : "");
+    snprintf(lines[1], sizeof(lines[1]), "%s%s%s", unset ? pen_word(pen, WORD_CLOCK_UNSET) : "", unset && simulated ? "  ·  " : "",
+             simulated ? pen_word(pen, WORD_SIMULATED) : "");
     int count = lines[1][0] ? 2 : 1;
     double pad = 8 * pen->unit;
     pen_font(pen, 1.15, true);
@@ -220,10 +230,12 @@ static const double NO_DATA_RGB[3] = { 0.66, 0.12, 0.10 }, PAST_RGB[3] = { 0.36,
 /* A frame around all of it, and the words: nobody takes it for now, even where the banner is cut off. */
 static void draw_past(struct pen *pen)
 {
-    char text[CLOCK_BYTES + 40], clock[CLOCK_BYTES];
+    char text[CLOCK_BYTES + 80], clock[CLOCK_BYTES];
+    bool live = is_live(pen);
     double width = fmax(2, 4 * pen->unit);
     format_clock(pen->frame->data_utc_ns, clock);
-    snprintf(text, sizeof(text), "HISTORY  ·  %s%s", clock, is_live(pen) ? "" : "  ·  NO DATA");
+    snprintf(text, sizeof(text), "%s  ·  %s%s%s", pen_word(pen, WORD_HISTORY), clock, live ? "" : "  ·  ",
+             live ? "" : pen_word(pen, WORD_NO_DATA_THEN));
     cairo_rectangle(pen->cairo, 0.5 * width, 0.5 * width, pen->frame->width_px - width, pen->frame->height_px - width);
     cairo_set_source_rgb(pen->cairo, PAST_RGB[0], PAST_RGB[1], PAST_RGB[2]);
     cairo_set_line_width(pen->cairo, width);
@@ -285,7 +297,7 @@ static void draw(struct frame *frame, const struct scene *scene, const struct sn
     if (frame->view.at_us)
         draw_past(pen);
     else if (!is_live(pen))
-        draw_banner(pen, "NO LIVE DATA", NO_DATA_RGB);
+        draw_banner(pen, pen_word(pen, WORD_NO_LIVE_DATA), NO_DATA_RGB);
     draw_rest(pen);
     cairo_surface_flush(surface);
     if (frame->view.strip && frame->view.look != LOOK_MATERIALS) { /* colours of materials say nothing */

@@ -58,7 +58,7 @@ static void format_reading(const struct pen *pen, int tag, char out[200])
     const char *kind = alarm_kind_name((enum alarm_kind)reading->alarm);
     int decimals = group ? pen_decimals(group->max - group->min) : 2;
     if (quality_is_bad(reading->quality))
-        snprintf(out, 200, "%.120s  BAD  %s", of->name, kind);
+        snprintf(out, 200, "%.120s  %s  %s", of->name, pen_word(pen, WORD_BAD), kind);
     else
         snprintf(out, 200, "%.120s  %.*f %.20s  %s", of->name, decimals, pen_rounded(reading->value, decimals), of->unit ? of->unit : "",
                  kind);
@@ -83,12 +83,13 @@ static void draw_list(struct pen *pen, const struct unseen *list, size_t count)
 {
     double pad = 8 * pen->unit, most_px = MOST_HEIGHT * pen->frame->height_px - 2 * pad;
     size_t rows = (size_t)fmin(fmin((double)count, MOST_ROWS), fmax(most_px / (ROW * pen->text_px) - 1, 0));
-    char title[80], text[200];
-    snprintf(title, sizeof(title),
-             rows < count && rows ? "%zu alarms out of sight, such as"
-             : count > 1          ? "%zu alarms out of sight"
-                                  : "%zu alarm out of sight",
-             count);
+    char title[120], text[200], number[24];
+    snprintf(number, sizeof(number), "%zu", count);
+    pen_say(pen,
+            rows < count && rows ? WORD_UNSEEN_SUCH_AS
+            : count > 1          ? WORD_UNSEEN
+                                 : WORD_UNSEEN_ONE,
+            number, NULL, title, sizeof(title));
     pen_font(pen, 0.9, true);
     double width = pen_text_width(pen, title);
     pen_font(pen, 0.85, false);

@@ -1,83 +1,63 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the halves of a split view differ in that no legend says: how the field is made. */
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "render/overlay/overlay_pen.h"
 
 enum { LINES = 10 };
 struct caption { /* of one half */
-    char lines[LINES][64];
+    char lines[LINES][96];
     int count;
 };
 
-__attribute__((format(printf, 2, 3))) static void add_line(struct caption *caption, const char *form, ...)
+/* value: what is put into a sentence; NULL: it is a word. */
+static void add_line(struct caption *caption, const struct pen *pen, enum overlay_word word, const char *value)
 {
-    va_list args;
-    va_start(args, form);
     if (caption->count < LINES)
-        vsnprintf(caption->lines[caption->count++], sizeof(caption->lines[0]), form, args);
-    va_end(args);
+        pen_say(pen, word, value, NULL, caption->lines[caption->count++], sizeof(caption->lines[0]));
 }
 
-static void add_number(struct caption *caption, const char *form, double value)
+static void add_number(struct caption *caption, const struct pen *pen, enum overlay_word word, double value)
 {
     char number[40];
     pen_number(value, fabs(value), number);
-    add_line(caption, form, number);
-}
-
-/* otherwise: where it is not given in metres. */
-static void add_metres(struct caption *caption, const char *what, bool given, double value_m, const char *otherwise)
-{
-    char number[40];
-    if (given) {
-        pen_number(value_m, fabs(value_m), number);
-        add_line(caption, "%s %s m", what, number);
-    } else {
-        add_line(caption, "%s %s", what, otherwise);
-    }
+    add_line(caption, pen, word, number);
 }
 
 /* What `own` has where `other` has something else, in the words of the options. */
-static void write_caption(struct caption *caption, const struct view *own, const struct view *other)
+static void write_caption(struct caption *caption, const struct pen *pen, const struct view *own, const struct view *other)
 {
-    static const char *const looks[] = { "Default look", "Glossy look", "Flat look", "Materials" }; /* by enum look */
-    static const char *const interpolations[INTERPOLATIONS] = { "Shepard", "Algorithm 1 of the paper", "Conduction along the wall",
-                                                                "Conduction and loss to the air" };
-    static const char *const distances[DISTANCES] = { "Geodesic distance", "Euclidean distance", "Geodesic distance by heat" };
     const struct field_params *a = &own->field, *b = &other->field;
     caption->count = 0;
     if (own->look != other->look)
-        add_line(caption, "%s", looks[own->look]);
+        add_line(caption, pen, (enum overlay_word)(WORD_LOOKS + (int)own->look), NULL);
     if (own->look == LOOK_MATERIALS || other->look == LOOK_MATERIALS)
         return;
     if (a->distance != b->distance)
-        add_line(caption, "%s", distances[a->distance]);
+        add_line(caption, pen, (enum overlay_word)(WORD_DISTANCES + (int)a->distance), NULL);
     if (a->show == SHOW_DISTANCE || a->show != b->show)
         return;
     if (a->interpolation != b->interpolation)
-        add_line(caption, "%s", interpolations[a->interpolation]);
+        add_line(caption, pen, (enum overlay_word)(WORD_INTERPOLATIONS + (int)a->interpolation), NULL);
     if (a->power != b->power && a->interpolation == INTERPOLATION_SHEPARD)
-        add_number(caption, "Power %s", a->power);
+        add_number(caption, pen, WORD_POWER, a->power);
     if (a->strength != b->strength)
-        add_number(caption, "Strength %s", a->strength);
+        add_number(caption, pen, WORD_STRENGTH, a->strength);
     if (a->decay != b->decay)
-        add_number(caption, "Decay %s", a->decay);
+        add_number(caption, pen, WORD_DECAY, a->decay);
     if (a->radius_m != b->radius_m && a->interpolation == INTERPOLATION_PAPER)
-        add_metres(caption, "Radius", a->radius_m > 0, a->radius_m, "automatic");
+        add_number(caption, pen, a->radius_m > 0 ? WORD_RADIUS : WORD_RADIUS_AUTOMATIC, a->radius_m);
     if (a->reach_m != b->reach_m)
-        add_metres(caption, "Reach", isfinite(a->reach_m), a->reach_m, "without limit");
+        add_number(caption, pen, isfinite(a->reach_m) ? WORD_REACH : WORD_REACH_UNLIMITED, a->reach_m);
     if (a->fill != b->fill)
-        add_line(caption, a->fill == FILL_NONE ? "Not filled" : "Filled by neighbours");
+        add_line(caption, pen, a->fill == FILL_NONE ? WORD_NOT_FILLED : WORD_FILLED, NULL);
     bool same_sensors = a->override_count == b->override_count && /* as field_params_equal has it */
                         !memcmp(a->overrides, b->overrides, a->override_count * sizeof(*a->overrides));
     if (!same_sensors && a->override_count > 0)
-        add_line(caption, "Sensors weighted by hand: %zu", a->override_count);
+        add_number(caption, pen, WORD_WEIGHTED, (double)a->override_count);
     else if (!same_sensors)
-        add_line(caption, "Sensors as configured");
+        add_line(caption, pen, WORD_AS_CONFIGURED, NULL);
 }
 
 /* In the upper left corner; below what lies there. */
@@ -105,7 +85,7 @@ void overlay_halves(struct pen *pen)
     for (int half = 0; half < 2; half++) {
         pen_choose_half(pen, half);
         view_half(&pen->frame->view, 1 - half, &other);
-        write_caption(&caption, &pen->view, &other);
+        write_caption(&caption, pen, &pen->view, &other);
         if (caption.count > 0)
             draw_caption(pen, &caption);
     }

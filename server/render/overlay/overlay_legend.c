@@ -8,7 +8,6 @@
 #include "base/clock.h"
 #include "plant/influence.h"
 #include "render/overlay/overlay_pen.h"
-#include "render/overlay/overlay_words.h"
 #include "render/shaded_colormap.h"
 
 enum { NOTES = 4, ROWS = 7 + ALARM_PRIORITIES };
@@ -49,7 +48,7 @@ static void write_title(const struct pen *pen, struct legend *legend)
     const char *name = view->field.show == SHOW_DISTANCE ? plant->tags[view->field.sensor].name : quantity;
     char what[128];
     if (view->field.show == SHOW_DISTANCE || view->field.show == SHOW_BLIND)
-        overlay_say(view->field.show == SHOW_DISTANCE ? WORD_FROM : WORD_HOT_SPOT, name, NULL, what, sizeof(what));
+        pen_say(pen, view->field.show == SHOW_DISTANCE ? WORD_FROM : WORD_HOT_SPOT, name, NULL, what, sizeof(what));
     else
         snprintf(what, sizeof(what), forms[view->field.show], name);
     snprintf(legend->title, sizeof(legend->title), *unit ? "%s [%s]" : "%s", what, unit);
@@ -132,7 +131,7 @@ static void write_baseline(const struct pen *pen, struct legend *legend)
         snprintf(what, sizeof(what), "%.80s", baseline->name);
     else if (localtime_r(&seconds, &local))
         strftime(what, sizeof(what), "%m-%d %H:%M:%S", &local);
-    overlay_say(WORD_SINCE, what, NULL, legend->since, sizeof(legend->since));
+    pen_say(pen, WORD_SINCE, what, NULL, legend->since, sizeof(legend->since));
     if (baseline->id && baseline->id == pen->view.field.baseline)
         add_note(legend, legend->since);
 }
@@ -143,7 +142,7 @@ static void write_hot_spot(const struct pen *pen, struct legend *legend)
     char metres[40], percent[40];
     snprintf(metres, sizeof(metres), "%g", group->hot_spot_m);
     snprintf(percent, sizeof(percent), "%g", 100 * PLANT_SEEN_PART);
-    overlay_say(WORD_HOT_SPOT_SIZE, metres, percent, legend->since, sizeof(legend->since));
+    pen_say(pen, WORD_HOT_SPOT_SIZE, metres, percent, legend->since, sizeof(legend->since));
     add_note(legend, legend->since);
 }
 
@@ -155,14 +154,14 @@ static void write_words(const struct pen *pen, struct legend *legend)
     write_title(pen, legend);
     choose_rows(pen, legend);
     if (view_is_operator(view)) {
-        add_note(legend, overlay_word(WORD_BY_LIMITS));
+        add_note(legend, pen_word(pen, WORD_BY_LIMITS));
     } else {
         pen_number(view->range_max, view->color_scale.log ? view->range_max : range, number);
         snprintf(legend->above, sizeof(legend->above), "> %s", number);
         pen_number(view->range_min, view->color_scale.log ? view->range_min : range, number);
         snprintf(legend->below, sizeof(legend->below), "< %s", number);
         if (view->color_scale.log)
-            add_note(legend, overlay_word(WORD_LOGARITHMIC));
+            add_note(legend, pen_word(pen, WORD_LOGARITHMIC));
     }
     if (overlay_has_arrows(pen) && view->directions == DIRECTIONS_ARROWS) {
         pen_number(overlay_arrow_value(pen), overlay_arrow_value(pen), number);
@@ -171,25 +170,25 @@ static void write_words(const struct pen *pen, struct legend *legend)
     if (view->field.show == SHOW_DIFFERENCE)
         write_baseline(pen, legend);
     if (view->field.show == SHOW_UNCERTAINTY)
-        add_note(legend, overlay_word(WORD_DEVIATION));
+        add_note(legend, pen_word(pen, WORD_DEVIATION));
     if (view->field.show == SHOW_BLIND)
         write_hot_spot(pen, legend);
     if (!view_is_operator(view) && !colormap_at((size_t)view->colormap)->safe)
-        add_note(legend, overlay_word(WORD_MISREAD));
+        add_note(legend, pen_word(pen, WORD_MISREAD));
     if (view->look == LOOK_GLOSSY) {
-        add_note(legend, overlay_word(WORD_GLOSSY));
-        add_note(legend, overlay_word(WORD_GLOSSY_2));
+        add_note(legend, pen_word(pen, WORD_GLOSSY));
+        add_note(legend, pen_word(pen, WORD_GLOSSY_2));
     }
 }
 
-static const char *row_text(const struct legend *legend, enum row row)
+static const char *row_text(const struct pen *pen, const struct legend *legend, enum row row)
 {
     static const enum overlay_word texts[] = { [ROW_NO_LIMITS] = WORD_NO_LIMITS,      [ROW_NO_DATA] = WORD_NO_DATA,
                                                [ROW_UNCERTAIN] = WORD_UNCERTAIN,      [ROW_UNPROVEN] = WORD_UNPROVEN,
                                                [ROW_ASSUMED] = WORD_PLACE_ASSUMED,    [ROW_NOWHERE] = WORD_DIRECTION_UNKNOWN,
                                                [ROW_ALARM] = WORD_PRIORITY_1,         [ROW_ALARM + 1] = WORD_PRIORITY_2,
                                                [ROW_ALARM + 2] = WORD_PRIORITY_3,     [ROW_ALARM + 3] = WORD_PRIORITY_4 };
-    return row == ROW_BELOW ? legend->below : row == ROW_ARROW ? legend->longest : overlay_word(texts[row]);
+    return row == ROW_BELOW ? legend->below : row == ROW_ARROW ? legend->longest : pen_word(pen, texts[row]);
 }
 
 /* Below what lies over the picture already, where the card would lie on it. */
@@ -214,11 +213,11 @@ static void lay_out(struct pen *pen, struct legend *legend)
     pen_font(pen, 0.9, false);
     width = fmax(width, beside + pen_text_width(pen, legend->above));
     for (int i = 0; i < legend->row_count; i++)
-        width = fmax(width, beside + pen_text_width(pen, row_text(legend, legend->rows[i])));
+        width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, legend->rows[i])));
     for (int i = 0; i < legend->note_count; i++)
         width = fmax(width, pen_text_width(pen, legend->notes[i]));
     if (overlay_has_arrows(pen)) /* listed or not: the window that the plant is fitted into is known before the crosses are */
-        width = fmax(width, beside + pen_text_width(pen, row_text(legend, ROW_NOWHERE)));
+        width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, ROW_NOWHERE)));
     width = fmax(width, overlay_bar_width(pen));
     if (legend->longest[0])
         width = fmax(width, overlay_arrow_px(pen) + 0.55 * pen->text_px + pen_text_width(pen, legend->longest));
@@ -335,7 +334,7 @@ static void draw_rows(struct pen *pen, const struct legend *legend)
         if (legend->rows[i] == ROW_ARROW)
             draw_longest(pen, legend, y);
         else
-            draw_text(pen, legend, y, row_text(legend, legend->rows[i]));
+            draw_text(pen, legend, y, row_text(pen, legend, legend->rows[i]));
     }
     pen_ink(pen, 1);
     for (int i = 0; i < legend->note_count; i++)

@@ -7,7 +7,6 @@
 #include "render/frame_record.h"
 #include "render/overlay/crowd.h"
 #include "render/overlay/overlay_pen.h"
-#include "render/overlay/overlay_words.h"
 #include "value/quality.h"
 
 bool overlay_unproven(const struct pen *pen, int tag)
@@ -113,7 +112,7 @@ static void format_value(const struct pen *pen, const struct frame_marker *marke
     else if (pen->view.field.show == SHOW_DISTANCE)
         snprintf(out, 64, "%.2f m", marker->value);
     else if (quality_is_bad(marker->quality))
-        snprintf(out, 64, "%s", overlay_word(lost ? WORD_BAD : WORD_UNKNOWN_THEN));
+        snprintf(out, 64, "%s", pen_word(pen, lost ? WORD_BAD : WORD_UNKNOWN_THEN));
     else
         snprintf(out, 64, "%s%s%.*f %s%s%s%s", difference ? "Δ " : "", difference && value > 0 ? "+" : "", decimals, value,
                  tag->unit ? tag->unit : "", quality_is_uncertain(marker->quality) ? " ?" : "", alarm ? " " : "", alarm ? alarm : "");
@@ -218,8 +217,9 @@ struct callout_text {
 /* The asset, where it is only one; how many alarms; and the gravest of them. */
 static void write_callout(const struct wanted *wanted, const int *members, size_t count, struct callout_text *text)
 {
-    const struct plant *plant = wanted->pen->scene->plant;
-    const struct reading *readings = wanted->pen->snapshot->readings;
+    const struct pen *pen = wanted->pen;
+    const struct plant *plant = pen->scene->plant;
+    const struct reading *readings = pen->snapshot->readings;
     int asset = plant->tags[wanted->tags[members[0]]].asset, worst = -1, least = 0;
     for (size_t i = 0; i < count; i++) {
         int tag = wanted->tags[members[i]], word = (int)readings[tag].alarm_status;
@@ -235,10 +235,10 @@ static void write_callout(const struct wanted *wanted, const int *members, size_
     const char *where = asset >= 0 ? plant->assets[asset].tag : "";
     char number[24], alarms[60], grave[140];
     snprintf(number, sizeof(number), "%zu", count);
-    overlay_say(WORD_ALARMS, number, NULL, alarms, sizeof(alarms));
+    pen_say(pen, WORD_ALARMS, number, NULL, alarms, sizeof(alarms));
     snprintf(text->what, sizeof(text->what), "%.120s%s%s", where, *where ? ", " : "", alarms);
     snprintf(grave, sizeof(grave), "%s %.120s", alarm_kind_name((enum alarm_kind)readings[worst].alarm), plant->tags[worst].name);
-    overlay_say(WORD_WORST, grave, NULL, text->worst, sizeof(text->worst));
+    pen_say(pen, WORD_WORST, grave, NULL, text->worst, sizeof(text->worst));
 }
 
 static const double LINE = 1.25; /* of text_px */

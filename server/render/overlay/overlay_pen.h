@@ -11,6 +11,7 @@
 #include "plant/burn_shift.h"
 #include "render/frame.h"
 #include "render/overlay/labels.h"
+#include "render/overlay/overlay_words.h"
 #include "value/alarm.h"
 
 bool box_meets(const struct box *a, const struct box *b);
@@ -28,7 +29,7 @@ struct pen {
     bool bare;                             /* draws nothing about sensors and alarms */
     bool calm;                             /* only what is abnormal has a label */
     double unit, text_px;
-    struct burn_shift legend_shift; /* of the legend, within the margin around it */
+    struct burn_shift legend_shift;  /* of the legend, within the margin around it */
     struct box taken[PEN_MAX_TAKEN]; /* occupied areas */
     int taken_count;
 };
@@ -50,6 +51,10 @@ void pen_font(struct pen *pen, double size, bool bold);
 double pen_text_width(struct pen *pen, const char *text);
 /* Draws text that starts at x and is centred on y. */
 void pen_text(struct pen *pen, double x, double y, const char *text);
+
+/* Return a word, and write a sentence, in the language of the picture (overlay_words.h). */
+const char *pen_word(const struct pen *pen, enum overlay_word word);
+void pen_say(const struct pen *pen, enum overlay_word word, const char *a, const char *b, char *out, size_t size);
 
 /* Prints a value with as few decimals as tell apart values that differ by a 5000th of the range. */
 void pen_number(double value, double range, char out[40]);

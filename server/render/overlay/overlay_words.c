@@ -5,9 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum language { ENGLISH, KOREAN, GERMAN, LANGUAGES };
 static const char *const names[LANGUAGES] = { "en", "ko", "de" };
-static enum language chosen;
 
 static const char *const words[OVERLAY_WORDS][LANGUAGES] = {
     [WORD_NO_LIMITS] = { "no limits", "한계 없음", "ohne Grenzwerte" },
@@ -34,26 +32,63 @@ static const char *const words[OVERLAY_WORDS][LANGUAGES] = {
     [WORD_SINCE] = { "since {}", "{} 이후", "seit {}" },
     [WORD_ALARMS] = { "{} alarms", "알람 {}건", "{} Alarme" },
     [WORD_WORST] = { "worst {}", "최고 {}", "schwerster {}" },
+    [WORD_NO_VALUES] = { "no values", "값 없음", "keine Werte" },
+    [WORD_OLD_S] = { "{} s old", "{}초 전 값", "{} s alt" },
+    [WORD_OLD_MIN] = { "{} min old", "{}분 전 값", "{} min alt" },
+    [WORD_OLD_H] = { "{} h old", "{}시간 전 값", "{} h alt" },
+    [WORD_CONFIGURATION] = { "configuration {}", "구성 {}", "Konfiguration {}" },
+    [WORD_CLOCK_UNSET] = { "CLOCK NOT SYNCHRONISED", "시계 동기화 안 됨", "UHR NICHT SYNCHRONISIERT" },
+    [WORD_SIMULATED] = { "SIMULATED", "모의값", "SIMULIERT" },
+    [WORD_NO_LIVE_DATA] = { "NO LIVE DATA", "실시간 데이터 없음", "KEINE LIVE-DATEN" },
+    [WORD_HISTORY] = { "HISTORY", "이력", "VERLAUF" },
+    [WORD_NO_DATA_THEN] = { "NO DATA", "데이터 없음", "KEINE DATEN" },
+    [WORD_UNSEEN_ONE] = { "{} alarm out of sight", "보이지 않는 알람 {}건", "{} nicht sichtbarer Alarm" },
+    [WORD_UNSEEN] = { "{} alarms out of sight", "보이지 않는 알람 {}건", "{} nicht sichtbare Alarme" },
+    [WORD_UNSEEN_SUCH_AS] = { "{} alarms out of sight, such as", "보이지 않는 알람 {}건 중", "{} nicht sichtbare Alarme, wie" },
+    [WORD_LOOKS + LOOK_DEFAULT] = { "Default look", "계측 모양", "Messtreu" },
+    [WORD_LOOKS + LOOK_GLOSSY] = { "Glossy look", "광택 모양", "Glänzend" },
+    [WORD_LOOKS + LOOK_FLAT] = { "Flat look", "평면 모양", "Flach" },
+    [WORD_LOOKS + LOOK_MATERIALS] = { "Materials", "재질", "Werkstoffe" },
+    [WORD_INTERPOLATIONS + INTERPOLATION_SHEPARD] = { "Shepard", "Shepard", "Shepard" },
+    [WORD_INTERPOLATIONS + INTERPOLATION_PAPER] = { "Algorithm 1 of the paper", "논문의 알고리즘 1", "Algorithmus 1 des Aufsatzes" },
+    [WORD_INTERPOLATIONS + INTERPOLATION_HARMONIC] = { "Conduction along the wall", "벽면 열전도", "Wärmeleitung in der Wand" },
+    [WORD_INTERPOLATIONS +
+        INTERPOLATION_FIN] = { "Conduction and loss to the air", "열전도와 공기로의 손실", "Leitung und Verlust an die Luft" },
+    [WORD_INTERPOLATIONS + INTERPOLATION_GP] = { "Most likely field", "가장 그럴듯한 값", "Wahrscheinlichstes Feld" },
+    [WORD_DISTANCES + DISTANCE_GEODESIC] = { "Geodesic distance", "측지 거리", "Geodätischer Abstand" },
+    [WORD_DISTANCES + DISTANCE_EUCLIDEAN] = { "Euclidean distance", "직선 거리", "Euklidischer Abstand" },
+    [WORD_DISTANCES + DISTANCE_HEAT] = { "Geodesic distance by heat", "열에 의한 측지 거리", "Geodätisch aus Wärme" },
+    [WORD_POWER] = { "Power {}", "지수 {}", "Exponent {}" },
+    [WORD_STRENGTH] = { "Strength {}", "세기 {}", "Stärke {}" },
+    [WORD_DECAY] = { "Decay {}", "감쇠 {}", "Abfall {}" },
+    [WORD_RADIUS] = { "Radius {} m", "반경 {} m", "Radius {} m" },
+    [WORD_RADIUS_AUTOMATIC] = { "Radius automatic", "반경 자동", "Radius automatisch" },
+    [WORD_REACH] = { "Reach {} m", "도달 거리 {} m", "Reichweite {} m" },
+    [WORD_REACH_UNLIMITED] = { "Reach without limit", "도달 거리 무제한", "Reichweite unbegrenzt" },
+    [WORD_NOT_FILLED] = { "Not filled", "채우지 않음", "Nicht gefüllt" },
+    [WORD_FILLED] = { "Filled by neighbours", "이웃 값으로 채움", "Aus Nachbarn gefüllt" },
+    [WORD_WEIGHTED] = { "Sensors weighted by hand: {}", "직접 가중한 센서: {}", "Von Hand gewichtete Messpunkte: {}" },
+    [WORD_AS_CONFIGURED] = { "Sensors as configured", "설정대로의 센서", "Messpunkte wie konfiguriert" },
 };
 
-bool overlay_words_choose(const char *language)
+bool overlay_language_find(const char *name, enum language *out)
 {
     for (int i = 0; i < LANGUAGES; i++)
-        if (!strcmp(language, names[i])) {
-            chosen = (enum language)i;
+        if (!strcmp(name, names[i])) {
+            *out = (enum language)i;
             return true;
         }
     return false;
 }
 
-const char *overlay_word(enum overlay_word word)
+const char *overlay_word(enum language language, enum overlay_word word)
 {
-    return words[word][chosen];
+    return words[word][language];
 }
 
-void overlay_say(enum overlay_word word, const char *a, const char *b, char *out, size_t size)
+void overlay_say(enum language language, enum overlay_word word, const char *a, const char *b, char *out, size_t size)
 {
-    const char *text = words[word][chosen], *one = strstr(text, "{}"), *two = one ? strstr(one + 2, "{}") : NULL;
+    const char *text = words[word][language], *one = strstr(text, "{}"), *two = one ? strstr(one + 2, "{}") : NULL;
     snprintf(out, size, "%.*s%s%.*s%s%s", (int)(one ? one - text : (long)strlen(text)), text, one ? a : "",
              (int)(two ? two - one - 2 : 0), one ? one + 2 : "", two && b ? b : "", two ? two + 2 : one ? one + 2 : "");
 }

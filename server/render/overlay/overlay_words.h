@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What legend and labels say, in English, Korean or German. */
+/* What an overlay says, in English, Korean or German. */
 #ifndef RENDER_OVERLAY_WORDS_H
 #define RENDER_OVERLAY_WORDS_H
 #include <stdbool.h>
 #include <stddef.h>
+
+#include "render/view.h"
 
 enum overlay_word {
     WORD_NO_LIMITS,
@@ -30,15 +32,44 @@ enum overlay_word {
     WORD_SINCE,
     WORD_ALARMS,
     WORD_WORST,
+    WORD_NO_VALUES,
+    WORD_OLD_S,
+    WORD_OLD_MIN,
+    WORD_OLD_H,
+    WORD_CONFIGURATION,
+    WORD_CLOCK_UNSET,
+    WORD_SIMULATED,
+    WORD_NO_LIVE_DATA,
+    WORD_HISTORY,
+    WORD_NO_DATA_THEN,
+    WORD_UNSEEN_ONE,
+    WORD_UNSEEN,
+    WORD_UNSEEN_SUCH_AS,
+    WORD_LOOKS, /* and the others by enum look after it */
+    WORD_LOOKS_LAST = WORD_LOOKS + 3,
+    WORD_INTERPOLATIONS, /* likewise */
+    WORD_INTERPOLATIONS_LAST = WORD_INTERPOLATIONS + INTERPOLATIONS - 1,
+    WORD_DISTANCES, /* likewise */
+    WORD_DISTANCES_LAST = WORD_DISTANCES + DISTANCES - 1,
+    WORD_POWER,
+    WORD_STRENGTH,
+    WORD_DECAY,
+    WORD_RADIUS,
+    WORD_RADIUS_AUTOMATIC,
+    WORD_REACH,
+    WORD_REACH_UNLIMITED,
+    WORD_NOT_FILLED,
+    WORD_FILLED,
+    WORD_WEIGHTED,
+    WORD_AS_CONFIGURED,
     OVERLAY_WORDS
 };
 
-/* Chooses the language of all that this process draws: en (until then), ko or de. Returns false if it is none of them. Before anything is
-   drawn. */
-bool overlay_words_choose(const char *language);
 /* Returns a word or a sentence. Static. Thread: any. */
-const char *overlay_word(enum overlay_word word);
+const char *overlay_word(enum language language, enum overlay_word word);
+/* Finds a language by its name: en, ko or de. Returns false if it is none of them. */
+bool overlay_language_find(const char *name, enum language *out);
 /* Writes a sentence into out, with values put in, in this order; b: NULL where it has one. Likewise. */
-void overlay_say(enum overlay_word word, const char *a, const char *b, char *out, size_t size);
+void overlay_say(enum language language, enum overlay_word word, const char *a, const char *b, char *out, size_t size);
 
 #endif

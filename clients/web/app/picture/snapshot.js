@@ -2,7 +2,7 @@
 // A picture to keep: the plant drawn once more by the server; or, where it signs, the very frame that is on the screen.
 import { ask } from '../../core/history.js';
 import { snapshotQuery } from '../../core/query.js';
-import { say } from '../../core/words.js';
+import { language, say } from '../../core/words.js';
 import { make, styled } from '../common/dom.js';
 import { closeButton } from '../common/widgets.js';
 
@@ -64,7 +64,7 @@ export class Snapshot {
         const { session } = this, { camera, size, time } = session;
         if (session.params.show === 'difference' && !session.params.baseline?.name)
             throw new Error(say('snapshot.unnamed'));
-        const query = snapshotQuery({ carried: { ...session.carried(), backdrop: null }, camera, size, time });
+        const query = { ...snapshotQuery({ carried: { ...session.carried(), backdrop: null }, camera, size, time }), language };
         const answer = await ask('snapshot.png', query, session.token);
         return { blob: await answer.blob(), us: time.atUs ?? session.clockUs() };
     }
