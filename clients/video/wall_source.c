@@ -78,6 +78,7 @@ static void say_card(struct wall_source *source)
     const char *text = player->card.at ? strchr(player->card.at, '\n') : NULL;
     source->card = player->card.length > 0 || !player->model.live;
     g_strlcpy(source->headline, player->card.length > 0 && text ? text + 1 : say("health.nodata", NULL), sizeof(source->headline));
+    source->headline[strcspn(source->headline, "\n")] = 0;
     if (!source->card || player->card.length > 0) /* the latter says itself since when */
         source->since_us = 0;
     else if (!source->since_us)

@@ -325,7 +325,21 @@ static bool differs(struct text *kept, struct text *now)
     return !same;
 }
 
-/* What lies over everything; "" where nothing does. */
+/* What it never heard of: it knows who it is, and since when it waits, by its own clock. */
+static void say_self(const struct player *player, struct text *card)
+{
+    char display[16], time[24] = "?";
+    time_t begun = (time_t)((clock_utc_ns() - (clock_mono_ns() - player->begun_ns)) / NS_PER_S);
+    struct tm utc;
+    snprintf(display, sizeof(display), "%d", player->display);
+    if (gmtime_r(&begun, &utc))
+        strftime(time, sizeof(time), "%H:%M:%S UTC", &utc);
+    text_add(card, "lost\n%s\n%s", say("walls.never", NULL),
+             say("walls.self", "wall", player->wall_id, "display", display, "time", time, NULL));
+}
+
+/* A word of what it is, then what it says, and below that in small letters what else there is to say; "" where nothing lies over
+   everything. */
 static void say_card(const struct player *player, int64_t now_ns, struct text *card)
 {
     int64_t heard_ns = player->links.at[0].heard_ns;
@@ -336,7 +350,7 @@ static void say_card(const struct player *player, int64_t now_ns, struct text *c
         text_add(card, "lost\n%s",
                  say("walls.lost", "time", player_time(player, model_now_us(&player->model) - (now_ns - heard_ns) / 1000), NULL));
     else if (now_ns - (heard_ns ? heard_ns : player->begun_ns) >= player->lost_ns)
-        text_add(card, "lost\n%s", say("walls.never", NULL));
+        say_self(player, card);
     else if (player->wrong[0])
         text_add(card, "wrong\n%s", player->wrong);
     else if (!player->wall || !player->model.welcome)
@@ -350,7 +364,9 @@ static void draw_card(const struct player *player, cairo_t *cairo)
     double mm = rules_millimetres(inches ? json_number_value(inches) : 55, player->display_width_px, player->display_height_px);
     bool large = !strncmp(player->card.at, "lost", 4);
     double size = large ? fmin(100 / mm / 0.72, width / 12) : fmin(width, height) / 28;
-    const char *text = strchr(player->card.at, '\n') + 1;
+    char text[sizeof(player->wrong) + 1];
+    const char *said = strchr(player->card.at, '\n') + 1, *more = large ? strchr(said, '\n') : NULL;
+    snprintf(text, sizeof(text), "%.*s", (int)(more ? more - said : (long)strlen(said)), said);
     struct box box = { 0.04 * width, 0, 0.92 * width, height };
     brush_fill(cairo, &(struct box){ 0, 0, width, height }, 0x000000);
     cairo_push_group(cairo); /* measured */
@@ -359,6 +375,10 @@ static void draw_card(const struct player *player, cairo_t *cairo)
     box.y = fmax(0, 0.5 * (height - high));
     box.height = height - box.y;
     brush_text(cairo, &box, size, large, WHITE, ALIGN_CENTRE, true, text);
+    box.y += high + size / 2;
+    box.height = height - box.y;
+    if (more && box.height > 0)
+        brush_text(cairo, &box, fmin(width, height) / 28, false, WHITE, ALIGN_CENTRE, true, more + 1);
 }
 
 static struct box body_of(const struct pane *pane)

@@ -2,7 +2,7 @@
 // Of an installed page, by https only: the page's own files from the network, and where there is none as they last were, so that it opens
 // and says that it is disconnected. Files of one version are kept at a time: those of another would not fit. Nothing that the plant says is
 // ever kept.
-const OURS = /^(\/|\/index\.html|\/(app|core|words|vendor|made)\/.*)$/;
+const OURS = /^(\/|\/(index|wall)\.html|\/(app|core|words|vendor|made|wall)\/.*)$/;
 const PREFIX = 'plantcast-';
 let kept = null; // a promise of the store of the version that is shown
 

@@ -74,6 +74,19 @@ test('with another version nothing of the one before stays', options, async () =
     assert.ok(files.includes('/app/main.js') && !files.includes('/app/views/views.js'), 'what was used of it, and no more');
 });
 
+test('a display of a wall, too: without a network it says which one it is, and since when', options, async () => {
+    const display = await page.context().newPage();
+    await display.goto(new URL('wall.html?wall=room&display=2&lang=en', page.url()).href);
+    await display.waitForFunction(() => globalThis.wall);
+    await page.context().setOffline(true);
+    await display.reload();
+    await display.locator('#lost', { hasText: /^No connection to the plant.*Display 2 of room, waiting since \d\d:\d\d:\d\d$/s })
+        .waitFor({ timeout: 30000 });
+    await shoot(display, 'wall-offline');
+    await page.context().setOffline(false);
+    await display.close();
+});
+
 test('without a network it opens, and says what is missing', options, async () => {
     await open('v');
     await page.locator('#views.open').waitFor();

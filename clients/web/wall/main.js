@@ -12,7 +12,7 @@ import { clock, keepScreenOn, watchSleep } from '../app/common/clock.js';
 import { byId, make, setText, setVariable } from '../app/common/dom.js';
 import { store, stored } from '../app/common/storage.js';
 import { chooseTheme } from '../app/common/theme.js';
-import { renewIfOld } from '../app/install.js';
+import { renewIfOld, serveInstalled } from '../app/install.js';
 import { areaOf, paneOf } from './panes.js';
 import { Pairing } from './pairing.js';
 import { tileOf } from './tile.js';
@@ -106,6 +106,9 @@ async function look() {
 
 // --- as time goes by
 
+const lostWords = make('p'), lostSelf = make('p', { class: 'self' }), OPENED = new Date().toLocaleTimeString('en-GB'); // by its own clock
+byId('lost').replaceChildren(lostWords, lostSelf);
+
 let lostAt = null;
 function tick() {
     const now = clock.now(), { kind } = health(session, now), { model } = session;
@@ -113,8 +116,10 @@ function tick() {
     lostAt = gone ? lostAt ?? now : null;
     byId('lost').hidden = lostAt === null || now - lostAt < LOST_MS || !byId('denied').hidden;
     const heard = model && session.freshAt !== null;
-    if (!byId('lost').hidden)
-        setText(byId('lost'), heard ? say('walls.lost', { time: timeOf(session.clockUs(session.freshAt)) }) : say('walls.never'));
+    if (!byId('lost').hidden) {
+        setText(lostWords, heard ? say('walls.lost', { time: timeOf(session.clockUs(session.freshAt)) }) : say('walls.never'));
+        setText(lostSelf, heard ? '' : say('walls.self', { wall: query.get('wall'), display: number, time: OPENED }));
+    }
     if (!model)
         return;
     const [x, y] = burnShift(session.clockUs());
@@ -158,5 +163,6 @@ watchSleep(() => {
 });
 window.addEventListener('online', () => connection.retryNow());
 keepScreenOn();
+serveInstalled();
 connection.start();
 globalThis.wall = { session, call, get panes() { return panes; } }; // for the console and for tests

@@ -23,9 +23,9 @@ harmonic.why: Stationäre Wärmeleitung in der Wand zwischen Messpunkten.
   Nicht, wo Medium oder Luft die Wärme abführt, nicht für Druck oder Durchfluss
 fin: Leitung und Verlust
 fin.why: Wie Wärmeleitung, aber die Wand verliert Wärme an die Luft; unbekannt, wo Messpunkte unter ein Zehntel sagen.
+  Nicht für gedämmte oder beheizte Wände
 gp: Am wahrscheinlichsten
 gp.why: Gauß-Prozess: wahrscheinlichstes Feld mit seiner Unsicherheit. Nicht, wo Teile sich berühren, die nichts miteinander zu tun haben
-  Nicht für gedämmte oder beheizte Wände
 
 [bar]
 distance: Abstand
@@ -119,6 +119,7 @@ unknown: Eine Wand „{id}“ steht nicht in der Anlagendatei. Es gibt: {known}
 display: Die Wand „{id}“ hat {count} Bildschirme und keinen Bildschirm {n}
 lost: Keine Verbindung zur Anlage seit {time}
 never: Keine Verbindung zur Anlage
+self: Bildschirm {display} von {wall}, wartet seit {time}
 denied: Dieser Bildschirm braucht ein eigenes Token
 digits: Wer die Rolle engineer hat, gibt diese Ziffern auf der Seite unter „Ansichten“ ein
 token: Token

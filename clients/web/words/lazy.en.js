@@ -117,6 +117,7 @@ unknown: There is no wall '{id}' in the plant file. There are: {known}
 display: Wall '{id}' has {count} displays, and no display {n}
 lost: No connection to the plant since {time}
 never: No connection to the plant
+self: Display {display} of {wall}, waiting since {time}
 denied: This display needs a token of its own
 digits: To let this display in, an engineer enters these digits on the page, in Views
 token: Token
