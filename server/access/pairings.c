@@ -26,6 +26,7 @@ struct pairings {
     struct kept_list kept; /* { id, hash, wall, display, from, by, time_us } */
     struct waiting waiting[PAIRINGS];
     size_t count;
+    uint64_t number;  /* of changes of those that wait */
     int64_t wrong_ns; /* when the first of the wrong digits of this minute came */
     int wrong;
 };
@@ -141,6 +142,7 @@ char *pairings_text(const struct pairings *pairings)
 static void forget(struct pairings *pairings, size_t i)
 {
     pairings->waiting[i] = pairings->waiting[--pairings->count];
+    pairings->number++;
 }
 
 static void forget_old(struct pairings *pairings, int64_t now_ns)
@@ -160,13 +162,13 @@ static struct waiting *find_digits(struct pairings *pairings, const char *digits
 }
 
 /* Of that secret, for that display. */
-static struct waiting *find_waiting(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
+static struct waiting *find_waiting(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
 {
     for (size_t i = 0; i < pairings->count; i++) {
-        struct waiting *waiting = &pairings->waiting[i];
+        const struct waiting *waiting = &pairings->waiting[i];
         if (CRYPTO_memcmp(waiting->hash, hash, TOKEN_HASH_BYTES) == 0 && waiting->place.display == place->display &&
             !strcmp(waiting->place.wall, place->wall))
-            return waiting;
+            return (struct waiting *)waiting;
     }
     return NULL;
 }
@@ -200,25 +202,47 @@ static struct waiting *begin(struct pairings *pairings, const uint8_t hash[TOKEN
     snprintf(waiting.from, sizeof(waiting.from), "%s", request->from);
     log_info(pairings->kept.log, "pairing: %s wants to be display %d of wall %s", waiting.from, waiting.place.display, waiting.place.wall);
     pairings->waiting[pairings->count] = waiting;
+    pairings->number++;
     return &pairings->waiting[pairings->count++];
+}
+
+/* Paired as what is asked for, or as another display; else PAIRING_WAITS. */
+static enum pairing find_paired(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
+{
+    struct token_holder paired;
+    if (!pairings_find(pairings, hash, &paired))
+        return PAIRING_WAITS;
+    return paired.display == place->display && !strcmp(paired.wall, place->wall) ? PAIRING_DONE : PAIRING_OTHER;
+}
+
+static void tell_digits(const struct waiting *waiting, int64_t now_ns, char digits[PAIRING_DIGITS + 1], int *left_s)
+{
+    strcpy(digits, waiting->digits);
+    *left_s = (int)((waiting->begun_ns + PAIRING_S * NS_PER_S - now_ns) / NS_PER_S);
+}
+
+/* The secret of the request is not looked at. */
+static enum pairing ask(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
+                        int64_t now_ns, char digits[PAIRING_DIGITS + 1], int *left_s)
+{
+    enum pairing paired = find_paired(pairings, hash, &request->place);
+    if (paired != PAIRING_WAITS)
+        return paired;
+    forget_old(pairings, now_ns);
+    struct waiting *waiting = find_waiting(pairings, hash, &request->place);
+    if (!waiting && !(waiting = begin(pairings, hash, request, now_ns)))
+        return PAIRING_FULL;
+    waiting->asked_ns = now_ns;
+    tell_digits(waiting, now_ns, digits, left_s);
+    return PAIRING_WAITS;
 }
 
 enum pairing pairings_ask(struct pairings *pairings, const struct pairing_request *request, int64_t now_ns, char digits[PAIRING_DIGITS + 1],
                           int *left_s)
 {
     uint8_t hash[TOKEN_HASH_BYTES];
-    struct token_holder paired;
     tokens_hash(request->secret, hash);
-    if (pairings_find(pairings, hash, &paired))
-        return paired.display == request->place.display && !strcmp(paired.wall, request->place.wall) ? PAIRING_DONE : PAIRING_OTHER;
-    forget_old(pairings, now_ns);
-    struct waiting *waiting = find_waiting(pairings, hash, &request->place);
-    if (!waiting && !(waiting = begin(pairings, hash, request, now_ns)))
-        return PAIRING_FULL;
-    waiting->asked_ns = now_ns;
-    strcpy(digits, waiting->digits);
-    *left_s = (int)((waiting->begun_ns + PAIRING_S * NS_PER_S - now_ns) / NS_PER_S);
-    return PAIRING_WAITS;
+    return ask(pairings, hash, request, now_ns, digits, left_s);
 }
 
 static const char *keep(struct pairings *pairings, const struct waiting *waiting, const char *id, const char *who, int64_t now_us)
@@ -267,4 +291,112 @@ const char *pairings_approve(struct pairings *pairings, const char *digits, cons
     if (!why)
         forget(pairings, (size_t)(waiting - pairings->waiting));
     return why;
+}
+
+/* --- of a renderer ---------------------------------------------------------------------------------------------------------- */
+
+static bool read_bytes(const json_t *text, uint8_t *bytes, size_t count)
+{
+    const char *at = json_string_value(text);
+    unsigned byte;
+    if (!at || strlen(at) != 2 * count || strspn(at, "0123456789abcdef") != 2 * count)
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        sscanf(at + 2 * i, "%2x", &byte);
+        bytes[i] = (uint8_t)byte;
+    }
+    return true;
+}
+
+static bool read_place(const json_t *o, struct wall_place *place)
+{
+    const char *wall = json_string_value(json_object_get(o, "wall"));
+    json_int_t display = json_integer_value(json_object_get(o, "display"));
+    *place = (struct wall_place){ .display = (int)display };
+    if (!wall || strlen(wall) >= sizeof(place->wall) || display < 1 || display > WALL_DISPLAYS)
+        return false;
+    strcpy(place->wall, wall);
+    return true;
+}
+
+uint64_t pairings_number(const struct pairings *pairings)
+{
+    return pairings->kept.number + pairings->number;
+}
+
+json_t *pairings_told(const struct pairings *pairings, int64_t now_ns)
+{
+    json_t *waiting = json_array();
+    for (size_t i = 0; i < pairings->count; i++) {
+        const struct waiting *one = &pairings->waiting[i];
+        char hash[HASH_CHARS + 1], digits[PAIRING_DIGITS + 1];
+        int left_s;
+        print_hash(one->hash, hash);
+        tell_digits(one, now_ns, digits, &left_s);
+        json_array_append_new(waiting, json_pack("{s:s,s:s,s:s,s:i,s:i}", "hash", hash, "digits", digits, "wall", one->place.wall,
+                                                 "display", one->place.display, "left_s", left_s));
+    }
+    return json_pack("{s:O,s:o}", "devices", pairings->kept.list, "waiting", waiting);
+}
+
+bool pairings_mirror(struct pairings *pairings, const json_t *told, int64_t now_ns)
+{
+    const json_t *waiting = json_object_get(told, "waiting"), *one;
+    size_t i;
+    if (!json_is_array(waiting) || json_array_size(waiting) > PAIRINGS ||
+        !kept_list_mirror(&pairings->kept, json_object_get(told, "devices")))
+        return false;
+    pairings->count = 0;
+    json_array_foreach(waiting, i, one)
+    {
+        struct waiting *at = &pairings->waiting[pairings->count];
+        const char *digits = json_string_value(json_object_get(one, "digits"));
+        int64_t left_s = json_integer_value(json_object_get(one, "left_s"));
+        *at = (struct waiting){ .begun_ns = now_ns - (PAIRING_S - left_s) * NS_PER_S, .asked_ns = now_ns };
+        if (!digits || strlen(digits) != PAIRING_DIGITS || left_s < 0 || left_s > PAIRING_S || !read_place(one, &at->place) ||
+            !read_bytes(json_object_get(one, "hash"), at->hash, sizeof(at->hash)))
+            return false;
+        strcpy(at->digits, digits);
+        pairings->count++;
+    }
+    return true;
+}
+
+enum pairing pairings_look(const struct pairings *pairings, const struct pairing_request *request, int64_t now_ns,
+                           char digits[PAIRING_DIGITS + 1], int *left_s)
+{
+    uint8_t hash[TOKEN_HASH_BYTES];
+    tokens_hash(request->secret, hash);
+    const struct waiting *waiting = find_waiting(pairings, hash, &request->place);
+    digits[0] = 0;
+    *left_s = 0;
+    if (waiting && now_ns - waiting->begun_ns < PAIRING_S * NS_PER_S)
+        tell_digits(waiting, now_ns, digits, left_s);
+    return find_paired(pairings, hash, &request->place);
+}
+
+char *pairings_request_text(const struct pairing_request *request)
+{
+    uint8_t hash[TOKEN_HASH_BYTES];
+    char text[HASH_CHARS + 1], address[2 * 16 + 1];
+    tokens_hash(request->secret, hash);
+    print_hash(hash, text);
+    for (int i = 0; i < 16; i++)
+        snprintf(address + 2 * i, 3, "%02x", request->address[i]);
+    return json_text(json_pack("{s:s,s:s,s:s,s:i,s:s,s:s}", "type", "pairing", "hash", text, "wall", request->place.wall, "display",
+                               request->place.display, "address", address, "from", request->from),
+                     0);
+}
+
+void pairings_ask_for(struct pairings *pairings, const json_t *request, int64_t now_ns)
+{
+    const char *from = json_string_value(json_object_get(request, "from"));
+    uint8_t hash[TOKEN_HASH_BYTES], address[16];
+    char digits[PAIRING_DIGITS + 1];
+    int left_s;
+    struct pairing_request asked = { .address = address, .from = from ? from : "" };
+    if (!pairings_refusal(pairings) && read_place(request, &asked.place) &&
+        read_bytes(json_object_get(request, "hash"), hash, sizeof(hash)) &&
+        read_bytes(json_object_get(request, "address"), address, sizeof(address)))
+        ask(pairings, hash, &asked, now_ns, digits, &left_s);
 }

@@ -4,6 +4,8 @@
    secret stands for the role viewer, of no other display. Thread: the loop. */
 #ifndef ACCESS_PAIRINGS_H
 #define ACCESS_PAIRINGS_H
+#include <jansson.h>
+
 #include "access/tokens.h"
 #include "views/wall_remote.h"
 
@@ -51,5 +53,20 @@ const char *pairings_revoke(struct pairings *pairings, const char *id);
 bool pairings_find(const void *pairings, const uint8_t hash[TOKEN_HASH_BYTES], struct token_holder *out);
 /* Returns the paired devices as JSON, without their hashes; mem_free. */
 char *pairings_text(const struct pairings *pairings);
+
+/* --- of a renderer, whose core lets devices in ------------------------------------------------------------------------------- */
+
+/* Returns a number that increases with each change of the devices that are paired, or wait. */
+uint64_t pairings_number(const struct pairings *pairings);
+/* Returns them as the core tells them: { devices, waiting }, with hashes; the caller's. */
+json_t *pairings_told(const struct pairings *pairings, int64_t now_ns);
+/* Takes them in at a renderer, or a core that stands by. Returns false if they cannot be such. */
+bool pairings_mirror(struct pairings *pairings, const json_t *told, int64_t now_ns);
+/* As pairings_ask(), by what the core told: digits "" until it has told some. */
+enum pairing pairings_look(const struct pairings *pairings, const struct pairing_request *request, int64_t now_ns,
+                           char digits[PAIRING_DIGITS + 1], int *left_s);
+/* Returns what a renderer tells its core where a device asks: JSON without the secret; mem_free. The core does as it says. */
+char *pairings_request_text(const struct pairing_request *request);
+void pairings_ask_for(struct pairings *pairings, const json_t *request, int64_t now_ns);
 
 #endif

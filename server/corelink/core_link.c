@@ -148,6 +148,18 @@ bool core_link_act(struct core_link *link, const struct core_act *act)
     return text;
 }
 
+bool core_link_tell(struct core_link *link, const char *text)
+{
+    pthread_mutex_lock(&link->thread.lock);
+    bool up = link->is_up;
+    if (up) {
+        queue(link, mem_strdup(text));
+        lws_cancel_service(link->context);
+    }
+    pthread_mutex_unlock(&link->thread.lock);
+    return up;
+}
+
 /* --- what comes --------------------------------------------------------------------------------------------------------------- */
 
 static void end(struct core_link *link, const char *why)

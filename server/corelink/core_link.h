@@ -58,6 +58,9 @@ struct core_act {
 /* Sends what somebody does to the core. Returns false if there is no core now, or too much waits: nothing was sent. Any thread. */
 bool core_link_act(struct core_link *link, const struct core_act *act);
 
+/* Sends a message that has no answer, JSON. Returns false if there is no core now. Any thread. */
+bool core_link_tell(struct core_link *link, const char *text);
+
 /* What came for the loop. */
 struct core_arrival {
     struct core_arrival *next;

@@ -92,6 +92,8 @@ bool message_is_handed_on(const struct message *message)
     case MESSAGE_NOTE:
     case MESSAGE_REMOVE_NOTE:
     case MESSAGE_SEND_TO_WALL:
+    case MESSAGE_PAIR:
+    case MESSAGE_UNPAIR:
     case MESSAGE_POINT: return true;
     default: return false;
     }

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "message/names.h"
 
@@ -48,7 +49,8 @@ static void take_lists(struct server_context *server, const json_t *lists)
     if (!named_views_mirror(plant->named_views, json_object_get(lists, "views")) ||
         !notes_mirror(plant->notes, json_object_get(lists, "notes")) ||
         !wall_remote_mirror(plant->wall_remote, json_object_get(lists, "walls")) ||
-        !wall_remote_mirror_pointers(plant->wall_remote, json_object_get(lists, "pointed")))
+        !wall_remote_mirror_pointers(plant->wall_remote, json_object_get(lists, "pointed")) ||
+        !pairings_mirror(plant->pairings, json_object_get(lists, "pairings"), clock_mono_ns()))
         log_err(server->params.log, "core: lists that cannot be such");
     streams_on_alarms(server);
 }

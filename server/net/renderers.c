@@ -23,7 +23,7 @@ enum { BEAT_US = 200000, MOST_BYTES = 256 * 1024 /* of one message */, MOST_ANSW
 static const int64_t READINGS_NS = 500 * NS_PER_MS, PATIENT_NS = 2 * NS_PER_S;
 
 struct lists_seen {
-    uint64_t views, notes, walls, pointed;
+    uint64_t views, notes, walls, pointed, pairings;
 };
 
 struct renderer {
@@ -234,16 +234,16 @@ static struct lists_seen lists_now(const struct server_context *server)
 {
     const struct net_plant *plant = &server->params.plant;
     return (struct lists_seen){ named_views_number(plant->named_views), notes_number(plant->notes), wall_remote_number(plant->wall_remote),
-                                wall_remote_pointer_number(plant->wall_remote) };
+                                wall_remote_pointer_number(plant->wall_remote), pairings_number(plant->pairings) };
 }
 
 static bool send_lists(const struct server_context *server, struct renderer *renderer)
 {
     const struct net_plant *plant = &server->params.plant;
     char *pointed = wall_remote_pointers_text(plant->wall_remote, renderer->lists.pointed);
-    json_t *message = json_pack("{s:s,s:O,s:O,s:O,s:o}", "type", "lists", "views", named_views_list(plant->named_views), "notes",
+    json_t *message = json_pack("{s:s,s:O,s:O,s:O,s:o,s:o}", "type", "lists", "views", named_views_list(plant->named_views), "notes",
                                 notes_list(plant->notes), "walls", wall_remote_list(plant->wall_remote), "pointed",
-                                json_loads(pointed, 0, NULL));
+                                json_loads(pointed, 0, NULL), "pairings", pairings_told(plant->pairings, clock_mono_ns()));
     renderer->lists = lists_now(server);
     renderer->lists_sent = true;
     mem_free(pointed);
@@ -475,6 +475,8 @@ static const char *on_message(struct server_context *server, struct renderer *re
         why = "it did not say who it is";
     else if (!strcmp(type, "act") && json_is_integer(json_object_get(message, "id")))
         act(server, renderer, message);
+    else if (!strcmp(type, "pairing") && server->tokens)
+        pairings_ask_for(server->params.plant.pairings, message, clock_mono_ns());
     json_decref(message);
     return json_array_size(renderer->answers) > MOST_ANSWERS ? "it reads no answers" : why;
 }

@@ -292,9 +292,8 @@ static bool on_pair(struct session *session, const struct message *message, int6
     const struct session_context *context = session->context;
     bool pairs = message->type == MESSAGE_PAIR;
     char id[TOKEN_NAME_BYTES] = "";
-    if (!context->tokens || context->hand_on) {
-        message_fail(error, "not_allowed", "%s",
-                     context->tokens ? "a renderer keeps no displays; its core lets them in" : "displays need no token here");
+    if (!context->tokens) {
+        message_fail(error, "not_allowed", "displays need no token here");
         return false;
     }
     if (!pairs)

@@ -165,6 +165,61 @@ static void few_wait_and_few_guesses_are_judged(void **state)
     assert_null(approve(f, more, (PAIRING_QUIET_S + 61) * NS_PER_S));
 }
 
+static enum pairing look(const struct pairings *pairings, int i, int64_t now_ns, char digits[PAIRING_DIGITS + 1])
+{
+    char secret[TOKEN_MAX_CHARS + 1];
+    int left_s;
+    print_secret(i, secret);
+    return pairings_look(pairings, &(struct pairing_request){ secret, ROOM, (const uint8_t[16]){ 0 }, "10.0.0.5" }, now_ns, digits,
+                         &left_s);
+}
+
+static void mirror(const struct fixture *f, struct pairings *renderer, int64_t now_ns)
+{
+    json_t *told = pairings_told(f->pairings, now_ns);
+    assert_true(pairings_mirror(renderer, told, now_ns));
+    json_decref(told);
+}
+
+/* The renderer has no folder, and another clock. */
+static void a_renderer_asks_its_core(void **state)
+{
+    struct fixture *f = *state;
+    struct pairings *renderer = pairings_open(f->log, NULL);
+    char secret[TOKEN_MAX_CHARS + 1], digits[PAIRING_DIGITS + 1], there[PAIRING_DIGITS + 1];
+    print_secret(3, secret);
+    assert_int_equal(look(renderer, 3, 0, there), PAIRING_WAITS);
+    assert_string_equal(there, "");
+    char *text = pairings_request_text(&(struct pairing_request){ secret, ROOM, (const uint8_t[16]){ 7 }, "10.0.0.5" });
+    assert_null(strstr(text, secret));
+    json_t *request = json_loads(text, 0, NULL);
+    uint64_t before = pairings_number(f->pairings);
+    pairings_ask_for(f->pairings, request, NS_PER_S);
+    assert_true(pairings_number(f->pairings) > before);
+    mirror(f, renderer, NS_PER_S);
+    assert_int_equal(look(renderer, 3, NS_PER_S, there), PAIRING_WAITS);
+    ask(f, 3, NS_PER_S, digits);
+    assert_string_equal(there, digits);
+    assert_int_equal(look(renderer, 3, (PAIRING_S + 2) * NS_PER_S, there), PAIRING_WAITS);
+    assert_string_equal(there, ""); /* no longer good */
+    assert_null(approve(f, digits, NS_PER_S));
+    mirror(f, renderer, NS_PER_S);
+    assert_int_equal(look(renderer, 3, NS_PER_S, there), PAIRING_DONE);
+    assert_null(pairings_revoke(f->pairings, "room.2.1"));
+    mirror(f, renderer, NS_PER_S);
+    assert_int_equal(look(renderer, 3, NS_PER_S, there), PAIRING_WAITS);
+    json_object_set_new(request, "hash", json_string("12"));
+    before = pairings_number(f->pairings);
+    pairings_ask_for(f->pairings, request, NS_PER_S);
+    assert_int_equal(pairings_number(f->pairings), before);
+    json_t *wrong = json_pack("{s:[],s:[{s:s}]}", "devices", "waiting", "digits", "123456");
+    assert_false(pairings_mirror(renderer, wrong, 0) || pairings_mirror(renderer, request, 0));
+    json_decref(wrong);
+    json_decref(request);
+    mem_free(text);
+    pairings_close(&renderer);
+}
+
 static void what_is_not_kept_lets_nobody_in(void **state)
 {
     struct fixture *f = *state;
@@ -189,6 +244,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_device_is_bound_kept_and_revoked, set_up, tear_down),
         cmocka_unit_test_setup_teardown(digits_expire, set_up, tear_down),
         cmocka_unit_test_setup_teardown(few_wait_and_few_guesses_are_judged, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_renderer_asks_its_core, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_is_not_kept_lets_nobody_in, set_up, tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

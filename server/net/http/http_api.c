@@ -264,12 +264,26 @@ int api_walls(struct server_context *server, struct request *request)
     return request_answer_json(request, walls_text(server->params.plant.scene->plant, &reader));
 }
 
+/* A renderer's core draws the digits, and tells them with what else is kept: it is asked each time, so that they stay good. */
+static enum pairing ask_core(struct server_context *server, const struct pairing_request *asked, char digits[PAIRING_DIGITS + 1],
+                             int *left_s)
+{
+    char *text = pairings_request_text(asked);
+    enum pairing now = pairings_look(server->params.plant.pairings, asked, clock_mono_ns(), digits, left_s);
+    if (now == PAIRING_WAITS)
+        core_link_tell(server->params.plant.core_link, text);
+    mem_free(text);
+    return now;
+}
+
 /* A display that has a secret of its own asks whether it was let in; it shows the digits meanwhile. */
 static int pair(struct server_context *server, struct request *request, const struct pairing_request *asked)
 {
     char digits[PAIRING_DIGITS + 1];
     int left_s;
-    enum pairing now = pairings_ask(server->params.plant.pairings, asked, clock_mono_ns(), digits, &left_s);
+    enum pairing now = server->params.plant.core_link
+                           ? ask_core(server, asked, digits, &left_s)
+                           : pairings_ask(server->params.plant.pairings, asked, clock_mono_ns(), digits, &left_s);
     if (now == PAIRING_FULL)
         return request_answer_later(request, "too many displays wait to be let in; try again\n");
     if (now == PAIRING_OTHER)
@@ -286,9 +300,9 @@ int api_pair(struct server_context *server, struct request *request)
     struct wall_place place = { .display = 1 };
     struct args args;
     char secret[256];
-    if (!server->tokens || server->params.plant.core_link)
+    if (!server->tokens)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "displays are not let in by digits here\n");
-    const char *why = pairings_refusal(server->params.plant.pairings);
+    const char *why = server->params.plant.core_link ? NULL : pairings_refusal(server->params.plant.pairings);
     if (why)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, why);
     if (!request_args(request->wsi, &args, &error))
@@ -310,7 +324,7 @@ int api_pair(struct server_context *server, struct request *request)
 
 int api_devices(struct server_context *server, struct request *request)
 {
-    if (!server->tokens || server->params.plant.core_link)
+    if (!server->tokens)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "displays are not let in by digits here\n");
     return request_answer_json(request, pairings_text(server->params.plant.pairings));
 }
