@@ -269,6 +269,8 @@ $(out)/tests/unit/revision_test: pkg_libs += -lminizip -lexpat
 $(out)/tests/unit/wall_rules_test: $(call objects,clients/wall/rules.c clients/wall/view_address.c clients/wall/approach.c)
 $(out)/tests/unit/wall_tile_test: $(call objects,clients/wall/view_tile.c)
 $(out)/tests/unit/wall_link_test: $(call objects,clients/wall/link.c) $(out)/lib/link.a
+$(out)/tests/unit/wall_sight_test: $(call objects,$(addprefix clients/wall/,view_sight.c view_address.c approach.c link.c)) \
+    $(out)/lib/link.a
 $(out)/tests/unit/wall_model_test: $(call objects,clients/wall/model.c clients/wall/model_plant.c)
 match_tests := $(foreach t,match tag_export,$(out)/tests/unit/$(t)_test)
 $(match_tests): $(out)/lib/match.a

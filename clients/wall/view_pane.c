@@ -56,6 +56,7 @@ void view_pane_clear(struct view_pane *pane)
 void view_pane_finish(struct view_pane *pane)
 {
     view_pane_clear(pane);
+    view_sight_finish(&pane->sight);
     json_decref(pane->start);
     decoder_destroy(&pane->decoder);
     mem_free(pane->canvas);
@@ -191,14 +192,37 @@ static void post_camera(struct view_pane *pane, json_t *camera)
 static void ask(struct view_pane *pane, json_t *params, json_t *camera)
 {
     json_object_update_new(params, json_pack("{s:s,s:I}", "type", "params", "seq", (json_int_t)++pane->params_seq));
+    pane->view_seq = pane->params_seq;
     pane->refused[0] = 0;
     view_sight_end(&pane->sight);
     link_post(pane->link, params);
     post_camera(pane, camera);
 }
 
-/* Another side may be better. A tile stays with the first, as in the page. */
-static void begin_sight(struct view_pane *pane, const struct model *model, int tag, const struct camera *camera)
+/* Equipment that is not shown is shown from now on, if the tag stands on it. */
+static void reveal(json_t *params, const char *asset)
+{
+    static const char *const lists[] = { "hidden", "ghost" };
+    json_t *isolate = json_object_get(params, "isolate"), *id = json_string(asset);
+    bool is_isolated = json_array_size(isolate) == 0;
+    for (size_t i = 0; i < sizeof(lists) / sizeof(lists[0]); i++) {
+        json_t *left = json_array(), *one;
+        size_t at;
+        json_array_foreach(json_object_get(params, lists[i]), at, one) if (!json_equal(one, id)) json_array_append(left, one);
+        json_object_set_new(params, lists[i], left);
+    }
+    for (size_t i = 0; i < json_array_size(isolate); i++)
+        is_isolated |= json_equal(json_array_get(isolate, i), id) != 0;
+    if (!is_isolated) {
+        json_t *more = json_copy(isolate);
+        json_array_append(more, id);
+        json_object_set_new(params, "isolate", more);
+    }
+    json_decref(id);
+}
+
+/* Another side may be better, or what stands before the place is seen through. A tile stays with the first, as in the page. */
+static void begin_sight(struct view_pane *pane, const struct model *model, int tag, const struct camera *camera, const json_t *params)
 {
     const struct plant_tag *of = &model->plant.tags[tag];
     struct view_sight *sight = &pane->sight;
@@ -211,6 +235,9 @@ static void begin_sight(struct view_pane *pane, const struct model *model, int t
     sight->width_px = pane->width_px;
     sight->height_px = pane->height_px;
     sight->first = *camera;
+    json_decref(sight->ghosts);
+    sight->ghosts = json_deep_copy(json_object_get(params, "ghost"));
+    sight->params_seq = &pane->params_seq;
     view_sight_begin(sight, pane->link);
 }
 
@@ -241,9 +268,13 @@ void view_pane_show_tag(struct view_pane *pane, const struct model *model, int t
 {
     const struct plant_tag *of = &model->plant.tags[tag];
     json_t *params = plain_params(pane, model, of->group >= 0 ? model->plant.groups[of->group].id : NULL);
+    if (of->asset >= 0)
+        reveal(params, model->plant.assets[of->asset].id);
     struct camera camera = find_camera(pane, model, params, tag);
+    json_incref(params);
     ask(pane, params, view_address_camera_message(&camera));
-    begin_sight(pane, model, tag, &camera);
+    begin_sight(pane, model, tag, &camera, params);
+    json_decref(params);
 }
 
 /* --- what comes --------------------------------------------------------------------------------------------------------------------- */
@@ -257,7 +288,7 @@ static void on_welcome(struct view_pane *pane, const json_t *message)
     pane->start = json_deep_copy(json_object_get(message, "view"));
     pane->engineer = role && !strcmp(role, "engineer");
     snprintf(pane->configuration, sizeof(pane->configuration), "%s", configuration ? configuration : "");
-    pane->camera_seq = pane->params_seq = pane->told_seq = 0;
+    pane->camera_seq = pane->params_seq = pane->view_seq = pane->told_seq = 0;
     pane->greeted = true;
     pane->missed = false;
 }
@@ -489,8 +520,8 @@ static uint8_t *show_pixels(struct view_pane *pane, const struct model *model, c
     }
     camera->fov_deg = (double)frame->fov_deg;
     camera->height_m = (double)frame->height_m;
-    pane->is_current = pane->params_seq > 0 && frame->camera_seq >= pane->camera_seq && frame->params_seq >= pane->params_seq &&
-                       pane->told_seq >= pane->params_seq;
+    pane->is_current = pane->view_seq > 0 && frame->camera_seq >= pane->camera_seq && frame->params_seq >= pane->view_seq &&
+                       pane->told_seq >= pane->view_seq;
     if (pane->tile.display) {
         pane->shown_params_seq = frame->params_seq;
         take_told(pane);

@@ -31,6 +31,7 @@ struct view_pane {
     char configuration[40];          /* of the plant that its markers are of */
     json_t *start;                   /* the parameters that a view begins with */
     uint32_t camera_seq, params_seq; /* the newest that were asked for */
+    uint32_t view_seq;               /* those of the parameters that the picture must have to be of the view; later ones make ghosts */
     struct view told;                /* what the server says is in force, by its answer number told_seq */
     uint32_t told_seq;
     struct told_view coming[TOLD_COMING]; /* of a tile: of pictures that are not shown yet, the newest last */

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The place of an alarm that something stands before, in the player of a wall's displays: it is shown from another side, also to a display
-// that has a token for itself alone.
+// The place of an alarm that something stands before, in the player of a wall's displays: it is shown from another side, or through what
+// stands before it from all of them; also to a display that has a token for itself alone.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { SCREENSHOTS } from './support/browser.mjs';
+import { PlainClient } from './support/plain_client.mjs';
 import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
 
@@ -14,7 +15,7 @@ const PLAYER = join(BIN, 'plantcast-wall'), absent = [...missing(), ...(existsSy
 const why = absent.length > 0 ? `not built: ${absent.join(', ')}` : missingDisplay();
 const [WIDTH, HEIGHT] = [640, 360], TOP = 40;
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
-let plant, screen, player, gone;
+let plant, operator, screen, player, gone;
 
 before(async () => {
     if (why)
@@ -24,13 +25,16 @@ before(async () => {
     const tags = join(plant.folder, 'tags.csv'), tokens = join(plant.folder, 'tokens'), token = join(plant.folder, 'token');
     writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1,90$/gm, ',600,90'));
     const yaml = readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000');
-    const box = '  - { id: WALL, model: box.gltf, placement: { translate: [1.4, 0, 0.3] } }'; // TI-1 is on the side of E-101 that it hides
+    // TI-1 is on the side of E-101 that WALL hides, TI-2 on the other, within HUT.
+    const box = `  - { id: WALL, model: box.gltf, placement: { translate: [1.4, 0, 0.3] } }
+  - { id: HUT, model: box.gltf, placement: { translate: [-0.65, 0, 0], scale: 0.6 } }`;
     writeFileSync(plant.file, `${yaml.replace('groups:', `${box}\ngroups:`)}
 views: [{ id: pump, view: "group=temperature&camera=3,-9,1,3,0,0,0,0,1,20" }]
 walls: [{ id: room, displays: [{ grid: [main], panes: [{ area: main, views: pump, on_alarm: yes }] }] }]
 `);
     const made = runProgram('plantcast', ['token', 'add', tokens, '--role', 'viewer', '--name', 'one', '--display', 'room:1']);
     writeFileSync(token, made.out);
+    operator = runProgram('plantcast', ['token', 'add', tokens, '--role', 'operator', '--name', 'kim']).out.trim();
     chmodSync(tokens, 0o600);
     assert.equal(plant.prepare().code, 0);
     await plant.startSim();
@@ -72,16 +76,37 @@ async function until(what, is) {
     }
 }
 
-test('the place of an alarm is shown from a side where nothing stands before it', { skip: why ?? false, timeout: 240000 }, async () => {
-    const left = () => Array.from({ length: 10 }, (_, x) => screen.grab().at(x, HEIGHT / 2));
-    const isCalled = () => left().some(([r, g]) => r > 150 && g < 60); // by its frame
+const options = { skip: why ?? false, timeout: 240000 };
+const left = () => Array.from({ length: 10 }, (_, x) => screen.grab().at(x, HEIGHT / 2));
+const isCalled = () => left().some(([r, g]) => r > 150 && g < 60); // by its frame
+async function untilCalled(is = true) {
+    for (const end = performance.now() + 60000; isCalled() !== is; await sleep(100))
+        assert.ok(performance.now() < end, is ? 'no alarm calls' : 'an alarm calls');
+}
+const shot = (name) => process.env.PLANTCAST_SHOTS === '1' && savePng(screen.grab(), join(SCREENSHOTS, `${name}.png`));
+
+test('the place of an alarm is shown from a side where nothing stands before it', options, async () => {
     await until('the view', ({ coloured }) => coloured < 0.5);
     await plant.tell('set TI-1 95');
-    for (const end = performance.now() + 60000; !isCalled(); await sleep(100))
-        assert.ok(performance.now() < end, 'no alarm calls');
+    await untilCalled();
     await until('its place', ({ coloured, gray }) => coloured > 0.4 && gray < 0.2);
     await sleep(500);
     assert.ok(middle().coloured > 0.4);
-    if (process.env.PLANTCAST_SHOTS === '1')
-        savePng(screen.grab(), join(SCREENSHOTS, 'wall-sight.png'));
+    shot('wall-sight');
+    await plant.tell('set TI-1 50');
+    const crew = await PlainClient.open(plant.port, { host: 'localhost' });
+    await crew.hello({ token: operator });
+    for (let seq = 1; isCalled() && seq < 100; seq++, await sleep(300))
+        crew.say({ type: 'alarm', seq, action: 'acknowledge', alarms: [['TI-1', 'H']] });
+    crew.close();
+    await untilCalled(false);
+});
+
+test('where something does from all sides, it is seen through', options, async () => {
+    await plant.tell('set TI-2 95');
+    await untilCalled();
+    await until('its place, within the hut', ({ coloured }) => coloured > 0.4);
+    await sleep(1000);
+    assert.ok(middle().coloured > 0.4);
+    shot('wall-sight-through');
 });

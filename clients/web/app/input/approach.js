@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Brings a tag into sight: from a side where nothing stands before it; else what stands there becomes a ghost for as long as one looks
-// at the tag.
+// at the tag. clients/wall/view_sight.c does the same for the player of a wall.
 import { approaches } from '../../core/approach.js';
 import { halfAt } from '../../core/nearest.js';
 import { askPick } from '../../core/requests.js';
@@ -65,7 +65,7 @@ export class Approach {
                 return;
             if (covered < least)
                 [best, least] = [camera, covered];
-            if (!found.seen && found.asset !== asset.id)
+            if (!found.seen && found.asset !== null && found.asset !== asset.id)
                 behind.push(camera);
             if (covered === 0 || (performance.now() > latest && (best || behind.length > 0)))
                 break;
