@@ -542,9 +542,11 @@ static void change_readings(double value)
     render_service_on_data(service);
 }
 
+static int refined_width_px = 2400; /* of refined pictures while readings change */
+
 static void refined_of_look(enum look look, struct view *view)
 {
-    view_default(&toy->scene, 2400, 1600, view);
+    view_default(&toy->scene, refined_width_px, refined_width_px * 2 / 3, view);
     view->tier = TIER_REFINED;
     view->look = look;
     view->camera.eye_m[0] += 0.05;
@@ -648,7 +650,9 @@ static void test_changing_readings_leave_pictures_without_room(void **state)
     if (hardware)
         skip();
     remake(false, (size_t)64 << 20);
+    refined_width_px = sweep(2400, 1200); /* each time it is drawn anew */
     assert_true(refined_comes(LOOK_GLOSSY, 2 * NS_PER_S));
+    refined_width_px = 2400;
 }
 
 /* By GL nothing is kept: a picture is given up for readings a few times, each time later, and comes in the end. */
