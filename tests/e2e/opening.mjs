@@ -9,8 +9,8 @@ import { median } from './support/crowd.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 
 const why = missing();
-const options = { skip: why ?? false, timeout: 200000 };
-const MOST_MS = 1000, LOADS = 5, MOST_TRIES = 12;
+const options = { skip: why ?? false, timeout: 400000 };
+const MOST_MS = 1000, LOADS = 5, MOST_TRIES = 12, TRIED_MS = 60000, PATIENCE_MS = 120000;
 const SPIN_MS = 80, LEAST_SHARE = 0.85; // of the processors: below it something else takes too much of them for a time to mean anything
 const LAN = { offline: false, latency: 1, downloadThroughput: 12.5e6, uploadThroughput: 12.5e6 }; // 1 ms, 100 Mbit/s
 let plant, browser;
@@ -59,8 +59,8 @@ async function load() {
             requestAnimationFrame(() => { globalThis.firstPictureMs = performance.now(); }); // it is drawn by then
         }).observe(document, { subtree: true, childList: true, attributes: true, attributeFilter: ['hidden'] });
     });
-    await page.goto(plant.url);
-    await page.waitForFunction(() => globalThis.firstPictureMs, null, { timeout: 60000 });
+    await page.goto(plant.url, { timeout: PATIENCE_MS });
+    await page.waitForFunction(() => globalThis.firstPictureMs, null, { timeout: PATIENCE_MS });
     const ms = await page.evaluate(() => globalThis.firstPictureMs);
     await context.close();
     return { ms, share: Math.min(calm, await share()) };
@@ -68,10 +68,11 @@ async function load() {
 
 // Time that something else took only makes it later: what is soon enough beside it is soon enough.
 test(`the plant is on the screen ${MOST_MS} ms after the page was asked for, wherever the machine has the time`, options, async (t) => {
-    const loads = [], times = (least) => loads.filter((one) => one.share >= least).map(({ ms }) => ms);
+    const loads = [], began = performance.now(), times = (least) => loads.filter((one) => one.share >= least).map(({ ms }) => ms);
     const isSoon = (list) => list.length >= LOADS && median(list) <= MOST_MS;
-    while (loads.length < MOST_TRIES && !isSoon(times(0)) && times(LEAST_SHARE).length < LOADS)
+    do
         loads.push(await load());
+    while (loads.length < MOST_TRIES && performance.now() - began < TRIED_MS && !isSoon(times(0)) && times(LEAST_SHARE).length < LOADS);
     const said = loads.map((one) => `${one.ms.toFixed(0)} ms with ${(100 * one.share).toFixed(0)} %`).join(', ');
     t.diagnostic(`first pictures, and the share of the processors: ${said}`);
     if (isSoon(times(0)))
