@@ -31,7 +31,7 @@
 #define NAMED 2.0         /* what is named was found at some places; between them it may be so many times as much */
 #define LEAST_M 1e-5      /* a sensor nearer than that has all the weight: server/field */
 #define RIM_OF_REACH 0.05 /* beside where data ends nothing is compared */
-#define MOST 1024         /* sensors, vertices and triangles of a case */
+#define MOST 4096         /* sensors, vertices and triangles of a case */
 
 struct awkward {
     struct prep_case *files;
@@ -399,6 +399,19 @@ static void hundreds_of_sensors_on_nine_triangles(void **state)
     assert_true(assert_true_or_named(&a).worth_a_look > 1);
 }
 
+/* By far more peaks than there may be triangles: too many to hold each against the truth, but they are named. */
+static void thousands_of_sensors_on_nine_triangles(void **state)
+{
+    struct awkward a = { .files = *state };
+    struct folder_file file;
+    make_plate(&a);
+    scatter_sensors(&a, (size_t)sweep(4096, 1024));
+    struct named named = prepare(&a, &file);
+    print_message("# %zu sensors: %.1f steps named\n", a.sensor_count, named.worth_a_look);
+    assert_true(named.worth_a_look > 1);
+    folder_close(&file);
+}
+
 #define WITH_FOLDER(test) cmocka_unit_test_setup_teardown(test, prep_case_set_up, prep_case_tear_down)
 
 int main(void)
@@ -413,6 +426,7 @@ int main(void)
         WITH_FOLDER(two_sensors_at_one_place),
         WITH_FOLDER(power_of_16),
         WITH_FOLDER(hundreds_of_sensors_on_nine_triangles),
+        WITH_FOLDER(thousands_of_sensors_on_nine_triangles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
