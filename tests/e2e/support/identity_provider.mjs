@@ -104,6 +104,10 @@ export class IdentityProvider {
                 }
                 const [status, json] = this.answer(request.url, new URLSearchParams(body), request.headers.authorization);
                 const say = () => response.writeHead(status, { 'Content-Type': 'application/json' }).end(JSON.stringify(json));
+                response.once('close', () => { // who has waited too long does not have what was given
+                    if (!response.writableFinished)
+                        this.live.delete(json.refresh_token);
+                });
                 setTimeout(say, request.url === '/token' ? this.delay_ms : 0);
             });
         });
