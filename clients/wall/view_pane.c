@@ -171,8 +171,10 @@ static struct camera find_camera(const struct view_pane *pane, const struct mode
     struct view view;
     memcpy(camera.eye_m, home->eye_m, sizeof(camera.eye_m));
     memcpy(camera.target_m, home->target_m, sizeof(camera.target_m));
-    if (read_view(model, params, pane->width_px, pane->height_px, &view))
+    if (read_view(model, params, pane->width_px, pane->height_px, &view)) {
         overlay_pane_window(&model->scene, &view, pane->unit, &framing.window);
+        aspect /= view.split ? 2 : 1; /* of each half */
+    }
     if (framing.window.right < 0) /* a pane that is hardly wider than its legend */
         framing.window = (struct camera_window){ 0 };
     if (tag < 0 && home->set)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Displays beside each other, as they are seen: the picture goes on from one to the next, though it is moved so that nothing burns in.
+// Displays beside each other, as they are seen: the picture goes on from one to the next, though it is moved so that nothing burns in;
+// and halves of one display, which show all of the plant each.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
@@ -17,8 +18,12 @@ const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : 
 const noPlayer = (existsSync(PLAYER) ? null : 'not built: plantcast-wall') ?? missingDisplay();
 const [WIDTH, HEIGHT] = [640, 360], SCREEN = { viewport: { width: WIDTH, height: HEIGHT } }, MARGIN = 3, STILL = 2;
 const WALLS = `
-views: [{ id: all, title: All, view: "group=temperature&camera=3.5,-7,1,1.5,0,0,0,0,1,30" }]
-walls: [{ id: wide, tile: { columns: 2, rows: 1, views: all } }]
+views:
+- { id: all, title: All, view: "group=temperature&camera=3.5,-7,1,1.5,0,0,0,0,1,30" }
+- { id: halves, view: "group=temperature&split=look:flat" }
+walls:
+- { id: wide, tile: { columns: 2, rows: 1, views: all } }
+- { id: split, displays: [{ grid: [main], panes: [{ area: main, views: halves }] }] }
 `;
 const CAMERA = { type: 'camera', seq: 1, eye: [3.5, -7, 1], target: [1.5, 0, 0], up: [0, 0, 1], fov: 30 };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms)), shiftNow = () => burnShift(Date.now() * 1000);
@@ -116,5 +121,35 @@ test('players: likewise', { ...options, skip: options.skip || (noPlayer ?? false
         }
         for (const screen of screens)
             await screen.stop();
+    }
+});
+
+// How many pixels of columns are in colours, as the field is.
+function countColoured({ at }, left, right) {
+    let count = 0;
+    for (let y = 40; y < HEIGHT - 8; y++) {
+        for (let x = left; x < right; x++)
+            count += Math.max(...at(x, y)) - Math.min(...at(x, y)) > 60;
+    }
+    return count;
+}
+
+test('the player: each half of a split view shows all of the plant', { ...options, skip: options.skip || (noPlayer ?? false) }, async () => {
+    const screen = await startDisplay(WIDTH, HEIGHT), MOST_SHIFT = 8, HALF = WIDTH / 2;
+    const player = spawn(PLAYER, [`http://127.0.0.1:${plant.port}/`, '--wall', 'split'],
+        { env: { ...process.env, DISPLAY: screen.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' }, stdio: 'ignore' });
+    const gone = new Promise((done) => { player.once('exit', done); });
+    try {
+        const lefts = [0, HALF].map((x) => x + MOST_SHIFT), inside = () => lefts.map((x) => countColoured(screen.grab(), x, x + HALF / 2));
+        for (const end = performance.now() + 60000; Math.min(...inside()) < 500; await sleep(100))
+            assert.ok(performance.now() < end, `${inside()} pixels of the field`);
+        const cut = lefts.map((x) => countColoured(screen.grab(), x, x + 2));
+        if (process.env.PLANTCAST_SHOTS === '1')
+            savePng(screen.grab(), join(SCREENSHOTS, 'wall-halves.png'));
+        assert.deepEqual(cut, [0, 0], 'nothing is cut off');
+    } finally {
+        player.kill();
+        await gone;
+        await screen.stop();
     }
 });
