@@ -134,7 +134,7 @@ function countColoured({ at }, left, right) {
     return count;
 }
 
-test('the player: each half of a split view shows all of the plant', { ...options, skip: options.skip || (noPlayer ?? false) }, async () => {
+test('the player: each half of a split view has all of the plant', { ...options, skip: options.skip || (noPlayer ?? false) }, async () => {
     const screen = await startDisplay(WIDTH, HEIGHT), MOST_SHIFT = 8, HALF = WIDTH / 2;
     const player = spawn(PLAYER, [`http://127.0.0.1:${plant.port}/`, '--wall', 'split'],
         { env: { ...process.env, DISPLAY: screen.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' }, stdio: 'ignore' });
