@@ -204,3 +204,18 @@ test('dashed arrows are those of uncertain readings, and the legend says so', op
     await settle(browser.page);
     await shoot(browser.page, 'arrows_uncertain');
 });
+
+test('what a choice of Display means stands below its buttons', options, async () => {
+    const { page } = browser;
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'blind' }));
+    await page.locator('#viewport').focus();
+    await page.keyboard.press('p');
+    for (const part of ['#coverage', '#directions']) {
+        await page.locator(`${part} .note`).waitFor();
+        const of = (selector) => page.locator(`${part} ${selector}`).boundingBox();
+        const [row, note, panel] = [await of('.row'), await of('.note'), await page.locator('#picture-panel').boundingBox()];
+        assert.ok(note.y >= row.y + row.height - 1, `${part}: ${JSON.stringify([row, note])}`);
+        assert.ok(note.width > 200 && note.x + note.width <= panel.x + panel.width, `${part}: ${JSON.stringify([note, panel])}`);
+    }
+    await page.keyboard.press('Escape');
+});

@@ -14,7 +14,8 @@ export class Coverage {
     constructor({ session }) {
         this.session = session;
         this.why = make('p', { class: 'note' });
-        this.fieldset = make('fieldset', { class: 'segments', id: 'coverage' }, make('legend', {}, say('coverage.title')));
+        this.choices = make('fieldset', { class: 'segments' }, make('legend', {}, say('coverage.title')));
+        this.element = make('div', { id: 'coverage' }, this.choices, this.why);
         TITLES.difference = (name, params) => [`Δ ${name}`, this.since(params)];
         TITLES.uncertainty = (name) => [`± ${name}`, null, say('coverage.uncertainty.note')];
         TITLES.blind = (name, { group }) =>
@@ -37,7 +38,7 @@ export class Coverage {
     // Into the panel, at its first use.
     fill() {
         this.shown = [];
-        byId('scale').before(this.fieldset);
+        byId('scale').before(this.element);
         this.update();
     }
 
@@ -50,11 +51,10 @@ export class Coverage {
         const may = COVERS.filter((show) => show === 'blind' || model.group(params.group)?.prepared?.includes('gp'));
         if (this.shown && JSON.stringify(may) !== JSON.stringify(this.shown)) {
             this.shown = may;
-            fillSegments(this.fieldset, 'coverage', [['', say('coverage.none')], ...may.map((show) => [show, say(`coverage.${show}`)])],
+            fillSegments(this.choices, 'coverage', [['', say('coverage.none')], ...may.map((show) => [show, say(`coverage.${show}`)])],
                 (show) => this.session.setParams({ show: show || 'value' }));
-            this.fieldset.append(this.why);
         }
-        markSegment(this.fieldset, now ?? '');
+        markSegment(this.choices, now ?? '');
         setText(this.why, now ? say(`coverage.${now}.why`) : '');
         this.why.hidden = !now;
     }
