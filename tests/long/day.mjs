@@ -162,6 +162,7 @@ test(`a day's life in ${MINUTES} minutes`, { skip, timeout: (MINUTES + 20) * 600
         const event = events[round % events.length], looking = crowd();
         await event();
         const { input_to_frame_ms: waited } = await looking;
+        assert.ok(waited, `${event.name}: no frame showed a camera that was sent, for ${PROBE_S} s`);
         const off = await drift(round);
         await mark();
         rows.push({ hours: (Date.now() - began) / 3.6e6, ...measure(), p95_ms: waited.p95, off });
