@@ -17,7 +17,7 @@ struct view_sight {
     double x_px, y_px; /* where the place is in the picture, whichever the side */
     int width_px, height_px;
     struct camera first; /* what is shown meanwhile */
-    json_t *ghosts;      /* ids of those that the view has anyway, an array: owned */
+    json_t *ghosts;       /* ids of those that the view has anyway, an array: owned */
     uint32_t *params_seq; /* of the pane: its last number of parameters */
     /* --- below: of view_sight.c */
     bool looks;
@@ -35,9 +35,9 @@ struct view_sight {
 
 /* Begins to look; what stands above in the struct is set. */
 void view_sight_begin(struct view_sight *sight, struct link *link);
-/* Leaves it as it is. */
+/* Stops looking; ghosts that were made stay until other parameters are asked for. */
 void view_sight_end(struct view_sight *sight);
-void view_sight_finish(struct view_sight *sight);
+void view_sight_finish(struct view_sight *sight); /* leaves it empty */
 /* Takes an answer in, and asks on. Returns true once if another camera than the first is to be shown. */
 bool view_sight_hear(struct view_sight *sight, struct link *link, const json_t *picked, struct camera *out);
 /* Asks again where no answer came. To be called as time goes by. Returns the same. */

@@ -333,6 +333,8 @@ json_t *pairings_told(const struct pairings *pairings, int64_t now_ns)
         int left_s;
         print_hash(one->hash, hash);
         tell_digits(one, now_ns, digits, &left_s);
+        if (left_s <= 0) /* it is forgotten when the next one asks */
+            continue;
         json_array_append_new(waiting, json_pack("{s:s,s:s,s:s,s:i,s:i}", "hash", hash, "digits", digits, "wall", one->place.wall,
                                                  "display", one->place.display, "left_s", left_s));
     }

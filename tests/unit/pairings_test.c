@@ -202,6 +202,8 @@ static void a_renderer_asks_its_core(void **state)
     assert_string_equal(there, digits);
     assert_int_equal(look(renderer, 3, (PAIRING_S + 2) * NS_PER_S, there), PAIRING_WAITS);
     assert_string_equal(there, ""); /* no longer good */
+    mirror(f, renderer, (PAIRING_S + 2) * NS_PER_S);
+    assert_int_equal(look(renderer, 3, (PAIRING_S + 2) * NS_PER_S, there), PAIRING_WAITS);
     assert_null(approve(f, digits, NS_PER_S));
     mirror(f, renderer, NS_PER_S);
     assert_int_equal(look(renderer, 3, NS_PER_S, there), PAIRING_DONE);
