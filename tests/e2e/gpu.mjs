@@ -148,7 +148,7 @@ const WISHES = [
 const USUAL = {
     isolines: null, light: [0.4, -0.5, 0.8], ghost: [], selected: null, colormap: 'relief', clip: null, split: null,
 };
-const LITTLE_BYTES = 20000, WITHOUT_MS = 600;
+const LITTLE_BYTES = 20000, WITHOUT_MS = 600, BUSY_TIMES = 8; // so many times as long, where the machine is busy
 
 function wish(client, { width = SIZES[3][0], height = SIZES[3][1], ...params }) {
     client.params = (client.params ?? 0) + 1;
@@ -199,7 +199,8 @@ test('what there was no room for comes once there is room, whole, and without be
         const before = faults.get('refused');
         faults.set('room_bytes', faults.get('used_bytes') + LITTLE_BYTES);
         wish(client, one);
-        await sleep(WITHOUT_MS);
+        for (let i = 0; i < BUSY_TIMES && (i === 0 || faults.get('refused') === before); i++)
+            await sleep(WITHOUT_MS);
         faults.set('room_bytes', 0);
         refused.push(faults.get('refused') > before);
         came.push(await shown(client));
