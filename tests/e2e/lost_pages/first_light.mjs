@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import {
-    grab, healthKind, held, markers, openPage, pageOf, settle, shoot, view, waitForChange, waitForHealth, waitForPicture,
+    arrive, grab, healthKind, held, markers, openPage, pageOf, settle, shoot, view, waitForChange, waitForHealth, waitForPicture,
 } from '../support/browser.mjs';
 import { contrast, countOutside, difference, meanAround } from '../support/pixels.mjs';
 import { missing, startPlant } from '../support/plant.mjs';
@@ -43,7 +43,7 @@ const assetBox = (id) => page.evaluate(async (asset) => {
 test('live frames arrive, and the page says so', options, async () => {
     await waitForPicture(page);
     await waitForHealth(page, 'live');
-    await settle(page);
+    await arrive(page);
     const picture = await grab(page);
     assert.ok(contrast(picture) > 10, `contrast ${contrast(picture)}`);
     const box = await page.locator('#viewport').boundingBox();
