@@ -81,7 +81,7 @@ test('a picture is good, and every pixel is drawn again', { skip }, async () => 
 });
 
 test('so are views of all kinds', { skip }, async () => {
-    for (const query of ['width=512&height=320&look=glossy&isolines=every:10&split=interpolation=paper',
+    for (const query of ['width=512&height=320&language=ko&look=glossy&isolines=every:10&split=interpolation=paper',
         'width=512&height=320&group=pressure&fit=P-101A&side=top&clip=1,0,0,-3&backdrop=dark&hidden=E-101']) {
         const { code, out, err } = redraw(await fetchPicture(query));
         assert.equal(code, 0, `${query}: ${out}${err}`);
