@@ -33,11 +33,13 @@ def wait_for(process, prefix, seconds=60):
 
 
 class DemoPlant:
-    """with DemoPlant("build") as plant: plant.failed says what did not start; else plant.port serves."""
+    """with DemoPlant("build") as plant: plant.failed says what did not start; else plant.port serves. vibration: what else the plant file
+    says of that group; the plant is prepared with it first."""
 
-    def __init__(self, bin_folder, *daemon_options):
+    def __init__(self, bin_folder, *daemon_options, vibration=None):
         self.bin_folder = bin_folder
         self.options = list(daemon_options)
+        self.vibration = vibration
         self.running = []
         self.failed = None
 
@@ -49,7 +51,10 @@ class DemoPlant:
         with open(DEMO) as f:
             text = f.read()
         with open(plant, "w") as f:
-            f.write(text.replace("port: 1502", "port: %d" % modbus))
+            text = text.replace("port: 1502", "port: %d" % modbus)
+            f.write(text.replace("  - id: vibration\n", "  - id: vibration\n    %s\n" % self.vibration) if self.vibration else text)
+        if self.vibration:
+            subprocess.run([os.path.join(self.bin_folder, "plantcast-prep"), plant], check=True, stdout=subprocess.DEVNULL)
         for command, ready in (
             (["plantcast-sim", plant, "--control", str(self.control)], "plantcast-sim: listening"),
             (["plantcastd", plant, "--port", str(self.port)] + self.options, "plantcastd: ready"),
@@ -94,6 +99,15 @@ class DemoPlant:
         with open("/proc/%d/stat" % self.running[-1].pid) as f:
             fields = f.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def rest(self, seconds=120):
+        """Waits until the daemon has worked out what it does after its start."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            used = self.daemon_cpu_s()
+            time.sleep(2)
+            if self.daemon_cpu_s() - used < 0.1:
+                return
 
     def start_probe(self, *options):
         command = [os.path.join(self.bin_folder, "plantcast"), "probe", self.url, "--json"] + [str(option) for option in options]

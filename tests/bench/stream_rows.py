@@ -12,6 +12,7 @@ from rows import row
 
 SECONDS = 10
 SIGNED_SECONDS = 6
+PLAIN_SECONDS, PLAIN_TURNS = 4, 4
 SETTLED_S = 3  # as the probe has it
 STILL_TAGS = 60
 
@@ -64,12 +65,16 @@ def still_rows(plant, label, codec, goals, work):
     yield row(label + "_cpu_percent", None if why else round(100 * share, 1), "%", cpu, why=why)
 
 
+def new_key(folder):
+    key = os.path.join(folder, "key.pem")
+    subprocess.run(["openssl", "genpkey", "-algorithm", "ed25519", "-out", key], check=True, umask=0o077)
+    return key
+
+
 def signed_rows(bin_folder):
     """What frames of moving cameras take that come signed, every one, beside the same without."""
     with tempfile.TemporaryDirectory() as folder:
-        key = os.path.join(folder, "key.pem")
-        subprocess.run(["openssl", "genpkey", "-algorithm", "ed25519", "-out", key], check=True, umask=0o077)
-        with DemoPlant(bin_folder, "--signing-key", key) as plant:
+        with DemoPlant(bin_folder, "--signing-key", new_key(folder)) as plant:
             if plant.failed:
                 yield row("signed", None, "", why=plant.failed)
                 return
@@ -87,6 +92,33 @@ def signed_rows(bin_folder):
                     yield row(name + "_kb_per_frame", None if why else round(found["kb_per_frame"], 1), "kB", why=why)
 
 
+def plain_rows(bin_folder):
+    """What a session that asks for none of it takes where the server signs and a group has harmonic and gp, beside where neither is so: both
+    in turn."""
+    with tempfile.TemporaryDirectory() as folder:
+        key = new_key(folder)
+        with DemoPlant(bin_folder) as plain, DemoPlant(bin_folder, "--signing-key", key, vibration="prepare: [harmonic, gp]\n"
+                                                       "    gp: { range_m: 2, noise: 0.05 }") as all_of_it:
+            names = {"alone": plain, "beside": all_of_it}
+            used, frames = dict.fromkeys(names, 0), dict.fromkeys(names, 0)
+            why = plain.failed or all_of_it.failed
+            for plant in () if why else names.values():
+                plant.rest()
+            for turn in range(0 if why else PLAIN_TURNS + 1):
+                for name, plant in sorted(names.items(), reverse=turn % 2 == 1):
+                    before = plant.daemon_cpu_s()
+                    found, wrong = plant.probe("--seconds", PLAIN_SECONDS, "--motion", "orbit")
+                    why = why or wrong
+                    if turn > 0 and found:  # the first one warms up
+                        used[name] += plant.daemon_cpu_s() - before
+                        frames[name] += found["frames"]
+            cpu_ms = {name: None if why else 1000 * used[name] / max(frames[name], 1) for name in names}
+            for name in names:
+                yield row("plain_720p_%s_cpu_ms" % name, None if why else round(cpu_ms[name], 1), "ms", why=why)
+            ratio = None if why else round(cpu_ms["beside"] / cpu_ms["alone"], 3)
+            yield row("plain_720p_beside_over_alone", ratio, "x", ("<=", 1.05), why=why)
+
+
 def stream_rows(bin_folder):
     random.seed(60)
     with DemoPlant(bin_folder) as plant:
@@ -101,3 +133,4 @@ def stream_rows(bin_folder):
         time.sleep(2)
         yield from still_rows(plant, "nothing", "h264", (("<=", 0), ("<=", 1)), time.sleep)
     yield from signed_rows(bin_folder)
+    yield from plain_rows(bin_folder)
