@@ -127,13 +127,14 @@ walls:
             assert.equal(answer.status, status, `${query}: ${answer.body}`);
             assert.match(String(answer.body), text, query);
         };
-        for (const query of ['view=left&width=320&height=200', 'height=200&view=flat&width=320'])
+        const size = 'width=320&height=200';
+        for (const query of [`view=left&${size}`, 'height=200&view=flat&width=320', `view=left&${size}&language=ko`])
             await said(query, lobby, 200, /PNG/);
         await said('view=rest', lobby, 403, /view=rest: this token is for the views left,flat,page,gone/);
         for (const query of ['', 'group=pressure', 'width=320&height=200', 'view=', 'view=lef', 'view=left,flat', 'VIEW=left'])
             await said(query, lobby, 403, /this token is for the views/);
         for (const query of ['view=left&group=pressure', 'view=left&hidden=', 'view=left&view=rest&camera=1,1,1,0,0,0', 'view=left&at=-1h'])
-            await said(query, lobby, 400, /beside view, a query has width and height only/);
+            await said(query, lobby, 400, /beside view, a query has width, height and language only/);
         await said('view=gone', lobby, 400, /the plant file has no such view/);
         await said('view=page', lobby, 400, /unknown: a picture cannot show that/);
         await said('view=left&view=rest&width=320&height=200', lobby, 200, /PNG/); // the first is meant
