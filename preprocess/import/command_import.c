@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "base/mem.h"
-#include "plant/plant_folder.h"
 #include "preprocess/import/commands.h"
 #include "preprocess/import/file_name.h"
 #include "preprocess/import/formats.h"
@@ -16,6 +15,7 @@
 #include "preprocess/import/revision/anew.h"
 #include "preprocess/import/serve.h"
 #include "preprocess/child/work_folder.h"
+#include "preprocess/match/file_set.h"
 #include "preprocess/model/gltf_shim.h"
 
 enum { RVM_ITEM_LEVEL = 3 }; /* the file, its sites, their zones, and what is in them */
@@ -157,7 +157,7 @@ static int run(struct import *import)
     if (status != 0)
         return fail_at(import->folder, strerror(-status));
     char *why = NULL;
-    int lock = plant_folder_lock(
+    int lock = file_set_lock(
         &(struct plant_folder_params){ .folder = import->folder, .own = import->work.path, .lent = import->lent }, &why);
     if (lock < 0)
         status = fail_at(import->folder, why);

@@ -16,6 +16,7 @@
 #include "preprocess/import/revision/revision.h"
 #include "preprocess/import/revision/revision_files.h"
 #include "preprocess/match/decisions.h"
+#include "preprocess/match/file_set.h"
 #include "preprocess/match/plant_trial.h"
 #include "preprocess/report/text_table.h"
 
@@ -276,7 +277,7 @@ int revise_undo(const char *folder, bool forced, int lent)
 {
     struct text changed = { 0 }, done = { 0 };
     char *why = NULL;
-    int lock = plant_folder_lock(&(struct plant_folder_params){ .folder = folder, .lent = lent }, &why), status = lock < 0 ? lock : 0;
+    int lock = file_set_lock(&(struct plant_folder_params){ .folder = folder, .lent = lent }, &why), status = lock < 0 ? lock : 0;
     if (status == 0) {
         status = revision_files_undo(folder, forced, &changed, &done);
         close(lock);
