@@ -109,7 +109,7 @@ test('a cut, ghosts and hidden equipment', options, async () => {
     await page.locator('#shows button', { hasText: 'Hide' }).click();
     await waitForShown([], ['T-101']);
     assert.match(await page.locator('#shown span').textContent(), /^1 of \d+ hidden$/);
-    await waitFor(() => !globalThis.plantcast.overlay.markers.some(({ tag }) => tag.asset === 'T-101')); // nothing marks what is hidden
+    await waitFor(() => !globalThis.plantcast.overlay.markers.some(({ tag, alarm }) => tag.asset === 'T-101' && !alarm)); // only alarms
     await page.locator('#show-all').click();
     await waitForShown([], []);
     assert.equal(await page.locator('#shown').isVisible(), false);
