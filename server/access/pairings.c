@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/hex.h"
 #include "base/json_text.h"
 #include "base/mem.h"
 #include "views/kept_list.h"
@@ -83,18 +84,12 @@ const char *pairings_refusal(const struct pairings *pairings)
 
 /* --- devices that are paired ------------------------------------------------------------------------------------------------ */
 
-static void print_hash(const uint8_t hash[TOKEN_HASH_BYTES], char text[HASH_CHARS + 1])
-{
-    for (int i = 0; i < TOKEN_HASH_BYTES; i++)
-        snprintf(text + 2 * i, 3, "%02x", hash[i]);
-}
-
 /* Takes as long for every hash. */
 static const json_t *find_device(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES])
 {
     char text[HASH_CHARS + 1];
     const json_t *found = NULL;
-    print_hash(hash, text);
+    hex_print(hash, TOKEN_HASH_BYTES, text);
     for (size_t i = 0; i < json_array_size(pairings->kept.list); i++) {
         const json_t *device = json_array_get(pairings->kept.list, i);
         if (CRYPTO_memcmp(json_string_value(json_object_get(device, "hash")), text, HASH_CHARS) == 0)
@@ -161,16 +156,17 @@ static struct waiting *find_digits(struct pairings *pairings, const char *digits
     return NULL;
 }
 
-/* Of that secret, for that display. */
-static struct waiting *find_waiting(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
+/* Of that secret, for that display; its number, or pairings->count. */
+static size_t find_waiting(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
 {
-    for (size_t i = 0; i < pairings->count; i++) {
+    size_t i = 0;
+    for (; i < pairings->count; i++) {
         const struct waiting *waiting = &pairings->waiting[i];
         if (CRYPTO_memcmp(waiting->hash, hash, TOKEN_HASH_BYTES) == 0 && waiting->place.display == place->display &&
             !strcmp(waiting->place.wall, place->wall))
-            return (struct waiting *)waiting;
+            break;
     }
-    return NULL;
+    return i;
 }
 
 /* False: the system has no randomness. */
@@ -229,8 +225,9 @@ static enum pairing ask(struct pairings *pairings, const uint8_t hash[TOKEN_HASH
     if (paired != PAIRING_WAITS)
         return paired;
     forget_old(pairings, now_ns);
-    struct waiting *waiting = find_waiting(pairings, hash, &request->place);
-    if (!waiting && !(waiting = begin(pairings, hash, request, now_ns)))
+    size_t at = find_waiting(pairings, hash, &request->place);
+    struct waiting *waiting = at < pairings->count ? &pairings->waiting[at] : begin(pairings, hash, request, now_ns);
+    if (!waiting)
         return PAIRING_FULL;
     waiting->asked_ns = now_ns;
     tell_digits(waiting, now_ns, digits, left_s);
@@ -248,7 +245,7 @@ enum pairing pairings_ask(struct pairings *pairings, const struct pairing_reques
 static const char *keep(struct pairings *pairings, const struct waiting *waiting, const char *id, const char *who, int64_t now_us)
 {
     char hash[HASH_CHARS + 1];
-    print_hash(waiting->hash, hash);
+    hex_print(waiting->hash, TOKEN_HASH_BYTES, hash);
     json_t *device = json_pack("{s:s,s:s,s:s,s:i,s:s,s:s,s:I}", "id", id, "hash", hash, "wall", waiting->place.wall, "display",
                                waiting->place.display, "from", waiting->from, "by", who, "time_us", (json_int_t)now_us);
     if (!device)
@@ -298,14 +295,7 @@ const char *pairings_approve(struct pairings *pairings, const char *digits, cons
 static bool read_bytes(const json_t *text, uint8_t *bytes, size_t count)
 {
     const char *at = json_string_value(text);
-    unsigned byte;
-    if (!at || strlen(at) != 2 * count || strspn(at, "0123456789abcdef") != 2 * count)
-        return false;
-    for (size_t i = 0; i < count; i++) {
-        sscanf(at + 2 * i, "%2x", &byte);
-        bytes[i] = (uint8_t)byte;
-    }
-    return true;
+    return at && strspn(at, "0123456789abcdef") == 2 * count && hex_read(at, bytes, count);
 }
 
 static bool read_place(const json_t *o, struct wall_place *place)
@@ -331,7 +321,7 @@ json_t *pairings_told(const struct pairings *pairings, int64_t now_ns)
         const struct waiting *one = &pairings->waiting[i];
         char hash[HASH_CHARS + 1], digits[PAIRING_DIGITS + 1];
         int left_s;
-        print_hash(one->hash, hash);
+        hex_print(one->hash, TOKEN_HASH_BYTES, hash);
         tell_digits(one, now_ns, digits, &left_s);
         if (left_s <= 0) /* it is forgotten when the next one asks */
             continue;
@@ -369,7 +359,8 @@ enum pairing pairings_look(const struct pairings *pairings, const struct pairing
 {
     uint8_t hash[TOKEN_HASH_BYTES];
     tokens_hash(request->secret, hash);
-    const struct waiting *waiting = find_waiting(pairings, hash, &request->place);
+    size_t at = find_waiting(pairings, hash, &request->place);
+    const struct waiting *waiting = at < pairings->count ? &pairings->waiting[at] : NULL;
     digits[0] = 0;
     *left_s = 0;
     if (waiting && now_ns - waiting->begun_ns < PAIRING_S * NS_PER_S)
@@ -382,9 +373,8 @@ char *pairings_request_text(const struct pairing_request *request)
     uint8_t hash[TOKEN_HASH_BYTES];
     char text[HASH_CHARS + 1], address[2 * 16 + 1];
     tokens_hash(request->secret, hash);
-    print_hash(hash, text);
-    for (int i = 0; i < 16; i++)
-        snprintf(address + 2 * i, 3, "%02x", request->address[i]);
+    hex_print(hash, TOKEN_HASH_BYTES, text);
+    hex_print(request->address, 16, address);
     return json_text(json_pack("{s:s,s:s,s:s,s:i,s:s,s:s}", "type", "pairing", "hash", text, "wall", request->place.wall, "display",
                                request->place.display, "address", address, "from", request->from),
                      0);

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/hex.h"
 #include "base/mem.h"
 #include "access/file_watch.h"
 #include "message/names.h"
@@ -48,8 +49,7 @@ bool tokens_make(char token[TOKEN_MAX_CHARS + 1])
     if (RAND_bytes(bytes, RANDOM_BYTES) != 1)
         return false;
     strcpy(token, "pc_");
-    for (int i = 0; i < RANDOM_BYTES; i++)
-        snprintf(token + 3 + 2 * i, 3, "%02x", bytes[i]);
+    hex_print(bytes, RANDOM_BYTES, token + 3);
     OPENSSL_cleanse(bytes, sizeof(bytes));
     return true;
 }
@@ -113,20 +113,6 @@ bool tokens_parse_day(const char *text, int64_t *until_utc_ns)
     int64_t begin_s = timegm(&day);
     *until_utc_ns = (begin_s + 24 * 3600) * NS_PER_S;
     return day.tm_mday == said; /* there is no 30 February */
-}
-
-static bool parse_hash(const char *text, uint8_t hash[TOKEN_HASH_BYTES])
-{
-    static const char digits[] = "0123456789abcdef";
-    if (strlen(text) != 2 * TOKEN_HASH_BYTES)
-        return false;
-    for (int i = 0; i < 2 * TOKEN_HASH_BYTES; i++) {
-        const char *at = strchr(digits, tolower((unsigned char)text[i]));
-        if (!at)
-            return false;
-        hash[i / 2] = (uint8_t)(hash[i / 2] << 4 | (at - digits));
-    }
-    return true;
 }
 
 /* The last part of a line, which may have blanks. Cuts it off. */
@@ -193,7 +179,7 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
         *why = "the name of a plant is expected after `plant`";
     else if (!tokens_name_valid(words[1]))
         *why = "a name is made of letters, digits and -_.@";
-    else if (!parse_hash(words[2], out->hash))
+    else if (!hex_read(words[2], out->hash, TOKEN_HASH_BYTES))
         *why = "a SHA-256 is 64 hexadecimal digits";
     else if (count == WORDS && (strcmp(words[3], "until") != 0 || !tokens_parse_day(words[4], &out->until_utc_ns)))
         *why = "until YYYY-MM-DD is expected";
@@ -207,9 +193,9 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
 
 void tokens_print_line(struct text *out, const struct token_holder *holder)
 {
-    text_add(out, "%s %s ", name_of(names_role, (int)holder->role), holder->name);
-    for (int i = 0; i < TOKEN_HASH_BYTES; i++)
-        text_add(out, "%02x", holder->hash[i]);
+    char hash[2 * TOKEN_HASH_BYTES + 1];
+    hex_print(holder->hash, TOKEN_HASH_BYTES, hash);
+    text_add(out, "%s %s %s", name_of(names_role, (int)holder->role), holder->name, hash);
     if (holder->until_utc_ns != INT64_MAX) {
         time_t last_s = (time_t)(holder->until_utc_ns / NS_PER_S - 1);
         struct tm day;

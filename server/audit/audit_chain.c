@@ -4,9 +4,9 @@
 
 #include <jansson.h>
 #include <openssl/evp.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/hex.h"
 #include "base/json_text.h"
 #include "base/mem.h"
 #include "base/timestamp.h"
@@ -26,8 +26,7 @@ static void hash_of(const char *bytes, size_t count, char out[AUDIT_HASH_CHARS +
 {
     unsigned char hash[AUDIT_HASH_CHARS / 2] = { 0 };
     EVP_Digest(bytes, count, hash, NULL, EVP_sha256(), NULL);
-    for (size_t i = 0; i < sizeof(hash); i++)
-        snprintf(out + 2 * i, 3, "%02x", hash[i]);
+    hex_print(hash, sizeof(hash), out);
 }
 
 /* Strangers choose some of these texts: control characters, and what is no UTF-8, become '?'. */

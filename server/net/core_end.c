@@ -2,10 +2,10 @@
 /* A renderer's sessions and its core. */
 #include "net/core_end.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/hex.h"
 #include "base/mem.h"
 #include "message/names.h"
 
@@ -32,15 +32,8 @@ static void take_key(struct server_context *server, const json_t *core)
 {
     const char *text = json_string_value(json_object_get(core, "key"));
     uint8_t key[VIEW_TOKEN_KEY_BYTES];
-    unsigned byte;
-    if (!text || strlen(text) != 2 * sizeof(key))
-        return;
-    for (size_t i = 0; i < sizeof(key); i++) {
-        if (sscanf(text + 2 * i, "%2x", &byte) != 1)
-            return;
-        key[i] = (uint8_t)byte;
-    }
-    view_token_add_key(&server->token_keys, key);
+    if (text && hex_read(text, key, sizeof(key)))
+        view_token_add_key(&server->token_keys, key);
 }
 
 static void take_lists(struct server_context *server, const json_t *lists)

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/hex.h"
 #include "base/json_text.h"
 #include "base/mem.h"
 #include "corelink/core_alarms.h"
@@ -68,8 +69,7 @@ void renderers_make_key(struct server_context *server)
     uint8_t key[VIEW_TOKEN_KEY_BYTES];
     if (RAND_bytes(key, sizeof(key)) != 1)
         return;
-    for (size_t i = 0; i < sizeof(key); i++)
-        snprintf(server->core_key + 2 * i, 3, "%02x", key[i]);
+    hex_print(key, sizeof(key), server->core_key);
 }
 
 /* --- coming and going --------------------------------------------------------------------------------------------------------- */

@@ -16,8 +16,6 @@ enum {
     PICTURE_HASH_BYTES = 65
 };
 
-/* Writes a SHA-256 as hexadecimal digits. */
-void picture_hex(const uint8_t hash[PACKET_SHA256_BYTES], char out[PICTURE_HASH_BYTES]);
 /* Writes the SHA-256 of the bytes as hexadecimal digits; "" if the library cannot. */
 void picture_hash(const void *bytes, size_t count, char out[PICTURE_HASH_BYTES]);
 /* Writes that of a value as it is printed with PICTURE_JSON. */

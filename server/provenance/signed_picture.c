@@ -7,6 +7,7 @@
 #include <openssl/evp.h>
 #include <string.h>
 
+#include "base/hex.h"
 #include "base/mem.h"
 #include "provenance/picture_statement.h"
 #include "provenance/png_text.h"
@@ -72,7 +73,7 @@ static json_t *statement_of(const struct picture_origin *origin, const struct pa
     char pixels[PICTURE_HASH_BYTES], hash[PICTURE_HASH_BYTES];
     json_t *told = json_pack("{s:o,s:o}", "now", readings_of(plant, frame->record->readings, frame->record->unproven), "baselines",
                              baselines_of(plant, frame->record));
-    picture_hex(packet->pixels_sha256, pixels);
+    hex_print(packet->pixels_sha256, PACKET_SHA256_BYTES, pixels);
     picture_hash_json(told, hash);
     json_t *statement =
         json_pack("{s:i,s:s,s:s,s:s,s:o,s:I,s:I,s:b,s:b,s:s,s:s,s:o,s:i,s:i,s:s,s:s}", "plantcast_statement", PICTURE_STATEMENT_VERSION,

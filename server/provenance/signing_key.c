@@ -9,6 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/hex.h"
 #include "base/mem.h"
 
 struct signing_key {
@@ -22,8 +23,7 @@ static bool find_id(struct signing_key *key)
     size_t count = sizeof(raw);
     if (EVP_PKEY_get_raw_public_key(key->pair, raw, &count) != 1 || EVP_Digest(raw, count, hash, NULL, EVP_sha256(), NULL) != 1)
         return false;
-    for (int i = 0; i < (SIGNING_KEY_ID_BYTES - 1) / 2; i++)
-        sprintf(key->id + 2 * i, "%02x", hash[i]);
+    hex_print(hash, (SIGNING_KEY_ID_BYTES - 1) / 2, key->id);
     return true;
 }
 

@@ -6,6 +6,7 @@
 #include <openssl/rand.h>
 #include <string.h>
 
+#include "base/hex.h"
 #include "base/mem.h"
 #include "session/session_state.h"
 
@@ -53,8 +54,7 @@ void resumes_open(struct resumes *resumes, struct session *session, char secret[
     secret[0] = 0;
     if (RAND_bytes(bytes, sizeof(bytes)) != 1)
         return;
-    for (int i = 0; i < RESUME_CHARS / 2; i++)
-        snprintf(secret + 2 * i, 3, "%02x", bytes[i]);
+    hex_print(bytes, sizeof(bytes), secret);
     mem_grow(&resumes->kept, &resumes->capacity, resumes->count + 1, sizeof(*resumes->kept));
     struct kept *kept = &resumes->kept[resumes->count++];
     *kept = (struct kept){ .what.live = session, .holder = session->identity.holder };

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/hex.h"
 #include "base/json_text.h"
 #include "base/mem.h"
 #include "message/fit_message.h"
@@ -26,12 +27,6 @@ void view_token_add_key(struct view_token_keys *keys, const uint8_t key[VIEW_TOK
     keys->count += keys->count < VIEW_TOKEN_KEYS;
 }
 
-static void print_hex(const uint8_t *bytes, size_t count, char *out)
-{
-    for (size_t i = 0; i < count; i++)
-        snprintf(out + 2 * i, 3, "%02x", bytes[i]);
-}
-
 /* Over all of the text before its end. */
 static bool sign(const uint8_t key[VIEW_TOKEN_KEY_BYTES], const char *text, size_t count, char mac[2 * MAC_BYTES + 1])
 {
@@ -39,7 +34,7 @@ static bool sign(const uint8_t key[VIEW_TOKEN_KEY_BYTES], const char *text, size
     unsigned length = 0;
     if (!HMAC(EVP_sha256(), key, VIEW_TOKEN_KEY_BYTES, (const uint8_t *)text, count, bytes, &length) || length != MAC_BYTES)
         return false;
-    print_hex(bytes, MAC_BYTES, mac);
+    hex_print(bytes, MAC_BYTES, mac);
     return true;
 }
 
@@ -61,7 +56,7 @@ static json_t *body_of(const struct session *session, int64_t now_utc_ns)
 {
     char holder[2 * TOKEN_HASH_BYTES + 1], *carried = session_carried_text(session->context, &session->view);
     json_t *codecs = json_array();
-    print_hex(session->identity.holder.hash, TOKEN_HASH_BYTES, holder);
+    hex_print(session->identity.holder.hash, TOKEN_HASH_BYTES, holder);
     for (int i = 0; i < session->codec.list.count; i++)
         json_array_append_new(codecs, json_integer(session->codec.list.at[i]));
     json_t *body = json_pack("{s:I,s:s,s:I,s:o,s:i,s:i,s:f,s:o,s:b,s:s}", "t", (json_int_t)now_utc_ns, "h", holder, "n",
@@ -140,7 +135,7 @@ bool view_token_read(const struct view_token_keys *keys, const char *token, cons
     const char *whose = json_string_value(json_object_get(body, "h"));
     int64_t made_ns = json_integer_value(json_object_get(body, "t"));
     const json_t *codecs = json_object_get(body, "d");
-    print_hex(session->identity.holder.hash, TOKEN_HASH_BYTES, holder);
+    hex_print(session->identity.holder.hash, TOKEN_HASH_BYTES, holder);
     bool good = whose && !strcmp(whose, holder) && made_ns - now_utc_ns < SKEW_NS && now_utc_ns - made_ns < KEPT_NS;
     *out = (struct resumed){ .called = (uint64_t)json_integer_value(json_object_get(body, "n")),
                              .pixel_ratio = json_number_value(json_object_get(body, "r")),

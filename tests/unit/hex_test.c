@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bytes as hexadecimal digits, and back. */
+#include "base/hex.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+#include <cmocka.h>
+
+static void every_byte_goes_there_and_back(void **state)
+{
+    (void)state;
+    uint8_t bytes[256], read[256];
+    char text[2 * sizeof(bytes) + 1];
+    for (size_t i = 0; i < sizeof(bytes); i++)
+        bytes[i] = (uint8_t)i;
+    hex_print(bytes, sizeof(bytes), text);
+    assert_int_equal(strlen(text), 2 * sizeof(bytes));
+    assert_memory_equal(text, "000102030405060708090a0b", 24);
+    assert_memory_equal(text + 2 * 0xf0, "f0f1", 4);
+    assert_true(hex_read(text, read, sizeof(read)));
+    assert_memory_equal(read, bytes, sizeof(bytes));
+    hex_print(bytes, 0, text);
+    assert_string_equal(text, "");
+}
+
+static void all_else_is_refused(void **state)
+{
+    (void)state;
+    uint8_t bytes[2];
+    assert_true(hex_read("aBCd", bytes, 2));
+    assert_memory_equal(bytes, "\xab\xcd", 2);
+    static const char *const wrong[] = { "", "abc", "abcde", "0xab", " abc", "ab-c", "abcg", "+abc", "abc " };
+    for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++)
+        assert_false(hex_read(wrong[i], bytes, 2));
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_byte_goes_there_and_back),
+        cmocka_unit_test(all_else_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
