@@ -165,7 +165,7 @@ test('two players', { ...options, skip: options.skip || (existsSync(PLAYER) ? fa
     const client = await driver(), area = { x: 0, y: 0, width: WIDTH, height: HEIGHT };
     const players = screens.map((screen, i) => spawn(PLAYER,
         [`http://127.0.0.1:${plant.port}/`, '--wall', 'wall', '--display', String(i + 1), '--software'],
-        { env: { ...process.env, DISPLAY: screen.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' }, stdio: 'ignore' }));
+        { env: screen.env, stdio: 'ignore' }));
     ending.push(...players.map((player) => async () => {
         const gone = new Promise((done) => { player.once('exit', done); });
         player.kill();

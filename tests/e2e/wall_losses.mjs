@@ -128,7 +128,7 @@ walls: [{ id: room, displays: [{ grid: [a], panes: [{ area: a, views: [all] }] }
         await tiny.startDaemon('--tokens', file);
         const network = await Network.open(tiny.port), screen = await startDisplay(width, height);
         const player = spawn(PLAYER, [`http://127.0.0.1:${network.port}/`, '--wall', 'room', '--token-file', mine],
-            { env: { ...process.env, DISPLAY: screen.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' }, stdio: 'ignore' });
+            { env: screen.env, stdio: 'ignore' });
         const gone = new Promise((done) => { player.once('exit', done); });
         const black = () => {
             const { at } = screen.grab();

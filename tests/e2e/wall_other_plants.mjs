@@ -194,7 +194,7 @@ async function startPlayer() {
     writeFileSync(file, tokens.display);
     display = await startDisplay(...SIZE);
     const child = spawn(PLAYER, [`http://127.0.0.1:${plant.port}/`, '--wall', 'room', '--token-file', file],
-        { env: { ...process.env, DISPLAY: display.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' } });
+        { env: display.env });
     player = { child, said: '', ended: once(child, 'exit') };
     for (const pipe of [child.stdout, child.stderr])
         pipe.on('data', (text) => { player.said += text; });

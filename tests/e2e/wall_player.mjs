@@ -44,7 +44,7 @@ const token = (...args) => spawnSync(join(BIN, 'plantcast'), ['token', ...args],
 
 function startPlayer(args, env = {}) {
     const child = spawn(PROGRAM, [plant.url, '--token-file', tokenFile, ...args],
-        { env: { ...process.env, DISPLAY: display.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1', ...env } });
+        { env: { ...display.env, ...env } });
     const player = { child, said: '', pid: child.pid };
     player.exit = new Promise((done) => child.once('exit', (code, signal) => done(code ?? signal)));
     for (const pipe of [child.stdout, child.stderr])

@@ -3,7 +3,7 @@
 // and halves of one display, which show all of the plant each.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { appendFileSync, existsSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { burnShift } from '../../clients/web/core/wall.js';
@@ -33,9 +33,8 @@ before(async () => {
     if (options.skip)
         return;
     plant = await TinyPlant.create();
-    const tags = join(plant.folder, 'tags.csv'); // no reading goes stale because the machine is busy
-    writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1$/gm, ',600'));
-    writeFileSync(plant.file, readFileSync(plant.file, 'utf8') + WALLS);
+    plant.keepFresh();
+    appendFileSync(plant.file, WALLS);
     assert.equal(plant.prepare().code, 0);
     await plant.startSim();
     await plant.startDaemon();
@@ -110,7 +109,7 @@ test('players: likewise', { ...options, skip: options.skip || (noPlayer ?? false
     const screens = [await startDisplay(WIDTH, HEIGHT), await startDisplay(WIDTH, HEIGHT)];
     const url = `http://127.0.0.1:${plant.port}/`;
     const players = screens.map((screen, i) => spawn(PLAYER, [url, '--wall', 'wide', '--display', String(i + 1)],
-        { env: { ...process.env, DISPLAY: screen.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' }, stdio: 'ignore' }));
+        { env: screen.env, stdio: 'ignore' }));
     try {
         await expectOnePicture(() => screens.map((screen) => screen.grab()), 'player');
     } finally {
@@ -137,7 +136,7 @@ function countColoured({ at }, left, right) {
 test('the player: each half of a split view has all of the plant', { ...options, skip: options.skip || (noPlayer ?? false) }, async () => {
     const screen = await startDisplay(WIDTH, HEIGHT), HALF = WIDTH / 2, FRAME = 5; // what is around panes, and between halves
     const player = spawn(PLAYER, [`http://127.0.0.1:${plant.port}/`, '--wall', 'split'],
-        { env: { ...process.env, DISPLAY: screen.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' }, stdio: 'ignore' });
+        { env: screen.env, stdio: 'ignore' });
     const gone = new Promise((done) => { player.once('exit', done); });
     try {
         const lefts = () => [0, HALF].map((x) => x + FRAME + shiftNow()[0]);

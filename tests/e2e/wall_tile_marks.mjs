@@ -155,7 +155,7 @@ test('the player: the same', { ...options, skip: options.skip || (noPlayer ?? fa
     const screens = [await startDisplay(WIDTH, HEIGHT), await startDisplay(WIDTH, HEIGHT)];
     const url = `http://127.0.0.1:${plant.port}/`;
     const players = screens.map((screen, i) => spawn(PLAYER, [url, '--wall', 'wide', '--display', String(i + 1)],
-        { env: { ...process.env, DISPLAY: screen.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' }, stdio: 'ignore' }));
+        { env: screen.env, stdio: 'ignore' }));
     const shot = (name) => process.env.PLANTCAST_SHOTS === '1' && screens.forEach((screen, i) =>
         savePng(screen.grab(), join(SCREENSHOTS, `wall-tile-player-${name}-${i + 1}.png`)));
     try {

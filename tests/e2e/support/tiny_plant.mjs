@@ -188,6 +188,12 @@ export class TinyPlant {
         writeFileSync(tags, readFileSync(tags, 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',1,90'));
     }
 
+    // No reading goes stale because the machine is busy.
+    keepFresh() {
+        const tags = join(this.folder, 'tags.csv');
+        writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1$/gm, ',600'));
+    }
+
     async startSim(...args) {
         this.controlPort = await freePort();
         this.sim = new Program('plantcast-sim', [this.file, '--control', String(this.controlPort), ...args]);

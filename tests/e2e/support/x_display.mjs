@@ -10,7 +10,8 @@ import { crc } from './png_chunks.mjs';
 const PROGRAM = '/usr/bin/Xvfb';
 export const missingDisplay = () => (existsSync(PROGRAM) ? null : 'no Xvfb');
 
-// { name, pid, grab(): { width, height, at(x, y): [r, g, b] }, row(y): its bytes, B, G, R and one more, until the next call; stop }.
+// { name, pid, env: of programs that show on it, grab(): { width, height, at(x, y): [r, g, b] }, row(y): its bytes, B, G, R and one more,
+// until the next call; stop }.
 export async function startDisplay(width, height, more = []) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-display-'));
     const args = ['-displayfd', '3', '-screen', '0', `${width}x${height}x24`, '-fbdir', folder, '-nolisten', 'tcp', ...more];
@@ -25,6 +26,7 @@ export async function startDisplay(width, height, more = []) {
     return {
         name: `:${number}`,
         pid: child.pid,
+        env: { ...process.env, DISPLAY: `:${number}`, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' },
         grab: () => readXwd(readFileSync(path)),
         row: (y) => {
             readSync(file, bytes, 0, bytes.length, from + y * stride);
