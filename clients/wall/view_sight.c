@@ -51,7 +51,7 @@ static void set_ghosts(struct view_sight *sight, struct link *link, int count)
     json_array_extend(all, sight->ghosts);
     for (int i = 0; i < count; i++)
         json_array_append_new(all, json_string(sight->made[i]));
-    link_post(link, json_pack("{s:s,s:I,s:o}", "type", "params", "seq", (json_int_t)++ * sight->params_seq, "ghost", all));
+    link_post(link, json_pack("{s:s,s:I,s:o}", "type", "params", "seq", (json_int_t)(*sight->params_seq += 1), "ghost", all));
 }
 
 static bool look_through_next(struct view_sight *sight, struct link *link)

@@ -2,8 +2,8 @@
 /* Hair gaps, closed as those of the surface that distances are found on. */
 #include "preprocess/geometry/gaps.h"
 
+#include "base/extent.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/repair/repair.h"
 
 #define SAME_M 1e-9 /* so far apart two vertices are at one place */
@@ -13,13 +13,10 @@ enum { MOST_ROUNDS = 4 };
 
 static double widest_m(const float (*positions_m)[3], size_t vertex_count, double tolerance_m)
 {
-    double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    struct extent extent = extent_empty();
     for (size_t v = 0; v < vertex_count; v++)
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = min_of(low[axis], (double)positions_m[v][axis]);
-            high[axis] = max_of(high[axis], (double)positions_m[v][axis]);
-        }
-    double most_m = min_of(GAPS_MOST_M, GAPS_OF_SIZE * vec_distance(low, high));
+        extent_addf(&extent, positions_m[v]);
+    double most_m = min_of(GAPS_MOST_M, GAPS_OF_SIZE * extent_size(&extent));
     return tolerance_m > 0 ? min_of(most_m, tolerance_m) : most_m;
 }
 

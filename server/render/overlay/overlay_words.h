@@ -46,7 +46,7 @@ enum overlay_word {
     WORD_UNSEEN,
     WORD_UNSEEN_SUCH_AS,
     WORD_LOOKS, /* and the others by enum look after it */
-    WORD_LOOKS_LAST = WORD_LOOKS + 3,
+    WORD_LOOKS_LAST = WORD_LOOKS + LOOK_MATERIALS,
     WORD_INTERPOLATIONS, /* likewise */
     WORD_INTERPOLATIONS_LAST = WORD_INTERPOLATIONS + INTERPOLATIONS - 1,
     WORD_DISTANCES, /* likewise */
