@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "base/vec.h"
+#include "surface/mesh/tri_edges.h"
 
 #define MOLLIFY 1e-4
 #define FLIPS_PER_EDGE 50u /* never met; ends what rounding could keep going */
@@ -19,92 +20,41 @@ void intrinsic_finish(struct intrinsic *in)
     *in = (struct intrinsic){ 0 };
 }
 
-static void turn(struct intrinsic *in, uint32_t (*other)[3], uint32_t t)
+static void turn(uint32_t tri[3])
 {
-    uint32_t swap = in->points[t][1];
-    in->points[t][1] = in->points[t][2];
-    in->points[t][2] = swap;
-    swap = other[t][0];
-    other[t][0] = other[t][2];
-    other[t][2] = swap;
+    uint32_t swap = tri[1];
+    tri[1] = tri[2];
+    tri[2] = swap;
 }
 
-/* For each side the other triangle at an edge of exactly two, else TRIMESH_NONE. */
-static void find_neighbours(const struct trimesh *mesh, uint32_t (*other)[3])
+/* Turns the triangles of each patch the same way round. */
+static void orient(struct intrinsic *in, const struct tri_edges *edges, signed char *facing)
 {
-    struct edge_table edges;
-    edge_table_init(&edges, mesh->tri_count * 3 / 2);
-    uint32_t(*faces)[2] = mem_array(mesh->tri_count * 3, sizeof(*faces));
-    uint32_t *counts = mem_array(mesh->tri_count * 3, sizeof(*counts));
-    for (uint32_t t = 0; t < mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
-            uint32_t e = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
-            if (counts[e] < 2)
-                faces[e][counts[e]] = t;
-            counts[e]++;
-        }
-    for (uint32_t t = 0; t < mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
-            uint32_t e = edge_table_find(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
-            other[t][i] = counts[e] == 2 ? faces[e][faces[e][0] == t] : TRIMESH_NONE;
-        }
-    edge_table_finish(&edges);
-    mem_free(faces);
-    mem_free(counts);
+    uint32_t *joined = mem_array(in->tri_count, sizeof(*joined));
+    bool two_sided;
+    for (uint32_t t = 0; t < in->tri_count; t++)
+        if (!facing[t])
+            tri_edges_orient(edges, t, facing, joined, &two_sided);
+    for (uint32_t t = 0; t < in->tri_count; t++)
+        if (facing[t] < 0)
+            turn(in->points[t]);
+    mem_free(joined);
 }
 
-static int side_with(const uint32_t points[3], uint32_t a, uint32_t b, bool *same_way)
+/* The number that a side has once triangles are turned. */
+static uint32_t turned_side(uint32_t side, const signed char *facing)
 {
-    for (int i = 0; i < 3; i++) {
-        uint32_t p = points[i], q = points[(i + 1) % 3];
-        if ((p == a && q == b) || (p == b && q == a)) {
-            *same_way = p == a;
-            return i;
-        }
-    }
-    return -1;
-}
-
-/* Turns the triangles of each patch the same way round, by walking over it. */
-static void orient(struct intrinsic *in, uint32_t (*other)[3])
-{
-    char *seen = mem_array(in->tri_count, 1);
-    uint32_t *stack = mem_array(in->tri_count, sizeof(*stack));
-    for (uint32_t start = 0; start < in->tri_count; start++) {
-        size_t depth = 0;
-        if (seen[start])
-            continue;
-        seen[start] = 1;
-        stack[depth++] = start;
-        while (depth) {
-            uint32_t t = stack[--depth];
-            for (int i = 0; i < 3; i++) {
-                uint32_t u = other[t][i];
-                bool same_way = false;
-                if (u == TRIMESH_NONE || seen[u])
-                    continue;
-                side_with(in->points[u], in->points[t][i], in->points[t][(i + 1) % 3], &same_way);
-                if (same_way)
-                    turn(in, other, u);
-                seen[u] = 1;
-                stack[depth++] = u;
-            }
-        }
-    }
-    mem_free(seen);
-    mem_free(stack);
+    return facing[side / 3] < 0 ? side - side % 3 + 2 - side % 3 : side;
 }
 
 /* Two sides are glued where they run opposite ways; where they do not (a Moebius band) the edge stays as it is. */
-static void glue_sides(struct intrinsic *in, uint32_t (*other)[3])
+static void glue_sides(struct intrinsic *in, const struct tri_edges *edges, const signed char *facing)
 {
-    for (uint32_t t = 0; t < in->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
-            uint32_t u = other[t][i];
-            bool same_way = true;
-            int side = u == TRIMESH_NONE ? -1 : side_with(in->points[u], in->points[t][i], in->points[t][(i + 1) % 3], &same_way);
-            in->glue[t][i] = side < 0 || same_way ? TRIMESH_NONE : 3 * u + (uint32_t)side;
-        }
+    for (uint32_t side = 0; side < 3 * in->tri_count; side++) {
+        uint32_t other = tri_edges_across(edges, side), at = turned_side(side, facing);
+        bool glued = other != TRIMESH_NONE && tri_edges_run_alike(edges, side, other) == (facing[side / 3] != facing[other / 3]);
+        in->glue[at / 3][at % 3] = glued ? turned_side(other, facing) : TRIMESH_NONE;
+    }
 }
 
 void intrinsic_layout(const double lengths[3], double *x, double *y)
@@ -216,15 +166,17 @@ void intrinsic_init(struct intrinsic *in, const struct trimesh *mesh)
     in->points = mem_array(mesh->tri_count, sizeof(*in->points));
     in->lengths = mem_array(mesh->tri_count, sizeof(*in->lengths));
     in->glue = mem_array(mesh->tri_count, sizeof(*in->glue));
-    uint32_t(*other)[3] = mem_array(mesh->tri_count, sizeof(*other));
+    struct tri_edges edges;
+    signed char *facing = mem_array(mesh->tri_count, 1);
     memcpy(in->points, mesh->tris, mesh->tri_count * sizeof(*in->points));
-    find_neighbours(mesh, other);
-    orient(in, other);
-    glue_sides(in, other);
+    tri_edges_init(&edges, (const uint32_t(*)[3])mesh->tris, mesh->tri_count);
+    orient(in, &edges, facing);
+    glue_sides(in, &edges, facing);
+    tri_edges_finish(&edges);
+    mem_free(facing);
     for (size_t t = 0; t < mesh->tri_count; t++)
         for (int i = 0; i < 3; i++)
             in->lengths[t][i] = vec_distance(mesh->points[in->points[t][i]], mesh->points[in->points[t][(i + 1) % 3]]);
     mollify(in);
     make_delaunay(in);
-    mem_free(other);
 }

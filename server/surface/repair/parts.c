@@ -15,36 +15,16 @@
 
 /* --- which way patches face ----------------------------------------------------------------------------------------------- */
 
-static bool runs(const uint32_t tri[3], uint32_t from, uint32_t to)
-{
-    return (tri[0] == from && tri[1] == to) || (tri[1] == from && tri[2] == to) || (tri[2] == from && tri[0] == to);
-}
-
-/* From one triangle to its neighbours: they run along a common edge in opposite ways, or one of them is turned. */
+/* Each triangle as the first of its patch, or contrary to it. */
 static void face_one_way(struct parts_finding *f)
 {
     const struct trimesh *mesh = &f->parts->solid;
-    signed char *side = f->parts->side;
-    uint32_t *todo = mem_array(mesh->tri_count, sizeof(*todo));
-    for (uint32_t start = 0; start < mesh->tri_count; start++) {
-        size_t count = 0;
-        if (side[start])
-            continue;
-        side[start] = 1;
-        for (todo[count++] = start; count;) {
-            uint32_t t = todo[--count];
-            for (int i = 0; i < 3; i++) {
-                const struct edge_use *use = use_of(f, t, i);
-                uint32_t other = use->tris[use->tris[0] == t];
-                if (use->faces != 2 || side[other])
-                    continue;
-                bool same = runs(mesh->tris[other], mesh->tris[t][(i + 1) % 3], mesh->tris[t][i]);
-                side[other] = (signed char)(same ? side[t] : -side[t]);
-                todo[count++] = other;
-            }
-        }
-    }
-    mem_free(todo);
+    uint32_t *joined = mem_array(mesh->tri_count, sizeof(*joined));
+    bool two_sided;
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        if (!f->parts->side[t])
+            tri_edges_orient(&f->edges, t, f->parts->side, joined, &two_sided);
+    mem_free(joined);
 }
 
 /* Turns patches whose volume, seen from their middle, is negative: outwards is the same side for all. */
@@ -160,8 +140,7 @@ void parts_init(struct parts *parts, const struct trimesh *mesh, size_t source_c
     parts->side_of_source = mem_array(source_count, 1);
     for (size_t t = 0; t < mesh->tri_count; t++)
         parts->side_of_source[mesh->tri_source[t]] = parts->side[t];
-    mem_free(f.uses);
-    mem_free(f.edge);
+    tri_edges_finish(&f.edges);
     mem_free(f.patch);
     mem_free(f.patches);
 }

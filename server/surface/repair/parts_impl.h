@@ -2,16 +2,12 @@
 /* Shared by the files that find parts and their orientation (parts*.c). */
 #ifndef SURFACE_REPAIR_PARTS_IMPL_H
 #define SURFACE_REPAIR_PARTS_IMPL_H
+#include "surface/mesh/tri_edges.h"
 #include "surface/repair/parts.h"
-
-struct edge_use {
-    uint32_t tris[2], faces;
-};
 
 struct parts_finding {
     struct parts *parts;
-    struct edge_use *uses;
-    uint32_t (*edge)[3];                     /* of each triangle, in uses: from its corner i to the next */
+    struct tri_edges edges;
     uint32_t *patch;                         /* of each triangle: its lowest one */
     struct patch {                           /* by its lowest triangle */
         double open_m, branching_m, area_m2; /* edges with one face; with three or more, of which it has only one */
@@ -19,11 +15,6 @@ struct parts_finding {
         bool loose;                          /* it stands on others, and is open */
     } * patches;
 };
-
-static inline const struct edge_use *use_of(const struct parts_finding *f, size_t t, int i)
-{
-    return &f->uses[f->edge[t][i]];
-}
 
 /* Finds edges, patches and parts of parts->solid, which of them are closed, and the bodies of mesh, whose triangles are the solid's. */
 void parts_number(struct parts_finding *f, const struct trimesh *mesh);

@@ -16,24 +16,6 @@ static double edge_length(const struct trimesh *mesh, size_t t, int i)
     return vec_distance(mesh->points[mesh->tris[t][i]], mesh->points[mesh->tris[t][(i + 1) % 3]]);
 }
 
-static void list_edges(struct parts_finding *f)
-{
-    const struct trimesh *mesh = &f->parts->solid;
-    struct edge_table edges;
-    edge_table_init(&edges, mesh->tri_count * 3 / 2);
-    f->uses = mem_array(3 * mesh->tri_count, sizeof(*f->uses));
-    f->edge = mem_array(mesh->tri_count, sizeof(*f->edge));
-    for (uint32_t t = 0; t < mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
-            f->edge[t][i] = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
-            struct edge_use *use = &f->uses[f->edge[t][i]];
-            if (use->faces < 2)
-                use->tris[use->faces] = t;
-            use->faces++;
-        }
-    edge_table_finish(&edges);
-}
-
 static void find_patches(struct parts_finding *f)
 {
     const struct trimesh *mesh = &f->parts->solid;
@@ -41,8 +23,8 @@ static void find_patches(struct parts_finding *f)
         f->patch[t] = t;
     for (uint32_t t = 0; t < mesh->tri_count; t++)
         for (int i = 0; i < 3; i++)
-            if (use_of(f, t, i)->faces == 2)
-                trimesh_join(f->patch, t, use_of(f, t, i)->tris[0]);
+            if (tri_edges_at(&f->edges, t, i)->faces == 2)
+                trimesh_join(f->patch, t, tri_edges_at(&f->edges, t, i)->sides[0] / 3);
     for (uint32_t t = 0; t < mesh->tri_count; t++)
         f->patch[t] = trimesh_root(f->patch, t);
 }
@@ -74,10 +56,13 @@ static void branches_init(struct branches *b, const struct parts_finding *f)
     *b = (struct branches){ 0 };
     for (size_t t = 0; t < f->parts->solid.tri_count; t++)
         for (int i = 0; i < 3; i++) {
-            if (use_of(f, t, i)->faces < 3)
+            if (tri_edges_at(&f->edges, t, i)->faces < 3)
                 continue;
             mem_grow(&b->at, &capacity, b->count + 1, sizeof(*b->at));
-            b->at[b->count++] = (struct branch){ f->edge[t][i], f->patch[t], 1, false, edge_length(&f->parts->solid, t, i) };
+            b->at[b->count++] = (struct branch){ .edge = f->edges.of_side[3 * t + (size_t)i],
+                                                .patch = f->patch[t],
+                                                .faces = 1,
+                                                .length_m = edge_length(&f->parts->solid, t, i) };
         }
     if (b->count)
         qsort(b->at, b->count, sizeof(*b->at), compare_branches);
@@ -105,7 +90,7 @@ static void measure_patches(struct parts_finding *f, const struct branches *b)
         trimesh_normal(mesh, t, n);
         patch->area_m2 += vec_length(n) / 2;
         for (int i = 0; i < 3; i++)
-            patch->open_m += use_of(f, t, i)->faces == 1 ? edge_length(mesh, t, i) : 0;
+            patch->open_m += tri_edges_at(&f->edges, t, i)->faces == 1 ? edge_length(mesh, t, i) : 0;
     }
     for (size_t i = 0; i < b->count; i++)
         f->patches[b->at[i].patch].branching_m += b->at[i].faces == 1 ? b->at[i].length_m : 0;
@@ -184,10 +169,10 @@ static void find_closed(struct parts_finding *f)
         trimesh_normal(mesh, t, n);
         area_m2[parts->of_tri[t]] += vec_length(n) / 2;
         for (int i = 0; i < 3; i++) {
-            const struct edge_use *use = use_of(f, t, i);
-            open += use->faces == 1 ? edge_length(mesh, t, i) : 0;
-            fin = fin || use->faces > 2;
-            parts->tangled[parts->of_tri[t]] |= use->faces > 2;
+            const struct tri_edge *edge = tri_edges_at(&f->edges, t, i);
+            open += edge->faces == 1 ? edge_length(mesh, t, i) : 0;
+            fin = fin || edge->faces > 2;
+            parts->tangled[parts->of_tri[t]] |= edge->faces > 2;
         }
         open_m[parts->of_tri[t]] += fin ? 0 : open;
     }
@@ -212,7 +197,7 @@ void parts_number(struct parts_finding *f, const struct trimesh *mesh)
 {
     struct parts *parts = f->parts;
     struct branches branches;
-    list_edges(f);
+    tri_edges_init(&f->edges, (const uint32_t(*)[3])mesh->tris, mesh->tri_count);
     find_patches(f);
     branches_init(&branches, f);
     measure_patches(f, &branches);
