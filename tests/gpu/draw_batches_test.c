@@ -178,7 +178,7 @@ static void test_together_as_one_by_one(void **state)
         int most = 0;
         stand_init(&stand, &rig, make_crowd(24));
         renderer_use_gl(stand.renderer, true);
-        for (int i = 0; i < sweep(PICTURES, PICTURES / 3); i++) {
+        for (int i = 0; i < sweep(PICTURES, PICTURES / 6); i++) {
             struct view view;
             read_anyhow(&stand);
             look_anyhow(&stand.toy->scene, &view);

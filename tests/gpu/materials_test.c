@@ -14,11 +14,14 @@
 
 #include "base/mem.h"
 #include "tests/support/rig.h"
+#include "tests/support/sweep.h"
 #include "tests/support/temp.h"
 
-enum { STEPS = 5, SPHERES = STEPS * STEPS, SIDE_PX = 64, WIDTH = 256, HEIGHT = 128, SAMPLES = 400 };
+enum { STEPS = 5, SPHERES = STEPS * STEPS, SIDE_PX = 64, /* steps: at most */
+        WIDTH = 256, HEIGHT = 128, SAMPLES = 400 };
 static const double SKY_LIGHT = 0.55, SUN_LIGHT = 0.78, SPACE_M = 8; /* as in shaders/environment.glsl; between the spheres */
 static struct rig rig;
+static int steps, spheres; /* steps: from rough to smooth, and from dielectric to metal */
 
 struct scene_of {
     struct stand stand;
@@ -68,21 +71,21 @@ static void write_hdr(const char *path, double (*radiance)(const double[3], int)
 static const double *place_of(int i)
 {
     static double place[3];
-    place[0] = SPACE_M * (i % STEPS);
-    place[1] = 2 * (i * 7 % STEPS);
-    place[2] = SPACE_M * (i / STEPS) + 0.9 * (i % STEPS);
+    place[0] = SPACE_M * (i % steps);
+    place[1] = 2 * (i * 7 % steps);
+    place[2] = SPACE_M * (i / steps) + 0.9 * (i % steps);
     return place;
 }
 
 static void scene_init(struct scene_of *scene, double (*radiance)(const double[3], int), const double base[3])
 {
     struct toy *toy = toy_create();
-    struct shape shape = { .materials = scene->materials, .material_count = SPHERES };
+    struct shape shape = { .materials = scene->materials, .material_count = (size_t)spheres };
     *scene = (struct scene_of){ .radiance = radiance };
-    for (int i = 0; i < SPHERES; i++) {
+    for (int i = 0; i < spheres; i++) {
         scene->materials[i] = (struct asset_material){ .base_color = { (float)base[0], (float)base[1], (float)base[2], 1 },
-                                                       .metallic = (float)(i / STEPS) / (STEPS - 1),
-                                                       .roughness = 0.1f + 0.9f * (float)(i % STEPS) / (STEPS - 1),
+                                                       .metallic = (float)(i / steps) / (float)(steps - 1),
+                                                       .roughness = 0.1f + 0.9f * (float)(i % steps) / (float)(steps - 1),
                                                        .normal_scale = 1,
                                                        .occlusion_strength = 1,
                                                        .base_color_texture = ASSET_NO_TEXTURE,
@@ -90,7 +93,7 @@ static void scene_init(struct scene_of *scene, double (*radiance)(const double[3
                                                        .normal_texture = ASSET_NO_TEXTURE,
                                                        .occlusion_texture = ASSET_NO_TEXTURE,
                                                        .emissive_texture = ASSET_NO_TEXTURE };
-        shape_sphere(&shape, (uint32_t)i, place_of(i), 0.5, 96);
+        shape_sphere(&shape, (uint32_t)i, place_of(i), 0.5, 64);
     }
     toy_add(toy, "spheres", &shape, (double[3]){ 0, 0, 0 }, NULL, 0);
     scene->folder = temp_folder_create();
@@ -291,13 +294,13 @@ static void test_grid(void **state)
     double all[2] = { 0 }, worst[2] = { 0 };
     (void)state;
     scene_init(&scene, room, (double[3]){ 0.8, 0.45, 0.2 });
-    for (int i = 0; i < SPHERES; i++)
+    for (int i = 0; i < spheres; i++)
         for (int lit = 0; lit < 2; lit++) {
             double mean = compare(&scene, i, lit ? from_the_left : from_behind);
             if (mean > 2)
                 print_message("# metallic %.2f, roughness %.2f, %s: CIELAB difference %.2f\n", (double)scene.materials[i].metallic,
                               (double)scene.materials[i].roughness, lit ? "in the sun" : "in the shade", mean);
-            all[lit] += mean / SPHERES;
+            all[lit] += mean / spheres;
             worst[lit] = fmax(worst[lit], mean);
         }
     print_message("# mean CIELAB difference %.2f in the shade, %.2f in the sun; of the worst sphere %.2f, %.2f\n", all[0], all[1], worst[0],
@@ -315,7 +318,7 @@ static void test_white_furnace(void **state)
     (void)state;
     scene_init(&scene, white, (double[3]){ 1, 1, 1 });
     shown(want);
-    for (int i = 0; i < SPHERES; i++) {
+    for (int i = 0; i < spheres; i++) {
         struct frame *frame = draw_sphere(&scene, i, from_behind);
         for (int y = 0; y < SIDE_PX; y++)
             for (int x = 0; x < SIDE_PX; x++) {
@@ -359,6 +362,8 @@ int main(void)
         cmocka_unit_test(test_white_furnace),
         cmocka_unit_test(test_rim_mirrors),
     };
+    steps = sweep(STEPS, 3);
+    spheres = steps * steps;
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "materials_test"))
         return 0;

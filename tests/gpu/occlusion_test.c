@@ -108,7 +108,7 @@ static void test_the_demo_plant(void **state)
     struct tally tally = { 0 };
     assert_true(site_init(&site, &rig, SITE_DEMO, NULL));
     renderer_use_gl(site.renderer, true);
-    for (int i = 0; i < 40 && (i < sweep(40, 3) || tally.left_out < least); i++) {
+    for (int i = 0; i < 40 && (i < sweep(40, 2) || tally.left_out < least); i++) {
         struct view view;
         look_anyhow(site.scene, &view);
         compare(&tally, site.renderer, &view, site.snapshot);

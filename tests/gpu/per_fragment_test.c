@@ -16,11 +16,13 @@
 #include "render/renderer_compare.h"
 #include "tests/support/cad.h"
 #include "tests/support/rig.h"
+#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
-enum { SENSORS = 701, CELLS = 40, SIDE_PX = 160, SAMPLES = 1500, BAD_EVERY = 60 };
+enum { SENSORS = 701, CELLS = 40, SAMPLES = 1500, BAD_EVERY = 60 };
 static const double SIDE_M = 4, TOLERANCE = 1.0 / 255;
+static int side_px; /* of a picture: each pixel costs all sensors */
 static struct rig rig;
 static struct stand stand;
 static uint64_t random_state;
@@ -135,7 +137,7 @@ static struct truth truth_at(const struct spot *spot, enum interpolation interpo
 
 static void look_down(struct view *view, enum interpolation interpolation, enum distance_mode distance)
 {
-    view_default(&stand.toy->scene, SIDE_PX, SIDE_PX, view);
+    view_default(&stand.toy->scene, side_px, side_px, view);
     view->camera = (struct camera){ .eye_m = { SIDE_M / 2, SIDE_M / 2, 10 }, .target_m = { SIDE_M / 2, SIDE_M / 2, 0 }, .up = { 0, 1, 0 } };
     view->camera.height_m = SIDE_M;
     view->look = LOOK_FLAT;
@@ -151,12 +153,12 @@ struct tally {
 
 static void compare(const struct view *view, const float (*numbers)[4], const struct frame *frame, double radius_m, struct tally *tally)
 {
-    int x = (int)between(0, SIDE_PX), y = (int)between(0, SIDE_PX);
-    double metre = SIDE_M / SIDE_PX;
+    int x = (int)between(0, side_px), y = (int)between(0, side_px);
+    double metre = SIDE_M / side_px;
     struct spot spot = { 0 };
-    assert_true(find_spot((x + 0.5) * metre, (SIDE_PX - y - 0.5) * metre, &spot));
+    assert_true(find_spot((x + 0.5) * metre, (side_px - y - 0.5) * metre, &spot));
     struct truth truth = truth_at(&spot, view->field.interpolation, view->field.distance, radius_m);
-    const float *number = numbers[y * SIDE_PX + x];
+    const float *number = numbers[y * side_px + x];
     if (truth.a_tie)
         return;
     tally->flags_differ += (number[1] > 0.5f) != truth.no_data;
@@ -173,7 +175,7 @@ static void test_more_than_512_sensors(void **state)
 {
     (void)state;
     double radius_m = largest_m();
-    float(*numbers)[4] = mem_array((size_t)SIDE_PX * SIDE_PX, sizeof(*numbers));
+    float(*numbers)[4] = mem_array((size_t)side_px * (size_t)side_px, sizeof(*numbers));
     for (int way = 0; way < 4; way++) {
         struct view view;
         struct tally tally = { 0 };
@@ -198,6 +200,7 @@ int main(void)
     struct cad_random random;
     cad_random_start(&random);
     random_state = random.state;
+    side_px = sweep(160, 48);
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "per_fragment_test"))
         return 0;

@@ -340,6 +340,20 @@ static struct encoded_frame *picture_of(uint64_t client, enum urgency urgency, d
     return encoded;
 }
 
+/* Of the refiner; enough of it for a loss to come in its middle. */
+static void ask_for_still(double turn)
+{
+    ask_sized(REFINER, URGENCY_REFINE, turn, sweep(2400, 1200), sweep(1600, 800));
+}
+
+static struct encoded_frame *refined_of(double turn)
+{
+    ask_for_still(turn);
+    struct encoded_frame *encoded = next();
+    assert_true(encoded->client == REFINER && encoded->packet);
+    return encoded;
+}
+
 /* The real context goes, again and again, in the middle of pictures that take long and of short ones: nobody's is lost, and all are
    what they were before. */
 static void test_lost_context_is_made_again_under_load(void **state)
@@ -350,14 +364,14 @@ static void test_lost_context_is_made_again_under_load(void **state)
     int64_t losses = count_of("plantcast_gl_losses_total"), failures = count_of("plantcast_render_failures_total");
     struct encoded_frame *refined[LOSSES], *moved[MOVES];
     for (int i = 0; i < tried; i++) /* another each time: the same again would be quick */
-        refined[i] = picture_of(REFINER, URGENCY_REFINE, 5 + 0.1 * i);
+        refined[i] = refined_of(5 + 0.1 * i);
     for (int i = 0; i < MOVES; i++)
         moved[i] = picture_of(MOVER, URGENCY_INPUT, 6 + i);
     for (int loss = 0; loss < tried; loss++) {
         sleep_ns(RECENT_NS);
         int64_t steps = count_of("plantcast_render_steps_total");
         int refinements = 0;
-        ask(REFINER, URGENCY_REFINE, 5 + 0.1 * loss);
+        ask_for_still(5 + 0.1 * loss);
         if (loss > 0)
             await_step(steps + 1);
         render_service_lose_context(service);
@@ -542,7 +556,7 @@ static void change_readings(double value)
     render_service_on_data(service);
 }
 
-static int refined_width_px = 2400; /* of refined pictures while readings change */
+static int refined_width_px; /* of refined pictures while readings change */
 
 static void refined_of_look(enum look look, struct view *view)
 {
@@ -620,7 +634,7 @@ static void assert_refined_comes(enum look look, int64_t waited_ns)
         change_readings(80 - 5 * i);
         assert_int_equal(ask_for_data(REFINER, look, 0), 1);
         struct encoded_frame *encoded = next();
-        assert_true(encoded->packet && encoded->packet->frame->view.tier == TIER_REFINED && encoded->packet->frame->width_px == 2400);
+        assert_true(encoded->packet && encoded->packet->frame->view.tier == TIER_REFINED && encoded->packet->frame->width_px == refined_width_px);
         encoded_frame_destroy(&encoded);
     }
     assert_int_equal(count_of("plantcast_render_steps_total"), steps);
@@ -650,9 +664,7 @@ static void test_changing_readings_leave_pictures_without_room(void **state)
     if (hardware)
         skip();
     remake(false, (size_t)64 << 20);
-    refined_width_px = sweep(2400, 1200); /* each time it is drawn anew */
     assert_true(refined_comes(LOOK_GLOSSY, 2 * NS_PER_S));
-    refined_width_px = 2400;
 }
 
 /* By GL nothing is kept: a picture is given up for readings a few times, each time later, and comes in the end. */
@@ -812,6 +824,7 @@ static void test_another_is_made_and_the_first_destroyed_beside_it(void **state)
 
 static bool start(void)
 {
+    refined_width_px = sweep(2400, 1200);
     toy = toy_unit();
     logger = log_create(LOG_INFO);
     workers = workers_create(2);

@@ -302,7 +302,7 @@ static void test_a_cut_closes_bodies(void **state)
         for (int i = 0; i < 4; i++) {
             enum tier tier = i % 2 ? TIER_REFINED : TIER_PREVIEW;
             bool box = i / 2;
-            if (!sweep_takes(by_gl, i + i / 2, 2))
+            if (!sweep_takes(by_gl, i + way, 4))
                 continue;
             cut_through(&own, tier, false, box, &first_m, &last_m, &pick);
             assert_float_equal(first_m, way == 1 ? 0.8 : way == 2 ? 0.5 : 0, 0.03);

@@ -231,7 +231,7 @@ static void gaps_of_a_flange_and_its_plate_run_over_each_other(void **state)
     for (size_t i = 0; i < sizeof(drawn) / sizeof(drawn[0]); i++) {
         struct cad plate = { 0 }, pipe = { 0 }, both = { 0 };
         struct outer outer;
-        if (!sweep_takes(0, (int)i, 2))
+        if (!sweep_takes(0, (int)i, 3))
             continue;
         chance.state = drawn[i].shape;
         make_flange(&plate, &pipe);
@@ -284,14 +284,14 @@ struct drawn {
     uint64_t shape, faults;
 };
 
-/* By default every other one. */
+/* By default every third one. */
 static void score_drawn(const char *name, int row, const struct drawn *drawn, size_t count, enum cad_fault fault)
 {
     const struct cad_random was = chance;
     for (size_t i = 0; i < count; i++) {
         struct cad below = { 0 }, above = { 0 }, both = { 0 };
         struct outer outer;
-        if (!sweep_takes(row, (int)i, 2))
+        if (!sweep_takes(row, (int)i, 3))
             continue;
         chance.state = drawn[i].shape;
         make_boxes(&below, &above, drawn[i].stacked);
