@@ -14,6 +14,11 @@ enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
 static char authorization[TOKEN_MAX_CHARS + 16]; /* "": none */
 static const char *ca_path, *token_path;
 
+void daemon_set_token(const char *token)
+{
+    snprintf(authorization, sizeof(authorization), token[0] ? "Bearer %s" : "%s", token);
+}
+
 bool daemon_read_token(void)
 {
     size_t count;
@@ -22,10 +27,12 @@ bool daemon_read_token(void)
     char *text = text_read_file(token_path, 4096, &count);
     size_t n = text ? strcspn(text, " \t\r\n") : 0;
     bool good = n > 0 && n <= TOKEN_MAX_CHARS;
-    if (good)
-        snprintf(authorization, sizeof(authorization), "Bearer %.*s", (int)n, text);
-    else
+    if (good) {
+        text[n] = 0;
+        daemon_set_token(text);
+    } else {
         fprintf(stderr, "plantcast: %s: %s\n", token_path, text ? "its first line is no token" : strerror(errno));
+    }
     mem_free(text);
     return good;
 }

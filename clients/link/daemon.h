@@ -23,6 +23,9 @@ bool daemon_set_options(const char *token_file, const char *ca_file);
    request may be under way. */
 bool daemon_read_token(void);
 
+/* Sets the token of requests from now on; "": none. No request may be under way. */
+void daemon_set_token(const char *token);
+
 /* Parses http://HOST[:PORT][/BASE][/] or https:// (also ws://, wss://). Returns false with the reason printed. */
 bool daemon_url_parse(const char *text, struct daemon_url *url);
 /* Requests GET path and appends the response body to *body (zero-initialised; free with text_finish()). Returns the HTTP status, or 0 if

@@ -8,10 +8,11 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/secret.h"
 
 enum { TICK_US = 100000, MOST_TEXT_BYTES = 64 * 1024 * 1024, MOST_TRIES = 4, MOST_FAILURES = 5 };
 static const int64_t PING_NS = NS_PER_S, SILENT_NS = 5 * NS_PER_S, CONNECT_NS = 10 * NS_PER_S;
-static const int64_t AGAIN_NS[GET_COUNT] = { 2 * NS_PER_S, 2 * NS_PER_S, NS_PER_S / 2, NS_PER_S / 5 }; /* by links_get */
+static const int64_t AGAIN_NS[GET_COUNT] = { 2 * NS_PER_S, 2 * NS_PER_S, NS_PER_S / 2, NS_PER_S / 5, 2 * NS_PER_S }; /* by links_get */
 static const double FIRST_S = 0.5, SPREAD_S = 2, DENIED_S = 10; /* wrong tokens are looked at ten times a minute */
 
 /* --- what goes -------------------------------------------------------------------------------------------------------------------- */
@@ -185,7 +186,9 @@ static void connect_link(struct link *link)
     struct lws_client_connect_info info = { .context = link->links->context, .path = path, .protocol = WIRE_SUBPROTOCOL, .userdata = link };
     snprintf(path, sizeof(path), "%s/stream", link->links->url->base);
     daemon_prepare_connection(link->links->url, &info);
-    if (link->index == 0)
+    if (link->index == 0 && link->links->choose_token)
+        link->links->choose_token(link->links->arg);
+    else if (link->index == 0)
         daemon_read_token();
     link->state = LINK_CONNECTING;
     link->begun_ns = clock_mono_ns();
@@ -218,6 +221,7 @@ static void begin_request(struct links_request *request)
     daemon_prepare_connection(links->url, &info);
     request->wanted = false;
     request->under_way = true;
+    request->status = 0;
     request->begun_ns = clock_mono_ns();
     pthread_mutex_unlock(links->lock);
     bool begun = lws_client_connect_via_info(&info) != NULL;
@@ -280,6 +284,17 @@ static double retry_after(const char *text, size_t count)
     return seconds;
 }
 
+/* Once for each reason. */
+static void tell_why(struct links *links, const char *why)
+{
+    const struct daemon_url *url = links->url;
+    if (!strcmp(links->why, why))
+        return;
+    snprintf(links->why, sizeof(links->why), "%s", why);
+    fprintf(stderr, "plantcast-wall: http%s://%s:%d%s/: %s%s\n", url->tls ? "s" : "", url->host, url->port, url->base, why,
+            strstr(why, "SSL") ? "; is its certificate trusted here? --ca FILE names one that is" : "");
+}
+
 static int on_link(struct link *link, struct lws *wsi, enum lws_callback_reasons reason, void *in, size_t len)
 {
     switch (reason) {
@@ -287,9 +302,12 @@ static int on_link(struct link *link, struct lws *wsi, enum lws_callback_reasons
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
         if (in && strstr(in, "unauthorized"))
             refuse(link);
+        else if (link->index == 0)
+            tell_why(link->links, in ? in : "no connection");
         on_gone(link);
         break;
     case LWS_CALLBACK_CLIENT_ESTABLISHED:
+        link->links->why[0] = 0;
         link->wsi = wsi;
         link->state = LINK_OPEN;
         link->alive_ns = clock_mono_ns();
@@ -324,19 +342,34 @@ static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *us
     return status;
 }
 
+static int add_authorization(struct links_request *request, struct lws *wsi, void *in, size_t len)
+{
+    if (!request || !request->authorization)
+        return daemon_add_token(wsi, in, len);
+    pthread_mutex_lock(request->links->lock);
+    unsigned char **at = in;
+    const unsigned char *value = (const unsigned char *)request->authorization;
+    int count = (int)strlen(request->authorization);
+    int failed = lws_add_http_header_by_token(wsi, WSI_TOKEN_HTTP_AUTHORIZATION, value, count, at, *at + len);
+    pthread_mutex_unlock(request->links->lock);
+    return failed ? -1 : 0;
+}
+
 static int on_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
 {
     struct links_request *request = user;
     char buffer[LWS_PRE + 16 * 1024], *at = buffer + LWS_PRE;
     int room = sizeof(buffer) - LWS_PRE;
     if (reason == LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER)
-        return daemon_add_token(wsi, in, len);
+        return add_authorization(request, wsi, in, len);
     if (reason == LWS_CALLBACK_RECEIVE_CLIENT_HTTP) /* it calls back with what was read */
         return lws_http_client_read(wsi, &at, &room) < 0 ? -1 : 0;
     if (!request || reason == LWS_CALLBACK_WSI_CREATE)
         return 0;
     pthread_mutex_lock(request->links->lock);
-    if (reason == LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ && request->body.length + len <= MOST_TEXT_BYTES)
+    if (reason == LWS_CALLBACK_ESTABLISHED_CLIENT_HTTP)
+        request->status = (int)lws_http_client_http_response(wsi);
+    else if (reason == LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ && request->body.length + len <= MOST_TEXT_BYTES)
         text_add_bytes(&request->body, in, len);
     else if (request->under_way && (reason == LWS_CALLBACK_COMPLETED_CLIENT_HTTP || reason == LWS_CALLBACK_CLOSED_CLIENT_HTTP ||
                                     reason == LWS_CALLBACK_CLIENT_CONNECTION_ERROR))
@@ -405,6 +438,7 @@ void links_stop(struct links *links)
     for (int i = 0; i < GET_COUNT; i++) {
         text_finish(&links->requests[i].body);
         mem_free(links->requests[i].path);
+        secret_forget(links->requests[i].authorization);
     }
     links->context = NULL;
 }
@@ -417,6 +451,13 @@ void links_ask(struct links *links, enum links_get what, const char *path)
     request->links = links;
     request->wanted = true;
     lws_cancel_service(links->context);
+}
+
+void links_ask_as(struct links *links, enum links_get what, const char *path, const char *authorization)
+{
+    secret_forget(links->requests[what].authorization);
+    links->requests[what].authorization = mem_strdup(authorization);
+    links_ask(links, what, path);
 }
 
 int64_t links_alive_ns(struct links *links)

@@ -49,13 +49,14 @@ struct link {
 };
 
 /* A request that is made when it is asked for, one at a time. */
-enum links_get { GET_WALLS, GET_HISTORY, GET_OTHER_PLANTS, GET_OTHER_PICTURE, GET_COUNT };
+enum links_get { GET_WALLS, GET_HISTORY, GET_OTHER_PLANTS, GET_OTHER_PICTURE, GET_PAIRING, GET_COUNT };
 struct links_request {
+    int status; /* of the last answer, by HTTP; 0: there was none */
     /* --- below: of link.c */
     struct links *links;
     bool wanted, under_way;
     int64_t begun_ns;
-    char *path;
+    char *path, *authorization;
     struct text body;
 };
 
@@ -65,9 +66,12 @@ struct links {
     struct link at[LINKS_MOST];
     /* What was answered, as JSON (NULL: it is none, or failed) and as it came (empty: it failed). Under the lock. */
     void (*got)(void *arg, enum links_get what, const json_t *answer, const struct text *body);
+    /* Chooses the token (daemon.h), before the first link connects and again each time. NULL: it is read from its file. Under the lock. */
+    void (*choose_token)(void *arg);
     void *arg;
     /* --- below: of link.c */
     struct lws_context *context;
+    char why[200]; /* why the first link last could not connect */
     pthread_t thread;
     bool ends, started;
     struct links_request requests[GET_COUNT];
@@ -82,6 +86,8 @@ void links_stop(struct links *links);
 /* Asks for a path below the server's base, as soon as may be, by a call of got(): some time after the one before of its kind at the
    earliest. Under the lock. */
 void links_ask(struct links *links, enum links_get what, const char *path);
+/* Likewise, with that value of the Authorization header in place of the token's. */
+void links_ask_as(struct links *links, enum links_get what, const char *path, const char *authorization);
 /* Returns when the thread was last seen at work, monotonic. Any thread. */
 int64_t links_alive_ns(struct links *links);
 /* Sends a message, which it frees, once the server has greeted; else it is dropped. Under the lock. */

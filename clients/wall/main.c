@@ -21,7 +21,7 @@ enum { FAST_NS = 8000000, SLOW_NS = 50000000 };
 static const int64_t STUCK_NS = 60 * NS_PER_S, WATCHDOG_NS = 2 * NS_PER_S, REST_NS = 250 * NS_PER_MS;
 
 struct options {
-    const char *wall, *language;
+    const char *wall, *language, *token_path, *ca_path;
     int display, monitor, width_px, height_px;
     bool software;
 };
@@ -32,7 +32,9 @@ static const char help[] =
     "\n"
     "  --wall NAME        which wall\n"
     "  --display N        which of its displays, from 1 (1)\n"
-    "  --token-file FILE  the token of this display, in its first line; it is read again at each connection\n"
+    "  --token-file FILE  the token of this display, in its first line; it is read again at each connection. Without a token, or with\n"
+    "                     one that is revoked, it shows six digits for an engineer to enter on the page; what it is let in with then\n"
+    "                     is kept in that file, or else in STATE_DIRECTORY, XDG_STATE_HOME/plantcast or ~/.local/state/plantcast\n"
     "  --ca FILE          certificate that is trusted besides the system's\n"
     "  --monitor N        which monitor of this machine, from 0 (0)\n"
     "  --window WxH       a window of that size, not the whole monitor\n"
@@ -90,6 +92,8 @@ static int take_options(int argc, char **argv, struct options *options)
     static const struct option known[] = {
         { "wall", required_argument, NULL, 'w' },
         { "display", required_argument, NULL, 'd' },
+        { "token-file", required_argument, NULL, 't' },
+        { "ca", required_argument, NULL, 'c' },
         { "monitor", required_argument, NULL, 'm' },
         { "window", required_argument, NULL, 's' },
         { "language", required_argument, NULL, 'l' },
@@ -100,6 +104,10 @@ static int take_options(int argc, char **argv, struct options *options)
     for (int c; (c = getopt_long(argc, argv, "", known, NULL)) != -1;) {
         if (c == 'w')
             options->wall = optarg;
+        else if (c == 't')
+            options->token_path = optarg;
+        else if (c == 'c')
+            options->ca_path = optarg;
         else if (c == 'l' && words_choose(optarg))
             options->language = optarg;
         else if (c == 'p')
@@ -195,12 +203,10 @@ int main(int argc, char **argv)
     }
     setenv("TZ", "UTC", 1); /* until the plant's own is known */
     words_choose(options.language);
-    if (!daemon_take_options(&argc, argv))
-        return 1;
     int status = take_options(argc, argv, &options);
     if (status)
         return status;
-    if (!daemon_url_parse(argv[optind], &player.url))
+    if (!daemon_set_options(NULL, options.ca_path) || !daemon_url_parse(argv[optind], &player.url))
         return 2;
     struct sigaction action = { .sa_handler = on_signal };
     sigaction(SIGTERM, &action, NULL);
@@ -214,6 +220,7 @@ int main(int argc, char **argv)
     screen_size(screen, window_px, display_px);
     player.wall_id = options.wall;
     player.display = options.display;
+    pairing_init(&player.pairing, options.token_path, &player.url, options.wall, options.display);
     player.by_gpu = !options.software;
     player.width_px = window_px[0];
     player.height_px = window_px[1];

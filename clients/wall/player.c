@@ -13,7 +13,7 @@
 #include "brush.h"
 #include "words.h"
 
-static const int64_t POINT_NS = 4 * NS_PER_S;
+static const int64_t POINT_NS = 4 * NS_PER_S, PAIRING_EVERY_NS = 2 * NS_PER_S;
 static const char WALLS_PATH[] = "/api/v1/walls";
 
 /* --- what comes: on the network's thread, under the lock ----------------------------------------------------------------------- */
@@ -69,6 +69,7 @@ static void words_text(struct link *link, const json_t *message)
         link_restart(link);
     if (!strcmp(type, "welcome")) {
         player->denied = false;
+        pairing_welcomed(&player->pairing);
         want_views(player);
         link_post(link, json_pack("{s:s,s:s,s:i}", "type", "display", "wall", player->wall_id, "display", player->display));
         links_ask(&player->links, GET_WALLS, WALLS_PATH);
@@ -99,11 +100,25 @@ static bool words_frame(struct link *link, const struct wire_frame *frame, const
     return true;
 }
 
-/* The display is dark until there is a token that is let in. */
+static void choose_token(void *arg)
+{
+    struct player *player = arg;
+    pairing_choose_token(&player->pairing);
+}
+
+static void on_pairing(struct player *player, const json_t *answer)
+{
+    if (pairing_take(&player->pairing, &player->links, answer, clock_mono_ns()))
+        link_restart(&player->links.at[0]);
+}
+
+/* The display is dark but for digits until there is a token that is let in. */
 static void refused(struct link *link)
 {
     struct player *player = link->arg;
     player->denied = true;
+    if (link->index == 0 && player->pairing.enabled)
+        pairing_refused(&player->pairing, &player->links, clock_mono_ns());
     if (link->index > 0)
         link_restart(&player->links.at[0]); /* it is for that one to say whether we are let in again */
     want_views(player);
@@ -169,6 +184,7 @@ static void on_got(void *arg, enum links_get what, const json_t *answer, const s
     case GET_WALLS: on_walls(player, json_object_get(answer, "walls")); break;
     case GET_HISTORY: trend_take(player, answer); break;
     case GET_OTHER_PLANTS: snapshots_take(player, answer); break;
+    case GET_PAIRING: on_pairing(player, answer); break;
     default: snapshots_take_picture(player, body); break;
     }
 }
@@ -191,6 +207,7 @@ bool player_start(struct player *player)
     player->links.url = &player->url;
     player->links.got = on_got;
     player->links.arg = player;
+    player->links.choose_token = player->pairing.enabled ? choose_token : NULL;
     for (int i = 0; i < 1 + WALL_PANES; i++)
         player->links.at[i] =
             (struct link){ .links = &player->links, .events = i ? &views : &words, .arg = player, .index = i, .wanted = !i };
@@ -325,17 +342,44 @@ static bool differs(struct text *kept, struct text *now)
     return !same;
 }
 
-/* What it never heard of: it knows who it is, and since when it waits, by its own clock. */
-static void say_self(const struct player *player, struct text *card)
+/* What it never heard of, or was not let in to: it knows who it is, and since when it waits, by its own clock. */
+static void say_self(const struct player *player, int64_t since_ns, struct text *card)
 {
     char display[16], time[24] = "?";
-    time_t begun = (time_t)((clock_utc_ns() - (clock_mono_ns() - player->begun_ns)) / NS_PER_S);
+    const struct daemon_url *url = &player->url;
+    time_t begun = (time_t)((clock_utc_ns() - (clock_mono_ns() - since_ns)) / NS_PER_S);
     struct tm utc;
     snprintf(display, sizeof(display), "%d", player->display);
     if (gmtime_r(&begun, &utc))
         strftime(time, sizeof(time), "%H:%M:%S UTC", &utc);
-    text_add(card, "lost\n%s\n%s", say("walls.never", NULL),
-             say("walls.self", "wall", player->wall_id, "display", display, "time", time, NULL));
+    text_add(card, "lost\n%s\n%s\nhttp%s://%s:%d%s/", say("walls.never", NULL),
+             say("walls.self", "wall", player->wall_id, "display", display, "time", time, NULL), url->tls ? "s" : "", url->host, url->port,
+             url->base);
+}
+
+/* While it is not let in: what to do, the digits, and how long they are good, for which display. */
+static void say_pairing(const struct player *player, int64_t now_ns, struct text *card)
+{
+    static const char *const keys[] = { [PAIRING_NOT] = "walls.denied",      [PAIRING_ASKS] = "walls.asks",
+                                        [PAIRING_SHOWS] = "walls.digits",    [PAIRING_CROWDED] = "walls.crowded",
+                                        [PAIRING_NOWHERE] = "walls.nowhere", [PAIRING_NEVER] = "walls.denied" };
+    const struct pairing *pairing = &player->pairing;
+    char display[16], left[16];
+    int left_s = (int)fmax(0, ceil((double)(pairing->until_ns - now_ns) / 1e9));
+    snprintf(display, sizeof(display), "%d", player->display);
+    snprintf(left, sizeof(left), "%d:%02d", left_s / 60, left_s % 60);
+    const char *text = say(keys[pairing->state], "wall", player->wall_id, "display", display, NULL);
+    if (pairing->state == PAIRING_SHOWS)
+        text_add(card, "digits\n%s\n%.3s %s\n%s\n%s", text, pairing->digits, pairing->digits + 3, say("walls.left", "time", left, NULL),
+                 say("walls.place", "wall", player->wall_id, "display", display, NULL));
+    else
+        text_add(card, "denied\n%s", text);
+}
+
+/* Whoever is not let in is answered every few seconds. */
+static bool pairing_is_lost(const struct player *player, int64_t now_ns)
+{
+    return player->pairing.enabled && now_ns - player->pairing.heard_ns >= player->lost_ns + PAIRING_EVERY_NS;
 }
 
 /* A word of what it is, then what it says, and below that in small letters what else there is to say; "" where nothing lies over
@@ -344,21 +388,48 @@ static void say_card(const struct player *player, int64_t now_ns, struct text *c
 {
     int64_t heard_ns = player->links.at[0].heard_ns;
     text_add(card, "%s", "");
-    if (player->denied)
-        text_add(card, "denied\n%s", say("walls.denied", NULL));
+    if (player->denied && pairing_is_lost(player, now_ns))
+        say_self(player, player->pairing.heard_ns, card);
+    else if (player->denied)
+        say_pairing(player, now_ns, card);
     else if (now_ns - (heard_ns ? heard_ns : player->begun_ns) >= player->lost_ns && heard_ns && player->model.welcome)
         text_add(card, "lost\n%s",
                  say("walls.lost", "time", player_time(player, model_now_us(&player->model) - (now_ns - heard_ns) / 1000), NULL));
     else if (now_ns - (heard_ns ? heard_ns : player->begun_ns) >= player->lost_ns)
-        say_self(player, card);
+        say_self(player, player->begun_ns, card);
     else if (player->wrong[0])
         text_add(card, "wrong\n%s", player->wrong);
     else if (!player->wall || !player->model.welcome)
         text_add(card, "wait\n%s", say("health.connecting", NULL));
 }
 
+/* What to do, the digits as large as there is room for, and small lines below. */
+static void draw_digits(const struct player *player, cairo_t *cairo)
+{
+    double width = player->width_px, height = player->height_px, small = fmin(width, height) / 26, gap = small / 2;
+    char lines[4][sizeof(player->wrong)] = { "" };
+    const char *at = player->card.at;
+    for (int i = 0; i < 4 && (at = strchr(at, '\n')) != NULL; i++, at++)
+        snprintf(lines[i], sizeof(lines[i]), "%.*s", (int)strcspn(at + 1, "\n"), at + 1);
+    double size = fmin(0.3 * height, 0.3 * height * 0.9 * width / fmax(1, brush_measure(cairo, 0.3 * height, true, lines[1]).width));
+    double sizes[] = { small, size, small, small }, heights[4], all = 3 * gap;
+    for (int i = 0; i < 4; i++)
+        all += heights[i] = brush_measure_wrapped(cairo, 0.92 * width, sizes[i], i == 1, lines[i]).height;
+    struct box box = { 0.04 * width, fmax(0, 0.5 * (height - all)), 0.92 * width, 0 };
+    brush_fill(cairo, &(struct box){ 0, 0, width, height }, 0x000000);
+    for (int i = 0; i < 4; i++) {
+        box.height = heights[i] + 1;
+        brush_text(cairo, &box, sizes[i], i == 1, WHITE, ALIGN_CENTRE, i != 1, lines[i]);
+        box.y += heights[i] + gap;
+    }
+}
+
 static void draw_card(const struct player *player, cairo_t *cairo)
 {
+    if (!strncmp(player->card.at, "digits", 6)) {
+        draw_digits(player, cairo);
+        return;
+    }
     double width = player->width_px, height = player->height_px;
     const json_t *inches = json_object_get(player->wall, "inches");
     double mm = rules_millimetres(inches ? json_number_value(inches) : 55, player->display_width_px, player->display_height_px);

@@ -9,6 +9,7 @@
 #include "link.h"
 #include "model.h"
 #include "notes.h"
+#include "pairing.h"
 #include "plant/burn_shift.h"
 #include "plant/wall.h"
 #include "render/overlay/labels.h"
@@ -67,6 +68,7 @@ struct player {
     bool by_gpu, dark;
     int64_t lost_ns;                                              /* so long nothing is heard before it is said; 0: PLAYER_LOST_NS */
     int width_px, height_px, display_width_px, display_height_px; /* of the window, and of all of the display */
+    struct pairing pairing; /* by main.c; not enabled: what is refused stays dark */
     pthread_mutex_t lock;
     struct links links;
     pthread_cond_t woken; /* with the lock: there is news */

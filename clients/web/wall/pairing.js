@@ -5,6 +5,7 @@ import { make, setText } from '../app/common/dom.js';
 import { say } from '../core/words.js';
 
 const ASK_MS = 2000, SECRET_BYTES = 32;
+const WHY = { 200: 'walls.asks', 400: 'walls.nowhere', 503: 'walls.crowded' }; // by status: what is said in place of digits
 
 export class Pairing {
     // place: { wall, display }. enter(secret): tries to be let in with it, or with a token that somebody typed.
@@ -13,8 +14,11 @@ export class Pairing {
         this.digits = make('p', { class: 'digits' });
         this.field = make('input', { type: 'password', autocomplete: 'off', 'aria-label': say('walls.token') });
         this.said = make('p', {}, say('walls.denied'));
-        element.replaceChildren(this.said, this.digits, make('details', {}, make('summary', {}, say('walls.token')), this.field,
-            make('button', { type: 'submit' }, say('walls.enter'))));
+        this.left = make('p', {});
+        const name = make('p', {}, say('walls.place', place));
+        const typing = make('details', {}, make('summary', {}, say('walls.token')), this.field,
+            make('button', { type: 'submit' }, say('walls.enter')));
+        element.replaceChildren(this.said, this.digits, this.left, name, typing);
         element.addEventListener('submit', (event) => {
             event.preventDefault();
             this.typed(this.field.value.trim());
@@ -48,22 +52,25 @@ export class Pairing {
         this.element.hidden = true;
         this.asking++;
         setText(this.digits, '');
+        setText(this.left, '');
     }
 
     async ask(turn) {
-        let answer = {};
+        let answer = {}, status = 0;
         try {
             const reply = await fetch(`api/v1/pair?${new URLSearchParams(this.place)}`,
                 { headers: { Authorization: `Pairing ${this.secret}` }, signal: AbortSignal.timeout(5 * ASK_MS) });
+            ({ status } = reply);
             answer = reply.ok ? await reply.json() : {};
         } catch {
             // it is asked again
         }
         if (turn !== this.asking)
             return;
-        const { paired, digits = '' } = answer;
+        const { paired, digits = '', left_s: left = 0 } = answer;
         setText(this.digits, digits.replace(/^.../, '$& '));
-        setText(this.said, say(digits ? 'walls.digits' : 'walls.denied', this.place));
+        setText(this.left, digits && say('walls.left', { time: `${Math.floor(left / 60)}:${String(left % 60).padStart(2, '0')}` }));
+        setText(this.said, say(digits ? 'walls.digits' : WHY[status] ?? 'walls.denied', this.place));
         if (paired)
             this.enter(this.secret);
         setTimeout(() => turn === this.asking && this.ask(turn), ASK_MS);

@@ -122,6 +122,11 @@ never: Keine Verbindung zur Anlage
 self: Bildschirm {display} von {wall}, wartet seit {time}
 denied: Dieser Bildschirm braucht ein eigenes Token
 digits: Wer die Rolle engineer hat, gibt diese Ziffern auf der Seite unter „Ansichten“ ein
+asks: Dieser Bildschirm fragt den Server nach den Ziffern, mit denen er eingelassen wird
+left: Diese Ziffern gelten noch {time}
+place: Bildschirm {display} von {wall}
+crowded: Zu viele Bildschirme warten darauf, eingelassen zu werden; dieser fragt wieder
+nowhere: In der Anlagendatei gibt es keinen Bildschirm {display} einer Wand „{wall}“
 token: Token
 enter: Eingeben
 held: festgehalten von {who} seit {time}

@@ -120,6 +120,11 @@ never: No connection to the plant
 self: Display {display} of {wall}, waiting since {time}
 denied: This display needs a token of its own
 digits: To let this display in, an engineer enters these digits on the page, in Views
+asks: This display asks the server for the digits that it is let in by
+left: These digits are good for another {time}
+place: Display {display} of {wall}
+crowded: Too many displays wait to be let in; this one asks again
+nowhere: The plant file has no display {display} of a wall '{wall}'
 token: Token
 enter: Enter
 held: held by {who} since {time}

@@ -121,6 +121,11 @@ never: 플랜트와 연결되지 않았습니다
 self: {wall} 디스플레이 {display}, {time}부터 기다리는 중
 denied: 이 디스플레이에는 전용 토큰이 필요합니다
 digits: 이 디스플레이를 허용하려면 엔지니어가 페이지의 '뷰'에서 이 숫자를 입력합니다
+asks: 이 디스플레이가 서버에 허용용 숫자를 요청하고 있습니다
+left: 숫자의 남은 유효 시간: {time}
+place: {wall} 디스플레이 {display}
+crowded: 허용을 기다리는 디스플레이가 너무 많습니다. 다시 요청합니다
+nowhere: 플랜트 파일에 월 '{wall}'의 디스플레이 {display}번이 없습니다
 token: 토큰
 enter: 입력
 held: {who} 고정, {time}부터
