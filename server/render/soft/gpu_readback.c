@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/huge_pages.h"
 #include "base/mem.h"
 #include "render/soft/soft_impl.h"
 
@@ -40,25 +41,37 @@ static bool read_baked(const struct soft *soft, struct soft_light *light, const 
     return true;
 }
 
-/* The last row and column twice: comparisons look at right and lower neighbours. */
+/* From rows. The last row and column come twice, as lower and right neighbours. */
+static void fill_sun_tiles(struct soft_light *light, const uint16_t *rows)
+{
+    const int tiles = light->sun_tiles, last = light->sun_map_px - 1;
+    uint16_t *to = light->sun_map;
+    for (int tile = 0; tile < tiles * tiles; tile++)
+        for (int i = 0; i < SUN_TILE_TEXELS; i++) {
+            int u = tile % tiles * SUN_TILE_STEP_PX + i % SUN_TILE_PX, v = tile / tiles * SUN_TILE_STEP_PX + i / SUN_TILE_PX;
+            *to++ = rows[(size_t)(v < last ? v : last) * (size_t)light->sun_map_px + (size_t)(u < last ? u : last)];
+        }
+}
+
 static bool read_sun_map(const struct soft *soft, struct soft_light *light, GLuint map)
 {
     GLint size = 0;
     glGetTextureLevelParameteriv(map, 0, GL_TEXTURE_WIDTH, &size);
-    size_t row = (size_t)size + 1;
     light->sun_map_px = size;
-    light->sun_map = mem_try_array(row * row, sizeof(*light->sun_map));
-    if (!light->sun_map)
-        return fail(soft, "shadows");
-    glPixelStorei(GL_PACK_ROW_LENGTH, size + 1);
-    glPixelStorei(GL_PACK_ALIGNMENT, 2);
-    glGetTextureImage(map, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, (GLsizei)(row * row * 2), light->sun_map);
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
-    for (size_t y = 0; y < row - 1; y++)
-        light->sun_map[y * row + row - 1] = light->sun_map[y * row + row - 2];
-    memcpy(light->sun_map + (row - 1) * row, light->sun_map + (row - 2) * row, row * sizeof(*light->sun_map));
-    return true;
+    light->sun_tiles = (size + SUN_TILE_STEP_PX - 1) / SUN_TILE_STEP_PX;
+    const size_t texels = (size_t)size * (size_t)size, bytes = soft_sun_map_bytes(light);
+    uint16_t *rows = mem_try_array(texels, sizeof(*rows));
+    light->sun_map = mem_try_array(bytes, 1);
+    huge_pages_advise(light->sun_map, bytes);
+    bool good = rows && light->sun_map;
+    if (good) {
+        glPixelStorei(GL_PACK_ALIGNMENT, 2);
+        glGetTextureImage(map, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, (GLsizei)(texels * sizeof(*rows)), rows);
+        glPixelStorei(GL_PACK_ALIGNMENT, 4);
+        fill_sun_tiles(light, rows);
+    }
+    mem_free(rows);
+    return good || fail(soft, "shadows");
 }
 
 static double margin(double at)

@@ -31,6 +31,25 @@ SOFT_INLINE lanes byte_of(lanes_int packed, int number)
     return __builtin_convertvector(packed >> (8 * number) & 0xff, lanes);
 }
 
+/* Where a texel of the sun's map is. u, v: whole. */
+SOFT_INLINE lanes_int sun_texel_at(const struct soft_light *light, lanes u, lanes v)
+{
+    const float over = 1.0f / SUN_TILE_STEP_PX;
+    lanes_int column = lanes_whole((u + 0.5f) * over), row = lanes_whole((v + 0.5f) * over);
+    lanes_int x = lanes_whole(u) - column * SUN_TILE_STEP_PX, y = lanes_whole(v) - row * SUN_TILE_STEP_PX;
+    return (row * light->sun_tiles + column) * SUN_TILE_TEXELS + y * SUN_TILE_PX + x;
+}
+
+/* Asks for what sun_tap() will look up soon. */
+SOFT_INLINE void sun_prefetch(const struct soft_light *light, lanes s, lanes t)
+{
+    float size = (float)light->sun_map_px;
+    lanes u = lanes_clamp(s * size - 0.5f, 0, size - 1), v = lanes_clamp(t * size - 0.5f, 0, size - 1);
+    lanes_int at = sun_texel_at(light, whole_part(u), whole_part(v));
+    for (int i = 0; i < LANES; i++)
+        __builtin_prefetch(light->sun_map + at[i]);
+}
+
 /* How much of the sun is seen, 0..1: four comparisons, weighted as a GL sampler with linear filter does. s, t: 0..1 over the map. */
 SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lanes depth)
 {
@@ -38,11 +57,11 @@ SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lane
     lanes u = lanes_clamp(s * size - 0.5f, 0, size - 1), v = lanes_clamp(t * size - 0.5f, 0, size - 1);
     lanes place = lanes_clamp(depth, 0, 1) * 65535.0f;
     lanes u0 = whole_part(u), v0 = whole_part(v), u_part = u - u0, v_part = v - v0;
-    lanes_int at = lanes_whole(v0) * (light->sun_map_px + 1) + lanes_whole(u0);
+    lanes_int at = sun_texel_at(light, u0, v0);
     uint32_t pairs[2][LANES]; /* of neighbours; above, below */
     for (int i = 0; i < LANES; i++) {
         memcpy(&pairs[0][i], light->sun_map + at[i], 4);
-        memcpy(&pairs[1][i], light->sun_map + at[i] + light->sun_map_px + 1, 4);
+        memcpy(&pairs[1][i], light->sun_map + at[i] + SUN_TILE_PX, 4);
     }
     lanes_uint above = *(const lanes_uint *)pairs[0], below = *(const lanes_uint *)pairs[1];
     lanes one = (lanes){ 0 } + 1.0f, none = { 0 };

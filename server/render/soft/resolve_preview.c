@@ -7,15 +7,38 @@
 #include "render/soft/lookups.h"
 #include "render/soft/section_colors.h"
 
-/* How much of the sun is seen, 0..1. */
-SOFT_INLINE lanes sun_at(const struct raster *raster, lanes x, float y, lanes depth)
+enum { AHEAD = 2 * LANES }; /* pixels, whose shadows are asked for early: they lie far apart in memory */
+
+/* The place on the sun's map, 0..1, and the depth there. */
+SOFT_INLINE void sun_place(const struct raster *raster, lanes x, float y, lanes depth, lanes place[3])
 {
     const float(*m)[4] = raster->sun_from_pixel;
     lanes s[4];
     for (int r = 0; r < 4; r++)
         s[r] = x * m[0][r] + (y * m[1][r] + m[3][r]) + depth * m[2][r];
     lanes over = 1.0f / s[3];
-    return sun_tap(raster->light, s[0] * over, s[1] * over, s[2] * over);
+    for (int r = 0; r < 3; r++)
+        place[r] = s[r] * over;
+}
+
+/* How much of the sun is seen, 0..1. */
+SOFT_INLINE lanes sun_at(const struct raster *raster, lanes x, float y, lanes depth)
+{
+    lanes at[3];
+    sun_place(raster, x, y, depth, at);
+    return sun_tap(raster->light, at[0], at[1], at[2]);
+}
+
+/* Asks for the shadows on what is drawn there. */
+SOFT_INLINE void prefetch_shadows(const struct raster *raster, int column, int row)
+{
+    size_t place = (size_t)row * (size_t)raster->pitch_px + (size_t)column;
+    lanes_int marks = *(const lanes_int *)(raster->marks + place);
+    lanes at[3];
+    if (!lanes_any((marks & (int32_t)MARK_KIND) == (int32_t)MARK_CONTEXT))
+        return;
+    sun_place(raster, LANES_IOTA + ((float)column + 0.5f), (float)row + 0.5f, *(const lanes *)(raster->depth + place), at);
+    sun_prefetch(raster->light, at[0], at[1]);
 }
 
 SOFT_INLINE lanes_int context_color(const struct raster *raster, lanes_int marks, lanes x, float y, lanes depth)
@@ -151,6 +174,8 @@ void raster_color(const struct raster *raster, const struct soft_rect *rect)
         for (int column = rect->left; column <= rect->right; column += LANES) {
             if ((column & (raster->stretch_px - 1)) == 0)
                 heights = heights_from(raster, column, row);
+            if (column + AHEAD <= rect->right)
+                prefetch_shadows(raster, column + AHEAD, row);
             lanes_int color = color_at(raster, &heights, column, row);
             int count = raster->width_px - column;
             memcpy(out + 4 * column, &color, count < LANES ? 4 * (size_t)count : sizeof(color));

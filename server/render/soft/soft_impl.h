@@ -70,13 +70,20 @@ struct soft_found { /* what of one mesh may be seen; kept from picture to pictur
 struct soft_light {       /* a light_set, read back */
     uint64_t id;          /* of the set; 0: empty */
     uint8_t (**baked)[4]; /* by asset */
-    uint16_t *sun_map;    /* rows from the top; one more row and column than it has */
-    int sun_map_px;
+    uint16_t *sun_map;    /* in square tiles of two cache lines, row by row as what is in them: neighbours lie together */
+    int sun_map_px;       /* of a side, as it was on the GPU */
+    int sun_tiles;        /* in a row of tiles */
     uint32_t *ground; /* a byte each: this texel, its right, lower, lower right neighbour; 255: no shadow */
     uint8_t *open;    /* of the ground, which refined frames look up; rows from the top */
     int ground_px;    /* of a side, of both */
     uint64_t used;
 };
+/* A texel is looked up with its right and lower neighbours, so its tile has these: its last row and column are the next ones' first. */
+enum { SUN_TILE_PX = 8, SUN_TILE_STEP_PX = SUN_TILE_PX - 1, SUN_TILE_TEXELS = SUN_TILE_PX * SUN_TILE_PX };
+static inline size_t soft_sun_map_bytes(const struct soft_light *light)
+{
+    return (size_t)light->sun_tiles * (size_t)light->sun_tiles * SUN_TILE_TEXELS * sizeof(*light->sun_map);
+}
 enum { SOFT_LIGHTS = 2, SOFT_SHAPES = 16 };
 
 struct raster { /* what one frame is rasterized from, and into; its room is kept for the next one */
