@@ -250,11 +250,11 @@ static bool jumps(const struct line *line, double length_m)
     return false;
 }
 
-/* What is left if the edge is cut at one of its points. */
-static double left_after(const struct line *line, int cut)
+/* What is left if the edge is cut at one of its points; of more than `enough`, only so much that it is more. */
+static double left_after(const struct line *line, int cut, double enough)
 {
     double most = 0;
-    for (int i = 1; i < line->count - 1; i++) {
+    for (int i = 1; i < line->count - 1 && most <= enough; i++) {
         int from = i < cut ? 0 : cut, to = i < cut ? cut : line->count - 1;
         if (i != cut)
             most = max_of(most, error_at(line, LINEAR_ERROR_BOTH, from, to, i));
@@ -268,7 +268,7 @@ static int best_cut(const struct line *line, double *left)
     int best = 0;
     *left = INFINITY;
     for (int i = 1; i < line->count - 1; i++) {
-        double error = left_after(line, i) * (1 + 0.2 * fabs(line->t[i] - 0.5));
+        double aside = 1 + 0.2 * fabs(line->t[i] - 0.5), error = left_after(line, i, *left) * aside;
         if (error < *left) {
             *left = error;
             best = i;
