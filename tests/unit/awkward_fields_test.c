@@ -395,7 +395,7 @@ static void hundreds_of_sensors_on_nine_triangles(void **state)
 {
     struct awkward a = { .files = *state };
     make_plate(&a);
-    scatter_sensors(&a, (size_t)sweep(300, 150));
+    scatter_sensors(&a, 300);
     assert_true(assert_true_or_named(&a).worth_a_look > 1);
 }
 
@@ -405,7 +405,7 @@ static void thousands_of_sensors_on_nine_triangles(void **state)
     struct awkward a = { .files = *state };
     struct folder_file file;
     make_plate(&a);
-    scatter_sensors(&a, (size_t)sweep(4096, 600));
+    scatter_sensors(&a, (size_t)sweep(4096, 1024));
     struct named named = prepare(&a, &file);
     print_message("# %zu sensors: %.1f steps named\n", a.sensor_count, named.worth_a_look);
     assert_true(named.worth_a_look > 1);

@@ -6,7 +6,7 @@ import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
 import { alarmed } from './alarmed.mjs';
 import { drawnAt, openPage, PHONE, shoot, TABLET, travel, waitForPicture } from '../support/browser.mjs';
-import { everyPanel } from '../support/panels.mjs';
+import { cutOff, everyPanel } from '../support/panels.mjs';
 import { sweep, takes } from '../support/sweep.mjs';
 import { missing } from '../support/tiny_plant.mjs';
 
@@ -51,8 +51,9 @@ async function findings(on, rules = RULES, within = null) {
 }
 
 for (const [theme, rules, other] of WALKS) {
-    test(`axe-core finds nothing on any panel or dialog, ${theme}${other ? `, nor in colours, ${other}` : ''}`, options, async () => {
-        await page.goto(`${url}?theme=${theme}`);
+    const themes = `${theme}${other ? `, nor in colours, ${other}` : ''}`;
+    test(`no word is cut off on any panel or dialog, and axe-core finds nothing, ${themes}`, options, async () => {
+        await page.goto(`${url}?theme=${theme}&lang=de`); // whose words are the longest
         await waitForPicture(page);
         await lookAtEverything(theme, rules, other);
     });
@@ -67,6 +68,7 @@ async function lookAtEverything(theme, rules, other) {
             return;
         seen.push(name);
         await shoot(page, `axe-${theme}-${name}`);
+        assert.deepEqual(await cutOff(page), [], name);
         const part = sweep(null, PARTS[name] ?? null);
         assert.deepEqual(await findings(page, rules, part), [], name);
         if (!other)
@@ -111,10 +113,10 @@ async function lookAtTools(look) {
     await page.locator('#engineer-toggle').click();
     await page.locator('#engineer .tags button').first().click();
     await look('engineer-place');
-    await page.getByRole('button', { name: 'Gaps', exact: true }).click();
+    await page.getByRole('button', { name: 'Lücken', exact: true }).click();
     await page.locator('#engineer .gaps h3').waitFor();
     await look('engineer-gaps');
-    await page.locator('#engineer label', { hasText: 'Prove' }).click();
+    await page.locator('#engineer label', { hasText: 'Prüfen' }).click();
     await page.locator('#engineer .part:not([hidden]) .tags button').first().click();
     await page.locator('#engineer .judge').waitFor();
     await look('engineer-prove');

@@ -12,8 +12,8 @@ const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
 const HD = { width: 1920, height: 1080 }, UHD = { width: 3840, height: 2160 }, UPRIGHT = { width: 1080, height: 1920 };
 const WALLS = [
-    ['55,4', HD], ['85,8', HD, 'de'], ['400,0.5', sweep(UHD, HD)], ['10,50', UPRIGHT],
-    ...sweep([['85,8', HD], ['10,0.5', HD], ['10,50', HD], ['400,50', HD]], []),
+    ['55,4', HD], ['85,8', HD, 'de'], ['10,50', UPRIGHT],
+    ...sweep([['400,0.5', UHD], ['85,8', HD], ['10,0.5', HD], ['10,50', HD], ['400,50', HD]], []),
 ];
 let plant, url;
 

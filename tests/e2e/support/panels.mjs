@@ -89,3 +89,17 @@ export async function everyPanel(page, f) {
     await f('help');
     await page.keyboard.press('Escape');
 }
+
+// Words that do not fit where they stand, and parts of the page beyond the screen.
+export const cutOff = (page) => page.evaluate(() => {
+    const seen = (element) => element.checkVisibility() && element.getBoundingClientRect().width > 0;
+    const tight = [...document.querySelectorAll('button, label > span, legend, h2, th, td, dt, dd, .state, .choice > span, output')]
+        .filter((e) => seen(e) && e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).display !== 'inline' &&
+            getComputedStyle(e).textOverflow !== 'ellipsis' && !e.closest('.alarm-strip'));
+    const parts = 'header, header button, .panel.open, footer, aside, .legend, .card, dialog[open], .alarms, .trends';
+    const out = [...document.querySelectorAll(parts)]
+        .filter((e) => seen(e) && (e.getBoundingClientRect().right > innerWidth + 0.5 || e.getBoundingClientRect().left < -0.5));
+    const wide = document.documentElement.scrollWidth > innerWidth ? [document.body] : [];
+    return [...tight, ...out, ...wide].map((e) => `${e.tagName}#${e.id}.${e.className} ${e.textContent.trim().slice(0, 40)} ` +
+        `${e.scrollWidth}>${e.clientWidth}`);
+});

@@ -152,7 +152,7 @@ test('by the mouse: turned, moved and zoomed', options, async (t) => {
     }
 });
 
-test('by fingers, on a tablet held upright', options, async (t) => {
+sweep(test, () => {})('by fingers, on a tablet held upright', options, async (t) => {
     const { page, errors, close } = await openPage(url('jpeg'), { ...TABLET, viewport: { width: 768, height: 1024 } });
     try {
         await look(page);
