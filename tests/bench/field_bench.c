@@ -139,7 +139,7 @@ static void measure_plant(struct workers *workers, size_t sensors)
     struct bench bench = { .plant = synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = 1), .sensors = sensors };
     bench.field = field_create(workers, &bench.plant->scene);
     field_params_default(&bench.plant->plant, 0, &bench.params);
-    measure_named(&bench, "all_readings", change_all, 5);
+    measure_named(&bench, "all_readings", change_all, 4);
     measure_named(&bench, "one_reading", change_one, 0.1);
     measure_named(&bench, "no_reading", change_nothing, 0);
     measure_named(&bench, "one_quality", change_quality, 0);
@@ -147,7 +147,7 @@ static void measure_plant(struct workers *workers, size_t sensors)
     measure_named(&bench, "euclidean_one_quality", change_quality, 0);
     measure_named(&bench, "drag_power", drag_power, 0);
     bench.params.interpolation = INTERPOLATION_PAPER;
-    measure_named(&bench, "paper_all_readings", change_all, 5);
+    measure_named(&bench, "paper_all_readings", change_all, 4);
     measure_named(&bench, "paper_one_reading", change_one, 0.1);
     measure_named(&bench, "paper_one_quality", change_quality, 0);
     measure_named(&bench, "paper_drag_decay", drag_decay, 0);

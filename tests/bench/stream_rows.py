@@ -26,7 +26,7 @@ def orbit_rows(plant):
             yield row(label, None, "", why=why or "no frame showed a camera that was sent")
             continue
         full, one = size == "1920x1080", sessions == 1
-        yield row(label + "_fps", round(found["fps"], 1), "1/s", (">=", 30 if full else 60) if one else None)
+        yield row(label + "_fps", round(found["fps"], 1), "1/s", (">=", 60) if one else None)
         yield row(label + "_input_p50_ms", round(found["input_to_frame_ms"]["p50"], 1), "ms", ("<=", 50 if full else 25) if one else None,
                   p95=round(found["input_to_frame_ms"]["p95"], 1))
         yield row(label + "_input_p99_ms", round(found["input_to_frame_ms"]["p99"], 1), "ms", ("<=", 100) if one and full else None)
