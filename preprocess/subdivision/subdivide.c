@@ -26,7 +26,9 @@
 /* How many triangles the finest level may get more: so much of its own, or so many, whichever is more. */
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
-#define WORTH 0.95          /* a coarser level that would get more than so much of the next finer one is of no use */
+#define WORTH 0.95          /* a coarser level that would get more than so much of the next finer one is of no use; */
+#define WORTH_MANY 0.5      /* likewise, of so many sensors or more, whose distances take most of a file: */
+#define MANY_SENSORS 128
 #define SAMPLE_WORTH 9000   /* levels of so many triangles or more are first tried on a sample: those of fewer hang on too few of them */
 #define SAMPLE_ROUNDS 4     /* of cuts, then it is known or never will be */
 #define SHORTEST_NEAR 0.125 /* pieces of the finest level, of the tolerance: sensors may stand side by side */
@@ -401,8 +403,8 @@ static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t f
     subdiv->slack_m = SLACK * error_m;
     subdiv->shortest_m = subdiv->finest ? SHORTEST_NEAR * tolerance_m : max_of(tolerance_m, SHORTEST * error_m);
     subdiv->jump_m = JUMP_WIDTH * max_of(tolerance_m, SHORTEST * error_m);
-    double tris = (double)(level->index_count / 3);
-    subdiv->most_tris = (size_t)(subdiv->finest ? tris + max_of(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS) : WORTH * (double)finer_tris);
+    double tris = (double)(level->index_count / 3), worth = subdiv->sensors < MANY_SENSORS ? WORTH : WORTH_MANY;
+    subdiv->most_tris = (size_t)(subdiv->finest ? tris + max_of(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS) : worth * (double)finer_tris);
     subdiv->full = !subdiv->finest && (is_known_hopeless(subdiv) || is_hopeless(subdiv, level, limits[0]));
     if (subdiv->full)
         return;

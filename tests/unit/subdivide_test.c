@@ -912,6 +912,51 @@ static void random_rings_show_the_field_on_every_level(void **state)
     }
 }
 
+/* Their distances take most of a file, so only a level that saves half of the triangles is worth its vertices. */
+static void levels_of_many_sensors_have_half_of_the_triangles(void **state)
+{
+    enum { MANY = 128 };
+    struct body body = { 0 };
+    struct plant_sensor sensors[MANY] = { 0 };
+    struct asset_sensor places[MANY] = { 0 };
+    double points[MANY][3];
+    float places_m[MANY][3];
+    uint32_t seed = 7;
+    struct linear_error linear;
+    struct distance_rows rows;
+    (void)state;
+    make_plant(&body);
+    mem_free(body.plant.tags);
+    body.plant.tag_count = MANY;
+    body.plant.tags = mem_array(MANY, sizeof(*body.plant.tags));
+    for (int i = 0; i < MANY; i++) {
+        double turn = 2 * PI * random_unit(&seed);
+        points[i][0] = cos(turn);
+        points[i][1] = sin(turn);
+        points[i][2] = 5 * random_unit(&seed);
+        body.plant.tags[i] = (struct plant_tag){ .strength = 1, .decay = 1 };
+        sensors[i].tag = i;
+    }
+    make_cylinder(&body, 96, 40);
+    body.surface = surface_create(NULL, NULL, (const float(*)[3])body.g.positions_m, body.g.vertex_count, body.g.indices,
+                                  body.g.index_count / 3, &(struct surface_params){ 0 });
+    assert_non_null(body.surface);
+    assert_true(surface_field_init(&body.field, body.surface, (const double(*)[3])points, MANY, NULL));
+    for (int i = 0; i < MANY; i++)
+        for (int axis = 0; axis < 3; axis++)
+            places_m[i][axis] = places[i].surface_m[axis] = (float)body.field.sources[i].point_m[axis];
+    linear_error_init(&linear, &body.plant, sensors, MANY, (const float(*)[3])places_m);
+    assert_true(levels_make(&body.levels, &body.g, NULL));
+    const struct subdiv_input input = { .linear = &linear, .surface = body.surface, .field = &body.field, .sensors = places };
+    assert_true(subdivide_levels(&body.levels, &body.g, &input, &rows));
+    assert_true(body.levels.count >= 2);
+    for (size_t l = 1; l < body.levels.count; l++)
+        assert_true(2 * body.levels.at[l].index_count <= body.levels.at[l - 1].index_count);
+    distance_rows_finish(&rows);
+    linear_error_finish(&linear);
+    finish(&body);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -923,6 +968,7 @@ int main(void)
         cmocka_unit_test(random_plates_show_the_field),
         cmocka_unit_test(a_cylinder_shows_the_field),
         cmocka_unit_test(random_rings_show_the_field_on_every_level),
+        cmocka_unit_test(levels_of_many_sensors_have_half_of_the_triangles),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
