@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A display that was let in at the core that leads is so at the one that takes its place, and one that was revoked there stays out when the
+// first one leads again.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { PostgresServer } from './support/postgres_server.mjs';
+import { runProgram } from './support/tiny_plant.mjs';
+import { kill, missingTwoCores, TwoCores, until } from './support/two_cores.mjs';
+
+const skip = missingTwoCores(), options = { skip, timeout: 240000 };
+const WALLS = `
+views: [{ id: whole, title: Whole unit, view: "group=temperature" }]
+walls: [{ id: room, displays: [{ grid: [main], panes: [{ area: main, views: [whole] }] }] }]
+`;
+const SECRET = `pc_${'7'.repeat(64)}`;
+let server, two, renderer, engineer;
+
+before(async () => {
+    if (skip)
+        return;
+    server = await PostgresServer.start();
+    server.makeDatabase('plants');
+    two = await TwoCores.create(server, WALLS, []);
+    two.nodes.trustsLocal = false;
+    engineer = runProgram('plantcast', ['token', 'add', two.nodes.tokenFile, '--role', 'engineer', '--name', 'eve']).out.trim();
+    await two.plant.tell('set TI-1 50');
+    await Promise.all([two.start('one'), two.start('two')]);
+    await two.followed(await two.leader());
+    renderer = await two.renderer('r');
+});
+after(async () => {
+    await two?.destroy();
+    await server?.destroy();
+});
+
+const ask = async ({ port }) => {
+    const headers = { Authorization: `Pairing ${SECRET}` };
+    return (await fetch(`http://127.0.0.1:${port}/api/v1/pair?wall=room&display=1`, { headers })).json();
+};
+// At a renderer, whose answers come once the standby has what was done.
+const act = async (message) => {
+    const client = await renderer.client({}, { token: engineer });
+    client.say({ seq: 1, ...message });
+    const answer = await client.text('paired');
+    client.close();
+    return answer;
+};
+// The picture of its wall.
+async function shows(node) {
+    const client = await until('being let in',
+        () => node.client({ headers: [`Authorization: Bearer ${SECRET}`] }, { token: SECRET }).catch(() => null));
+    assert.equal(client.welcome.role, 'viewer');
+    client.say({ type: 'display', wall: 'room', display: 1 });
+    await client.frameWhere('a picture', () => true);
+    client.close();
+}
+
+test('let in at the leader, it shows its wall after a take-over, at the new leader and at a renderer', options, async () => {
+    const core = await two.leader(), digits = await until('digits', async () => (await ask(core)).digits);
+    assert.equal((await act({ type: 'pair', digits })).kept, true);
+    await shows(core.node);
+    await shows(renderer);
+    const { leads } = await two.takeOver(core, kill(core, 'SIGKILL'));
+    assert.notEqual(leads, core);
+    assert.equal((await ask(leads)).paired, true);
+    await shows(leads.node);
+    await shows(renderer);
+    const { list } = await (await leads.node.fetch('/api/v1/devices', engineer)).json();
+    assert.deepEqual(list.map(({ id, by }) => [id, by]), [['room.1.1', 'eve']]);
+    await two.restart(core);
+});
+
+test('revoked while the other one leads, it stays out where it was let in', options, async () => {
+    const core = await two.leader();
+    await two.followed(core);
+    assert.equal((await act({ type: 'unpair', id: 'room.1.1' })).kept, true);
+    const { leads } = await two.takeOver(core, kill(core, 'SIGKILL'));
+    assert.notEqual(leads, core);
+    assert.equal((await ask(leads)).paired, false);
+    assert.equal((await leads.node.fetch('/api/v1/walls', SECRET)).status, 401);
+});
