@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "clients/wall/brush.h"
+#include "clients/wall/words.h"
+#include "video_words.h"
 
 static const double CARD_RGB[3] = { 0.10, 0.11, 0.13 }, ALARM_RGB[3] = { 0.66, 0.12, 0.10 }, STRIP_RGB[3] = { 0.13, 0.15, 0.18 };
 static const double ASCENT = 1.07, HIGH = 1.36; /* of a line, in sizes of its letters */
@@ -56,7 +58,7 @@ static void draw_card(cairo_t *cairo, const struct canvas *canvas, const struct 
     cairo_fill(cairo);
     centred(cairo, look->headline, px, true, width, 0.5 * height - 0.8 * px);
     if (look->since_us) {
-        char *time = time_text(look, look->since_us, "%Y-%m-%d %H:%M:%S %Z"), *text = g_strdup_printf("since %s", time);
+        char *time = time_text(look, look->since_us, "%Y-%m-%d %H:%M:%S %Z"), *text = video_say(words_language(), VIDEO_SINCE, time, NULL);
         centred(cairo, text, 0.8 * px, false, width, 0.5 * height + 1.0 * px);
         g_free(text);
         g_free(time);
@@ -67,12 +69,13 @@ static void draw_card(cairo_t *cairo, const struct canvas *canvas, const struct 
 static char *age_text(const struct shown *look)
 {
     if (!look->picture)
-        return g_strdup("NO PICTURE");
+        return video_say(words_language(), VIDEO_NO_PICTURE, NULL, NULL);
     if (look->age_ms < 0)
         return g_strdup("");
     double age_s = (double)look->age_ms / 1000;
-    return age_s < 120 ? g_strdup_printf("values up to %.0f s old", ceil(age_s))
-                       : g_strdup_printf("values up to %.0f min old", ceil(age_s / 60));
+    char number[32];
+    g_snprintf(number, sizeof(number), "%.0f", ceil(age_s < 120 ? age_s : age_s / 60));
+    return video_say(words_language(), age_s < 120 ? VIDEO_AGE_S : VIDEO_AGE_MIN, number, NULL);
 }
 
 /* Clock and age at the right, where they have room in any case; the title has the rest. */

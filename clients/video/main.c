@@ -8,6 +8,7 @@
 
 #include "base/service_manager.h"
 #include "branch.h"
+#include "clients/wall/words.h"
 #include "encoder.h"
 #include "http.h"
 #include "rtsp.h"
@@ -207,6 +208,7 @@ int main(int argc, char **argv)
     signal(SIGPIPE, SIG_IGN);
     int code = options_read(&program.options, &argc, &argv);
     if (code < 0) {
+        words_choose(program.options.language);
         gst_init(NULL, NULL);
         code = run(&program);
     }

@@ -172,7 +172,7 @@ int options_read(struct options *options, int *argc, char ***argv)
         { "query", 0, 0, G_OPTION_ARG_STRING, &options->query, "a view as /snapshot.png takes it: group=temperature&camera=...", "TEXT" },
         { "wall", 0, 0, G_OPTION_ARG_STRING, &options->wall, "a display of that wall, in place of a view", "NAME" },
         { "display", 0, 0, G_OPTION_ARG_INT, &options->display, "which of its displays, from 1 (1)", "N" },
-        { "language", 0, 0, G_OPTION_ARG_STRING, &options->language, "of its words: en, ko or de (en)", "L" },
+        { "language", 0, 0, G_OPTION_ARG_STRING, &options->language, "of what it says, and legend and labels: en, ko or de (en)", "L" },
         { "title", 0, 0, G_OPTION_ARG_STRING, &options->title, "what the picture is called (the view's title)", "TEXT" },
         { "token-file", 0, 0, G_OPTION_ARG_FILENAME, &options->token_path, "its first line is a viewer's token (plantcast token)", "FILE" },
         { "ca", 0, 0, G_OPTION_ARG_FILENAME, &options->ca_path, "certificates (PEM) that are trusted, in place of this machine's", "FILE" },

@@ -10,7 +10,7 @@ enum { OPTIONS_MOST_READERS = 512 };
 struct options {
     char *url;             /* of the daemon, with a slash at its end */
     char *view, *query;    /* id of a view with a name; or names and values as /snapshot.png takes them; both NULL: the whole plant */
-    char *wall, *language; /* id of a wall, in place of a view; NULL: a view. Of its words: en, ko or de */
+    char *wall, *language; /* id of a wall, in place of a view; NULL: a view. Of what it says: en, ko or de */
     int display;           /* which of its displays, from 1 */
     char *title;           /* in the strip; NULL: what the view is called */
     char *token, *ca_path, *token_path; /* NULL: none */

@@ -8,7 +8,9 @@
 #include <string.h>
 
 #include "clients/link/png.h"
+#include "clients/wall/words.h"
 #include "message/view_address.h"
+#include "video_words.h"
 
 /* A picture is of the instant at which it was asked for. The one that is shown stays until the next is there: asked for EVERY after it, and
    received within SLOWEST; so it is never older than OLDEST. */
@@ -31,7 +33,7 @@ struct source {
     cairo_surface_t *picture;
     gint64 picture_us, age_ms;
     bool valued; /* some value should take part: else there is none to be old */
-    char headline[80], detail[240], said[240];
+    char headline[120], detail[240], said[240];
     gint64 since_us;    /* UTC: that there is a card; 0: there is a picture */
     gint64 seen_utc_us; /* of the newest picture */
     bool barred;        /* its right is gone, or the view: dark at once */
@@ -42,24 +44,29 @@ struct source {
 
 /* --- what is wrong ------------------------------------------------------------------------------------------ */
 
-static void fail(struct source *source, const char *headline, const char *fmt, ...) G_GNUC_PRINTF(3, 4);
-static void fail(struct source *source, const char *headline, const char *fmt, ...)
+/* One line, of whole letters. Frees what was said. */
+static void keep(char *said, char *out, gsize size)
 {
-    va_list ap;
-    va_start(ap, fmt);
-    vsnprintf(source->detail, sizeof(source->detail), fmt, ap);
-    va_end(ap);
-    source->detail[strcspn(source->detail, "\n")] = 0;
-    char *valid = g_utf8_make_valid(source->detail, -1);
-    g_strlcpy(source->detail, valid, sizeof(source->detail));
-    g_free(valid);
+    said[strcspn(said, "\n")] = 0;
+    char *valid = g_utf8_make_valid(said, -1);
+    g_strlcpy(out, valid, size);
     const char *whole; /* cut within a letter, it could not be drawn */
-    g_utf8_validate(source->detail, -1, &whole);
-    source->detail[whole - source->detail] = 0;
-    g_strlcpy(source->headline, headline, sizeof(source->headline));
-    if (strcmp(source->said, source->detail) != 0)
-        fprintf(stderr, "plantcast-video: %s: %s\n", source->options->url, source->detail);
-    g_strlcpy(source->said, source->detail, sizeof(source->said));
+    g_utf8_validate(out, -1, &whole);
+    out[whole - out] = 0;
+    g_free(valid);
+    g_free(said);
+}
+
+/* The card speaks its language, the log English. */
+static void fail(struct source *source, enum video_word headline, enum video_word detail, const char *a, const char *b)
+{
+    char said[sizeof(source->said)];
+    keep(video_say(words_language(), headline, NULL, NULL), source->headline, sizeof(source->headline));
+    keep(video_say(words_language(), detail, a, b), source->detail, sizeof(source->detail));
+    keep(video_say(LANGUAGE_EN, detail, a, b), said, sizeof(said));
+    if (strcmp(source->said, said) != 0)
+        fprintf(stderr, "plantcast-video: %s: %s\n", source->options->url, said);
+    g_strlcpy(source->said, said, sizeof(source->said));
 }
 
 /* Nothing of it may be seen any more. */
@@ -75,17 +82,19 @@ static void refuse(struct source *source, guint status, GBytes *body)
     const char *text = body ? g_bytes_get_data(body, &count) : NULL;
     char *words = g_strndup(text ? text : "", MIN(count, 160));
     if (status == 401 || status == 403) {
-        fail(source, "NOT LET IN", "the server does not take this token: %s", words);
+        fail(source, VIDEO_NOT_LET_IN, VIDEO_TOKEN, words, NULL);
         bar(source);
         source->wait_until_us = source->asked_us + DENIED_US; /* tokens that are wrong too often are not looked at for a while */
     } else if (status == 429) {
-        fail(source, "NOT LET IN", "the server looks at no more tokens of this address for a while");
+        fail(source, VIDEO_NOT_LET_IN, VIDEO_TOKENS, NULL, NULL);
         source->wait_until_us = source->asked_us + DENIED_US;
     } else if (status == 400 || status == 404) {
-        fail(source, "NO SUCH VIEW", "%s", words);
+        fail(source, VIDEO_NO_VIEW, VIDEO_SAID, words, NULL);
         bar(source);
     } else {
-        fail(source, "NO PICTURE", "the server answers %u: %s", status, words);
+        char number[16];
+        g_snprintf(number, sizeof(number), "%u", status);
+        fail(source, VIDEO_NO_PICTURE, VIDEO_ANSWERS, number, words);
     }
     g_free(words);
 }
@@ -142,7 +151,7 @@ static void take_view(struct source *source, const char *view, const char *title
     source->view_query = query_of(view, &error);
     source->view = source->view_query ? g_strdup(view) : NULL;
     if (!source->view) {
-        fail(source, "NO SUCH VIEW", "%s", error.text);
+        fail(source, VIDEO_NO_VIEW, VIDEO_SAID, error.text, NULL);
         bar(source);
     }
 }
@@ -165,7 +174,9 @@ static void take_views(struct source *source, const json_t *o)
     }
     if (!found) {
         g_clear_pointer(&source->view, g_free);
-        fail(source, "NO SUCH VIEW", "there is no view '%s'; there are: %s", source->options->view, names->len ? names->str : "none");
+        char *none = video_say(words_language(), VIDEO_NONE, NULL, NULL);
+        fail(source, VIDEO_NO_VIEW, VIDEO_VIEWS, source->options->view, names->len ? names->str : none);
+        g_free(none);
         bar(source);
     }
     g_string_free(names, TRUE);
@@ -193,14 +204,18 @@ static void take_picture(struct source *source, SoupMessage *message, GBytes *bo
     const char *age = header ? strstr(header, "oldest_age_ms=") : NULL;
     gint64 took_us = g_get_monotonic_time() - source->asked_us;
     cairo_surface_t *picture = NULL;
-    if (took_us > SLOWEST_US)
-        fail(source, "THE SERVER IS TOO SLOW", "a picture took it %.1f s, and may take %.1f; a smaller --size helps", (double)took_us / 1e6,
-             (double)SLOWEST_US / 1e6);
-    else if (!age)
-        fail(source, "NO PICTURE", "the server does not say how old its values are: it is of an earlier version");
-    else if (!(picture = decode(source->options, body)))
-        fail(source, "NO PICTURE", "what the server sent is no PNG of %dx%d", source->options->width_px,
-             canvas_picture_px(source->options->height_px));
+    char number[32], other[32];
+    if (took_us > SLOWEST_US) {
+        g_snprintf(number, sizeof(number), "%.1f", (double)took_us / 1e6);
+        g_snprintf(other, sizeof(other), "%.1f", (double)SLOWEST_US / 1e6);
+        fail(source, VIDEO_TOO_SLOW, VIDEO_TOOK, number, other);
+    } else if (!age) {
+        fail(source, VIDEO_NO_PICTURE, VIDEO_EARLIER, NULL, NULL);
+    } else if (!(picture = decode(source->options, body))) {
+        g_snprintf(number, sizeof(number), "%d", source->options->width_px);
+        g_snprintf(other, sizeof(other), "%d", canvas_picture_px(source->options->height_px));
+        fail(source, VIDEO_NO_PICTURE, VIDEO_NO_PNG, number, other);
+    }
     if (!picture)
         return;
     g_clear_pointer(&source->picture, cairo_surface_destroy);
@@ -219,9 +234,9 @@ static void on_body(struct source *source, GBytes *body, const GError *error)
     guint status = soup_message_get_status(source->message);
     if (error) {
         if (source->overdue)
-            fail(source, "THE SERVER IS SILENT", "it does not answer");
+            fail(source, VIDEO_SILENT, VIDEO_NO_ANSWER, NULL, NULL);
         else
-            fail(source, "NO CONNECTION TO THE SERVER", "%s", error->message);
+            fail(source, VIDEO_NO_CONNECTION, VIDEO_SAID, error->message, NULL);
         return;
     }
     if (source->asked == ASK_VIEWS && (status == 403 || status == 200))
@@ -268,6 +283,8 @@ static char *url_of(const struct source *source, enum ask ask)
         return g_strconcat(options->url, ask == ASK_PLANT ? "api/v1/plant" : "api/v1/views", NULL);
     GString *url = g_string_new(options->url);
     g_string_append_printf(url, "snapshot.png?width=%d&height=%d", options->width_px, canvas_picture_px(options->height_px));
+    if (!options->query || !strstr(options->query, "language="))
+        g_string_append_printf(url, "&language=%s", options->language);
     if (options->query)
         g_string_append_printf(url, "&%s", options->query);
     char *id = source->limited ? g_uri_escape_string(source->options->view, NULL, FALSE) : NULL;
@@ -293,7 +310,7 @@ static void ask(struct source *source, enum ask what, gint64 now_us)
     source->message = soup_message_new("GET", url);
     g_free(url);
     if (!source->message) {
-        fail(source, "NO SUCH VIEW", "its parameters make no URL");
+        fail(source, VIDEO_NO_VIEW, VIDEO_NO_URL, NULL, NULL);
         return;
     }
     soup_message_add_flags(source->message, SOUP_MESSAGE_NO_REDIRECT); /* the token is for this server */
@@ -352,9 +369,9 @@ void source_look(struct source *source, struct shown *out)
         return;
     }
     if (frozen)
-        fail(source, "NO LIVE VALUES", "the server is there, and no sensor that is shown tells a value");
+        fail(source, VIDEO_NO_VALUES, VIDEO_NO_VALUE, NULL, NULL);
     else if (source->picture && !source->barred && !source->said[0])
-        fail(source, "THE SERVER IS SILENT", "it does not answer");
+        fail(source, VIDEO_SILENT, VIDEO_NO_ANSWER, NULL, NULL);
     if (!source->since_us)
         source->since_us = source->seen_utc_us && !frozen ? source->seen_utc_us : g_get_real_time();
     out->since_us = source->since_us;
@@ -384,8 +401,8 @@ struct source *source_create(const struct options *options)
         soup_session_set_tls_database(source->session, database);
         g_object_unref(database);
     }
-    g_strlcpy(source->headline, "STARTING", sizeof(source->headline));
-    g_strlcpy(source->detail, "no picture has come yet", sizeof(source->detail));
+    keep(video_say(words_language(), VIDEO_STARTING, NULL, NULL), source->headline, sizeof(source->headline));
+    keep(video_say(words_language(), VIDEO_NOTHING_YET, NULL, NULL), source->detail, sizeof(source->detail));
     return source;
 }
 

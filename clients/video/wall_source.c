@@ -34,7 +34,7 @@ struct wall_source *wall_source_create(const struct options *options)
     source->player.lost_ns = LOST_NS;
     setenv("TZ", "UTC", 1); /* until the plant's own is known */
     srand((unsigned)g_random_int());
-    if (!daemon_set_options(options->token_path, options->ca_path) || !words_choose(options->language) ||
+    if (!daemon_set_options(options->token_path, options->ca_path) ||
         !daemon_url_parse(options->url, &source->player.url) || !player_start(&source->player))
         wall_source_destroy(&source);
     return source;
