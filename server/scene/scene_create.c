@@ -82,8 +82,8 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
     for (size_t g = 0; g < plant->group_count; g++) {
         const struct plant_group *group = &plant->groups[g];
         size_t placed = plant_prepares_any(group) ? count_placed(plant, sensors, count, (int)g) : 0;
-        bool heat = group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
-        if (placed > 0 && (heat || (group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed)))) {
+        bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed); /* without sensors there is no file */
+        if (heat || (placed > 0 && group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed))) {
             log_err(log, "asset %s: has no usable %s for group %s; run plantcast-prep %s", asset->plant->id,
                     heat ? "distances by heat" : "directions", group->id, plant->path);
             return false;

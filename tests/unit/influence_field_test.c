@@ -683,6 +683,28 @@ static void test_not_prepared_is_refused(void **state)
     assert_false(use(&u, c));
 }
 
+/* Of an asset without sensors nothing is prepared, and its file is not missed. */
+static void test_without_sensors_no_file_is_missed(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    write_model(c);
+    write_plant(c, "", ", geodesic: heat", 0);
+    prep_case_tags(c, "T0,400001,Float,plc,,,,,\n"); /* of no asset */
+    prep_case_expect(c, "$PLANT", 0);
+    FILE *said = tmpfile();
+    int before = dup(STDERR_FILENO);
+    assert_non_null(said);
+    assert_true(before >= 0 && dup2(fileno(said), STDERR_FILENO) >= 0);
+    bool good = use(&u, c);
+    assert_true(dup2(before, STDERR_FILENO) >= 0);
+    close(before);
+    assert_true(good);
+    assert_int_equal(lseek(fileno(said), 0, SEEK_END), 0);
+    fclose(said);
+    finish(&u);
+}
+
 /* A file that is gone or damaged is made anew, and never taken. */
 static void test_damaged_file(void **state)
 {
@@ -736,6 +758,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_gp_fitted_to_readings, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_what_is_missing_is_said, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_not_prepared_is_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_without_sensors_no_file_is_missed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_damaged_file, set_up, tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

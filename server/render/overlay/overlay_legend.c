@@ -94,16 +94,21 @@ static bool shows_unknown_direction(const struct pen *pen)
     return false;
 }
 
-/* A distance is never below 0, nor uncertain; nor is what depends on no reading. */
+/* Distances, and what depends on no reading, are never uncertain, and below the range only where it does not begin at their least. */
 static void choose_rows(const struct pen *pen, struct legend *legend)
 {
-    static const enum row values[] = { ROW_BELOW, ROW_NO_DATA, ROW_UNCERTAIN }, distances[] = { ROW_NO_DATA };
-    static const enum row limits[] = { ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN };
     const struct view *view = &pen->view;
-    bool is_distance = (view->field.show == SHOW_DISTANCE && view->range_min <= 0) || field_params_cover(&view->field);
-    const enum row *rows = view_is_operator(view) ? limits : is_distance ? distances : values;
-    legend->row_count = view_is_operator(view) || !is_distance ? 3 : 1;
-    memcpy(legend->rows, rows, (size_t)legend->row_count * sizeof(*rows));
+    const struct plant_group *group = &pen->scene->plant->groups[view->field.group];
+    bool of_readings = view->field.show != SHOW_DISTANCE && !field_params_cover(&view->field);
+    double least = view->field.show == SHOW_BLIND ? PLANT_SEEN_PART * (group->max - group->min) : 0;
+    legend->row_count = 0;
+    if (view_is_operator(view))
+        legend->rows[legend->row_count++] = ROW_NO_LIMITS;
+    else if (of_readings || view->range_min > 1.001 * least)
+        legend->rows[legend->row_count++] = ROW_BELOW;
+    legend->rows[legend->row_count++] = ROW_NO_DATA;
+    if (of_readings)
+        legend->rows[legend->row_count++] = ROW_UNCERTAIN;
     if (shows_unproven(pen))
         legend->rows[legend->row_count++] = ROW_UNPROVEN;
     if (shows_assumed(pen))
