@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the sensors cover, whatever they say: how far the field may err, and what nobody would see. With the legend's rarer titles. Loaded
 // where one of these is shown, and with the panel of the picture, where they are chosen.
-import { zoneClock } from '../../core/format.js';
+import { shortNumberText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { fillSegments, markSegment } from '../common/choices.js';
 import { byId, make, setText } from '../common/dom.js';
@@ -19,7 +19,8 @@ export class Coverage {
         TITLES.difference = (name, params) => [`Δ ${name}`, this.since(params)];
         TITLES.uncertainty = (name) => [`± ${name}`, null, say('coverage.uncertainty.note')];
         TITLES.blind = (name, { group }) =>
-            [say('coverage.blind.of', { name }), null, say('coverage.blind.note', { size: session.model.group(group).hot_spot_m })];
+            [say('coverage.blind.of', { name }), null,
+                say('coverage.blind.note', { size: shortNumberText(session.model.group(group).hot_spot_m, 3) })];
         session.on('params', () => this.update());
         this.update();
         session.emit('shown'); // legends
