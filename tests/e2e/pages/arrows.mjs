@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { DESKTOP, FLYING, openPage, settle, shoot, waitForPicture } from '../support/browser.mjs';
+import { DESKTOP, FLYING, openPage, PHONE, settle, shoot, waitForPicture } from '../support/browser.mjs';
 import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = missing();
@@ -52,7 +52,7 @@ before(async () => {
 assets:
   - { id: T-1, model: tank.gltf, up: z }
 groups:
-  - { id: wind, quantity: Wind, unit: m/s, min: 0, max: 12 }
+  - { id: wind, quantity: Wind, unit: m/s, min: 0, max: 12, prepare: [gp], gp: { range_m: 2 } }
 sources:
   - { id: plc1, type: modbus, host: 127.0.0.1, port: ${plant.modbusPort}, poll_ms: 100, timeout_ms: 300, byte_order: ABCD, address_base: 1 }
 tags: tags.csv
@@ -218,4 +218,37 @@ test('what a choice of Display means stands below its buttons', options, async (
         assert.ok(note.width > 200 && note.x + note.width <= panel.x + panel.width, `${part}: ${JSON.stringify([note, panel])}`);
     }
     await page.keyboard.press('Escape');
+});
+
+test('on a phone no choice of Display is cut; legends have units, and nothing that cannot be', options, async () => {
+    for (const language of ['de', 'ko']) {
+        const { page, errors, close } = await openPage(`http://127.0.0.1:${plant.port}/?lang=${language}`, PHONE);
+        await waitForPicture(page);
+        await page.locator('#picture-toggle').tap();
+        await page.locator('#coverage input').nth(2).waitFor({ state: 'attached' });
+        let keys = 0;
+        for (const [show, sign] of [['value', /^(?!±)/], ['uncertainty', /^± /], ['blind', /: /]]) {
+            await page.evaluate((what) => globalThis.plantcast.session.setParams({ show: what }), show);
+            await page.waitForFunction((what) => globalThis.plantcast.session.shown?.show === what, show);
+            const found = await page.evaluate(() => ({
+                cut: [...document.querySelectorAll('#picture-panel .segments span, #coverage .note, #directions .note, #legend .note')]
+                    .filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent),
+                title: document.querySelector('#legend h2').textContent,
+                below: document.querySelectorAll('#legend .end.below').length,
+                keys: document.querySelectorAll('#legend .keys canvas').length,
+                why: document.querySelector('#coverage .note').textContent,
+            }));
+            const what = `${language}, ${show}: ${JSON.stringify(found)}`;
+            assert.deepEqual(found.cut, [], what);
+            assert.match(found.title, sign, what);
+            assert.match(found.title, /m\/s/, what);
+            assert.equal(found.below, show === 'value' ? 1 : 0, what);
+            assert.equal(found.why.length > 20, show !== 'value', what);
+            keys ||= found.keys;
+            assert.equal(found.keys, show === 'value' ? keys : keys - 1, what); // no reading, nothing uncertain
+        }
+        await shoot(page, `display-phone-${language}`);
+        assert.deepEqual(errors, []);
+        await close();
+    }
 });
