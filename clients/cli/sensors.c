@@ -30,7 +30,7 @@ static void print_usage(FILE *out)
         "  --group ID         of which sensors; the plant's first group\n"
         "  --asset ID         only there; else wherever the group has sensors whose place is known\n"
         "  --prepared FOLDER  where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
-        "  --csv              asset,x,y,z,before,after for a table\n",
+        "  --csv              the same as a table\n",
         out);
 }
 

@@ -6,7 +6,7 @@ import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { DESKTOP, FLYING, openPage, PHONE, settle, shoot, waitForPicture } from '../support/browser.mjs';
-import { missing, TinyPlant } from '../support/tiny_plant.mjs';
+import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
@@ -250,5 +250,25 @@ test('on a phone no choice of Display is cut; legends have units, and nothing th
         await shoot(page, `display-phone-${language}`);
         assert.deepEqual(errors, []);
         await close();
+    }
+});
+
+test('more sensors are proposed where the present ones see least: at one pole, then at the other', options, () => {
+    const suggest = (...more) => runProgram('plantcast', ['sensors', 'suggest', plant.file, ...more]);
+    const { code, out, err } = suggest('--add', '3', '--csv');
+    assert.equal(code, 0, err);
+    const [names, ...rows] = out.trim().split('\n').map((line) => line.split(','));
+    assert.deepEqual(names.slice(0, 6), ['asset', 'x_m', 'y_m', 'z_m', 'blindness_before', 'blindness_after']);
+    assert.equal(rows.length, 3, out);
+    const heights = rows.slice(0, 2).map((row) => Number(row[3]));
+    assert.ok(heights.every((z) => Math.abs(z) > 0.95) && heights[0] * heights[1] < 0, out);
+    const gains = rows.map((row) => row[4] - row[5]);
+    assert.ok(gains.every((gain, i) => gain > 0 && (i === 0 || (gain <= gains[i - 1] && rows[i][4] === rows[i - 1][5]))), out);
+    assert.match(suggest('--add', '1').out, /T-1/);
+    for (const [wrong, why] of [[['--add', '0'], /--add/], [['--add', '1', '--group', 'nothing'], /nothing/],
+        [['--add', '1', '--asset', 'X-9'], /X-9/]]) {
+        const refused = suggest(...wrong);
+        assert.notEqual(refused.code, 0, wrong.join(' '));
+        assert.match(refused.err, why);
     }
 });
