@@ -191,8 +191,8 @@ static const struct {
 static void test_bit_by_bit_is_the_same_picture(void **state)
 {
     (void)state;
-    view.width_px = sweep(801, 401);
-    view.height_px = sweep(601, 301);
+    view.width_px = 801;
+    view.height_px = 601;
     size_t cases = sizeof(bit_cases) / sizeof(bit_cases[0]);
     for (size_t n = 0; n < 2 * cases; n++) {
         size_t i = n % cases;

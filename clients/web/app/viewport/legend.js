@@ -63,8 +63,9 @@ function at(element, place) {
 
 // By `show`, of the quantity's name and the parameters: title, what stands behind it, a note. Of rarer ones: coverage.js.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
-// What depends on no reading is never uncertain; and the least that it can be. Of blind places that is what can be seen, 5 % of the range.
-const LEAST = { distance: () => 0, uncertainty: () => 0, blind: ({ min, max }) => 0.05 * (max - min) };
+// What depends on no reading is never uncertain; and the least that it can be, of the group's range: of blind places, what can
+// be seen, 5 %, and a thousandth of that for rounding.
+const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
 export class Legend {
@@ -117,8 +118,7 @@ export class Legend {
         const isOperator = show === 'operator';
         this.element.replaceChildren(this.heading(group, params),
             isOperator ? this.limitScale()
-                : this.scale(rule, isolines ?? [], show === 'value' ? group.limits : {},
-                    range[0] > 1.001 * (LEAST[show]?.(group) ?? -Infinity)),
+                : this.scale(rule, isolines ?? [], show === 'value' ? group.limits : {}, !(range[0] <= LEAST[show] * (group.max - group.min))),
             this.keys(params, isOperator ? LIMIT_BANDS[2].colour : colourOf(rule, valueAt(rule, 0.5))));
         for (const note of this.notes(params, map, isOperator))
             this.element.append(make('p', { class: 'note' }, note));
@@ -236,7 +236,7 @@ export class Legend {
         return make('div', { class: 'keys' },
             ...(show === 'operator' ? [swatch(18, 14, noLimits), make('span', {}, say('legend.nolimits'))] : []),
             swatch(18, 14, noData), make('span', {}, say('legend.nodata')),
-            ...(LEAST[show] ? [] : [swatch(18, 14, uncertain), make('span', {}, say('legend.uncertain'))]),
+            ...(show in LEAST ? [] : [swatch(18, 14, uncertain), make('span', {}, say('legend.uncertain'))]),
             ...(this.unproven(params) ? [swatch(18, 14, brokenMark), make('span', {}, say('proof.none'))] : []),
             ...(this.assumed(params) ? [swatch(18, 14, doubleMark), make('span', {}, say('proof.assumed'))] : []));
     }
