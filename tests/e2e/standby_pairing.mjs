@@ -37,14 +37,14 @@ const ask = async ({ port }) => {
     const headers = { Authorization: `Pairing ${SECRET}` };
     return (await fetch(`http://127.0.0.1:${port}/api/v1/pair?wall=room&display=1`, { headers })).json();
 };
-// At a renderer, whose answers come once the standby has what was done.
-const act = async (message) => {
+// At a renderer, whose answers come once the standby has what was done. While it has no core it refuses.
+const act = (message) => until('the answer of the core', async () => {
     const client = await renderer.client({}, { token: engineer });
     client.say({ seq: 1, ...message });
-    const answer = await client.text('paired');
+    const answer = await client.until('an answer', ({ texts }) => texts.find(({ type }) => type === 'paired' || type === 'error'));
     client.close();
-    return answer;
-};
+    return answer.type === 'paired' && answer;
+}, 60);
 // The picture of its wall.
 async function shows(node) {
     const client = await until('being let in',

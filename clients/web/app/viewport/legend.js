@@ -118,7 +118,8 @@ export class Legend {
         const isOperator = show === 'operator';
         this.element.replaceChildren(this.heading(group, params),
             isOperator ? this.limitScale()
-                : this.scale(rule, isolines ?? [], show === 'value' ? group.limits : {}, !(range[0] <= LEAST[show] * (group.max - group.min))),
+                : this.scale(rule, isolines ?? [], show === 'value' ? group.limits : {},
+                    !(range[0] <= LEAST[show] * (group.max - group.min))),
             this.keys(params, isOperator ? LIMIT_BANDS[2].colour : colourOf(rule, valueAt(rule, 0.5))));
         for (const note of this.notes(params, map, isOperator))
             this.element.append(make('p', { class: 'note' }, note));
