@@ -90,12 +90,14 @@ const isSaid = (page) => page.locator('#toast', { hasText: 'could not be loaded'
 test('a part that cannot be loaded says so, and comes by itself once it can be', options, async () => {
     const parts = [['m', 'app/help/timings.css', '#timings'], ['y', 'core/history.js', '#timeline'], // which some that follow have, too
         ['p', 'app/picture/picture.html', '#picture-panel.open'], ['v', 'app/views/views.js', '#views.open']];
-    for (const all of [parts, [['v', 'words/lazy.en.js', '#views.open']]]) // the words are those of all parts
+    const words = [['v', 'words/lazy.en.js', '#views.open']]; // those of all parts
+    const away = (page, file) => page.route(`**/${file}*`, (route) => route.abort());
+    for (const all of [parts, words])
         await withPage(async (page) => {
             await page.waitForFunction(() => globalThis.plantcast.session.recorded);
             for (const [key, file, opened] of all) {
                 await page.evaluate(() => { document.getElementById('toast').hidden = true; }); // of the part before
-                await page.route(`**/${file}*`, (route) => route.abort());
+                await away(page, file);
                 await press(page, key);
                 await isSaid(page);
                 assert.equal(await page.locator(opened).isVisible(), false, file);
@@ -104,7 +106,7 @@ test('a part that cannot be loaded says so, and comes by itself once it can be',
                 await page.locator(opened).waitFor();
                 await page.waitForFunction(() => globalThis.plantcast.session.picture); // the page goes on
             }
-        });
+        }, (page) => all === words && away(page, all[0][1])); // a ring round a late reading would fetch them before
 });
 
 test('no part says anything before the words of parts are there', options, () => {
