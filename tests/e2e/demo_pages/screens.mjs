@@ -122,9 +122,9 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     const box = await page.locator('#viewport').boundingBox(), middle = box.x + box.width / 2;
     assert.ok(left.x + left.width <= middle && right.x > middle, 'each legend in its half');
     const places = await page.evaluate(() =>
-        globalThis.plantcast.overlay.markers.map(({ tag, x, half }) => ({ group: tag.group, x, half })));
-    for (const { group, x, half } of places) {
-        assert.equal(group, half ? 'pressure' : 'temperature');
+        globalThis.plantcast.overlay.markers.map(({ tag, x, half, alarm }) => ({ group: tag.group, x, half, alarm: Boolean(alarm) })));
+    for (const { group, x, half, alarm } of places) {
+        assert.ok(alarm || group === (half ? 'pressure' : 'temperature'), `${group} in half ${half}`); // alarms are marked in both
         assert.equal(half, box.x + x >= middle - 1 ? 1 : 0);
     }
     assert.ok(places.some(({ half }) => half === 0) && places.some(({ half }) => half === 1));
