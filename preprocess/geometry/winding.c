@@ -57,11 +57,11 @@ bool winding_mend(const float (*positions)[3], size_t vertex_count, uint32_t *in
     w.facing = mem_try_array(w.tri_count, 1);
     w.joined = mem_try_array(w.tri_count, sizeof(*w.joined));
     bool good = w.places && w.facing && w.joined;
+    for (size_t i = 0; good && i < 3 * w.tri_count; i++)
+        w.places[i / 3][i % 3] = welded.of_vertex[indices[i]];
+    struct tri_edges edges;
+    good = good && tri_edges_try_init(&edges, (const uint32_t(*)[3])w.places, w.tri_count);
     if (good) {
-        struct tri_edges edges;
-        for (size_t i = 0; i < 3 * w.tri_count; i++)
-            w.places[i / 3][i % 3] = welded.of_vertex[indices[i]];
-        tri_edges_init(&edges, (const uint32_t(*)[3])w.places, w.tri_count);
         for (uint32_t t = 0; t < w.tri_count; t++) {
             bool two_sided;
             size_t count = w.facing[t] ? 0 : tri_edges_orient(&edges, t, w.facing, w.joined, &two_sided);

@@ -261,6 +261,7 @@ test('what is no tile is refused by name', options, async () => {
     const client = await PlainClient.open(plant.port);
     client.say({ type: 'hello', width: 4096, height: 2160, codecs: ['jpeg'], tile: { wall: 'seamless', display: 1 } });
     await client.frameWhere('a smaller picture', ({ full_width: width, flags }) => width > 1000 && flags & KEY);
+    assert.ok(client.frames[0].flags & KEY);
     const widest = Math.max(...client.frames.map(({ full_width: width }) => width));
     assert.ok(widest <= 2730, `${widest}: three of 4096 are more than a picture has`);
     client.close();

@@ -20,25 +20,17 @@ void intrinsic_finish(struct intrinsic *in)
     *in = (struct intrinsic){ 0 };
 }
 
-static void turn(uint32_t tri[3])
-{
-    uint32_t swap = tri[1];
-    tri[1] = tri[2];
-    tri[2] = swap;
-}
-
 /* Turns the triangles of each patch the same way round. */
 static void orient(struct intrinsic *in, const struct tri_edges *edges, signed char *facing)
 {
-    uint32_t *joined = mem_array(in->tri_count, sizeof(*joined));
-    bool two_sided;
-    for (uint32_t t = 0; t < in->tri_count; t++)
-        if (!facing[t])
-            tri_edges_orient(edges, t, facing, joined, &two_sided);
-    for (uint32_t t = 0; t < in->tri_count; t++)
-        if (facing[t] < 0)
-            turn(in->points[t]);
-    mem_free(joined);
+    tri_edges_orient_all(edges, facing);
+    for (size_t t = 0; t < in->tri_count; t++) {
+        uint32_t *tri = in->points[t], swap = tri[1];
+        if (facing[t] < 0) {
+            tri[1] = tri[2];
+            tri[2] = swap;
+        }
+    }
 }
 
 /* The number that a side has once triangles are turned. */

@@ -5,23 +5,41 @@
 #include "base/mem.h"
 #include "surface/mesh/trimesh.h"
 
-void tri_edges_init(struct tri_edges *e, const uint32_t (*tris)[3], size_t tri_count)
+static void list_edges(struct tri_edges *e)
 {
     struct edge_table table;
+    edge_table_init(&table, e->tri_count * 3 / 2);
+    for (uint32_t side = 0; side < 3 * e->tri_count; side++) {
+        const uint32_t *tri = e->tris[side / 3];
+        uint32_t number = edge_table_add(&table, tri[side % 3], tri[(side % 3 + 1) % 3]);
+        struct tri_edge *edge = &e->edges[number];
+        if (edge->faces < 2)
+            edge->sides[edge->faces] = side;
+        edge->faces++;
+        e->of_side[side] = number;
+    }
+    edge_table_finish(&table);
+}
+
+void tri_edges_init(struct tri_edges *e, const uint32_t (*tris)[3], size_t tri_count)
+{
     *e = (struct tri_edges){ .tris = tris, .tri_count = tri_count };
     e->edges = mem_array(3 * tri_count, sizeof(*e->edges));
     e->of_side = mem_array(3 * tri_count, sizeof(*e->of_side));
-    edge_table_init(&table, tri_count * 3 / 2);
-    for (uint32_t t = 0; t < tri_count; t++)
-        for (uint32_t i = 0; i < 3; i++) {
-            uint32_t number = edge_table_add(&table, tris[t][i], tris[t][(i + 1) % 3]);
-            struct tri_edge *edge = &e->edges[number];
-            if (edge->faces < 2)
-                edge->sides[edge->faces] = 3 * t + i;
-            edge->faces++;
-            e->of_side[3 * t + i] = number;
-        }
-    edge_table_finish(&table);
+    list_edges(e);
+}
+
+bool tri_edges_try_init(struct tri_edges *e, const uint32_t (*tris)[3], size_t tri_count)
+{
+    *e = (struct tri_edges){ .tris = tris, .tri_count = tri_count };
+    e->edges = mem_try_array(3 * tri_count, sizeof(*e->edges));
+    e->of_side = mem_try_array(3 * tri_count, sizeof(*e->of_side));
+    if (e->edges && e->of_side) {
+        list_edges(e);
+        return true;
+    }
+    tri_edges_finish(e);
+    return false;
 }
 
 void tri_edges_finish(struct tri_edges *e)
@@ -64,4 +82,14 @@ size_t tri_edges_orient(const struct tri_edges *e, uint32_t first, signed char *
         }
     }
     return count;
+}
+
+void tri_edges_orient_all(const struct tri_edges *e, signed char *facing)
+{
+    uint32_t *joined = mem_array(e->tri_count, sizeof(*joined));
+    bool two_sided;
+    for (uint32_t t = 0; t < e->tri_count; t++)
+        if (!facing[t])
+            tri_edges_orient(e, t, facing, joined, &two_sided);
+    mem_free(joined);
 }

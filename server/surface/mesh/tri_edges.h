@@ -18,8 +18,10 @@ struct tri_edges {
     uint32_t *of_side;
 };
 
-/* Lists the edges of triangles, which must live as long. Finish with tri_edges_finish(). */
+/* Lists the edges of triangles, which must live as long. Finish with tri_edges_finish(). tri_edges_try_init returns false if out of memory,
+   and then there is nothing to finish. */
 void tri_edges_init(struct tri_edges *e, const uint32_t (*tris)[3], size_t tri_count);
+bool tri_edges_try_init(struct tri_edges *e, const uint32_t (*tris)[3], size_t tri_count);
 /* Frees the lists. */
 void tri_edges_finish(struct tri_edges *e);
 
@@ -37,5 +39,7 @@ bool tri_edges_run_alike(const struct tri_edges *e, uint32_t side, uint32_t othe
    facing[triangle], which has to be 0 before. Writes these triangles to `joined`, which has room for all. Sets *two_sided to false where
    they cannot all be turned to one side, as on a Moebius strip. Returns how many they are. */
 size_t tri_edges_orient(const struct tri_edges *e, uint32_t first, signed char *facing, uint32_t *joined, bool *two_sided);
+/* Does so for all triangles, each as the lowest one that it is joined with. facing: zeroed. */
+void tri_edges_orient_all(const struct tri_edges *e, signed char *facing);
 
 #endif

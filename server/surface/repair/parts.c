@@ -15,18 +15,6 @@
 
 /* --- which way patches face ----------------------------------------------------------------------------------------------- */
 
-/* Each triangle as the first of its patch, or contrary to it. */
-static void face_one_way(struct parts_finding *f)
-{
-    const struct trimesh *mesh = &f->parts->solid;
-    uint32_t *joined = mem_array(mesh->tri_count, sizeof(*joined));
-    bool two_sided;
-    for (uint32_t t = 0; t < mesh->tri_count; t++)
-        if (!f->parts->side[t])
-            tri_edges_orient(&f->edges, t, f->parts->side, joined, &two_sided);
-    mem_free(joined);
-}
-
 /* Turns patches whose volume, seen from their middle, is negative: outwards is the same side for all. */
 static void face_outwards(struct parts_finding *f)
 {
@@ -127,7 +115,7 @@ void parts_init(struct parts *parts, const struct trimesh *mesh, size_t source_c
     f.patch = mem_array(mesh->tri_count, sizeof(*f.patch));
     f.patches = mem_array(mesh->tri_count, sizeof(*f.patches));
     parts_number(&f, mesh);
-    face_one_way(&f);
+    tri_edges_orient_all(&f.edges, parts->side);
     face_outwards(&f);
     drop_walls(&f, mesh->tri_times);
     parts->reach_m = mem_array(parts->count, sizeof(*parts->reach_m));
