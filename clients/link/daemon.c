@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/secret.h"
 #include "message/message.h"
 
 enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
@@ -19,22 +20,30 @@ void daemon_set_token(const char *token)
     snprintf(authorization, sizeof(authorization), token[0] ? "Bearer %s" : "%s", token);
 }
 
-bool daemon_read_token(void)
+int daemon_token_in(const char *path, char token[TOKEN_MAX_CHARS + 1])
 {
     size_t count;
+    char *text = text_read_file(path, 4096, &count);
+    int error = text ? 0 : -errno;
+    size_t n = text ? strcspn(text, " \t\r\n") : 0;
+    if (text && (n == 0 || n > TOKEN_MAX_CHARS))
+        error = -EBADMSG;
+    snprintf(token, TOKEN_MAX_CHARS + 1, "%.*s", error ? 0 : (int)n, text ? text : "");
+    secret_forget(text);
+    return error;
+}
+
+bool daemon_read_token(void)
+{
+    char token[TOKEN_MAX_CHARS + 1];
     if (!token_path)
         return true;
-    char *text = text_read_file(token_path, 4096, &count);
-    size_t n = text ? strcspn(text, " \t\r\n") : 0;
-    bool good = n > 0 && n <= TOKEN_MAX_CHARS;
-    if (good) {
-        text[n] = 0;
-        daemon_set_token(text);
-    } else {
-        fprintf(stderr, "plantcast: %s: %s\n", token_path, text ? "its first line is no token" : strerror(errno));
-    }
-    mem_free(text);
-    return good;
+    int error = daemon_token_in(token_path, token);
+    if (!error)
+        daemon_set_token(token);
+    else
+        fprintf(stderr, "plantcast: %s: %s\n", token_path, error == -EBADMSG ? "its first line is no token" : strerror(-error));
+    return !error;
 }
 
 bool daemon_set_options(const char *token_file, const char *ca_file)

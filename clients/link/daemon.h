@@ -5,6 +5,7 @@
 #include <libwebsockets.h>
 #include <stdbool.h>
 
+#include "access/access.h"
 #include "base/text.h"
 
 struct daemon_url {
@@ -22,6 +23,9 @@ bool daemon_set_options(const char *token_file, const char *ca_file);
 /* Reads the file of --token-file anew, if there was one. Returns false with the reason printed; the token then stays what it was. No
    request may be under way. */
 bool daemon_read_token(void);
+
+/* Reads the token in the first line of a file. Returns 0, or -errno, -EBADMSG if that line is none, and then the token is "". */
+int daemon_token_in(const char *path, char token[TOKEN_MAX_CHARS + 1]);
 
 /* Sets the token of requests from now on; "": none. No request may be under way. */
 void daemon_set_token(const char *token);

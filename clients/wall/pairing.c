@@ -12,22 +12,10 @@
 #include "access/tokens.h"
 #include "base/atomic_file.h"
 #include "base/clock.h"
-#include "base/mem.h"
-#include "base/secret.h"
 
 static const int64_t SETTLES_NS = 10 * NS_PER_S; /* so long after it was let in, other nodes of the server may not know it yet */
 
 /* --- the files ---------------------------------------------------------------------------------------------------------------------- */
-
-/* Reads a token; "": there is none. */
-static void read_token(const char *path, char token[TOKEN_MAX_CHARS + 1])
-{
-    char *why = NULL, *line = path && path[0] ? secret_read(path, &why) : NULL;
-    size_t count = line ? strcspn(line, " \t\r\n") : 0;
-    snprintf(token, TOKEN_MAX_CHARS + 1, "%.*s", count <= TOKEN_MAX_CHARS ? (int)count : 0, line ? line : "");
-    secret_forget(line);
-    mem_free(why);
-}
 
 /* Makes the folders above a file. */
 static void make_folders(const char *path)
@@ -109,9 +97,11 @@ void pairing_init(struct pairing *pairing, const char *token_path, const struct 
 
 void pairing_choose_token(struct pairing *pairing)
 {
-    char tokens[3][TOKEN_MAX_CHARS + 1];
-    read_token(pairing->token_path, tokens[0]);
-    read_token(pairing->state_path, tokens[1]);
+    char tokens[3][TOKEN_MAX_CHARS + 1] = { "" };
+    if (pairing->token_path)
+        daemon_token_in(pairing->token_path, tokens[0]);
+    if (pairing->state_path[0])
+        daemon_token_in(pairing->state_path, tokens[1]);
     strcpy(tokens[2], pairing->kept);
     int chosen = -1;
     for (int i = 2; i >= 0; i--)
