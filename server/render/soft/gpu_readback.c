@@ -7,6 +7,8 @@
 #include "base/mem.h"
 #include "render/soft/soft_impl.h"
 
+enum { SUN_BAND_TILES = 32, SUN_BAND_ROWS = SUN_BAND_TILES * SUN_TILE_STEP_PX + 1 }; /* of the sun map, read at a time: 2 MB */
+
 static bool fail(const struct soft *soft, const char *what)
 {
     log_err(soft->gpu_scene->gl->log, "moving pictures: %s cannot be read back: out of memory", what);
@@ -41,16 +43,44 @@ static bool read_baked(const struct soft *soft, struct soft_light *light, const 
     return true;
 }
 
-/* From rows. The last row and column come twice, as lower and right neighbours. */
-static void fill_sun_tiles(struct soft_light *light, const uint16_t *rows)
+struct sun_band { /* rows of the sun map, and the first of those that follow them */
+    uint16_t *rows;
+    int width_px, row_count;
+};
+
+/* The map's last row and column come twice, as lower and right neighbours. */
+static void fill_sun_tile(const struct sun_band *band, int u, int v, uint16_t *to)
 {
-    const int tiles = light->sun_tiles, last = light->sun_map_px - 1;
+    static const uint16_t nothing[SUN_TILE_TEXELS];
+    const int last_u = band->width_px - 1, last_v = band->row_count - 1;
+    uint16_t texels[SUN_TILE_TEXELS];
+    for (int y = 0; y < SUN_TILE_PX; y++) {
+        const uint16_t *row = band->rows + (size_t)(v + y < last_v ? v + y : last_v) * (size_t)band->width_px;
+        uint16_t *out = texels + y * SUN_TILE_PX;
+        if (u + SUN_TILE_PX <= band->width_px)
+            memcpy(out, row + u, SUN_TILE_PX * sizeof(*out));
+        else
+            for (int x = 0; x < SUN_TILE_PX; x++)
+                out[x] = row[u + x < last_u ? u + x : last_u];
+    }
+    if (memcmp(texels, nothing, sizeof(texels)) != 0)
+        memcpy(to, texels, sizeof(texels));
+}
+
+/* One band after the other, in the same memory. Tiles in which nothing stands are left as they were allocated: pages that hold no others
+   are never taken from the system, which for a map that is half empty saves half of the time as well. */
+static void fill_sun_tiles(struct soft_light *light, GLuint map, struct sun_band *band)
+{
+    const int size = light->sun_map_px, tiles = light->sun_tiles;
     uint16_t *to = light->sun_map;
-    for (int tile = 0; tile < tiles * tiles; tile++)
-        for (int i = 0; i < SUN_TILE_TEXELS; i++) {
-            int u = tile % tiles * SUN_TILE_STEP_PX + i % SUN_TILE_PX, v = tile / tiles * SUN_TILE_STEP_PX + i / SUN_TILE_PX;
-            *to++ = rows[(size_t)(v < last ? v : last) * (size_t)light->sun_map_px + (size_t)(u < last ? u : last)];
-        }
+    for (int first = 0; first < tiles; first += SUN_BAND_TILES) {
+        const int begin = first * SUN_TILE_STEP_PX, count = tiles - first < SUN_BAND_TILES ? tiles - first : SUN_BAND_TILES;
+        band->row_count = size - begin < SUN_BAND_ROWS ? size - begin : SUN_BAND_ROWS;
+        glGetTextureSubImage(map, 0, 0, begin, 0, size, band->row_count, 1, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT,
+                             (GLsizei)(sizeof(*band->rows) * (size_t)size * (size_t)band->row_count), band->rows);
+        for (int tile = 0; tile < count * tiles; tile++, to += SUN_TILE_TEXELS)
+            fill_sun_tile(band, tile % tiles * SUN_TILE_STEP_PX, tile / tiles * SUN_TILE_STEP_PX, to);
+    }
 }
 
 static bool read_sun_map(const struct soft *soft, struct soft_light *light, GLuint map)
@@ -59,18 +89,17 @@ static bool read_sun_map(const struct soft *soft, struct soft_light *light, GLui
     glGetTextureLevelParameteriv(map, 0, GL_TEXTURE_WIDTH, &size);
     light->sun_map_px = size;
     light->sun_tiles = (size + SUN_TILE_STEP_PX - 1) / SUN_TILE_STEP_PX;
-    const size_t texels = (size_t)size * (size_t)size, bytes = soft_sun_map_bytes(light);
-    uint16_t *rows = mem_try_array(texels, sizeof(*rows));
+    const size_t bytes = soft_sun_map_bytes(light);
+    struct sun_band band = { .rows = mem_try_array((size_t)size * SUN_BAND_ROWS, sizeof(*band.rows)), .width_px = size };
     light->sun_map = mem_try_array(bytes, 1);
     huge_pages_advise(light->sun_map, bytes);
-    bool good = rows && light->sun_map;
+    bool good = band.rows && light->sun_map;
     if (good) {
         glPixelStorei(GL_PACK_ALIGNMENT, 2);
-        glGetTextureImage(map, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, (GLsizei)(texels * sizeof(*rows)), rows);
+        fill_sun_tiles(light, map, &band);
         glPixelStorei(GL_PACK_ALIGNMENT, 4);
-        fill_sun_tiles(light, rows);
     }
-    mem_free(rows);
+    mem_free(band.rows);
     return good || fail(soft, "shadows");
 }
 
