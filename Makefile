@@ -74,7 +74,8 @@ ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDF
 layers   := base audit plant surface value history alarm notify loopcheck views corelink scene field placing importing gpu render encode \
             provenance message service access session net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
-without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*)) server/base/image_lazy.c \
+lazy     := server/base/image_lazy.c $(if $(filter h264,$(CODECS)),server/encode/h264_lazy.c)
+without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*)) $(lazy) \
             $(if $(opcua_libs),,$(wildcard server/value/opcua/*))
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a
 objects   = $(patsubst %,$(out)/obj/%.o,$(basename $(1)))
@@ -90,10 +91,11 @@ match_sources    := $(wildcard preprocess/match/*.c)
 prep_sources     := $(filter-out %/main.c $(import_sources) $(match_sources), \
                     $(wildcard preprocess/*.c preprocess/*/*.c preprocess/*/*.cc))
 programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard preprocess/main.c),$(bin)/plantcast-prep) \
-            $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(import_sources),$(bin)/plantcast-import) \
+            $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) \
+            $(if $(import_sources),$(bin)/plantcast-import) \
             $(if $(filter %/main.c,$(match_sources)),$(bin)/plantcast-match) $(if $(sim_sources),$(bin)/plantcast-sim) \
             $(if $(generate_sources),$(bin)/plantcast-demo)
-modules  := $(bin)/plantcast-images.so
+modules  := $(bin)/plantcast-images.so $(if $(filter h264,$(CODECS)),$(bin)/plantcast-h264.so)
 # Readers of other formats, each where its library is (plantcast import --formats).
 occt     := $(dir $(wildcard /usr/include/opencascade/STEPCAFControl_Reader.hxx))
 # From 7.8 on (Debian 13) its readers have libraries of other names.
@@ -138,9 +140,9 @@ no-video:
 $(bin)/plantcast-init: deploy/init
 	@mkdir -p $(@D); cp $< $@
 
-# What reads images is loaded when there is one to be read.
-lazy := $(filter-out $(bin)/plantcast-demo,$(programs))
-$(lazy): $(call objects,server/base/image_lazy.c) | $(modules)
+# What reads images, and H.264, is loaded when it is needed.
+by_modules := $(filter-out $(bin)/plantcast-demo,$(programs))
+$(by_modules): $(call objects,$(lazy)) | $(modules)
 $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
 	$(link)
 $(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(archives)
@@ -161,22 +163,25 @@ $(bin)/plantcast-match: $(call objects,preprocess/match/main.c) $(out)/lib/match
 	$(link) -lminizip -lexpat
 $(bin)/plantcast-images.so: $(patsubst %,$(out)/obj/server/base/%.pic.o,image_shim mem)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -shared -o $@ $^ $(pkg_libs)
-cli_sources := $(if $(filter h264,$(CODECS)),,clients/cli/video.c)
-cli_sources := $(filter-out $(cli_sources),$(wildcard clients/cli/*.c))
-$(out)/lib/link.a: $(call objects,$(wildcard clients/link/*.c))
-$(bin)/plantcast: $(call objects,$(cli_sources)) $(out)/lib/link.a $(archives)
+$(bin)/plantcast-h264.so: $(patsubst %,$(out)/obj/%.pic.o,$(addprefix server/encode/h264_,codec upload) clients/link/h264_decoder \
+    server/base/mem)
+	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -shared -o $@ $^ $(pkg_libs)
+link_lazy := $(if $(filter h264,$(CODECS)),clients/link/h264_decoder_lazy.c)
+$(out)/lib/link.a: $(call objects,$(filter-out $(if $(link_lazy),%_lazy.c,clients/link/h264%),$(wildcard clients/link/*.c)))
+$(out)/lib/cli.a: $(call objects,$(filter-out %/main.c $(if $(filter h264,$(CODECS)),,%/video.c),$(wildcard clients/cli/*.c)))
+$(bin)/plantcast: $(call objects,clients/cli/main.c $(link_lazy)) $(out)/lib/cli.a $(out)/lib/link.a $(archives)
 	$(link)
 player_sources := $(wildcard clients/wall/*.c)
 $(call objects,$(player_sources)): CFLAGS += $(shell pkg-config --cflags sdl2 pangocairo 2>/dev/null)
 # What draws a wall, for its window and for video.
 $(out)/lib/player.a: $(call objects,$(filter-out %/main.c %/screen.c,$(player_sources)))
-$(bin)/plantcast-wall: $(call objects,$(addprefix clients/wall/,main.c screen.c) server/base/image_lazy.c) $(out)/lib/player.a \
+$(bin)/plantcast-wall: $(call objects,$(addprefix clients/wall/,main.c screen.c) $(lazy)) $(out)/lib/player.a \
     $(out)/lib/link.a $(archives)
 	$(link) $(shell pkg-config --libs sdl2 pangocairo 2>/dev/null)
 # Neither the daemon nor another program links its libraries.
 video_objects := $(call objects,$(if $(video),$(wildcard clients/video/*.c)))
 $(video_objects) $(patsubst %,$(out)/obj/%.alone,$(wildcard clients/video/*.h)): CFLAGS += $(video_cflags)
-$(bin)/plantcast-video: $(video_objects) $(call objects,server/base/image_lazy.c) $(out)/lib/player.a $(out)/lib/link.a $(archives)
+$(bin)/plantcast-video: $(video_objects) $(call objects,$(lazy)) $(out)/lib/player.a $(out)/lib/link.a $(archives)
 	$(link) $(shell pkg-config --libs $(video_packages))
 $(bin)/plantcast-sim: $(call objects,$(sim_sources)) $(archives)
 	$(link)
@@ -281,16 +286,14 @@ $(out)/tests/cad/step_samples: $(call objects,tests/cad/step_samples)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -pie -o $@ $^ $(occt_libs)
 $(out)/tests/bench/codec_bench: $(out)/lib/link.a
 $(out)/tests/bench/field_degree: $(call objects,tests/bench/cut_mesh)
-# Those that read no image do not load what reads images, as programs do not: it is where theirs would be installed.
-images_of_tests := $(out)/tests/lib/plantcast/plantcast-images.so
-$(images_of_tests): $(bin)/plantcast-images.so
+# Those that need no module do not load it, as programs do not: it is where theirs would be installed.
+modules_of_tests := $(addprefix $(out)/tests/lib/plantcast/,$(notdir $(modules)))
+$(modules_of_tests): $(out)/tests/lib/plantcast/%: $(bin)/%
 	@mkdir -p $(@D); cp $< $@.new && mv $@.new $@
-$(out)/tests/%: $(out)/obj/tests/%.o $(call objects,server/base/image_lazy.c) $(support) $(archives) $(out)/lib/prep.a $(sim_archive) \
-    | $(images_of_tests)
+$(out)/tests/%: $(out)/obj/tests/%.o $(call objects,$(lazy)) $(support) $(archives) $(out)/lib/prep.a $(sim_archive) | $(modules_of_tests)
 	$(link) -lcmocka
 # Draws as the command line does.
-$(out)/tests/gallery/album: $(filter-out %/main.o,$(call objects,$(cli_sources))) $(out)/lib/link.a
-$(out)/tests/validation/compare: $(filter-out %/main.o,$(call objects,$(cli_sources))) $(out)/lib/link.a
+$(out)/tests/gallery/album $(out)/tests/validation/compare: $(out)/lib/cli.a $(out)/lib/link.a
 $(out)/tests/validation/compare: ldflags += -Wl,--wrap=field_scalars_of
 # What stands before the real one, where a GPU is to fail.
 $(out)/tests/faults/libEGL.so.1: $(out)/obj/tests/faults/gl_faults.pic.o

@@ -95,6 +95,16 @@ static bool parse_motion(const char *text, enum motion *motion)
     return false;
 }
 
+/* What is taken blind is not decoded. */
+static bool decodes(const struct probe *probe)
+{
+    char why[DECODER_WHY_BYTES];
+    if (probe->blind || strcmp(probe->codec, "h264") != 0 || decoder_has(WIRE_CODEC_H264, why))
+        return true;
+    fprintf(stderr, "plantcast: probe: --codec h264: %s\n", why);
+    return false;
+}
+
 static bool take_option(int option, struct probe *probe)
 {
     char *end = "";
@@ -108,7 +118,7 @@ static bool take_option(int option, struct probe *probe)
     case 'p': probe->spread = true; return true;
     case 'b': probe->blind = true; return true;
     case 'z': return parse_size(optarg, &probe->width_px, &probe->height_px);
-    case 'c': probe->codec = optarg; return !strcmp(optarg, "jpeg") || (!strcmp(optarg, "h264") && decoder_has(WIRE_CODEC_H264));
+    case 'c': probe->codec = optarg; return !strcmp(optarg, "jpeg") || !strcmp(optarg, "h264");
     case 'g': probe->signs = optarg; return !strcmp(optarg, "refined") || !strcmp(optarg, "all");
     case 'o': probe->folder = optarg; return true;
     case 'j': probe->as_json = true; return true;
@@ -157,5 +167,7 @@ int cmd_probe(int argc, char **argv)
         return 2;
     }
     probe.url_text = argv[optind];
+    if (!decodes(&probe))
+        return 1;
     return daemon_url_parse(probe.url_text, &probe.url) ? run(&probe) : 2;
 }

@@ -1,41 +1,62 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* JPEG by TurboJPEG, PNG by libpng, H.264 by libavcodec. */
+/* JPEG by TurboJPEG, PNG by libpng, H.264 by h264_decoder.h; colours by libyuv. */
 #include "decoder.h"
 
 #include <png.h>
+#include <stdio.h>
 #include <string.h>
 #include <turbojpeg.h>
-#include <unistd.h>
 #ifdef PLANTCAST_H264
-#include <libavcodec/avcodec.h>
-#include <libavutil/hwcontext.h>
 #include <libyuv.h>
 #endif
 
 #include "base/mem.h"
-
-/* Where there are many cores, slices are decoded side by side, as a browser does. */
-enum { MANY_CORES = 8, SLICE_THREADS = 8 };
+#include "h264_decoder.h"
 
 struct decoder {
     tjhandle turbo;
     uint8_t *pixels;
     size_t pixel_bytes;
 #ifdef PLANTCAST_H264
-    AVCodecContext *context;
-    AVPacket *packet;
-    AVFrame *picture, *copy; /* copy: of a picture that lies in a GPU */
-    AVBufferRef *hardware;   /* NULL: decoded by the processor */
+    const struct h264_decoder_functions *functions; /* NULL: not needed yet; and below */
+    struct h264_decoder *h264;
 #endif
 };
 
-bool decoder_has(enum wire_codec codec)
+#ifdef PLANTCAST_H264
+static bool open_h264(struct decoder *decoder, char why[DECODER_WHY_BYTES])
+{
+    if (!decoder->functions)
+        decoder->functions = h264_decoder_functions(why);
+    if (decoder->functions && !decoder->h264)
+        decoder->h264 = decoder->functions->create(why);
+    return decoder->h264 != NULL;
+}
+#endif
+
+static void close_h264(struct decoder *decoder)
 {
 #ifdef PLANTCAST_H264
-    if (codec == WIRE_CODEC_H264)
-        return avcodec_find_decoder(AV_CODEC_ID_H264) != NULL;
+    if (decoder->functions)
+        decoder->functions->destroy(&decoder->h264);
+#else
+    (void)decoder;
 #endif
-    return codec == WIRE_CODEC_JPEG || codec == WIRE_CODEC_PNG;
+}
+
+bool decoder_has(enum wire_codec codec, char why[DECODER_WHY_BYTES])
+{
+    if (codec == WIRE_CODEC_JPEG || codec == WIRE_CODEC_PNG)
+        return true;
+#ifdef PLANTCAST_H264
+    struct decoder decoder = { 0 };
+    bool has = open_h264(&decoder, why);
+    close_h264(&decoder);
+    return has;
+#else
+    snprintf(why, DECODER_WHY_BYTES, "this program was built without H.264 (CODECS=jpeg)");
+    return false;
+#endif
 }
 
 static bool reserve(struct decoder *decoder, int width_px, int height_px)
@@ -69,69 +90,28 @@ static bool decode_png(struct decoder *decoder, const struct wire_frame *frame, 
 }
 
 #ifdef PLANTCAST_H264
-static enum AVPixelFormat choose_format(AVCodecContext *context, const enum AVPixelFormat *offered)
-{
-    for (const enum AVPixelFormat *format = offered; *format != AV_PIX_FMT_NONE; format++)
-        if (*format == AV_PIX_FMT_VAAPI && context->hw_device_ctx)
-            return *format;
-    return avcodec_default_get_format(context, offered);
-}
-
-static bool open_h264(struct decoder *decoder)
-{
-    if (decoder->context)
-        return true;
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    decoder->packet = av_packet_alloc();
-    decoder->picture = av_frame_alloc();
-    decoder->context = avcodec_alloc_context3(avcodec_find_decoder(AV_CODEC_ID_H264));
-    if (!decoder->packet || !decoder->picture || !decoder->context)
-        return false;
-    decoder->copy = av_frame_alloc();
-    if (decoder->hardware && decoder->copy) {
-        decoder->context->hw_device_ctx = av_buffer_ref(decoder->hardware);
-        decoder->context->get_format = choose_format;
-    }
-    decoder->context->flags |= AV_CODEC_FLAG_LOW_DELAY;
-    decoder->context->thread_type = FF_THREAD_SLICE;
-    decoder->context->thread_count = cores >= MANY_CORES ? SLICE_THREADS : 1;
-    return avcodec_open2(decoder->context, NULL, NULL) == 0;
-}
-
 /* The coded picture may be wider and higher by the pixel that makes its sides even. */
-static bool show_h264(struct decoder *decoder, const struct wire_frame *frame)
-{
-    const AVFrame *p = decoder->picture;
-    if (p->format == AV_PIX_FMT_VAAPI) {
-        av_frame_unref(decoder->copy);
-        if (av_hwframe_transfer_data(decoder->copy, p, 0) != 0)
-            return false;
-        p = decoder->copy;
-    }
-    if (p->width < frame->width_px || p->height < frame->height_px || !reserve(decoder, frame->width_px, frame->height_px))
-        return false;
-    if (p->format == AV_PIX_FMT_NV12)
-        return NV12ToARGBMatrix(p->data[0], p->linesize[0], p->data[1], p->linesize[1], decoder->pixels, frame->width_px * 4,
-                                &kYuvJPEGConstants, frame->width_px, frame->height_px) == 0;
-    return J420ToARGB(p->data[0], p->linesize[0], p->data[1], p->linesize[1], p->data[2], p->linesize[2], decoder->pixels,
-                      frame->width_px * 4, frame->width_px, frame->height_px) == 0;
-}
-
 static bool decode_h264(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload)
 {
-    if (!open_h264(decoder) || av_new_packet(decoder->packet, (int)frame->payload_bytes) != 0)
+    char why[DECODER_WHY_BYTES];
+    struct h264_decoded p;
+    if (!open_h264(decoder, why) || !decoder->functions->decode(decoder->h264, payload, frame->payload_bytes, &p))
         return false;
-    memcpy(decoder->packet->data, payload, frame->payload_bytes);
-    int status = avcodec_send_packet(decoder->context, decoder->packet);
-    av_packet_unref(decoder->packet);
-    return status == 0 && avcodec_receive_frame(decoder->context, decoder->picture) == 0 && show_h264(decoder, frame);
+    if (p.width_px < frame->width_px || p.height_px < frame->height_px || !reserve(decoder, frame->width_px, frame->height_px))
+        return false;
+    if (p.interleaved)
+        return NV12ToARGBMatrix(p.at[0], p.pitches[0], p.at[1], p.pitches[1], decoder->pixels, frame->width_px * 4, &kYuvJPEGConstants,
+                                frame->width_px, frame->height_px) == 0;
+    return J420ToARGB(p.at[0], p.pitches[0], p.at[1], p.pitches[1], p.at[2], p.pitches[2], decoder->pixels, frame->width_px * 4,
+                      frame->width_px, frame->height_px) == 0;
 }
 #endif
 
 bool decoder_use_hardware(struct decoder *decoder)
 {
 #ifdef PLANTCAST_H264
-    return decoder->hardware || av_hwdevice_ctx_create(&decoder->hardware, AV_HWDEVICE_TYPE_VAAPI, NULL, NULL, 0) == 0;
+    char why[DECODER_WHY_BYTES];
+    return open_h264(decoder, why) && decoder->functions->use_hardware(decoder->h264);
 #else
     (void)decoder;
     return false;
@@ -169,13 +149,7 @@ void decoder_destroy(struct decoder **decoder_ptr)
         return;
     if (decoder->turbo)
         tjDestroy(decoder->turbo);
-#ifdef PLANTCAST_H264
-    avcodec_free_context(&decoder->context);
-    av_packet_free(&decoder->packet);
-    av_frame_free(&decoder->picture);
-    av_frame_free(&decoder->copy);
-    av_buffer_unref(&decoder->hardware);
-#endif
+    close_h264(decoder);
     mem_free(decoder->pixels);
     mem_free(decoder);
     *decoder_ptr = NULL;

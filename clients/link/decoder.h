@@ -6,6 +6,8 @@
 
 #include "protocol/wire.h"
 
+#define DECODER_WHY_BYTES 320
+
 struct decoder;
 /* Creates a decoder for all codecs of this build. NULL: out of memory. The caller destroys it. */
 struct decoder *decoder_create(void);
@@ -18,7 +20,7 @@ bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, con
 /* Returns the pixels of the frame that was decoded last, BGRX, its rows one after another: they belong to the decoder, until the next
    one. */
 const uint8_t *decoder_pixels(const struct decoder *decoder);
-/* Returns whether this build decodes the codec. */
-bool decoder_has(enum wire_codec codec);
+/* Returns whether this build decodes the codec here; false with the reason. */
+bool decoder_has(enum wire_codec codec, char why[DECODER_WHY_BYTES]);
 
 #endif

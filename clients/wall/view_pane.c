@@ -67,7 +67,8 @@ void view_pane_finish(struct view_pane *pane)
 
 json_t *view_pane_hello(const struct view_pane *pane)
 {
-    json_t *codecs = decoder_has(WIRE_CODEC_H264) ? json_pack("[s,s,s]", "h264", "jpeg", "auto") : json_pack("[s]", "jpeg");
+    char why[DECODER_WHY_BYTES];
+    json_t *codecs = decoder_has(WIRE_CODEC_H264, why) ? json_pack("[s,s,s]", "h264", "jpeg", "auto") : json_pack("[s]", "jpeg");
     json_t *hello = json_pack("{s:s,s:i,s:i,s:f,s:o}", "type", "hello", "width", pane->width_px, "height", pane->height_px, "pixel_ratio",
                               fmin(fmax(pane->unit, 0.25), 8), "codecs", codecs);
     if (pane->tile.display)

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Takes the decoder from the module that is loaded when it is first asked for (encode/h264_lazy.c says why). */
+#include "base/module.h"
+#include "h264_decoder.h"
+
+static struct module h264 = MODULE("plantcast-h264.so"); /* h264_decoder.c */
+
+const struct h264_decoder_functions *h264_decoder_functions(char why[H264_DECODER_WHY_BYTES])
+{
+    const struct h264_decoder_functions *(*functions)(char[H264_DECODER_WHY_BYTES]);
+    return module_find(&h264, "h264_decoder_functions", &functions, why, H264_DECODER_WHY_BYTES) ? functions(why) : NULL;
+}
