@@ -91,7 +91,7 @@ match_sources    := $(wildcard preprocess/match/*.c)
 prep_sources     := $(filter-out %/main.c $(import_sources) $(match_sources), \
                     $(wildcard preprocess/*.c preprocess/*/*.c preprocess/*/*.cc))
 programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard preprocess/main.c),$(bin)/plantcast-prep) \
-            $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) \
+            $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(filter h264,$(CODECS)),$(bin)/plantcast-film) \
             $(if $(import_sources),$(bin)/plantcast-import) \
             $(if $(filter %/main.c,$(match_sources)),$(bin)/plantcast-match) $(if $(sim_sources),$(bin)/plantcast-sim) \
             $(if $(generate_sources),$(bin)/plantcast-demo)
@@ -168,8 +168,11 @@ $(bin)/plantcast-h264.so: $(patsubst %,$(out)/obj/%.pic.o,$(addprefix server/enc
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -shared -o $@ $^ $(pkg_libs)
 link_lazy := $(if $(filter h264,$(CODECS)),clients/link/h264_decoder_lazy.c)
 $(out)/lib/link.a: $(call objects,$(filter-out $(if $(link_lazy),%_lazy.c,clients/link/h264%),$(wildcard clients/link/*.c)))
-$(out)/lib/cli.a: $(call objects,$(filter-out %/main.c $(if $(filter h264,$(CODECS)),,%/video.c),$(wildcard clients/cli/*.c)))
+$(out)/lib/cli.a: $(call objects,$(filter-out %/main.c,$(wildcard clients/cli/*.c)))
 $(bin)/plantcast: $(call objects,clients/cli/main.c $(link_lazy)) $(out)/lib/cli.a $(out)/lib/link.a $(archives)
+	$(link)
+# Films: no other program links libavformat.
+$(bin)/plantcast-film: $(call objects,$(wildcard clients/film/*.c)) $(out)/lib/cli.a $(out)/lib/link.a $(archives)
 	$(link)
 player_sources := $(wildcard clients/wall/*.c)
 $(call objects,$(player_sources)): CFLAGS += $(shell pkg-config --cflags sdl2 pangocairo 2>/dev/null)

@@ -7,8 +7,6 @@
 
 /* Takes one picture: offline from a plant file, or from a daemon. */
 int cmd_snapshot(int argc, char **argv);
-/* Makes a film of recorded history, likewise. */
-int cmd_clip(int argc, char **argv);
 /* Loads a daemon with viewers and prints a table of latencies. */
 int cmd_probe(int argc, char **argv);
 /* Prints the tags of a daemon with value, quality and age. */
@@ -41,6 +39,12 @@ int cmd_verify(int argc, char **argv);
 int cmd_read(int argc, char **argv);
 /* Makes, lists and revokes access tokens of a daemon. */
 int cmd_token(int argc, char **argv);
+
+/* Has another program beside this one do a command, whose name is argv[0]: what it needs, or what it reads of strangers, is kept out of
+   this one. ending: of its name. Returns only if it cannot be run, with the reason printed. */
+void run_beside(const char *ending, char **argv);
+/* Likewise plantcast-film, with the options that all commands share. */
+void run_film(int argc, char **argv);
 
 /* Fetches `path` (with its query, e.g. "/snapshot.png?width=640&group=temperature") from the daemon at url (http://HOST:PORT/) into the
    file `out`, or prints it (NULL). Returns 0, or 1 with the reason printed. */

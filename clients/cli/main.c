@@ -1,43 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast`: the command-line client. */
-#include <errno.h>
-#include <limits.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "commands.h"
 #include "clients/link/daemon.h"
-
-/* Another program beside this one reads what strangers' programs wrote, so that this one does not. `ending`: of its name. Where no /proc
-   says where this one is, it is looked for as a shell would. */
-static int run_beside(const char *ending, char **argv)
-{
-    char path[PATH_MAX] = "plantcast";
-    ssize_t length = readlink("/proc/self/exe", path, sizeof(path) - strlen(ending) - 1);
-    size_t end = length > 0 ? (size_t)length : strlen("plantcast");
-    memcpy(path + end, ending, strlen(ending) + 1);
-    execvp(path, argv);
-    fprintf(stderr, "plantcast: %s: %s\n", path, strerror(errno));
-    return 1;
-}
+#include "commands.h"
 
 static int cmd_import(int argc, char **argv)
 {
     (void)argc;
-    return run_beside("-import", argv);
+    run_beside("-import", argv);
+    return 1;
 }
 
 static int cmd_match(int argc, char **argv)
 {
     (void)argc;
-    return run_beside("-match", argv);
+    run_beside("-match", argv);
+    return 1;
 }
 
 static int cmd_init(int argc, char **argv)
 {
     (void)argc;
-    return run_beside("-init", argv);
+    run_beside("-init", argv);
+    return 1;
+}
+
+static int cmd_clip(int argc, char **argv)
+{
+    run_film(argc, argv);
+    return 1;
 }
 
 static const struct command {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast verify`: says whether a signed picture is what the server drew, and draws it again. */
-#include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,26 +9,9 @@
 #include "base/timestamp.h"
 #include "commands.h"
 #include "provenance/png_pixels.h"
-#include "redraw.h"
-#include "signed_film.h"
+#include "verify.h"
 
 static const size_t MOST_BYTES = (size_t)256 << 20;
-
-static void print_usage(FILE *out)
-{
-    fputs("usage: plantcast verify (PICTURE.png | CLIP.mp4) --key FILE [--tour]\n"
-          "                        [--plant PLANT.yaml [--prepared FOLDER] [--history FOLDER]]\n"
-          "\n"
-          "Says whether PICTURE.png, or each picture of CLIP.mp4 (plantcast clip --signed), is what a server with --signing-key drew:\n"
-          "pixels, readings, time, view and configuration; of a clip also whether one is missing between the first and the last.\n"
-          "  --key FILE          the server's public key: openssl pkey -in signing.key -pubout -out FILE\n"
-          "  --tour              the film is one of a tour: its view changes; each is printed, and since when\n"
-          "  --plant PLANT.yaml  draw it again from the readings that it tells, and count the pixels that agree within 1/255\n"
-          "  --prepared FOLDER   where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
-          "  --history FOLDER    compare these readings with what was recorded there\n"
-          "Exit status: 0: all of it agrees; 1: something does not; 2: it could not be asked.\n",
-          out);
-}
 
 static void print_statement(const char *path, const json_t *statement)
 {
@@ -64,29 +46,23 @@ static int redraw(const struct redraw_options *options, const json_t *statement,
     return code;
 }
 
-static int verify(const char *path, const char *key_path, const struct redraw_options *options, bool tour)
+static int verify(const struct verify_options *options)
 {
     char why[SIGNED_PICTURE_WHY_BYTES];
     size_t count;
-    struct signing_key *key = signing_key_load_public(key_path, why);
-    char *png = key ? text_read_file(path, MOST_BYTES, &count) : NULL;
+    struct signing_key *key = signing_key_load_public(options->key, why);
+    char *png = key ? text_read_file(options->path, MOST_BYTES, &count) : NULL;
     if (!key)
         fprintf(stderr, "plantcast: --key: %s\n", why);
     else if (!png)
-        fprintf(stderr, "plantcast: %s: %m\n", path);
-    if (png && film_is_one((const uint8_t *)png, count)) {
-        int film = film_verify(key, path, options, tour);
-        mem_free(png);
-        signing_key_destroy(&key);
-        return film;
-    }
+        fprintf(stderr, "plantcast: %s: %m\n", options->path);
     json_t *statement = png ? signed_picture_verify(key, (const uint8_t *)png, count, why) : NULL;
     int code = !png ? 2 : 0;
     if (statement) {
-        print_statement(path, statement);
-        code = options->plant ? redraw(options, statement, png, count) : 0;
+        print_statement(options->path, statement);
+        code = options->redraw.plant ? redraw(&options->redraw, statement, png, count) : 0;
     } else if (png) {
-        fprintf(stderr, "plantcast: %s: %s\n", path, why);
+        fprintf(stderr, "plantcast: %s: %s\n", options->path, why);
         code = 1;
     }
     json_decref(statement);
@@ -95,29 +71,25 @@ static int verify(const char *path, const char *key_path, const struct redraw_op
     return code;
 }
 
+/* By how it begins. */
+static bool is_film(const char *path)
+{
+    char head[8] = "";
+    FILE *file = fopen(path, "rb");
+    bool film = file && fread(head, sizeof(head), 1, file) == 1 && !memcmp(head + 4, "ftyp", 4);
+    if (file)
+        fclose(file);
+    return film;
+}
+
 int cmd_verify(int argc, char **argv)
 {
-    static const struct option options[] = { { "key", required_argument, NULL, 'k' },      { "plant", required_argument, NULL, 'p' },
-                                             { "prepared", required_argument, NULL, 'd' }, { "history", required_argument, NULL, 'r' },
-                                             { "tour", no_argument, NULL, 't' },
-                                             { "help", no_argument, NULL, 'h' },           { 0 } };
-    struct redraw_options redraw = { 0 };
-    const char *key = NULL;
-    bool tour = false;
-    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
-        switch (option) {
-        case 'k': key = optarg; break;
-        case 'p': redraw.plant = optarg; break;
-        case 'd': redraw.prepared = optarg; break;
-        case 'r': redraw.history = optarg; break;
-        case 't': tour = true; break;
-        case 'h': print_usage(stdout); return 0;
-        default: print_usage(stderr); return 2;
-        }
-    }
-    if (argc - optind != 1 || !key || (!redraw.plant && (redraw.prepared || redraw.history))) {
-        print_usage(stderr);
-        return 2;
-    }
-    return verify(argv[optind], key, &redraw, tour);
+    struct verify_options options;
+    int code = verify_parse(argc, argv, &options);
+    if (code >= 0)
+        return code;
+    if (!is_film(options.path))
+        return verify(&options);
+    run_film(argc, argv);
+    return 2;
 }

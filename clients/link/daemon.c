@@ -84,6 +84,24 @@ bool daemon_take_options(int *argc, char **argv)
     return true;
 }
 
+char **daemon_command_line(int argc, char **argv)
+{
+    char **all = mem_array((size_t)argc + 5, sizeof(*all));
+    int count = 0;
+    all[count++] = argv[0];
+    if (token_path) {
+        all[count++] = "--token-file";
+        all[count++] = (char *)token_path;
+    }
+    if (ca_path) {
+        all[count++] = "--ca";
+        all[count++] = (char *)ca_path;
+    }
+    for (int i = 1; i < argc; i++)
+        all[count++] = argv[i];
+    return all;
+}
+
 const char *daemon_authorization(void)
 {
     return authorization[0] ? authorization : NULL;

@@ -20,6 +20,9 @@ struct daemon_url {
 bool daemon_take_options(int *argc, char **argv);
 /* Likewise for a program that reads its command line itself; NULL: none. The paths stay the caller's. */
 bool daemon_set_options(const char *token_file, const char *ca_file);
+/* Returns the command line with these options put back, as another program is to be given it, NULL at its end. The caller frees it
+   (mem_free), but not its words. */
+char **daemon_command_line(int argc, char **argv);
 /* Reads the file of --token-file anew, if there was one. Returns false with the reason printed; the token then stays what it was. No
    request may be under way. */
 bool daemon_read_token(void);

@@ -2,12 +2,14 @@
 // The command line as a client of a daemon: many at once over https, and through a proxy that serves the daemon below a path.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
+import { copyFileSync, existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing(), skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const H264 = 'plantcast-h264.so', noFilms = skip || (existsSync(join(BIN, H264)) ? false : 'built without H.264');
 const SESSIONS = 10, PROBES = 10, TOGETHER = 2;
 let plant, proxy, cert;
 
@@ -27,13 +29,15 @@ function serveBelow(base, port) {
     });
 }
 
-const run = (...args) => new Promise((done) => {
-    const child = spawn(join(BIN, 'plantcast'), args, { stdio: ['ignore', 'pipe', 'pipe'] });
+const runIn = (folder, ...args) => new Promise((done) => {
+    const child = spawn(join(folder, 'plantcast'), args, { stdio: ['ignore', 'pipe', 'pipe'] });
     let out = '', err = '';
     child.stdout.on('data', (chunk) => { out += chunk; });
     child.stderr.on('data', (chunk) => { err += chunk; });
     child.once('exit', (code) => done({ code, out, err }));
 });
+
+const run = (...args) => runIn(BIN, ...args);
 
 before(async () => {
     if (skip)
@@ -79,4 +83,47 @@ test('a path in front of the daemon\'s own is kept: tags, snapshot and stream', 
     assert.equal(wrong.code, 1);
     assert.match(wrong.err, /404/);
     assert.equal((await run('tags', `${at}/b?x=1`)).code, 2, 'a query is no path');
+    await plant.daemon.stop();
+});
+
+const film = (url, ...more) => ['clip', url, '-o', join(plant.folder, 'film.mp4'), '--from', '-20s', '--to', '-10s', '--speed', '10',
+    '--fps', '1', '--size', '64x64', ...more];
+
+test('a command that is a program of its own is given the certificates and the token too', { skip: noFilms, timeout: 100000 }, async () => {
+    const tokens = join(plant.folder, 'tokens'), mine = join(plant.folder, 'mine');
+    writeFileSync(mine, (await run('token', 'add', tokens, '--role', 'viewer', '--name', 'films')).out);
+    await plant.startDaemon('--tls-cert', cert, '--tls-key', join(plant.folder, 'key.pem'), '--tokens', tokens);
+    const url = `https://localhost:${plant.port}/`;
+    for (const [more, why] of [[[], /is its certificate trusted here/], [['--ca', cert], /answers 401/]]) {
+        const { code, err } = await run(...film(url, ...more));
+        assert.equal(code, 1, err);
+        assert.match(err, why);
+    }
+    const { code, out, err } = await run('--token-file', mine, ...film(url, '--ca', cert));
+    assert.equal(code, 0, err);
+    assert.match(out, /film\.mp4: \d+ pictures/);
+    await plant.daemon.stop();
+});
+
+test('what is loaded when it is needed, and is missing or damaged, is named', { skip: noFilms, timeout: 100000 }, async () => {
+    const bin = join(plant.folder, 'bin'), modules = join(plant.folder, 'lib/plantcast');
+    mkdirSync(bin);
+    mkdirSync(modules, { recursive: true });
+    copyFileSync(join(BIN, 'plantcast'), join(bin, 'plantcast'));
+    await plant.startDaemon();
+    const url = `http://127.0.0.1:${plant.port}/`;
+    const probe = () => runIn(bin, 'probe', url, '--codec', 'h264', '--sessions', '1', '--seconds', '0.5', '--size', '64x36');
+    const refused = ({ code, err }, why) => {
+        assert.equal(code, 1, err);
+        assert.match(err, why);
+    };
+    refused(await runIn(bin, ...film(url)), /bin\/plantcast-film: No such file/);
+    refused(await probe(), /h264: plantcast-h264\.so is missing: it is neither beside \S+\/bin\/plantcast nor in \.\.\/lib\/plantcast/);
+    writeFileSync(join(modules, H264), 'no program');
+    refused(await probe(), /lib\/plantcast\/plantcast-h264\.so cannot be loaded: .*(too short|invalid ELF)/);
+    copyFileSync(join(BIN, H264), join(modules, H264));
+    const { code, out, err } = await probe();
+    assert.equal(code, 0, err);
+    assert.match(out, /decode/);
+    await plant.daemon.stop();
 });

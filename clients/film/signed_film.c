@@ -3,6 +3,8 @@
 #include "signed_film.h"
 
 #include <inttypes.h>
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
 #include <openssl/evp.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,23 +13,6 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "base/timestamp.h"
-
-bool film_is_one(const uint8_t *bytes, size_t count)
-{
-    return count > 8 && !memcmp(bytes + 4, "ftyp", 4);
-}
-
-#ifndef PLANTCAST_H264
-int film_verify(const struct signing_key *key, const char *path, const struct redraw_options *options, bool tour)
-{
-    (void)key;
-    (void)options, (void)tour;
-    fprintf(stderr, "plantcast: %s: this program was built without H.264 (CODECS=jpeg), and so without films\n", path);
-    return 2;
-}
-#else
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 
 #define FILM_KEY "plantcast_statements"
 static const size_t MOST_BYTES = (size_t)64 << 20, MOST_TEXT_BYTES = (size_t)1 << 30; /* compressed, and not */
@@ -339,4 +324,3 @@ int film_verify(const struct signing_key *key, const char *path, const struct re
     close_film(reader);
     return good ? check.code : 1;
 }
-#endif

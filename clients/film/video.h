@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a video file: H.264 by libavcodec, in the container that libavformat chooses by the file's name. Not in builds without H.264.
-   Thread: one. */
-#ifndef CLI_VIDEO_H
-#define CLI_VIDEO_H
+/* Writes a video file: H.264 by libavcodec, in the container that libavformat chooses by the file's name. Thread:
+   one. */
+#ifndef FILM_VIDEO_H
+#define FILM_VIDEO_H
 #include <stdbool.h>
 #include <stdint.h>
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tours for films: what is seen, for how long, and what is said about it. Thread: one. */
-#ifndef CLI_TOUR_H
-#define CLI_TOUR_H
+#ifndef FILM_TOUR_H
+#define FILM_TOUR_H
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "snapshot.h"
+#include "clients/cli/snapshot.h"
 
 /* Finds a tour in an answer of /api/v1/walls. Returns its stops, which the caller releases (json_decref), or NULL with the reason printed.
    from: who answered. */

@@ -6,20 +6,10 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "commands.h"
-
-#ifndef PLANTCAST_H264
-int cmd_clip(int argc, char **argv)
-{
-    (void)argc;
-    (void)argv;
-    fputs("plantcast: clip: this program was built without H.264 (CODECS=jpeg), and so without films\n", stderr);
-    return 1;
-}
-#else
+#include "clients/cli/offline_renderer.h"
 #include "clients/link/daemon.h"
+#include "commands.h"
 #include "message/views_message.h"
-#include "offline_renderer.h"
 #include "signed_film.h"
 #include "tour.h"
 #include "video.h"
@@ -224,7 +214,7 @@ static int from_daemon(struct film *film)
     return code;
 }
 
-int cmd_clip(int argc, char **argv)
+int command_clip(int argc, char **argv)
 {
     struct snapshot_options options;
     int code = snapshot_parse(argc, argv, true, &options);
@@ -239,4 +229,3 @@ int cmd_clip(int argc, char **argv)
     snapshot_options_finish(&options);
     return code;
 }
-#endif

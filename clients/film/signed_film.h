@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Signed films: the server's statement and signature of each picture, beside pictures that were encoded without loss, so that their pixels
-   are those that were signed (SIGNED.md). Not in builds without H.264. Thread: one. */
-#ifndef CLI_SIGNED_FILM_H
-#define CLI_SIGNED_FILM_H
-#include "redraw.h"
+   are those that were signed (SIGNED.md). Thread: one. */
+#ifndef FILM_SIGNED_FILM_H
+#define FILM_SIGNED_FILM_H
+#include "clients/cli/redraw.h"
 #include "video.h"
 
 struct film_statements;
@@ -14,8 +14,6 @@ bool film_statements_add(struct film_statements *statements, const uint8_t *png,
 /* Puts them into the film. Returns false if they are too long, printed. */
 bool film_statements_put(const struct film_statements *statements, struct video *video);
 
-/* Returns whether the bytes begin a film. */
-bool film_is_one(const uint8_t *bytes, size_t count);
 /* Verifies each picture of the film by the server's public key, that none is missing or moved between the first and the last one, and with
    options->plant draws each again; prints what it is. tour: its view may change; each is printed, and since when. Returns 0: all of it
    agrees; 1: something does not; 2: it could not be asked. */

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Commands that are programs of their own, beside this one. */
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "clients/link/daemon.h"
+#include "commands.h"
+
+/* Where no /proc says where this program is, the other one is looked for as a shell would. */
+void run_beside(const char *ending, char **argv)
+{
+    char path[PATH_MAX] = "plantcast";
+    ssize_t length = readlink("/proc/self/exe", path, sizeof(path) - strlen(ending) - 1);
+    size_t end = length > 0 ? (size_t)length : strlen("plantcast");
+    memcpy(path + end, ending, strlen(ending) + 1);
+    execvp(path, argv);
+    fprintf(stderr, "plantcast: %s: %s\n", path, strerror(errno));
+}
+
+void run_film(int argc, char **argv)
+{
+#ifdef PLANTCAST_H264
+    run_beside("-film", daemon_command_line(argc, argv));
+#else
+    (void)argc;
+    fprintf(stderr, "plantcast: %s: this program was built without H.264 (CODECS=jpeg), and so without films\n", argv[0]);
+#endif
+}

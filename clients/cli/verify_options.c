@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What `plantcast verify` is asked. */
+#include <getopt.h>
+#include <stdio.h>
+
+#include "verify.h"
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast verify (PICTURE.png | CLIP.mp4) --key FILE [--tour]\n"
+          "                        [--plant PLANT.yaml [--prepared FOLDER] [--history FOLDER]]\n"
+          "\n"
+          "Says whether PICTURE.png, or each picture of CLIP.mp4 (plantcast clip --signed), is what a server with --signing-key drew:\n"
+          "pixels, readings, time, view and configuration; of a clip also whether one is missing between the first and the last.\n"
+          "  --key FILE          the server's public key: openssl pkey -in signing.key -pubout -out FILE\n"
+          "  --tour              the film is one of a tour: its view changes; each is printed, and since when\n"
+          "  --plant PLANT.yaml  draw it again from the readings that it tells, and count the pixels that agree within 1/255\n"
+          "  --prepared FOLDER   where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
+          "  --history FOLDER    compare these readings with what was recorded there\n"
+          "Exit status: 0: all of it agrees; 1: something does not; 2: it could not be asked.\n",
+          out);
+}
+
+int verify_parse(int argc, char **argv, struct verify_options *out)
+{
+    static const struct option options[] = { { "key", required_argument, NULL, 'k' },      { "plant", required_argument, NULL, 'p' },
+                                             { "prepared", required_argument, NULL, 'd' }, { "history", required_argument, NULL, 'r' },
+                                             { "tour", no_argument, NULL, 't' },           { "help", no_argument, NULL, 'h' },
+                                             { 0 } };
+    *out = (struct verify_options){ 0 };
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        switch (option) {
+        case 'k': out->key = optarg; break;
+        case 'p': out->redraw.plant = optarg; break;
+        case 'd': out->redraw.prepared = optarg; break;
+        case 'r': out->redraw.history = optarg; break;
+        case 't': out->tour = true; break;
+        case 'h': print_usage(stdout); return 0;
+        default: print_usage(stderr); return 2;
+        }
+    }
+    if (argc - optind != 1 || !out->key || (!out->redraw.plant && (out->redraw.prepared || out->redraw.history))) {
+        print_usage(stderr);
+        return 2;
+    }
+    out->path = argv[optind];
+    return -1;
+}

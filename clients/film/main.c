@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast-film`: films, by libavformat. `plantcast clip` and, for films, `plantcast verify` run it, and its name is the command. */
+#include <string.h>
+
+#include "clients/link/daemon.h"
+#include "commands.h"
+
+int main(int argc, char **argv)
+{
+    if (!daemon_take_options(&argc, argv))
+        return 2;
+    return !strcmp(argv[0], "verify") ? command_verify(argc, argv) : command_clip(argc, argv);
+}
