@@ -5,7 +5,7 @@ import { spawn, spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, afterEach, before, test } from 'node:test';
 import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing(), skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
@@ -50,6 +50,7 @@ before(async () => {
         '-addext', 'subjectAltName=DNS:localhost,IP:127.0.0.1']);
     assert.equal(made.status, 0, String(made.stderr));
 });
+afterEach(() => plant?.daemon?.stop());
 after(async () => {
     proxy?.close();
     await plant?.destroy();
@@ -62,7 +63,6 @@ test(`${SESSIONS * PROBES} connections over https, ${SESSIONS * TOGETHER} at onc
     for (let i = 0; i < PROBES; i += TOGETHER)
         for (const { code, err } of await Promise.all(Array.from({ length: TOGETHER }, probe)))
             assert.deepEqual([code, err], [0, '']);
-    await plant.daemon.stop();
 });
 
 test('a path in front of the daemon\'s own is kept: tags, snapshot and stream', { skip, timeout: 100000 }, async () => {
@@ -83,7 +83,6 @@ test('a path in front of the daemon\'s own is kept: tags, snapshot and stream', 
     assert.equal(wrong.code, 1);
     assert.match(wrong.err, /404/);
     assert.equal((await run('tags', `${at}/b?x=1`)).code, 2, 'a query is no path');
-    await plant.daemon.stop();
 });
 
 const film = (url, ...more) => ['clip', url, '-o', join(plant.folder, 'film.mp4'), '--from', '-20s', '--to', '-10s', '--speed', '10',
@@ -102,7 +101,6 @@ test('a command that is a program of its own is given the certificates and the t
     const { code, out, err } = await run('--token-file', mine, ...film(url, '--ca', cert));
     assert.equal(code, 0, err);
     assert.match(out, /film\.mp4: \d+ pictures/);
-    await plant.daemon.stop();
 });
 
 test('what is loaded when it is needed, and is missing or damaged, is named', { skip: noFilms, timeout: 100000 }, async () => {
@@ -125,5 +123,4 @@ test('what is loaded when it is needed, and is missing or damaged, is named', { 
     const { code, out, err } = await probe();
     assert.equal(code, 0, err);
     assert.match(out, /decode/);
-    await plant.daemon.stop();
 });
