@@ -35,7 +35,6 @@ endif
 ifneq ($(filter h264,$(CODECS)),)
 packages += libavcodec libavformat libavutil
 defines  := -DPLANTCAST_H264
-libyuv   := -lyuv
 endif
 # OPC UA: by open62541, built beside the build with faults mended that a server could use (deploy/open62541), or none. OPEN62541=system:
 # the system's, for whoever knows that it has them mended.
@@ -51,7 +50,7 @@ endif
 defines += $(if $(opcua_libs),-DPLANTCAST_OPCUA)
 pkg_cflags := $(shell pkg-config --cflags $(packages) 2>/dev/null) $(opcua_cflags)
 pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -lopenblas -lmeshoptimizer -ltinygltf -ldraco \
-              $(libyuv) $(opcua_libs) -lm -ldl
+              -lyuv $(opcua_libs) -lm -ldl
 
 # What does not ask for packages needs them: without, say so at once.
 ifneq ($(filter-out $(no_packages),$(asked)),)
