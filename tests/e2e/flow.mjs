@@ -161,11 +161,20 @@ async function wander(port, random, end) {
     }
 }
 
-test(`random connects, drags, stalls and cuts for ${SOAK_S} s: nothing grows`, { skip, timeout: (SOAK_S + 60) * 1000 }, async () => {
+// What it has open for clients. SQLite keeps a descriptor of a month's file whose handle is closed as long as another handle is open, and
+// uses it again: of those there are as many as handles that were ever open at the same time, and the first of a minute may come late.
+const MOST_OF_HISTORY = 10;
+function openForClients() {
+    const all = openFiles(pid), others = all.filter((name) => !name.includes('.history/'));
+    assert.ok(all.length - others.length <= MOST_OF_HISTORY, all.join('\n'));
+    return others;
+}
+
+test(`random connects, drags, stalls and cuts for ${SOAK_S} s: nothing grows`, { skip, timeout: (SOAK_S + 240) * 1000 }, async () => {
     console.log(`# PLANTCAST_SEED=${seed}`);
     let state = seed;
     const random = () => ((state = (state * 1103515245 + 12345) % 2147483648) / 2147483648);
-    const filesBefore = openFiles(pid), begin = performance.now(), end = begin + SOAK_S * 1000;
+    const filesBefore = openForClients(), begin = performance.now(), end = begin + SOAK_S * 1000;
     const steady = await PlainClient.open(plant.port);
     await steady.hello();
     const mover = new Mover(steady, 30), pace = new Pace();
@@ -190,8 +199,8 @@ test(`random connects, drags, stalls and cuts for ${SOAK_S} s: nothing grows`, {
     console.log(`# MB: ${memory.map((kb) => (kb / 1024).toFixed(1)).join(' ')}`);
     assert.ok(late < 1.5 * slower * early + 20, `latency grew from ${early.toFixed(1)} to ${late.toFixed(1)} ms`);
     assert.ok(sanitized || grownKb < 8 * 1024, `memory grew by ${grownKb} kB`);
-    for (const patient = performance.now() + 60000; openFiles(pid) > filesBefore && performance.now() < patient;)
-        await sleep(250); // of those who went last
-    assert.ok(openFiles(pid) <= filesBefore, `${openFiles(pid)} open files, ${filesBefore} before`);
+    const patience = performance.now() + 180000;
+    for (; openForClients().length > filesBefore.length; await sleep(250)) // of those who went last
+        assert.ok(performance.now() < patience, `open:\n${openForClients().join('\n')}\nbefore:\n${filesBefore.join('\n')}`);
     assert.equal(steady.closed.code, 1000);
 });

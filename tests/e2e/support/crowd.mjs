@@ -1,14 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Clients by the dozen, and what they cost the daemon.
 import assert from 'node:assert/strict';
-import { readdirSync, readFileSync } from 'node:fs';
+import { readdirSync, readFileSync, readlinkSync } from 'node:fs';
 import { get, PlainClient } from './plain_client.mjs';
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 export const sanitized = /asan|tsan/.test(process.env.PLANTCAST_OUT ?? '');
 
 export const residentKb = (pid) => Number(readFileSync(`/proc/${pid}/status`, 'utf8').match(/^VmRSS:\s+(\d+)/m)[1]);
-export const openFiles = (pid) => readdirSync(`/proc/${pid}/fd`).length;
+
+// What a process has open, as /proc says it.
+export function openFiles(pid) {
+    const folder = `/proc/${pid}/fd`, list = [];
+    for (const fd of readdirSync(folder)) {
+        try {
+            list.push(readlinkSync(`${folder}/${fd}`));
+        } catch { /* closed meanwhile */ }
+    }
+    return list.sort();
+}
+
 export const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
 
 // The counters and gauges of /metrics whose names are asked for; labels are added up.
