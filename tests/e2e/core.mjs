@@ -11,13 +11,13 @@ import { otherVersion } from './support/other_version.mjs';
 import { missing, Program, runProgram } from './support/tiny_plant.mjs';
 
 const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 120000 };
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 300000 };
 let nodes, core, a, b;
 
 before(async () => {
     if (options.skip)
         return;
-    nodes = await Nodes.create();
+    nodes = await Nodes.create({ slowDevice: true });
     core = await nodes.core();
     [a, b] = await Promise.all([nodes.renderer('a', core), nodes.renderer('b', core)]);
     for (const [tag, value] of [['TI-1', 80.25], ['TI-2', 20], ['PI-1', 5]])

@@ -17,7 +17,7 @@ let nodes, core, renderers, proxy, viewers;
 before(async () => {
     if (options.skip)
         return;
-    nodes = await Nodes.create();
+    nodes = await Nodes.create({ slowDevice: true });
     core = await nodes.core(0, '--behind-proxy', '--host', 'plant.example');
     renderers = await Promise.all(['r1', 'r2'].map(start));
     proxy = await Haproxy.start(renderers, core);

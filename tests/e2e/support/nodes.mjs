@@ -7,7 +7,8 @@ import { Program, runProgram, TinyPlant } from './tiny_plant.mjs';
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-export async function until(what, good, seconds = 20) {
+// seconds: where nothing is held to a time, patience.
+export async function until(what, good, seconds = 90) {
     for (const end = performance.now() + seconds * 1000; ; await sleep(50)) {
         const found = await good();
         if (found)
@@ -56,11 +57,14 @@ export class Node {
 }
 
 export class Nodes {
-    // With alarms at 90, and a token for each of a viewer, an operator and a renderer.
-    static async create() {
+    // With alarms at 90, and a token for each of a viewer, an operator and a renderer. slowDevice: it may take its time, as on a machine
+    // that has much else to do.
+    static async create({ slowDevice = false } = {}) {
         const nodes = new Nodes();
         nodes.plant = await TinyPlant.create();
         nodes.plant.addAlarms();
+        if (slowDevice)
+            nodes.plant.giveDeviceTime();
         const prepared = nodes.plant.prepare();
         if (prepared.code !== 0)
             throw new Error(prepared.err);

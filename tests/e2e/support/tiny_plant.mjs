@@ -188,10 +188,15 @@ export class TinyPlant {
         writeFileSync(tags, readFileSync(tags, 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',1,90'));
     }
 
-    // No reading goes stale because the machine is busy.
+    // No reading goes stale because the machine is busy, or is Bad because the device is.
     keepFresh() {
         const tags = join(this.folder, 'tags.csv');
         writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1$/gm, ',600'));
+        this.giveDeviceTime();
+    }
+
+    giveDeviceTime() {
+        writeFileSync(this.file, readFileSync(this.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 5000'));
     }
 
     async startSim(...args) {
@@ -249,7 +254,8 @@ export async function startTiny(more = '', flags = []) {
     const plant = await TinyPlant.create(), tags = join(plant.folder, 'tags.csv'), port = await freePort();
     plant.addAlarms();
     writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1,90$/gm, ',60,90'));
-    writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 5000') + more);
+    plant.giveDeviceTime();
+    appendFileSync(plant.file, more);
     const startDaemon = () => plant.startDaemon('--port', String(port), ...flags);
     try {
         const { code, err } = plant.prepare();
