@@ -28,7 +28,7 @@ test('users: by password, by certificate, and refused by name', options, async (
     await start(`${server.security()}, login: ${login}`);
     await said(/no readings \(Bad(IdentityTokenRejected|UserAccessDenied)/);
     await plant.daemon.stop();
-    makeCertificate(server.folder, 'user');
+    makeCertificate(server.folder, 'user', { ownKey: true });
     const at = (file) => join(server.folder, file);
     await plant.run(server.security(`, user_certificate: ${at('user.crt')}, user_key: ${at('user.key')}`), ROWS, 30);
     await until('TI-1', good);
@@ -44,7 +44,7 @@ test('certificates that are wrong are refused by name, ours and theirs', options
     const folder = server.folder;
     makeCertificate(folder, 'old', { dates: ['20200101000000Z', '20200201000000Z'] });
     makeCertificate(folder, 'elsewhere', { hosts: 'DNS:other.example' });
-    makeCertificate(folder, 'stranger');
+    makeCertificate(folder, 'stranger', { ownKey: true });
     const cases = [['server', ['stranger'], /BadCertificateUntrusted: the server's certificate/],
         ['old', ['old'], /BadCertificateTimeInvalid: the server's certificate: certificate has expired/],
         ['elsewhere', ['elsewhere'], /BadCertificateHostNameInvalid: the server's certificate is not for 127\.0\.0\.1/]];

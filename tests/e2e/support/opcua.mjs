@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An OPC UA server on a free port, and certificates for both sides.
 import { spawn, spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { createInterface } from 'node:readline';
@@ -26,8 +26,9 @@ export function opcuaOptions(timeout) {
     return { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingOpcua() ?? false, timeout };
 }
 
-// NAME.crt and NAME.key in a folder, of its own authority; uri and hosts: among its names; dates: [from, to], as openssl has them.
-export function makeCertificate(folder, name, { uri = `urn:test:${name}`, hosts = 'IP:127.0.0.1,DNS:localhost', dates } = {}) {
+// NAME.crt and NAME.key in a folder, of its own authority; uri and hosts: among its names; dates: [from, to], as openssl has them. All have
+// one key, which takes longest to make; ownKey: but not this one.
+export function makeCertificate(folder, name, { uri = `urn:test:${name}`, hosts = 'IP:127.0.0.1,DNS:localhost', dates, ownKey } = {}) {
     const run = (...args) => {
         const { status, stderr } = spawnSync('openssl', args, { cwd: folder, encoding: 'utf8' });
         if (status !== 0)
@@ -38,14 +39,18 @@ export function makeCertificate(folder, name, { uri = `urn:test:${name}`, hosts 
 keyUsage = digitalSignature, nonRepudiation, keyEncipherment, dataEncipherment, keyCertSign\nextendedKeyUsage = serverAuth, clientAuth
 [ca]\ndefault_ca = own\n[own]\ndatabase = ${name}.index\nserial = ${name}.serial\nnew_certs_dir = .\ndefault_md = sha256\npolicy = any
 x509_extensions = v3\n[any]\ncommonName = supplied\n`);
+    const shared = join(folder, 'shared.key');
+    if (ownKey || !existsSync(shared))
+        run('genrsa', '-out', ownKey ? `${name}.key` : shared, '2048');
+    if (!ownKey)
+        copyFileSync(shared, join(folder, `${name}.key`));
     if (!dates) {
-        run('req', '-x509', '-newkey', 'rsa:2048', '-nodes', '-days', '2', '-config', `${name}.cnf`, '-keyout', `${name}.key`,
-            '-out', `${name}.crt`);
+        run('req', '-x509', '-key', `${name}.key`, '-days', '2', '-config', `${name}.cnf`, '-out', `${name}.crt`);
         return;
     }
     writeFileSync(join(folder, `${name}.index`), '');
     writeFileSync(join(folder, `${name}.serial`), '01\n');
-    run('req', '-newkey', 'rsa:2048', '-nodes', '-config', `${name}.cnf`, '-keyout', `${name}.key`, '-out', `${name}.csr`);
+    run('req', '-new', '-key', `${name}.key`, '-config', `${name}.cnf`, '-out', `${name}.csr`);
     run('ca', '-batch', '-selfsign', '-config', `${name}.cnf`, '-keyfile', `${name}.key`, '-in', `${name}.csr`, '-out', `${name}.crt`,
         '-notext', '-startdate', dates[0], '-enddate', dates[1]);
 }
