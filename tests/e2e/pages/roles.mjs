@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What each role may do about an alarm, by the site's mode: seen in the page, and held to by the server; over plain http, by a name.
 import assert from 'node:assert/strict';
-import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, PHONE, settle, shoot, TABLET, waitForHealth, waitForPicture } from '../support/browser.mjs';
@@ -21,7 +21,8 @@ before(async () => {
     if (skip)
         return;
     plant = await TinyPlant.create();
-    appendFileSync(plant.file, 'alarms: local\n');
+    writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 5000')}alarms: local\n`);
+    plant.keepFresh(); // there is no other alarm than the one that is meant
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H' : ',60')).join('\n'));
     assert.equal(plant.prepare().code, 0);
@@ -34,8 +35,7 @@ before(async () => {
         await plant.tell(`set ${tag} ${value}`);
     await plant.startDaemon('--behind-proxy', '--host', 'plant.example', '--tokens', file);
     browsers = await Promise.all(Object.entries(SCREENS).map(async ([role, screen]) => {
-        const args = ['--host-resolver-rules=MAP plant.example 127.0.0.1'];
-        const browser = await openPage(`http://plant.example:${plant.port}/`, { ...screen, args });
+        const browser = await openPage(`http://plant.example:${plant.port}/`, screen);
         pages[role] = browser.page;
         await browser.page.locator('#token[open]').waitFor();
         await browser.page.locator('#token-text').fill(tokens[role]);

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Debian's chromium, driven by playwright-core, and questions to ask the page.
 import { existsSync, mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after } from 'node:test';
 import { BUILD } from './plant.mjs';
 import { sweep } from './sweep.mjs';
 
+// Imported, node reads through all of it for names first: 0.2 s of a processor. Loaded only where a page is opened.
+const playwright = () => createRequire(import.meta.url)('playwright-core');
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
 // The same engine without windows, menus and their own processes, which take four times as long as an empty page. `make test-long` has all.
 const SHELL = '/usr/bin/chromium-headless-shell';
 const HEADLESS = sweep(CHROMIUM, existsSync(SHELL) && !process.env.CHROMIUM ? SHELL : CHROMIUM);
 const QUIET = [
     '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
-    '--disable-sync',
+    '--disable-sync', '--host-resolver-rules=MAP plant.example 127.0.0.1', // a name, where one is needed
 ];
 const PATIENCE_MS = 120000; // of whatever waits for a page: slower than that is no page, how busy the machine ever is
 export const SCREENSHOTS = join(BUILD, 'screenshots');
@@ -33,17 +36,18 @@ const MOTION = sweep(FLYING, { reducedMotion: 'reduce' });
 const browsers = new Map();
 
 export async function browserWith(args) {
-    const { chromium } = await import('playwright-core'), key = args.join(' ');
+    const key = args.join(' ');
     if (!browsers.has(key))
-        browsers.set(key, chromium.launch({ executablePath: HEADLESS, args: [...QUIET, ...args] }));
+        browsers.set(key, playwright().chromium.launch({ executablePath: HEADLESS, args: [...QUIET, ...args] }));
     return browsers.get(key);
 }
 after(() => Promise.all([...browsers.values()].map(async (browser) => (await browser).close())));
 
 // One with a profile on the disk, as people have: only there a page can be installed, or fill a screen.
 async function profileWith(args, shape) {
-    const { chromium } = await import('playwright-core'), folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
-    const context = await chromium.launchPersistentContext(folder, { executablePath: CHROMIUM, ...shape, args: [...QUIET, ...args] });
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
+    const whole = { executablePath: CHROMIUM, ...shape, args: [...QUIET, ...args] };
+    const context = await playwright().chromium.launchPersistentContext(folder, whole);
     process.once('exit', () => { // not before: a browser that is closed goes on writing for a while
         try {
             rmSync(folder, { recursive: true, force: true });
