@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { demo } from './demo.mjs';
-import { drawnAt, FLYING, openPage, settle, shoot, view, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { drawnAt, openPage, settle, shoot, view, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { missing } from '../support/plant.mjs';
 import { TinyPlant } from '../support/tiny_plant.mjs';
 
@@ -163,7 +163,7 @@ test('what stands before a tag on all sides becomes a ghost; Backspace goes back
     assert.equal(tiny.prepare().code, 0);
     await tiny.startSim();
     await tiny.startDaemon();
-    const own = await openPage(`http://127.0.0.1:${tiny.port}/`, { viewport: { width: 1200, height: 720 }, ...FLYING }), on = own.page;
+    const own = await openPage(`http://127.0.0.1:${tiny.port}/`, { viewport: { width: 1200, height: 720 } }), on = own.page;
     const ghosts = (ids) => on.waitForFunction((all) => globalThis.plantcast.session.confirmed.ghost.join() === all, ids.join());
     try {
         await waitForPicture(on);
