@@ -21,9 +21,18 @@ function share() {
     return (user + system) / 1000 / (performance.now() - began);
 }
 
-// The page does nothing else for so long: what a page that loads, and a machine that is busy, do to it.
-const BUSY = `globalThis.busy = (ms) => { for (const end = performance.now() + ms; performance.now() < end;); };
+// The page does nothing else for so long: what a page that loads, and a machine that is busy, do to it. It waits for an answer, which
+// takes no processor.
+const BUSY = `globalThis.busy = (ms) => {
+        const request = new XMLHttpRequest();
+        request.open('GET', '/busy?' + ms, false);
+        request.send();
+    };
     addEventListener('load', () => [0, 1000, 2000].forEach((at) => setTimeout(globalThis.busy, at, 700)));`;
+const answerLate = (on) => on.route('**/busy?*', async (route) => {
+    await new Promise((done) => setTimeout(done, Number(new URL(route.request().url()).search.slice(1))));
+    await route.fulfill({ body: '' });
+});
 
 before(async () => {
     if (why)
@@ -31,7 +40,7 @@ before(async () => {
     plant = await startPlant();
     const { tags } = await (await fetch(`${plant.url}api/v1/tags`)).json();
     await plant.freeze(tags.map(({ name }) => name));
-    browser = await openPage(plant.url, { ...SCREEN, ...FLYING }, BUSY);
+    browser = await openPage(plant.url, { ...SCREEN, ...FLYING }, BUSY, answerLate);
     page = browser.page;
 });
 after(async () => {

@@ -29,14 +29,17 @@ async function share() {
     return (user + system) / 1000 / ((performance.now() - began) * spinners.length);
 }
 
+async function startSpinners() {
+    while (spinners.length < availableParallelism())
+        spinners.push(new Worker(spin, { eval: true }));
+    await share(); // they start
+}
+
 before(async () => {
     if (why)
         return;
     plant = await startPlant();
     browser = await browserWith([]);
-    while (spinners.length < availableParallelism())
-        spinners.push(new Worker(spin, { eval: true }));
-    await share(); // they start
 });
 after(async () => {
     await Promise.all(spinners.map((spinner) => spinner.terminate()));
@@ -45,9 +48,9 @@ after(async () => {
 });
 
 // By who was never here: { ms: until the first picture was on the screen, share: of the processors that was ours before or after,
-// whichever is less }.
-async function load() {
-    const context = await browser.newContext(DESKTOP), page = await context.newPage(), calm = await share();
+// whichever is less; 0 where nobody asked }.
+async function load(asks) {
+    const context = await browser.newContext(DESKTOP), page = await context.newPage(), calm = asks ? await share() : 0;
     const client = await context.newCDPSession(page);
     await client.send('Network.enable');
     await client.send('Network.emulateNetworkConditions', LAN);
@@ -63,17 +66,19 @@ async function load() {
     await page.waitForFunction(() => globalThis.firstPictureMs, null, { timeout: PATIENCE_MS });
     const ms = await page.evaluate(() => globalThis.firstPictureMs);
     await context.close();
-    return { ms, share: Math.min(calm, await share()) };
+    return { ms, share: asks ? Math.min(calm, await share()) : 0 };
 }
 
 // Time that something else took only makes it later: what is soon enough beside it is soon enough.
 test(`the plant is on the screen ${MOST_MS} ms after the page was asked for, wherever the machine has the time`, options, async (t) => {
     const loads = [], began = performance.now(), times = (least) => loads.filter((one) => one.share >= least).map(({ ms }) => ms);
     const isSoon = (list) => list.length >= LOADS && median(list) <= MOST_MS;
-    do
-        loads.push(await load());
-    while (loads.length < MOST_TRIES && performance.now() - began < TRIED_MS && !isSoon(times(0)) && times(LEAST_SHARE).length < LOADS);
-    const said = loads.map((one) => `${one.ms.toFixed(0)} ms with ${(100 * one.share).toFixed(0)} %`).join(', ');
+    do {
+        if (loads.length === LOADS) // and they were not soon
+            await startSpinners();
+        loads.push(await load(spinners.length > 0));
+    } while (loads.length < MOST_TRIES && performance.now() - began < TRIED_MS && !isSoon(times(0)) && times(LEAST_SHARE).length < LOADS);
+    const said = loads.map((one) => `${one.ms.toFixed(0)} ms${one.share > 0 ? ` with ${(100 * one.share).toFixed(0)} %` : ''}`).join(', ');
     t.diagnostic(`first pictures, and the share of the processors: ${said}`);
     if (isSoon(times(0)))
         return;
