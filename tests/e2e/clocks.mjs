@@ -77,7 +77,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
         client.close();
 
         const { page, errors, close } = await openPage(`http://127.0.0.1:${renderer.port}/`, { viewport: { width: 1280, height: 800 } },
-            null, (one) => one.addInitScript(wrongDate, 2 * off_s * 1000));
+            [wrongDate, 2 * off_s * 1000]);
         await waitForPicture(page);
         await waitForHealth(page, 'live');
         await page.locator('#alarm-strip').click();
