@@ -14,12 +14,13 @@ const options = { skip: why ?? false, timeout: 280000 };
 const HOT = 'TE-101', MOST_MS = 180000;
 let plant, browser, page, began;
 
-// What was recorded of the last fifty minutes: each tag near the value that it has.
+// What was recorded of the last fifty minutes: each tag near the value that it has, and keeps: else pictures are drawn all the time.
 async function remember({ file, ask }) {
     const folder = dirname(file), now = Math.floor(Date.now() / 1000), lines = ['Tag,Time,Value,Quality'];
     const rows = readFileSync(join(folder, 'tags.csv'), 'utf8').trim().split('\n').slice(1), names = rows.map((row) => row.split(',')[0]);
     for (const [i, name] of names.entries()) {
         const value = Number(await ask(`get ${name}`));
+        await ask(`set ${name} ${value}`);
         for (let s = 3000; s > 10; s -= 30)
             lines.push(`${name},${now - s},${(value * (1 + 0.01 * Math.sin(i + s / 250) * Math.min(1, s / 300))).toFixed(3)},Good`);
     }
