@@ -531,7 +531,10 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
             `host: 127\\.0\\.0\\.1, port: ${port}, unit: 1, address_base: 1, byte_order: CDAB \\}$`, 'm'));
         assert.equal(own.read('plant.yaml').match(/type: modbus/g).length, 1, 'the first one was changed');
         assert.match(own.read('tags.csv'), /^E-101\.TT-01,400001,Float,.*,plc,temperature,E-101,/m);
-        sim = new Program('plantcast-sim', [join(own.folder, 'plant.yaml')]);
+        const still = join(own.root, 'still.csv'), tags = ['E-101.TT-01', 'P-201A.TT-01', 'P-201B.PT-01'];
+        writeFileSync(still, `Time_s,${tags}\n0,60,50,8\n`); // each change would have a picture drawn
+        sim = new Program('plantcast-sim', [join(own.folder, 'plant.yaml'), '--values', still,
+            ...tags.flatMap((tag) => ['--map', `${tag}=${tag}`])]);
         await sim.line(/^plantcast-sim: listening/m);
         await live('3 of 3 tags have values');
         await arrive(desk);
