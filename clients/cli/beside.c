@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/mem.h"
 #include "clients/link/daemon.h"
 #include "commands.h"
 
@@ -23,7 +24,9 @@ void run_beside(const char *ending, char **argv)
 void run_film(int argc, char **argv)
 {
 #ifdef PLANTCAST_H264
-    run_beside("-film", daemon_command_line(argc, argv));
+    char **line = daemon_command_line(argc, argv);
+    run_beside("-film", line);
+    mem_free(line);
 #else
     (void)argc;
     fprintf(stderr, "plantcast: %s: this program was built without H.264 (CODECS=jpeg), and so without films\n", argv[0]);

@@ -4,9 +4,10 @@
 #define LINK_DECODER_H
 #include <stdbool.h>
 
+#include "h264_decoder.h"
 #include "protocol/wire.h"
 
-#define DECODER_WHY_BYTES 320
+#define DECODER_WHY_BYTES H264_DECODER_WHY_BYTES
 
 struct decoder;
 /* Creates a decoder for all codecs of this build. NULL: out of memory. The caller destroys it. */
