@@ -33,8 +33,6 @@ struct tile_layout tile_layout_scale(const struct tile_layout *layout, double sc
     out.gap_px[1] = (int)lround(layout->gap_px[1] * down);
     out.margin_px[0] = (int)lround(layout->margin_px[0] * across);
     out.margin_px[1] = (int)lround(layout->margin_px[1] * down);
-    out.shift.x_px = (int)lround(layout->shift.x_px * across);
-    out.shift.y_px = (int)lround(layout->shift.y_px * down);
     return out;
 }
 
@@ -57,11 +55,19 @@ void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int w
         *layout = tile_layout_scale(&full, scale *= 0.99);
 }
 
+/* As much smaller as the tiles are: the margin's pixels where the display's are BURN_SHIFT_PX. */
+static int shift_within(int shift_px, int margin_px)
+{
+    return (int)lround((double)shift_px * margin_px / BURN_SHIFT_PX);
+}
+
 struct frame_part tile_layout_part(const struct tile_layout *layout, int display)
 {
     int column = (display - 1) % layout->columns, row = (display - 1) / layout->columns;
-    return (struct frame_part){ .x_px = layout->margin_px[0] - layout->shift.x_px + column * (layout->width_px + layout->gap_px[0]),
-                                .y_px = layout->margin_px[1] - layout->shift.y_px + row * (layout->height_px + layout->gap_px[1]),
+    int left_px = layout->margin_px[0] - shift_within(layout->shift.x_px, layout->margin_px[0]);
+    int top_px = layout->margin_px[1] - shift_within(layout->shift.y_px, layout->margin_px[1]);
+    return (struct frame_part){ .x_px = left_px + column * (layout->width_px + layout->gap_px[0]),
+                                .y_px = top_px + row * (layout->height_px + layout->gap_px[1]),
                                 .width_px = layout->width_px,
                                 .height_px = layout->height_px };
 }

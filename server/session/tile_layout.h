@@ -12,7 +12,7 @@ struct tile_layout {
     int width_px, height_px; /* of a tile */
     int gap_px[2];           /* between two of them: across, down */
     int margin_px[2];        /* around all of them: left and right, above and below */
-    struct burn_shift shift; /* by which all tiles see the picture moved: at most the margin */
+    struct burn_shift shift; /* by which all tiles see the picture moved, in the display's own pixels */
 };
 
 /* Lays out the tiles of a wall that has some, for displays of that size. Where the picture would have more than most_px pixels or too long

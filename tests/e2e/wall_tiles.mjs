@@ -100,12 +100,19 @@ async function whole(width, height, still) {
 // What all tiles see is moved within the large picture, by the clock.
 const MARGIN = 3, shiftNow = () => burnShift(Date.now() * 1000), margins = (size) => size + 2 * MARGIN;
 
+// What a picture shows that is begun now: one begun before the last move may still be on its way right after it.
+async function shiftHeld() {
+    const HELD_MS = 180000, SETTLED_MS = 3000, sinceMove = Date.now() % HELD_MS;
+    await sleep(Math.max(0, SETTLED_MS - sinceMove));
+    return shiftNow();
+}
+
 // Readings stand still meanwhile, and so does what is seen, between two moves. Fewer pixels, as a loaded machine has it, would be compared
 // with others.
 async function compare(wall, columns, rows, [across, down]) {
     const width = columns * WIDTH + (columns - 1) * across, height = rows * HEIGHT + (rows - 1) * down;
     for (const still of [false, true]) {
-        const clients = await tilesOf(wall, columns * rows), leader = await leaderOf(clients), shift = shiftNow();
+        const shift = await shiftHeld(), clients = await tilesOf(wall, columns * rows), leader = await leaderOf(clients);
         await picture(clients);
         const told = (frame) => presents(leader).find(({ seq }) => seq === frame.seq);
         const all = (frame) => told(frame) && clients.map((client) => presents(client).find((one) => one.picture === told(frame).picture));
