@@ -37,7 +37,9 @@
 
 enum { TAGS = 50 };
 
-/* The wall clock, which a test may set; that of the machine is left alone. */
+/* The wall clock, which a test may set; that of the machine is left alone. It begins where no month ends soon, nor has just begun:
+   each has a file of its own, and tests look into one. */
+static const int64_t MID_MONTH_S = 1781524800; /* 2026-06-15T12:00Z */
 static _Atomic int64_t clock_off_ns;
 int64_t __real_clock_utc_ns(void);
 int64_t __wrap_clock_utc_ns(void);
@@ -59,7 +61,7 @@ struct setup {
 static int set_up(void **state)
 {
     static struct setup s;
-    atomic_store(&clock_off_ns, 0);
+    atomic_store(&clock_off_ns, MID_MONTH_S * NS_PER_S - __real_clock_utc_ns());
     s.folder = temp_folder_create();
     s.log = log_create(LOG_ERROR);
     s.counters = counters_create();
