@@ -15,7 +15,7 @@ let nodes;
 before(async () => {
     if (options.skip)
         return;
-    nodes = await Nodes.create();
+    nodes = await Nodes.create({ slowDevice: true }); // a picture without one good reading has no age
     for (const [tag, value] of [['TI-1', 20], ['TI-2', 20], ['PI-1', 5]])
         await nodes.plant.tell(`set ${tag} ${value}`);
 });
@@ -68,12 +68,12 @@ for (const off_s of [HOUR_S, -HOUR_S])
         assert.ok(Number(age_ms) < 5000, header);
         for (const { age_ms: age, name } of Object.values(await renderer.tags()))
             assert.ok(age >= 0 && age < 5000, `${name}: ${age} ms`);
+        const shelving = performance.now();
         client.say({ type: 'alarm', seq: 2, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 4, reason: 'is looked at' });
         await client.text('alarmed');
-        const shelved = performance.now();
         await until('its shelf', async () => !(await alarmOf(renderer)), 60); // which comes from the core after the answer
         await until('its return', () => alarmOf(renderer), 60);
-        assert.ok(performance.now() - shelved > 3500, 'it was away for 4 s, not for an hour less');
+        assert.ok(performance.now() - shelving > 3900, 'it was away for 4 s, not for an hour less');
         client.close();
 
         const { page, errors, close } = await openPage(`http://127.0.0.1:${renderer.port}/`, { viewport: { width: 1280, height: 800 } },

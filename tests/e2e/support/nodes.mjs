@@ -2,6 +2,7 @@
 // Several daemons of one plant on this machine: a core, and renderers that take readings from it.
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { openFiles } from './crowd.mjs';
 import { PlainClient } from './plain_client.mjs';
 import { Program, runProgram, TinyPlant } from './tiny_plant.mjs';
 
@@ -15,6 +16,15 @@ export async function until(what, good, seconds = 90) {
             return found;
         if (performance.now() > end)
             throw new Error(`waited ${seconds} s for ${what}`);
+    }
+}
+
+// Of a program; one that has ended has none.
+function sockets(pid) {
+    try {
+        return openFiles(pid).filter((name) => name.startsWith('socket:'));
+    } catch {
+        return [];
     }
 }
 
@@ -99,12 +109,14 @@ export class Nodes {
         return this.start(['--role', 'render', ...urls, '--core-token-file', this.rendererFile, '--node', name, '--port', '0', ...more]);
     }
 
-    // Connections to the device, by whom ever: the address that each comes from.
+    // Connections of these daemons to the device: the address that each comes from. Another test's daemon, which outlives its test for a
+    // moment, may go on polling a port that was free since.
     pollers() {
         const port = this.plant.modbusPort.toString(16).toUpperCase().padStart(4, '0'), established = '01';
+        const ours = new Set(this.all.flatMap(({ program }) => sockets(program.child.pid)));
         const lines = ['/proc/net/tcp', '/proc/net/tcp6'].filter(existsSync).flatMap((path) => readFileSync(path, 'utf8').split('\n'));
-        return lines.map((line) => line.trim().split(/\s+/))
-            .filter(([, , remote, state]) => remote?.endsWith(`:${port}`) && state === established).map(([, local]) => local);
+        return lines.map((line) => line.trim().split(/\s+/)).filter(([, , remote, state, , , , , , inode]) =>
+            remote?.endsWith(`:${port}`) && state === established && ours.has(`socket:[${inode}]`)).map(([, local]) => local);
     }
 
     // Waits until there is one; never two, and none only while it connects anew. The system lists connections piece by piece, so that one
