@@ -28,7 +28,8 @@ struct tile_layout tile_layout_scale(const struct tile_layout *layout, double sc
     struct tile_layout out = *layout;
     out.width_px = scaled(layout->width_px, scale);
     out.height_px = scaled(layout->height_px, scale);
-    double across = (double)out.width_px / layout->width_px, down = (double)out.height_px / layout->height_px;
+    /* What lies between tiles gets smaller with them, and also where they can be no smaller. */
+    double across = fmin(scale, (double)out.width_px / layout->width_px), down = fmin(scale, (double)out.height_px / layout->height_px);
     out.gap_px[0] = (int)lround(layout->gap_px[0] * across);
     out.gap_px[1] = (int)lround(layout->gap_px[1] * down);
     out.margin_px[0] = (int)lround(layout->margin_px[0] * across);

@@ -103,8 +103,8 @@ static void test_an_answer_without_a_frame_overtakes_one(void **state)
     tear_down(&wall);
 }
 
-/* The picture is larger than all tiles by what it is moved, at any size, so that no tile ever sees beyond its edge. */
-/* Displays of that size, each of the moves, at a few sizes of a preview. */
+/* The picture is larger than all tiles by what it is moved, at any size, so that no tile ever sees beyond its edge. Displays of that size,
+   each of the moves, at a few sizes of a preview. */
 static void check_moves(int width_px, int height_px)
 {
     struct wall wall = { .inches = 10, .tile = { .columns = 3, .rows = 2, .bezel_mm = { 20, 0 } } };
@@ -132,6 +132,26 @@ static void test_tiles_are_moved_within_the_picture(void **state)
     check_moves(320, 180);
     check_moves(4096, 2160); /* three of them are more than a picture has: they are smaller from the start */
     check_moves(8192, 8192);
+}
+
+/* A client says how large its display is: one window may be a sliver, with bezels that are thousands of times as wide. */
+static void test_a_picture_is_never_larger_than_one_may_be(void **state)
+{
+    (void)state;
+    for (int i = 0; i < WALL_DISPLAYS * 2 * 100; i++) {
+        int count = i / 200 + 1, width_px = 16 << i % 10, height_px = 16 << i / 10 % 10;
+        struct wall wall = { .inches = 10, .tile = { .columns = count, .rows = WALL_DISPLAYS / count, .bezel_mm = { 200, 200 } } };
+        struct tile_layout layout;
+        if (i / 100 % 2)
+            wall.tile.columns = WALL_DISPLAYS / (wall.tile.rows = count);
+        if (!view_size_valid(width_px, height_px))
+            continue;
+        tile_layout_init(&layout, &wall, width_px, height_px, VIEW_MAX_PIXELS);
+        assert_true(view_size_valid(tile_layout_width(&layout), tile_layout_height(&layout)));
+        struct frame_part last = tile_layout_part(&layout, wall.tile.columns * wall.tile.rows);
+        assert_true(last.width_px >= 16 && last.x_px + last.width_px <= tile_layout_width(&layout));
+        assert_true(last.height_px >= 16 && last.y_px + last.height_px <= tile_layout_height(&layout));
+    }
 }
 
 static void test_a_move_is_sent_once(void **state)
@@ -182,6 +202,7 @@ int main(void)
         cmocka_unit_test(test_of_two_pictures_none_is_waited_for),
         cmocka_unit_test(test_an_answer_without_a_frame_overtakes_one),
         cmocka_unit_test(test_tiles_are_moved_within_the_picture),
+        cmocka_unit_test(test_a_picture_is_never_larger_than_one_may_be),
         cmocka_unit_test(test_a_move_is_sent_once),
         cmocka_unit_test(test_a_server_that_takes_long_makes_smaller_pictures),
     };
