@@ -9,7 +9,7 @@ import { Node, Nodes, until } from './support/nodes.mjs';
 import { missing } from './support/tiny_plant.mjs';
 
 const absent = missing(), HOUR_S = 3600;
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingClocks() ?? false, timeout: 120000 };
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingClocks() ?? false, timeout: 240000 };
 let nodes;
 
 before(async () => {

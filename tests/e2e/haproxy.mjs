@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { connect } from 'node:net';
 import { after, before, test } from 'node:test';
+import { Pace } from './support/crowd.mjs';
 import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
 import { Nodes, sleep, until } from './support/nodes.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
@@ -11,7 +12,7 @@ import { missing } from './support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingHaproxy() ?? false, timeout: 200000 };
-const VIEWERS = 40, BACK_S = 10;
+const VIEWERS = 40, BACK_MS = 10000;
 let nodes, core, renderers, proxy, viewers;
 
 before(async () => {
@@ -77,14 +78,14 @@ class Viewer {
     async look() {
         this.client.say({ type: 'camera', seq: 1, eye: this.eye, target: [0, 0, 0] });
         await this.shows();
-        await this.client.until('a token', ({ texts }) => texts.some(({ type }) => type === 'resume'), 20000);
+        await this.client.until('a token', ({ texts }) => texts.some(({ type }) => type === 'resume'));
         await sleep(1200); // the newest one
         this.resume = this.client.texts.findLast(({ type }) => type === 'resume').resume;
     }
 
     shows() {
         const same = ({ eye }) => this.eye.every((v, i) => Math.abs(v - eye[i]) < 1e-5);
-        return this.client.until('the view', ({ frames }) => frames.some(same), 30000);
+        return this.client.until('the view', ({ frames }) => frames.some(same));
     }
 
     leave() {
@@ -137,23 +138,24 @@ test('kill -9 of one of two: all are back within 10 s, with their views; no ackn
             const { client } = viewer, from = client.texts.length;
             client.say({ type: 'alarm', seq, action: 'acknowledge', alarms: [[tag, 'H']] });
             const answer = await client.until('an answer', ({ texts, closed }) => closed ?? texts.slice(from)
-                .find((text) => text.type === 'alarmed' && text.seq === seq), 20000);
+                .find((text) => text.type === 'alarmed' && text.seq === seq));
             if (answer.type === 'alarmed')
                 return done.push([tag, answer.done]);
-            await until('its return', () => viewer.client !== client, 20);
+            await until('its return', () => viewer.client !== client);
         }
     };
     const acks = [acknowledge(hit[0], 'TI-1', 1)];
     await until('the first', () => done.length > 0);
-    const killed = performance.now();
+    const killed = performance.now(), pace = new Pace();
+    t.after(() => pace.stop());
     acks.push(acknowledge(hit[1], 'TI-2', 2));
     await renderers[0].stop('SIGKILL');
     acks.push(acknowledge(hit[2], 'PI-1', 3));
-    await until('all back', () => hit.every(({ returns }) => returns > 0), 30);
+    await until('all back', () => hit.every(({ returns }) => returns > 0));
     await Promise.all(hit.map((viewer) => viewer.shows()));
-    const took = (performance.now() - killed) / 1000;
-    t.diagnostic(`${hit.length} of ${VIEWERS} sessions back on the other node, each with its view, after ${took.toFixed(1)} s`);
-    assert.ok(took < BACK_S, `${took} s`);
+    const took_ms = performance.now() - killed;
+    t.diagnostic(`${hit.length} of ${VIEWERS} sessions back on the other node, each with its view, after ${(took_ms / 1000).toFixed(1)} s`);
+    pace.hold(t, 'until all are back', took_ms, BACK_MS);
     assert.ok(hit.every(({ welcome, node }) => welcome.resumed && node === 'r2'));
     assert.equal(new Set(viewers.map(({ welcome }) => welcome.session)).size, VIEWERS, 'each has its number');
     await Promise.all(acks);
@@ -170,8 +172,8 @@ test('a drained node sends its sessions elsewhere, one after the other, and is a
     await until('the node being back', async () => /^UP/.test((await proxy.servers()).r1.status));
     const before_ = viewers.map(({ returns }) => returns), began = performance.now();
     renderers[1].program.child.kill('SIGUSR1');
-    await until('its word', async () => /^down/.test(await line(renderers[1].agentPort)), 5);
-    await until('all elsewhere', () => viewers.every(({ returns, node }, i) => returns > before_[i] && node === 'r1'), 40);
+    await until('its word', async () => /^down/.test(await line(renderers[1].agentPort)));
+    await until('all elsewhere', () => viewers.every(({ returns, node }, i) => returns > before_[i] && node === 'r1'));
     await Promise.all(viewers.map((viewer) => viewer.shows()));
     const lost = viewers.map(({ lostAt }) => (lostAt - began) / 1000);
     t.diagnostic(`${VIEWERS} sessions left from ${Math.min(...lost).toFixed(1)} to ${Math.max(...lost).toFixed(1)} s after it was said`);

@@ -49,7 +49,7 @@ async function refused(keys, why) {
     plant.write(keys, ROWS);
     assert.equal(plant.plant.prepare().code, 0);
     await plant.plant.startDaemon();
-    await plant.daemon.line(why, 20000);
+    await plant.daemon.line(why);
     await plant.until('TI-1', { quality_name: 'Bad_NoCommunication' });
     await plant.daemon.stop();
 }
@@ -84,7 +84,7 @@ test('user and password from a file, and a topic that is not for this user', opt
         await plant.plant.startDaemon();
         await plant.daemon.line(/no readings \(the broker refuses: .*(not|Not) auth/);
         writeFileSync(path('login'), 'reader\r\nright\r\n');
-        await plant.daemon.line(/source broker: .*: reading/, 20000);
+        await plant.daemon.line(/source broker: .*: reading/);
         publisher = await broker.client({ username: 'boss', password: 'bossy' });
         await publisher.tell('plant/ti1', 21.5);
         await publisher.tell('secret/ti2', 21.5);

@@ -12,7 +12,7 @@ import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
-const options = { skip, timeout: 120000 };
+const options = { skip, timeout: 240000 };
 let plant, tagsFile, seq = 0;
 
 before(async () => {

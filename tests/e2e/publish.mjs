@@ -9,7 +9,7 @@ import { PublishedPlant } from './support/published_plant.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingBroker() ?? false, timeout: 120000 };
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingBroker() ?? false, timeout: 240000 };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const PREFIX = 'plantcast/two boxes';
 let broker, plant, other, plain, client, heard, publications;
@@ -52,7 +52,7 @@ async function listen() {
     await new Promise((done, fail) => client.subscribe('#', (error) => (error ? fail(error) : done())));
 }
 
-async function until(what, good, seconds = 20) {
+async function until(what, good, seconds = 90) {
     for (const end = performance.now() + seconds * 1000; !good(); await sleep(50))
         assert.ok(performance.now() < end, `${what}; heard ${JSON.stringify(heard)}`);
 }

@@ -10,7 +10,7 @@ import { get } from './support/plain_client.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 120000 };
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 240000 };
 const TAGS = 64, POINTS = Number(process.env.PLANTCAST_POINTS ?? 4000), BEGIN_S = 1793500000, READERS = 64;
 const SECONDS = Number(process.env.PLANTCAST_SECONDS ?? 2); // longer, and with more points, by hand
 const GREEDY = { localAddress: '127.0.0.2' }, OTHER = { localAddress: '127.0.0.3' };

@@ -38,7 +38,7 @@ const fetchPicture = (query, token = null) => new Promise((done, fail) => {
 });
 function verify(png, ...args) {
     writeFileSync(path('asked.png'), png);
-    return runProgram('plantcast', ['verify', path('asked.png'), '--key', path('server.pub'), ...args], 60000);
+    return runProgram('plantcast', ['verify', path('asked.png'), '--key', path('server.pub'), ...args]);
 }
 const redraw = (png, ...args) => verify(png, '--plant', plant.file, ...args);
 function refused(png, why) {
@@ -360,7 +360,7 @@ test('a film is good picture by picture; one that was changed, cut or made anew 
 test('a tour is filmed signed, with its texts beside it; its views are printed', filmed, () => {
     const film = path('tour.mp4'), from = new Date(Date.now() - 6000).toISOString();
     const url = `http://127.0.0.1:${plant.port}/`, view = ['--fps', '2', '--size', '320x200'];
-    const made = runProgram('plantcast', ['clip', url, '-o', film, '--from', from, '--tour', 'round', ...view, '--signed'], 60000);
+    const made = runProgram('plantcast', ['clip', url, '-o', film, '--from', from, '--tour', 'round', ...view, '--signed']);
     assert.equal(made.code, 0, made.err);
     assert.equal(readFileSync(path('tour.vtt'), 'utf8'), 'WEBVTT\n\n00:00:00.000 --> 00:00:01.000\nIs it &lt; 90 °C &amp; good?\n');
     const check = (...args) => runProgram('plantcast', ['verify', film, '--key', path('server.pub'), ...args], 90000);

@@ -78,7 +78,7 @@ test('kill -9, there and back: within 5 s the other polls; what operators did is
     for (let round = 0; round < 4; round++) {
         const high = round % 2 === 0;
         await two.plant.tell(`set TI-1 ${high ? 95 : 50}`);
-        await until('the alarm', async () => Boolean(await alarm(renderer, 'TI-1')) === high, 10);
+        await until('the alarm', async () => Boolean(await alarm(renderer, 'TI-1')) === high);
         const anna = await renderer.client({}, { token: two.nodes.tokens.operator });
         if (high) {
             anna.say({ type: 'alarm', seq: 1 + round, action: 'acknowledge', alarms: [['TI-1', 'H']] });
@@ -105,7 +105,7 @@ test('kill -9, there and back: within 5 s the other polls; what operators did is
         const notes = await (await leads.node.fetch('/api/v1/notes')).text();
         for (let i = 0; i <= round; i++)
             assert.match(notes, new RegExp(`round ${i}`));
-        await until('the renderer is there', async () => (await renderer.tags())['TI-1'].quality_name === 'Good', 5);
+        await until('the renderer is there', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
         await cut?.mend();
         await two.restart(core);
         await two.followed(leads);
@@ -220,7 +220,7 @@ test('a standby that is loading its plant takes over as fast', options, async (t
     await other.program.line(/reload:/);
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);
-    await until('readings there', async () => (await other.node.tags())['TI-1'].quality_name === 'Good', 5);
+    await until('readings there', async () => (await other.node.tags())['TI-1'].quality_name === 'Good');
     assert.ok(await two.ready(other));
     assert.deepEqual(await two.network.overlaps(), []);
     t.diagnostic(`${pause_ms.toFixed(0)} ms without a poller`);
@@ -243,7 +243,7 @@ test('two of one name, and a core without a database, are refused by name', opti
     const core = await two.leader(), other = two.other(core);
     await other.program.stop('SIGKILL');
     const started = await two.start(other.name, core.name);
-    await started.program.line(new RegExp(`both cores have the name ${core.name}`), 20000);
+    await started.program.line(new RegExp(`both cores have the name ${core.name}`));
     assert.ok(await two.ready(core));
     await started.program.stop();
 });

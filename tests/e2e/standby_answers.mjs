@@ -35,7 +35,7 @@ test('an answer comes once the standby has what was done', { skip, timeout: 2400
     for (let round = 0; round < ROUNDS; round++) {
         const core = await two.leader();
         await two.followed(core);
-        await until('the renderer is there', async () => (await renderer.tags())['TI-1'].quality_name === 'Good', 10);
+        await until('the renderer is there', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
         const anna = await renderer.client({}, { token: two.nodes.tokens.operator }), began = performance.now();
         anna.say({ type: 'note', seq: 1 + round, text: `round ${round}`, asset: 'E-101' });
         await anna.text('noted');

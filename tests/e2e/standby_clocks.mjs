@@ -59,7 +59,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await two.start('two');
             await two.followed(one);
             await other.program.line(new RegExp(`its clock is 3[56]\\d\\d\\.\\d s ${off_s > 0 ? 'behind' : 'ahead of'} this machine's`));
-            await until('the alarm at the standby', async () => (await alarm(other.node))?.state === 'unacknowledged', 10);
+            await until('the alarm at the standby', async () => (await alarm(other.node))?.state === 'unacknowledged');
             const anna = await one.node.client({}, { token: two.nodes.tokens.operator });
             anna.say({ type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H']] });
             await anna.text('alarmed');
@@ -75,7 +75,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await move(two);
             const ofTwo = await recorded(other.node);
             await two.plant.tell('set TI-1 50');
-            await until('the end of the alarm', async () => !await alarm(other.node), 10);
+            await until('the end of the alarm', async () => !await alarm(other.node));
             await two.restart(one);
             await two.followed(other);
             const second = await two.takeOver(other, kill(other, 'SIGKILL'));

@@ -127,7 +127,7 @@ test('others of the names of both are told, and take nobody\'s place while the l
         const one = await two.makeCore(name, host);
         one.toOther = await two.network.link(core.port);
         await two.startCore(one, as.name);
-        await one.program.line(says, 30000);
+        await one.program.line(says);
         return one;
     }));
     await core.toDatabase.cut();
@@ -170,7 +170,7 @@ test('a standby of another version is named, shows nothing, votes, and takes ove
     };
     await other.program.stop('SIGKILL');
     await begin(other);
-    await other.program.line(new RegExp(`version: the renderer has ${newer.other}, this node ${newer.version}.*votes only`), 20000);
+    await other.program.line(new RegExp(`version: the renderer has ${newer.other}, this node ${newer.version}.*votes only`));
     assert.match(core.program.said, new RegExp(`refused: version: the renderer has ${newer.other}, .*; its promises count`));
     assert.ok(Object.values(await other.node.tags()).every(({ value }) => value === null));
     await until('its promise', async () => await core.node.metric('plantcast_core_standby') === 1);

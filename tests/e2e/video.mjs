@@ -15,7 +15,7 @@ import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_pla
 
 const lacks = [...missing(), ...(existsSync(join(BIN, 'plantcast-video')) ? [] : ['plantcast-video']),
     ...(spawnSync('ffmpeg', ['-version']).error ? ['ffmpeg'] : [])];
-const options = { skip: lacks.length > 0 ? `not here: ${lacks.join(', ')}` : false, timeout: 120000 };
+const options = { skip: lacks.length > 0 ? `not here: ${lacks.join(', ')}` : false, timeout: 240000 };
 const WIDTH = 320, HEIGHT = 180, FPS = 10, RECORDED_S = Number(process.env.VIDEO_S ?? sweep(20, 10));
 const WALL_WIDTH = 640, WALL_HEIGHT = 360; // of a display of a wall, which is looked at
 const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'mount', '-t', 'tmpfs', 'none', '/mnt']).status === 0;

@@ -134,7 +134,7 @@ test('it is that display only, as a viewer, also after a restart of the daemon',
     assert.deepEqual(await (await get('api/v1/pair?wall=room&display=1', `Pairing ${secret}`)).json(), { paired: true });
     assert.equal((await get('api/v1/pair?wall=room&display=2', `Pairing ${secret}`)).status, 409);
     await wall.page.evaluate(() => globalThis.wall.session.post({ type: 'display', wall: 'room', display: 2 }));
-    const end = Date.now() + 20000;
+    const end = Date.now() + 90000;
     while (!/token is that of display 1/.test(audit()) && Date.now() < end)
         await new Promise((done) => setTimeout(done, 200));
     assert.match(audit(), /refused.*this token is that of display 1 of wall room/);
@@ -151,7 +151,7 @@ async function displayClient(display, secret, pairs) {
             return welcomed && connection.state === 'open';
         }, null, { timeout: 60000 });
         await desk.page.evaluate((six) => globalThis.plantcast.session.post({ type: 'pair', seq: 9, digits: six }), digits);
-        const end = Date.now() + 20000;
+        const end = Date.now() + 90000;
         while (!(await (await get(`api/v1/pair?wall=room&display=${display}`, `Pairing ${secret}`)).json()).paired && Date.now() < end)
             await new Promise((done) => setTimeout(done, 200));
     }

@@ -37,7 +37,7 @@ function startPlayer(url, args, { on = display, env = {} } = {}) {
     for (const pipe of [child.stdout, child.stderr])
         pipe.on('data', (text) => { player.said += text; });
     player.stop = async (signal) => { child.kill(signal); return exit; };
-    player.saying = (pattern, from = 0) => until(`${pattern}: ${player.said}`, () => pattern.exec(player.said.slice(from)), 20);
+    player.saying = (pattern, from = 0) => until(`${pattern}: ${player.said}`, () => pattern.exec(player.said.slice(from)));
     player.digits = async (from = 0) => (await player.saying(/shows the digits (\d{6}), good for (\d+) s/, from))[1];
     players.push(player);
     return player;

@@ -34,7 +34,7 @@ async function rest() {
 // Has the daemon meet something at the server's port; returns what that costs it, in MB, beyond `before`.
 async function meet(before = 0) {
     await plant.start('security: none', ROWS);
-    await plant.said(/no readings \(/, 25000);
+    await plant.said(/no readings \(/);
     await rest();
     return peakMb() - before;
 }
@@ -81,7 +81,7 @@ test('a real server\'s messages with sizes in them that are none cost no more', 
 
 test('a reading whose source is an hour ahead is shown, and not as if it came from the future', options, async () => {
     await server.anew({});
-    await plant.run('security: none', ROWS, 30);
+    await plant.run('security: none', ROWS);
     await server.set('TI-1', 33, { at: Date.now() + 3600000 });
     const ahead = await plant.until('TI-1', { ...good, value: 33 });
     assert.ok(ahead.age_ms >= 0 && ahead.age_ms < 5000, `${ahead.age_ms} ms`);
@@ -98,7 +98,7 @@ test('of a name with several addresses, each is tried', named, async () => {
     server.port = await freePort();
     const link = await distort(server.port, real, Infinity); // at 127.0.0.1 alone
     server.host = 'plc.test';
-    await plant.run('security: none', ROWS, 30);
+    await plant.run('security: none', ROWS);
     await plant.until('TI-1', good);
     await plant.daemon.stop();
     await link.stop();
@@ -108,7 +108,7 @@ test('of a name with several addresses, each is tried', named, async () => {
 
 test('a server that tells rarely says so, and is missed soon all the same', options, async () => {
     await server.restart({ publishing_ms: 60000 });
-    await plant.run('security: none', ROWS, 30);
+    await plant.run('security: none', ROWS);
     await plant.said(/the server tells what has changed every 60000 ms, instead of every 100 ms/);
     server.freeze();
     const frozen = performance.now();
@@ -126,7 +126,7 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
         server.trust('yesterday');
         await server.restart({ ahead_s: off_s, certificate: 'yesterday' });
         const stale = ROWS[0].replace('TI-1', 'OLD').replace('s=TI-1', 's=TI-2').replace(/0\.5,0,0,,/, '0.5,0,0,60,');
-        await plant.run(server.security('', 'client2'), [...ROWS, stale], 30);
+        await plant.run(server.security('', 'client2'), [...ROWS, stale]);
         await server.set('TI-1', 34);
         const { age_ms } = await plant.until('TI-1', { ...good, value: 34 });
         const past_s = off_s < 0 ? -off_s : 0;
@@ -148,7 +148,7 @@ test('a server whose clock is before its certificate is read, and said; a certif
     assert.equal((await server.tell({})).sessions, 0);
     await plant.daemon.stop();
     await server.restart({ ahead_s: -3600, certificate: 'today' }); // since half an hour, by ours
-    await plant.run(server.security('', 'us'), ROWS, 30);
+    await plant.run(server.security('', 'us'), ROWS);
     await server.set('TI-1', 35);
     const { age_ms } = await plant.until('TI-1', { ...good, value: 35 });
     assert.ok(age_ms >= 3600e3 && age_ms < 3609e3, `${age_ms} ms`);

@@ -21,7 +21,7 @@ test('users: by password, by certificate, and refused by name', options, async (
     await server.restart({ anonymous: false });
     const login = join(server.folder, 'login');
     writeFileSync(login, 'reader\nsaid & done\n');
-    await plant.run(`${server.security(', policy: Basic256Sha256')}, login: ${login}`, ROWS, 30);
+    await plant.run(`${server.security(', policy: Basic256Sha256')}, login: ${login}`, ROWS);
     await until('TI-1', good);
     writeFileSync(login, 'reader\nwrong\n');
     await plant.daemon.stop();
@@ -30,7 +30,7 @@ test('users: by password, by certificate, and refused by name', options, async (
     await plant.daemon.stop();
     makeCertificate(server.folder, 'user', { ownKey: true });
     const at = (file) => join(server.folder, file);
-    await plant.run(server.security(`, user_certificate: ${at('user.crt')}, user_key: ${at('user.key')}`), ROWS, 30);
+    await plant.run(server.security(`, user_certificate: ${at('user.crt')}, user_key: ${at('user.key')}`), ROWS);
     await until('TI-1', good);
     await plant.daemon.stop();
     await start(server.security());
@@ -56,7 +56,7 @@ test('certificates that are wrong are refused by name, ours and theirs', options
         assert.equal((await server.tell({})).sessions, 0);
         await plant.daemon.stop();
     }
-    await plant.run(server.security(', server_name: other.example'), ROWS, 30);
+    await plant.run(server.security(', server_name: other.example'), ROWS);
     await plant.daemon.stop();
     server.trust('server');
     await server.restart({ trustsAll: false });

@@ -24,7 +24,7 @@ test('a plant that was changed and not prepared since is prepared when the daemo
         // What cannot be prepared is one line, and no daemon.
         await tiny.daemon.stop();
         writeFileSync(join(tiny.folder, 'box.gltf'), '{');
-        const { code, err } = runProgram('plantcastd', [tiny.file, '--port', '0'], 60000);
+        const { code, err } = runProgram('plantcastd', [tiny.file, '--port', '0']);
         assert.equal(code, 1);
         assert.match(err, /the plant cannot be prepared: /);
     } finally {

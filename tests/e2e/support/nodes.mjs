@@ -4,6 +4,7 @@ import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { openFiles } from './crowd.mjs';
 import { PlainClient } from './plain_client.mjs';
+import { freePort } from './ports.mjs';
 import { Program, runProgram, TinyPlant } from './tiny_plant.mjs';
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -100,13 +101,15 @@ export class Nodes {
         return node.ready();
     }
 
-    core(port = 0, ...more) {
-        return this.start(['--role', 'core', '--port', String(port), ...more]);
+    // At a port that stays this test's while it is away.
+    async core(port = 0, ...more) {
+        return this.start(['--role', 'core', '--port', String(port || await freePort()), ...more]);
     }
 
-    renderer(name, cores, ...more) {
+    async renderer(name, cores, ...more) {
         const urls = [cores].flat().flatMap((core) => ['--core', core.url]);
-        return this.start(['--role', 'render', ...urls, '--core-token-file', this.rendererFile, '--node', name, '--port', '0', ...more]);
+        const at = more.includes('--port') ? [] : ['--port', String(await freePort())];
+        return this.start(['--role', 'render', ...urls, '--core-token-file', this.rendererFile, '--node', name, ...at, ...more]);
     }
 
     // Connections of these daemons to the device: the address that each comes from. Another test's daemon, which outlives its test for a

@@ -11,7 +11,7 @@ import { freePort } from './ports.mjs';
 export const BIN = resolve(process.env.PLANTCAST_BIN ?? 'build');
 export const BUILD = resolve('build');
 const DEMO = join(BUILD, 'demo');
-const START_MS = 60000;
+const START_MS = 120000;
 
 // Why this test cannot run here, or null.
 export function missing() {

@@ -44,17 +44,17 @@ tags: tags.csv
     }
 
     // Waits until the daemon says so.
-    said(pattern, ms = 20000) {
+    said(pattern, ms = 120000) {
         return this.daemon.line(pattern, ms);
     }
 
     // The same as write, prepared, with a daemon that has subscribed.
-    async run(keys, rows, seconds = 15) {
+    async run(keys, rows) {
         this.write(keys, rows);
         const prepared = this.plant.prepare();
         assert.equal(prepared.code, 0, prepared.err);
         await this.plant.startDaemon();
-        await this.daemon.line(/source (broker|plc): .*: reading/, seconds * 1000);
+        await this.daemon.line(/source (broker|plc): .*: reading/);
     }
 
     async get(path) {
@@ -66,8 +66,8 @@ tags: tags.csv
         return Object.fromEntries((await this.get('/api/v1/tags?count=5000')).tags.map((tag) => [tag.name, tag]));
     }
 
-    // Waits until the tag is as said; returns it.
-    async until(name, wanted, seconds = 10) {
+    // Waits until the tag is as said; returns it. seconds: where nothing is held to a time, patience.
+    async until(name, wanted, seconds = 90) {
         for (const end = performance.now() + seconds * 1000; ; await sleep(20)) {
             const tag = (await this.tags())[name];
             if (Object.entries(wanted).every(([key, value]) => tag[key] === value))

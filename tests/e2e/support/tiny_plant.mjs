@@ -70,7 +70,7 @@ PI-1,400005,Float,bar,pump,pressure,P-101A,3,0,0.5,1
 const BOXES = { 'E-101': 'TI-1,TI-2', 'P-101A': 'PI-1' }; // assets and their sensors
 
 // Ends by itself: { code, out, err }.
-export function runProgram(name, args, timeout = 30000) {
+export function runProgram(name, args, timeout = 120000) {
     const { status, stdout, stderr } = spawnSync(join(BIN, name), args, { encoding: 'utf8', timeout });
     return { code: status, out: stdout, err: stderr };
 }
@@ -142,7 +142,7 @@ export class TinyPlant {
 
     prepare() {
         this.takePrepared();
-        const ended = runProgram('plantcast-prep', [this.file], 60000), { own, shared } = this.openness();
+        const ended = runProgram('plantcast-prep', [this.file]), { own, shared } = this.openness();
         this.givePrepared();
         if (shared && existsSync(shared) && !existsSync(own))
             copyWhole(shared, own);
@@ -228,8 +228,10 @@ export class TinyPlant {
         });
     }
 
+    // Its port, where none is said, stays this test's also while the daemon is away: one that the system gives may be another's then.
     async startDaemon(...args) {
-        this.daemon = new Program('plantcastd', [this.file, '--port', '0', ...args], this.as, this.before);
+        const at = args.includes('--port') ? [] : ['--port', String(await freePort())];
+        this.daemon = new Program('plantcastd', [this.file, ...at, ...args], this.as, this.before);
         const [, port] = await this.daemon.line(/^plantcastd: ready https?:\/\/[\d.]+:(\d+)\/$/m);
         this.port = Number(port);
     }

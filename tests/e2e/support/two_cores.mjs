@@ -46,7 +46,7 @@ export class TwoCores {
   postgres: { url: "${url}", login: login }
 ${more}`);
         cpSync(plant.prepared, join(plant.folder, 'two.prepared'), { recursive: true }); // it has another port, and the same equipment
-        const prepared = runProgram('plantcast-prep', [two.file], 60000);
+        const prepared = runProgram('plantcast-prep', [two.file]);
         if (prepared.code !== 0)
             throw new Error(prepared.err);
         const one = await two.makeCore('one', '127.0.0.2'), other = await two.makeCore('two', '127.0.0.3');
@@ -133,8 +133,8 @@ ${more}`);
         core.program.stopped = true;
         await how();
         this.takeOvers = (this.takeOvers ?? 0) + 1;
-        await until(`${other.name} leads`, () => this.ready(other), 15);
-        await until('readings there', async () => (await other.node.tags())['TI-1'].quality_name === 'Good', 5);
+        await until(`${other.name} leads`, () => this.ready(other));
+        await until('readings there', async () => (await other.node.tags())['TI-1'].quality_name === 'Good');
         await sleep(300);
         const pause_ms = await this.network.longestPause(since);
         assert.deepEqual(await this.network.overlaps(), []);
