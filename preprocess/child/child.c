@@ -59,7 +59,7 @@ static void become(const struct child_params *params, int out, int errors, const
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, MAX_FILES);
     limit(RLIMIT_FSIZE, (rlim_t)8 << 30);
-#ifndef __SANITIZE_ADDRESS__ /* whose shadow counts as data */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* whose shadow counts as data */
     limit(RLIMIT_DATA, params->memory_bytes);
 #endif
     child_confine();
