@@ -302,6 +302,9 @@ $(out)/tests/faults/libEGL.so.1: $(out)/obj/tests/faults/gl_faults.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
 # Kills a program where the test says; sets its clock wrong.
 $(out)/obj/tests/faults/slow_answer.pic.o: CFLAGS += $(video_cflags)
+# Preloaded into programs of others, too, which have no sanitizer.
+$(out)/obj/tests/faults/%.pic.o: CFLAGS += -fno-sanitize=all
+$(out)/tests/faults/%: ldflags += -fno-sanitize=all
 $(out)/tests/faults/%.so: $(out)/obj/tests/faults/%.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
 # Where memory runs out: the test decides.
