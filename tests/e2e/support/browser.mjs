@@ -62,6 +62,7 @@ async function profileWith(args, shape) {
 export async function browserOn(display, url, width, height, clockMs = 0) {
     const args = ['--kiosk', '--window-position=0,0', `--window-size=${width},${height}`];
     const context = await profileWith(args, { headless: false, viewport: null, env: { ...process.env, DISPLAY: display } });
+    context.setDefaultTimeout(PATIENCE_MS);
     const [page] = context.pages();
     await page.addInitScript((ms) => {
         const { now } = Date, { timeOrigin } = performance;
@@ -138,9 +139,9 @@ export async function shoot(page, name) {
 }
 
 export const healthKind = (page) => page.evaluate(() => document.getElementById('health').dataset.kind);
-export const waitForHealth = (page, kind, timeout = 60000) =>
+export const waitForHealth = (page, kind, timeout = PATIENCE_MS) =>
     page.waitForFunction((k) => document.getElementById('health').dataset.kind === k, kind, { timeout });
-export const waitForPicture = (page) => page.waitForFunction(() => globalThis.plantcast?.session.picture, null, { timeout: 60000 });
+export const waitForPicture = (page) => page.waitForFunction(() => globalThis.plantcast?.session.picture);
 
 // Until the refined picture of the newest camera and parameters is on the screen; and, where readings are frozen, nothing has come
 // after it for quietMs.
@@ -151,7 +152,7 @@ export async function settle(page, quietMs = 0) {
             const { picture } = session;
             return picture && picture.still && picture.cameraSeq === session.cameraSeq && picture.paramsSeq === session.paramsSeq &&
                 !session.cameraNews && performance.now() - picture.at >= quiet;
-        }, quietMs, { timeout: 60000, polling: 100 });
+        }, quietMs, { polling: 100 });
     } catch (error) {
         const { session } = await page.evaluate(() => {
             const { picture, cameraSeq, paramsSeq, cameraNews } = globalThis.plantcast.session;
@@ -168,7 +169,7 @@ export const land = (page) => page.waitForFunction(() => {
         Math.abs(size.width - viewport.width * ratio) <= 2 &&
         Math.abs(size.height - viewport.height * ratio) <= 2 &&
         picture.fullWidth === size.width && picture.fullHeight === size.height;
-}, null, { timeout: 60000 });
+});
 
 // Likewise, and then as settle().
 export async function arrive(page) {
