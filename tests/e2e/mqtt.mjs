@@ -6,6 +6,7 @@ import { createServer } from 'node:net';
 import packets from 'mqtt-packet';
 import { after, afterEach, before, test } from 'node:test';
 import { Broker, missingBroker } from './support/broker.mjs';
+import { Pace } from './support/crowd.mjs';
 import { PublishedPlant } from './support/published_plant.mjs';
 import { missing, runProgram } from './support/tiny_plant.mjs';
 
@@ -72,16 +73,18 @@ test('a value that the broker has kept is never shown as fresh', options, async 
 });
 
 for (const protocol of ['5', '3.1.1'])
-    test(`all tags are Bad as soon as the broker is gone, and come back with their next values (${protocol})`, options, async () => {
+    test(`all tags are Bad as soon as the broker is gone, and come back with their next values (${protocol})`, options, async (t) => {
         await run(`topic: "plant/{asset}/{tag}", protocol: ${protocol}, keepalive_s: 5`, TAGS.number);
         publisher = await broker.client({ reconnectPeriod: 100 });
         await publisher.tell('plant/ti1', 20);
         await until('TI-1', { ...good, value: 20 });
+        const pace = new Pace();
+        t.after(() => pace.stop());
         await broker.kill();
         const killed = performance.now();
-        await until('TI-1', { quality_name: 'Bad_CommunicationError', value: null }, 1);
-        await until('PI-1', { quality_name: 'Bad_NoCommunication' }, 1);
-        assert.ok(performance.now() - killed < 1000, 'at once');
+        await until('TI-1', { quality_name: 'Bad_CommunicationError', value: null });
+        await until('PI-1', { quality_name: 'Bad_NoCommunication' });
+        pace.hold(t, 'until all is Bad, at once', performance.now() - killed, 1000);
         assert.equal(await metric('up{source="broker"}'), 0);
         await broker.restart();
         for (const end = performance.now() + 90000; await metric('up{source="broker"}') !== 1; await sleep(100))

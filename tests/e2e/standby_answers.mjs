@@ -40,7 +40,7 @@ test('an answer comes once the standby has what was done', { skip, timeout: 2400
         anna.say({ type: 'note', seq: 1 + round, text: `round ${round}`, asset: 'E-101' });
         await anna.text('noted');
         const answered_ms = performance.now() - began;
-        const { leads } = await two.takeOver(core, kill(core, 'SIGKILL'));
+        const { leads } = await two.takeOver(t, core, kill(core, 'SIGKILL'));
         const notes = await (await leads.node.fetch('/api/v1/notes')).text();
         for (let i = 0; i <= round; i++)
             assert.match(notes, new RegExp(`round ${i}`), `answered after ${answered_ms.toFixed(0)} ms`);

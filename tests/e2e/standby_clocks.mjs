@@ -65,7 +65,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await anna.text('alarmed');
             anna.close();
             await move(two);
-            const first = await two.takeOver(one, kill(one, 'SIGKILL')), began_us = Date.now() * 1000;
+            const first = await two.takeOver(t, one, kill(one, 'SIGKILL')), began_us = Date.now() * 1000;
             t.diagnostic(`${first.pause_ms.toFixed(0)} ms without a poller`);
             const kept = await alarm(other.node), { tags } = await json(other.node, '/api/v1/tags?count=9');
             assert.deepEqual([kept.state, kept.who], ['acknowledged', 'anna']);
@@ -78,7 +78,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await until('the end of the alarm', async () => !await alarm(other.node));
             await two.restart(one);
             await two.followed(other);
-            const second = await two.takeOver(other, kill(other, 'SIGKILL'));
+            const second = await two.takeOver(t, other, kill(other, 'SIGKILL'));
             t.diagnostic(`${second.pause_ms.toFixed(0)} ms without a poller`);
             assert.equal(await alarm(one.node), undefined, 'what ended has ended');
             await move(two);

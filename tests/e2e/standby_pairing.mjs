@@ -55,12 +55,12 @@ async function shows(node) {
     client.close();
 }
 
-test('let in at the leader, it shows its wall after a take-over, at the new leader and at a renderer', options, async () => {
+test('let in at the leader, it shows its wall after a take-over, at the new leader and at a renderer', options, async (t) => {
     const core = await two.leader(), digits = await until('digits', async () => (await ask(core)).digits);
     assert.equal((await act({ type: 'pair', digits })).kept, true);
     await shows(core.node);
     await shows(renderer);
-    const { leads } = await two.takeOver(core, kill(core, 'SIGKILL'));
+    const { leads } = await two.takeOver(t, core, kill(core, 'SIGKILL'));
     assert.notEqual(leads, core);
     assert.equal((await ask(leads)).paired, true);
     await shows(leads.node);
@@ -70,11 +70,11 @@ test('let in at the leader, it shows its wall after a take-over, at the new lead
     await two.restart(core);
 });
 
-test('revoked while the other one leads, it stays out where it was let in', options, async () => {
+test('revoked while the other one leads, it stays out where it was let in', options, async (t) => {
     const core = await two.leader();
     await two.followed(core);
     assert.equal((await act({ type: 'unpair', id: 'room.1.1' })).kept, true);
-    const { leads } = await two.takeOver(core, kill(core, 'SIGKILL'));
+    const { leads } = await two.takeOver(t, core, kill(core, 'SIGKILL'));
     assert.notEqual(leads, core);
     assert.equal((await ask(leads)).paired, false);
     assert.equal((await leads.node.fetch('/api/v1/walls', SECRET)).status, 401);

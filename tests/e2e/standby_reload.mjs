@@ -30,7 +30,7 @@ const valuesOf = async (core, from_us, to_us) => {
     return (await (await core.node.fetch(path)).json()).series[0].points.map(([, value]) => value);
 };
 
-test('what was recorded behind a cut is read although the plant is loaded anew meanwhile', options, async () => {
+test('what was recorded behind a cut is read although the plant is loaded anew meanwhile', options, async (t) => {
     const core = await two.leader(), other = two.other(core), from_us = Date.now() * 1000;
     await other.toOther.cut();
     for (let i = 0; i < CUT_S * 2; i++) { // of these the other knows nothing
@@ -40,7 +40,7 @@ test('what was recorded behind a cut is read although the plant is loaded anew m
     await until('all being sent', async () => await core.node.metric('plantcast_postgres_waiting_points') === 0);
     await sleep(2000);
     const to_us = Date.now() * 1000;
-    await two.takeOver(core, kill(core, 'SIGKILL'));
+    await two.takeOver(t, core, kill(core, 'SIGKILL'));
     writeFileSync(two.file, readFileSync(two.file, 'utf8').replace('max: 100 }', 'max: 101 }'));
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);

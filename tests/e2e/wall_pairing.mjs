@@ -6,6 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, shoot, waitForPicture } from './support/browser.mjs';
+import { Pace } from './support/crowd.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { missing, runProgram, startTiny } from './support/tiny_plant.mjs';
 
@@ -274,16 +275,17 @@ test('a viewer notes, sends and points at nothing; who may stands in the audit t
     assert.match(audit(), /engineer-1.*hold room, display 1, main/);
 });
 
-test('it is dark within 3 s of being revoked', options, async () => {
+test('it is dark within 3 s of being revoked', options, async (t) => {
+    const pace = new Pace();
+    t.after(() => pace.stop());
     await desk.page.waitForFunction(() => {
         const { welcomed, connection } = globalThis.plantcast.session;
         return welcomed && connection.state === 'open';
     }, null, { timeout: 60000 });
     await desk.page.locator(`#devices-list li[data-id="${id}"] button`).click({ timeout: 60000 });
     const clicked = Date.now();
-    await wall.page.locator('#denied').waitFor({ timeout: 20000 });
-    const ms = Date.now() - clicked;
-    assert.ok(ms < 3000, `${ms} ms`);
+    await wall.page.locator('#denied').waitFor();
+    pace.hold(t, 'until it is dark', Date.now() - clicked, 3000);
     assert.equal(await wall.page.locator('.pane').count(), 0);
     assert.match(audit(), /engineer-1.*unpair room\.1\.1/);
     await digitsOf(wall.page);

@@ -240,9 +240,10 @@ test('a tile keeps its legend as long as the picture that it is of', options, as
     assert.equal(await tile.stop(), 0);
 });
 
-test('it starts within 2 s', options, async () => {
+test('it starts within 2 s', options, async (t) => {
     writeFileSync(tokenFile, tokenOf1);
-    const took = [];
+    const took = [], pace = new Pace();
+    t.after(() => pace.stop());
     for (let i = 0; i < 5 && !(took.at(-1) < 2000); i++) { // the best: other programs may be busy meanwhile
         await until(MAIN, ({ plain, coloured }) => plain < 0.1 && coloured < 0.01, 'no player is there');
         const begun = performance.now(), player = startPlayer(['--wall', 'room']);
@@ -251,7 +252,7 @@ test('it starts within 2 s', options, async () => {
         await player.stop();
     }
     console.log(`the picture was there after ${took} ms`);
-    assert.ok(Math.min(...took) < 2000, `${took} ms`);
+    inTime(t, pace, Math.min(...took), 2000);
 });
 
 test('what is not there is refused by name', options, async () => {

@@ -7,6 +7,7 @@ import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { shareOpcua } from './server.mjs';
+import { Pace } from '../support/crowd.mjs';
 import { opcuaOptions } from '../support/opcua.mjs';
 import { PublishedPlant } from '../support/published_plant.mjs';
 import { sweep } from '../support/sweep.mjs';
@@ -65,15 +66,17 @@ test('values, status codes and times come as they are, and nothing is ever writt
     assert.equal((await server.tell({})).sessions, 0, 'the session was closed');
 });
 
-test('all tags are Bad as soon as the server is gone; all is subscribed anew, whatever number its namespace has now', options, async () => {
+test('all tags are Bad as soon as the server is gone; all is subscribed anew, whatever number its namespace has', options, async (t) => {
+    const pace = new Pace();
+    t.after(() => pace.stop());
     await server.anew();
     await plant.run(server.security(), ROWS);
     await until('TI-1', { ...good, value: 20 });
     await server.kill();
     const killed = performance.now();
-    await until('TI-1', { quality_name: 'Bad_CommunicationError', value: null }, 2);
-    await until('PI-1', { quality_name: 'Bad_CommunicationError' }, 1);
-    assert.ok(performance.now() - killed < 2000, 'at once');
+    await until('TI-1', { quality_name: 'Bad_CommunicationError', value: null });
+    await until('PI-1', { quality_name: 'Bad_CommunicationError' });
+    pace.hold(t, 'until all is Bad, at once', performance.now() - killed, 2000);
     assert.equal(await plant.metric('up{source="plc"}'), 0);
     await server.restart({ shifted: 3 });
     await until('TI-1', { ...good, value: 20 }, 40);

@@ -2,6 +2,7 @@
 // Clients by the dozen, and what they cost the daemon.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync, readlinkSync } from 'node:fs';
+import { availableParallelism } from 'node:os';
 import { get, PlainClient } from './plain_client.mjs';
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -68,8 +69,8 @@ export class Mover {
     }
 }
 
-// What a processor is to be had for, time and again: how long the same piece of work takes, by the time of its end. To judge times of the
-// daemon by, which other programs delay as much.
+// What a processor is to be had for, time and again: how long the same piece of work takes, by the time of its end, and how many threads
+// want one just then. To judge times of the daemon by, which other programs delay as much.
 export class Pace {
     constructor() {
         this.times = [];
@@ -80,16 +81,21 @@ export class Pace {
         const begin = performance.now();
         for (let i = 0, x = 1; i < 1e6; i++)
             x = Math.imul(x, 1664525) + 1013904223;
-        this.times.push({ at: performance.now(), ms: performance.now() - begin });
+        const wanting = Number(readFileSync('/proc/loadavg', 'utf8').match(/ (\d+)\//)[1]);
+        this.times.push({ at: performance.now(), ms: performance.now() - begin, wanting });
     }
 
     stop() {
         clearInterval(this.timer);
     }
 
-    // Why times of the daemon mean nothing, or null: others take too much of the machine.
+    // Why times of the daemon mean nothing, or null: others take too much of the machine. Where they do so all the time, no piece of work
+    // is done sooner than another.
     get busy() {
         const times = this.times.map(({ ms }) => ms), typical = median(times), least = Math.min(...times);
+        const wanting = median(this.times.map((one) => one.wanting)), processors = availableParallelism();
+        if (wanting > 2 * processors)
+            return `the machine is busy: ${wanting} threads want its ${processors} processors`;
         return typical < 1.5 * least ? null : `the machine is busy: ${least.toFixed(1)} ms of work took ${typical.toFixed(1)} ms`;
     }
 
