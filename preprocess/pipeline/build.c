@@ -151,6 +151,7 @@ struct build {
     struct sensor_distances measured;
     struct asset_level file[LEVELS_MAX]; /* the levels as the file has them */
     struct text parts;                   /* for the geometry cache, unless it has them */
+    bool surface_kept;                   /* the surface is there for the next time */
     struct distance_rows distances;      /* of the vertices, as they come to be numbered */
     struct clusters_making *making[LEVELS_MAX];
     size_t making_count;
@@ -311,8 +312,15 @@ static bool write_surface(const struct build *build)
 static void write_geometry(const struct build *build)
 {
     const struct build_input *input = build->input;
-    if (!input->cache && build->parts.length && write_surface(build))
+    if (build->surface_kept)
         geometry_cache_write(input->folder, input->geometry_key, build->parts.at, build->parts.length, &build->geometry_report);
+}
+
+/* The surface is not written before it is checked, since it keeps what came of that; by then it is while levels are split. */
+static void check_and_keep(struct build *build)
+{
+    check(build);
+    build->surface_kept = !build->failed[1] && !build->input->cache && build->parts.length && write_surface(build);
 }
 
 static void write_caches(void *arg)
@@ -464,7 +472,7 @@ static bool build_file(struct build *build)
         return false;
     if (any) {
         pack_parts(build);
-        if (!run_both(build, split, check))
+        if (!run_both(build, split, check_and_keep))
             return false;
         build->geometry_report = build->output->report;
         build->keeping = workers_begin(build->workers, write_caches, build);

@@ -172,8 +172,10 @@ void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, ui
 /* --- findings --------------------------------------------------------------------------------------------------------------------- */
 
 /* The same for every order of the corners. */
-static uint64_t key_of(const struct subdiv *subdiv, const uint32_t *corners, size_t count)
+uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, size_t count)
 {
+    if (!subdiv->in->cache || !subdiv->in->cache->applies)
+        return 0;
     float places_m[3][3];
     for (size_t c = 0; c < count; c++) {
         const float *place_m = subdiv_position(subdiv, corners[c]);
@@ -253,10 +255,11 @@ static const struct subdiv_cache_entry *find(const struct subdiv_cache *cache, u
     return &cache->findings[(*next)++];
 }
 
-bool subdiv_cache_find(const struct subdiv *subdiv, const uint32_t *corners, size_t count, uint32_t *next, struct subdiv_finding *finding)
+bool subdiv_cache_find(const struct subdiv *subdiv, uint64_t key, const uint32_t *corners, size_t count, uint32_t *next,
+                       struct subdiv_finding *finding)
 {
     const struct subdiv_cache *cache = subdiv->in->cache;
-    const struct subdiv_cache_entry *old = cache && cache->findings ? find(cache, key_of(subdiv, corners, count), next) : NULL;
+    const struct subdiv_cache_entry *old = cache && cache->findings ? find(cache, key, next) : NULL;
     if (!old)
         return false;
     float off, doubt = old->doubt + share_of_changes(subdiv, corners, count, &off);
@@ -274,7 +277,7 @@ bool subdiv_cache_find(const struct subdiv *subdiv, const uint32_t *corners, siz
     return true;
 }
 
-void subdiv_cache_add(struct subdiv *subdiv, const uint32_t *corners, size_t count, const struct subdiv_finding *finding)
+void subdiv_cache_add(struct subdiv *subdiv, const struct subdiv_finding *finding)
 {
     struct subdiv_cache *cache = subdiv->in->cache;
     if (!cache)
@@ -283,7 +286,7 @@ void subdiv_cache_add(struct subdiv *subdiv, const uint32_t *corners, size_t cou
     cache->kept_count += finding->is_cached;
     if (!cache->applies)
         return;
-    const struct subdiv_cache_entry found = { .key = key_of(subdiv, corners, count),
+    const struct subdiv_cache_entry found = { .key = finding->key,
                                               .error = finding->error,
                                               .share = finding->share,
                                               .barred = finding->barred,

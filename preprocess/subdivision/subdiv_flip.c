@@ -12,8 +12,11 @@
 #define GAIN 0.7           /* of the error, at most, is left */
 #define CROSSING 0.02      /* of either edge: they cross at least so far from its ends */
 
+#define GRAIN 1024 /* turns: a few tenths of a millisecond */
+
 struct turn {
     uint32_t edge, tris[2], across;
+    bool may; /* the edges cross, and the surface stays about in place */
 };
 
 /* Those that err by more than the limit, of triangles that were made from `first` on in their list. */
@@ -66,30 +69,43 @@ static bool cross(const double a[3], const double b[3], const double c[3], const
     return along_ab > CROSSING && along_ab < 1 - CROSSING && along_cd > CROSSING && along_cd < 1 - CROSSING;
 }
 
-static bool may_turn(const struct subdiv *subdiv, const struct turn *turn)
+struct turns {
+    const struct subdiv *subdiv;
+    struct turn *at;
+};
+
+static void try_turns(void *arg, size_t begin, size_t end)
 {
-    const struct subdiv_edge *from = &subdiv->mesh.cuts[turn->edge], *to = &subdiv->mesh.cuts[turn->across];
-    double a[3], b[3], c[3], d[3];
-    position_of(subdiv, from->a, a);
-    position_of(subdiv, from->b, b);
-    position_of(subdiv, to->a, c);
-    position_of(subdiv, to->b, d);
-    return cross(a, b, c, d, FLAT_OF_ERROR * subdiv->error_m);
+    const struct turns *turns = arg;
+    const struct subdiv *subdiv = turns->subdiv;
+    for (size_t i = begin; i < end; i++) {
+        const struct subdiv_edge *from = &subdiv->mesh.cuts[turns->at[i].edge], *to = &subdiv->mesh.cuts[turns->at[i].across];
+        double a[3], b[3], c[3], d[3];
+        position_of(subdiv, from->a, a);
+        position_of(subdiv, from->b, b);
+        position_of(subdiv, to->a, c);
+        position_of(subdiv, to->b, d);
+        turns->at[i].may = cross(a, b, c, d, FLAT_OF_ERROR * subdiv->error_m);
+    }
 }
 
 static size_t list_turns(struct subdiv *subdiv, const struct subdiv_list *edges, struct turn *turns)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
-    size_t count = 0;
+    size_t count = 0, kept = 0;
     for (size_t i = 0; i < edges->count; i++) {
         struct turn turn = { .edge = edges->at[i] };
         if (!find_tris(mesh, turn.edge, turn.tris) || mesh->tris[turn.tris[0]].primitive != mesh->tris[turn.tris[1]].primitive)
             continue;
         turn.across = subdiv_mesh_opposite_edge(mesh, turn.tris, turn.edge);
-        if (turn.across != TRIMESH_NONE && mesh->cuts[turn.across].corner == TRIMESH_NONE && may_turn(subdiv, &turn))
+        if (turn.across != TRIMESH_NONE && mesh->cuts[turn.across].corner == TRIMESH_NONE)
             turns[count++] = turn;
     }
-    return count;
+    subdiv_parallel(subdiv, count, GRAIN, try_turns, &(struct turns){ subdiv, turns });
+    for (size_t i = 0; i < count; i++)
+        if (turns[i].may)
+            turns[kept++] = turns[i];
+    return kept;
 }
 
 static void measure_across(struct subdiv *subdiv, const struct turn *turns, size_t count)
@@ -123,7 +139,7 @@ static size_t turn_better(struct subdiv *subdiv, const struct turn *turns, size_
         if (turned[tris[0]] || turned[tris[1]] ||
             (double)error_of(&mesh->cuts[turns[i].across]) > GAIN * (double)error_of(&mesh->cuts[turns[i].edge]))
             continue;
-        subdiv_mesh_flip_edge(mesh, tris, turns[i].edge);
+        subdiv_mesh_flip_edge(mesh, tris, turns[i].edge, turns[i].across);
         turned[tris[0]] = turned[tris[1]] = 1;
         done++;
     }

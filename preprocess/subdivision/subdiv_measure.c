@@ -428,22 +428,22 @@ static void try_edge(const struct job *job, struct subdiv_finding *finding, stru
     finding->share = (float)min_of(1 - margin, max_of(margin, (double)finding->share));
 }
 
-static bool recall_edge(const struct subdiv *subdiv, uint32_t *next, struct subdiv_finding *finding)
-{
-    const struct subdiv_edge *edge = &subdiv->mesh.cuts[finding->number];
-    return subdiv_cache_find(subdiv, (const uint32_t[2]){ edge->a, edge->b }, 2, next, finding);
-}
-
 static void try_edges(void *arg, size_t begin, size_t end)
 {
     const struct job *job = arg;
+    const struct subdiv *subdiv = job->subdiv;
     struct room room;
     uint32_t next = 0;
-    room_init(&room, job->subdiv, POINTS);
-    for (size_t i = begin; i < end; i++)
-        if (!recall_edge(job->subdiv, &next, &job->findings[i]))
+    room_init(&room, subdiv, POINTS);
+    for (size_t i = begin; i < end; i++) {
+        const struct subdiv_edge *edge = &subdiv->mesh.cuts[job->findings[i].number];
+        const uint32_t corners[2] = { edge->a, edge->b };
+        uint64_t key = subdiv_cache_key(subdiv, corners, 2);
+        if (!subdiv_cache_find(subdiv, key, corners, 2, &next, &job->findings[i]))
             try_edge(job, &job->findings[i], &room);
-    room_finish(&room, job->subdiv);
+        job->findings[i].key = key;
+    }
+    room_finish(&room, subdiv);
 }
 
 /* From the middle to a corner, in a triangle in which no cut would mend that. */
@@ -524,13 +524,18 @@ static void try_inside(const struct subdiv *subdiv, struct subdiv_finding *findi
 static void try_insides(void *arg, size_t begin, size_t end)
 {
     const struct job *job = arg;
+    const struct subdiv *subdiv = job->subdiv;
     struct room room;
     uint32_t next = 0;
-    room_init(&room, job->subdiv, 1);
-    for (size_t i = begin; i < end; i++)
-        if (!subdiv_cache_find(job->subdiv, job->subdiv->mesh.tris[job->findings[i].number].v, 3, &next, &job->findings[i]))
-            try_inside(job->subdiv, &job->findings[i], &room);
-    room_finish(&room, job->subdiv);
+    room_init(&room, subdiv, 1);
+    for (size_t i = begin; i < end; i++) {
+        const uint32_t *corners = subdiv->mesh.tris[job->findings[i].number].v;
+        uint64_t key = subdiv_cache_key(subdiv, corners, 3);
+        if (!subdiv_cache_find(subdiv, key, corners, 3, &next, &job->findings[i]))
+            try_inside(subdiv, &job->findings[i], &room);
+        job->findings[i].key = key;
+    }
+    room_finish(&room, subdiv);
 }
 
 /* Beyond a reach the nearest sensor has all of a value: as it is written, since two may then be as near. */
@@ -583,10 +588,8 @@ void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, vo
 static void measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count, double enough)
 {
     subdiv_parallel(subdiv, count, GRAIN, try_edges, &(struct job){ .subdiv = subdiv, .findings = findings, .enough = enough });
-    for (size_t i = 0; i < count; i++) {
-        const struct subdiv_edge *edge = &subdiv->mesh.cuts[findings[i].number];
-        subdiv_cache_add(subdiv, (const uint32_t[2]){ edge->a, edge->b }, 2, &findings[i]);
-    }
+    for (size_t i = 0; i < count; i++)
+        subdiv_cache_add(subdiv, &findings[i]);
 }
 
 void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count)
@@ -608,7 +611,7 @@ void subdiv_measure_insides(struct subdiv *subdiv, struct subdiv_finding *findin
 {
     subdiv_parallel(subdiv, count, GRAIN, try_insides, &(struct job){ .subdiv = subdiv, .findings = findings });
     for (size_t i = 0; i < count; i++)
-        subdiv_cache_add(subdiv, subdiv->mesh.tris[findings[i].number].v, 3, &findings[i]);
+        subdiv_cache_add(subdiv, &findings[i]);
 }
 
 void subdiv_measure_places(struct subdiv *subdiv, uint32_t first, const uint32_t *edges, size_t count)

@@ -37,13 +37,6 @@ void subdiv_mesh_finish(struct subdiv_mesh *mesh)
 
 /* --- lists of triangles --------------------------------------------------------------------------------------------------- */
 
-void subdiv_mesh_list(struct subdiv_list *list, uint32_t number)
-{
-    list->sorted = list->count == 0 || (list->sorted && list->at[list->count - 1] < number);
-    mem_grow(&list->at, &list->capacity, list->count + 1, sizeof(*list->at));
-    list->at[list->count++] = number;
-}
-
 #define DIGIT_BITS 11
 
 /* By one digit after the other, the lowest first. */
@@ -96,6 +89,12 @@ static uint32_t place_of(const struct subdiv_mesh *mesh, uint32_t vertex)
     return mesh->welded.of_vertex[vertex];
 }
 
+static void note_origin(struct subdiv_mesh *mesh, uint32_t edge, uint32_t origin)
+{
+    if (mesh->loads == 1 && mesh->cuts[edge].origin[0] != origin)
+        mesh->cuts[edge].origin[1] = origin;
+}
+
 static uint32_t edge_of(struct subdiv_mesh *mesh, uint32_t a, uint32_t b, uint32_t origin)
 {
     size_t before = mesh->edges.count;
@@ -105,19 +104,25 @@ static uint32_t edge_of(struct subdiv_mesh *mesh, uint32_t a, uint32_t b, uint32
         mesh->cuts[e] = (struct subdiv_edge){
             .a = a, .b = b, .origin = { origin, TRIMESH_NONE }, .middle = TRIMESH_NONE, .corner = TRIMESH_NONE, .share = 0.5f, .error = -1
         };
-    } else if (mesh->loads == 1 && mesh->cuts[e].origin[0] != origin) {
-        mesh->cuts[e].origin[1] = origin;
+    } else {
+        note_origin(mesh, e, origin);
     }
     return e;
 }
 
-static struct subdiv_tri make_tri(struct subdiv_mesh *mesh, const struct subdiv_tri *like, uint32_t a, uint32_t b, uint32_t c)
+#define LOOK_UP TRIMESH_NONE
+
+/* known: its sides' numbers, where they are known already: looking them up is what takes long. */
+static struct subdiv_tri make_tri(struct subdiv_mesh *mesh, const struct subdiv_tri *like, const uint32_t v[3], const uint32_t known[3])
 {
-    return (struct subdiv_tri){ .v = { a, b, c },
-                                .e = { edge_of(mesh, a, b, like->origin), edge_of(mesh, b, c, like->origin),
-                                       edge_of(mesh, c, a, like->origin) },
-                                .primitive = like->primitive,
-                                .origin = like->origin };
+    struct subdiv_tri tri = { .v = { v[0], v[1], v[2] }, .primitive = like->primitive, .origin = like->origin };
+    for (int i = 0; i < 3; i++) {
+        if (known[i] == LOOK_UP)
+            tri.e[i] = edge_of(mesh, v[i], v[(i + 1) % 3], like->origin);
+        else
+            note_origin(mesh, tri.e[i] = known[i], like->origin);
+    }
+    return tri;
 }
 
 static void enter(struct subdiv_mesh *mesh, size_t t)
@@ -152,14 +157,18 @@ static void put_tri(struct subdiv_mesh *mesh, size_t t, const struct subdiv_tri 
     enter(mesh, t);
 }
 
-static void add_tri(struct subdiv_mesh *mesh, const struct subdiv_tri *like, uint32_t a, uint32_t b, uint32_t c)
+/* Returns its number; it is the last. */
+static size_t add_tri(struct subdiv_mesh *mesh, const struct subdiv_tri *like, const uint32_t v[3], const uint32_t known[3])
 {
-    struct subdiv_tri tri = make_tri(mesh, like, a, b, c);
+    struct subdiv_tri tri = make_tri(mesh, like, v, known);
     mem_grow(&mesh->tris, &mesh->tri_capacity, mesh->tri_count + 1, sizeof(*mesh->tris));
     mem_grow(&mesh->next, &mesh->next_capacity, 3 * mesh->tri_count + 3, sizeof(*mesh->next));
     mesh->tris[mesh->tri_count] = tri;
     enter(mesh, mesh->tri_count++);
+    return mesh->tri_count - 1;
 }
+
+static const uint32_t unknown[3] = { LOOK_UP, LOOK_UP, LOOK_UP };
 
 #define AHEAD 8 /* triangles */
 static void prefetch_edges(const struct subdiv_mesh *mesh, const uint32_t v[3])
@@ -184,7 +193,7 @@ void subdiv_mesh_load(struct subdiv_mesh *mesh, const struct level *level)
             const struct subdiv_tri like = { .primitive = p, .origin = at / 3 };
             if (i + 3 * AHEAD < level->primitives[p].index_count)
                 prefetch_edges(mesh, v + (size_t)3 * AHEAD);
-            add_tri(mesh, &like, v[0], v[1], v[2]);
+            add_tri(mesh, &like, v, unknown);
         }
 }
 
@@ -298,38 +307,61 @@ static double distance2(const struct subdiv_mesh *mesh, uint32_t a, uint32_t b)
     return x * x + y * y + z * z;
 }
 
+/* Its sides that are not cut are pieces' sides, too, and two pieces share one: e holds what is known of them. */
+static struct subdiv_tri cut_once(struct subdiv_mesh *mesh, const struct subdiv_tri *old, const uint32_t v[3], const uint32_t e[3],
+                                  uint32_t m)
+{
+    struct subdiv_tri piece = make_tri(mesh, old, (const uint32_t[3]){ v[0], m, v[2] }, (const uint32_t[3]){ LOOK_UP, LOOK_UP, e[2] });
+    add_tri(mesh, old, (const uint32_t[3]){ m, v[1], v[2] }, (const uint32_t[3]){ LOOK_UP, e[1], piece.e[1] });
+    return piece;
+}
+
+static struct subdiv_tri cut_twice(struct subdiv_mesh *mesh, const struct subdiv_tri *old, const uint32_t v[3], const uint32_t e[3],
+                                   const uint32_t m[3])
+{
+    struct subdiv_tri piece = make_tri(mesh, old, (const uint32_t[3]){ m[0], v[1], m[1] }, unknown);
+    if (distance2(mesh, v[0], m[1]) < distance2(mesh, m[0], v[2])) {
+        size_t t = add_tri(mesh, old, (const uint32_t[3]){ v[0], m[0], m[1] }, (const uint32_t[3]){ LOOK_UP, piece.e[2], LOOK_UP });
+        add_tri(mesh, old, (const uint32_t[3]){ v[0], m[1], v[2] }, (const uint32_t[3]){ mesh->tris[t].e[2], LOOK_UP, e[2] });
+    } else {
+        size_t t = add_tri(mesh, old, (const uint32_t[3]){ v[0], m[0], v[2] }, (const uint32_t[3]){ LOOK_UP, LOOK_UP, e[2] });
+        add_tri(mesh, old, (const uint32_t[3]){ m[0], m[1], v[2] }, (const uint32_t[3]){ piece.e[2], LOOK_UP, mesh->tris[t].e[1] });
+    }
+    return piece;
+}
+
+static struct subdiv_tri cut_thrice(struct subdiv_mesh *mesh, const struct subdiv_tri *old, const uint32_t v[3], const uint32_t m[3])
+{
+    struct subdiv_tri piece = make_tri(mesh, old, m, unknown);
+    for (int i = 0; i < 3; i++)
+        add_tri(mesh, old, (const uint32_t[3]){ v[i], m[i], m[(i + 2) % 3] },
+                (const uint32_t[3]){ LOOK_UP, piece.e[(i + 2) % 3], LOOK_UP });
+    return piece;
+}
+
 /* The first piece takes the triangle's place, the others go to the end. */
 static void split_tri(struct subdiv_mesh *mesh, size_t t)
 {
     struct subdiv_tri old = mesh->tris[t];
     int cuts = subdiv_mesh_is_split(mesh, old.e[0]) + subdiv_mesh_is_split(mesh, old.e[1]) + subdiv_mesh_is_split(mesh, old.e[2]),
         first = 0;
-    uint32_t v[3], m[3] = { 0 };
+    uint32_t v[3], e[3], m[3] = { 0 };
     if (cuts == 1)
         while (!subdiv_mesh_is_split(mesh, old.e[first]))
             first++;
     else if (cuts == 2)
         while (subdiv_mesh_is_split(mesh, old.e[(first + 2) % 3]))
             first++;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
         v[i] = old.v[(first + i) % 3];
-    for (int i = 0; i < 3; i++)
-        if (subdiv_mesh_is_split(mesh, old.e[(first + i) % 3]))
-            m[i] = middle_vertex(mesh, old.e[(first + i) % 3], v[i], v[(i + 1) % 3]);
-    struct subdiv_tri piece;
-    if (cuts == 1) {
-        piece = make_tri(mesh, &old, v[0], m[0], v[2]);
-        add_tri(mesh, &old, m[0], v[1], v[2]);
-    } else if (cuts == 2) {
-        piece = make_tri(mesh, &old, m[0], v[1], m[1]);
-        bool across = distance2(mesh, v[0], m[1]) < distance2(mesh, m[0], v[2]);
-        add_tri(mesh, &old, v[0], m[0], across ? m[1] : v[2]);
-        add_tri(mesh, &old, across ? v[0] : m[0], m[1], v[2]);
-    } else {
-        piece = make_tri(mesh, &old, m[0], m[1], m[2]);
-        for (int i = 0; i < 3; i++)
-            add_tri(mesh, &old, v[i], m[i], m[(i + 2) % 3]);
+        e[i] = old.e[(first + i) % 3];
     }
+    for (int i = 0; i < 3; i++)
+        if (subdiv_mesh_is_split(mesh, e[i]))
+            m[i] = middle_vertex(mesh, e[i], v[i], v[(i + 1) % 3]);
+    struct subdiv_tri piece = cuts == 1   ? cut_once(mesh, &old, v, e, m[0])
+                              : cuts == 2 ? cut_twice(mesh, &old, v, e, m)
+                                          : cut_thrice(mesh, &old, v, m);
     put_tri(mesh, t, &piece);
 }
 
@@ -359,41 +391,44 @@ uint32_t subdiv_mesh_insert(struct subdiv_mesh *mesh, size_t tri, const double w
 {
     struct subdiv_tri old = mesh->tris[tri];
     uint32_t vertex = add_vertex(mesh, add_place(mesh, position_m), old.v, weights, 3);
-    struct subdiv_tri piece = make_tri(mesh, &old, old.v[0], old.v[1], vertex);
+    struct subdiv_tri piece = make_tri(mesh, &old, (const uint32_t[3]){ old.v[0], old.v[1], vertex }, unknown);
     put_tri(mesh, tri, &piece);
-    add_tri(mesh, &old, old.v[1], old.v[2], vertex);
-    add_tri(mesh, &old, old.v[2], old.v[0], vertex);
+    add_tri(mesh, &old, (const uint32_t[3]){ old.v[1], old.v[2], vertex }, unknown);
+    add_tri(mesh, &old, (const uint32_t[3]){ old.v[2], old.v[0], vertex }, unknown);
     return vertex;
 }
 
 /* --- turning -------------------------------------------------------------------------------------------------------------- */
 
-/* The corners in their order, the first two at the edge. */
-static void corners_from(const struct subdiv_tri *tri, uint32_t edge, uint32_t v[3])
+/* The corners in their order, the first two at the edge; e: the sides, that edge first. */
+static void corners_from(const struct subdiv_tri *tri, uint32_t edge, uint32_t v[3], uint32_t e[3])
 {
     int first = tri->e[0] == edge ? 0 : tri->e[1] == edge ? 1 : 2;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
         v[i] = tri->v[(first + i) % 3];
+        e[i] = tri->e[(first + i) % 3];
+    }
 }
 
 uint32_t subdiv_mesh_opposite_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge)
 {
-    uint32_t v[3], w[3];
-    corners_from(&mesh->tris[tris[0]], edge, v);
-    corners_from(&mesh->tris[tris[1]], edge, w);
+    uint32_t v[3], w[3], e[3];
+    corners_from(&mesh->tris[tris[0]], edge, v, e);
+    corners_from(&mesh->tris[tris[1]], edge, w, e);
     if (v[0] != w[1] || v[1] != w[0] || place_of(mesh, v[2]) == place_of(mesh, w[2]))
         return TRIMESH_NONE;
     return edge_of(mesh, v[2], w[2], mesh->tris[tris[0]].origin);
 }
 
-void subdiv_mesh_flip_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge)
+void subdiv_mesh_flip_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge, uint32_t across)
 {
     const struct subdiv_tri old[2] = { mesh->tris[tris[0]], mesh->tris[tris[1]] };
-    uint32_t v[3], w[3];
-    corners_from(&old[0], edge, v);
-    corners_from(&old[1], edge, w);
-    struct subdiv_tri turned[2] = { make_tri(mesh, &old[0], v[0], w[2], v[2]) };
-    turned[1] = make_tri(mesh, &old[1], w[2], v[1], v[2]);
+    uint32_t v[3], w[3], e[3], f[3];
+    corners_from(&old[0], edge, v, e);
+    corners_from(&old[1], edge, w, f);
+    struct subdiv_tri turned[2] = { make_tri(mesh, &old[0], (const uint32_t[3]){ v[0], w[2], v[2] },
+                                             (const uint32_t[3]){ f[1], across, e[2] }) };
+    turned[1] = make_tri(mesh, &old[1], (const uint32_t[3]){ w[2], v[1], v[2] }, (const uint32_t[3]){ f[2], e[1], across });
     put_tri(mesh, tris[0], &turned[0]);
     put_tri(mesh, tris[1], &turned[1]);
 }

@@ -3,6 +3,7 @@
    shared by all levels. */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIV_MESH_H
 #define PREPROCESS_SUBDIVISION_SUBDIV_MESH_H
+#include "base/mem.h"
 #include "preprocess/levels/levels.h"
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/trimesh.h"
@@ -71,7 +72,13 @@ static inline bool subdiv_mesh_is_split(const struct subdiv_mesh *mesh, uint32_t
    (cuts[edge].middle), false if another level had cut the edge already. */
 bool subdiv_mesh_split_edge(struct subdiv_mesh *mesh, uint32_t edge, const float position_m[3]);
 /* Appends a number to a list. */
-void subdiv_mesh_list(struct subdiv_list *list, uint32_t number);
+static inline void subdiv_mesh_list(struct subdiv_list *list, uint32_t number)
+{
+    list->sorted = list->count == 0 || (list->sorted && list->at[list->count - 1] < number);
+    if (list->count == list->capacity)
+        mem_grow(&list->at, &list->capacity, list->count + 1, sizeof(*list->at));
+    list->at[list->count++] = number;
+}
 /* Sorts a list and removes duplicates. */
 void subdiv_mesh_sort(struct subdiv_list *list);
 /* Marks all triangles of the current level as new (mesh->made). */
@@ -84,8 +91,8 @@ uint32_t subdiv_mesh_insert(struct subdiv_mesh *mesh, size_t tri, const double w
 /* Returns the edge between the other corners of two triangles at an edge, tris[1] having it the other way round; it need not be in the
    level. TRIMESH_NONE if the triangles do not share the edge's two vertices. */
 uint32_t subdiv_mesh_opposite_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge);
-/* Replaces the two triangles' common edge by that one. */
-void subdiv_mesh_flip_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge);
+/* Replaces the two triangles' common edge by that one, `across`. */
+void subdiv_mesh_flip_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge, uint32_t across);
 
 /* Writes the surface's normal at an edge, of no certain length. */
 void subdiv_mesh_normal(const struct subdiv_mesh *mesh, const struct subdiv_edge *edge, double normal[3]);

@@ -87,36 +87,71 @@ static bool is_too_short(const struct subdiv *subdiv, const struct subdiv_edge *
     return !subdiv->finest && subdiv_is_short(subdiv, subdiv_length(subdiv_position(subdiv, edge->a), subdiv_position(subdiv, edge->b)));
 }
 
+/* Bits of a triangle made; those of a side are shifted by its number. */
+#define SIDE_IS_NEW 1u
+#define SIDE_IS_TOO_SHORT 8u
+#define ASKS 64u /* it has new sides, and is no line */
+
+struct sides {
+    const struct subdiv *subdiv;
+    unsigned char *of; /* the triangles made */
+};
+
+static void look_at_sides(void *arg, size_t begin, size_t end)
+{
+    const struct sides *sides = arg;
+    const struct subdiv_mesh *mesh = &sides->subdiv->mesh;
+    for (size_t m = begin; m < end; m++) {
+        const struct subdiv_tri *tri = &mesh->tris[mesh->made.at[m]];
+        unsigned of = 0;
+        for (int i = 0; i < 3; i++)
+            if (mesh->cuts[tri->e[i]].error < 0)
+                of |= SIDE_IS_NEW << i;
+        if (of && !is_line(sides->subdiv, tri))
+            of |= ASKS;
+        for (int i = 0; i < 3; i++)
+            if (of & ASKS && of & SIDE_IS_NEW << i && is_too_short(sides->subdiv, &mesh->cuts[tri->e[i]]))
+                of |= SIDE_IS_TOO_SHORT << i;
+        sides->of[m] = (unsigned char)of;
+    }
+}
+
+/* Of triangles that ask for their new sides, or of those that do not: these sides are 0 where no other triangle asks. Lists those to be
+   measured; returns how many. */
+static size_t take_new_sides(struct subdiv *subdiv, const struct sides *sides, unsigned asks, struct subdiv_finding *findings)
+{
+    struct subdiv_mesh *mesh = &subdiv->mesh;
+    size_t count = 0;
+    for (size_t m = 0; m < mesh->made.count; m++)
+        for (int i = 0; i < 3 && sides->of[m] && (sides->of[m] & ASKS) == asks; i++) {
+            uint32_t e = mesh->tris[mesh->made.at[m]].e[i];
+            struct subdiv_edge *edge = &mesh->cuts[e];
+            if (edge->error >= 0)
+                continue;
+            edge->error = edge->barred = 0;
+            if (!asks)
+                continue;
+            edge->unasked = (sides->of[m] & SIDE_IS_TOO_SHORT << i) != 0;
+            if (!edge->unasked)
+                findings[count++].number = e;
+        }
+    return count;
+}
+
 /* Measures edges that are new. One that only lines have is not seen; were it cut, they would become ever more. Half of the edges of coarser
    levels are too short to be cut: what they err by does not matter. */
 static void measure_edges(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
-    size_t count = 0;
     subdiv_mesh_sort(&mesh->made);
+    struct sides sides = { subdiv, mem_array(mesh->made.count, 1) };
+    subdiv_parallel(subdiv, mesh->made.count, GRAIN, look_at_sides, &sides);
     struct subdiv_finding *findings = mem_array(3 * mesh->made.count, sizeof(*findings));
-    for (size_t m = 0; m < mesh->made.count; m++) {
-        const struct subdiv_tri *tri = &mesh->tris[mesh->made.at[m]];
-        bool any_new = mesh->cuts[tri->e[0]].error < 0 || mesh->cuts[tri->e[1]].error < 0 || mesh->cuts[tri->e[2]].error < 0;
-        bool asks = any_new && !is_line(subdiv, tri);
-        for (int i = 0; i < 3 && asks; i++) {
-            struct subdiv_edge *edge = &mesh->cuts[tri->e[i]];
-            if (edge->error >= 0)
-                continue;
-            edge->error = edge->barred = 0;
-            edge->unasked = is_too_short(subdiv, edge);
-            if (!edge->unasked)
-                findings[count++].number = tri->e[i];
-        }
-    }
-    for (size_t m = 0; m < mesh->made.count; m++)
-        for (int i = 0; i < 3; i++) {
-            struct subdiv_edge *edge = &mesh->cuts[mesh->tris[mesh->made.at[m]].e[i]];
-            if (edge->error < 0)
-                edge->error = edge->barred = 0;
-        }
+    size_t count = take_new_sides(subdiv, &sides, ASKS, findings);
+    take_new_sides(subdiv, &sides, 0, findings);
     subdiv_measure_new_edges(subdiv, findings, count);
     mem_free(findings);
+    mem_free(sides.of);
 }
 
 static int longest_edge(const struct subdiv *subdiv, const struct subdiv_tri *tri)
@@ -220,8 +255,8 @@ static void cut_edges(struct subdiv *subdiv, const struct subdiv_finding *findin
     mem_free(edges);
 }
 
-/* In a flat triangle the longest edge runs beside the corner across: where it is to be cut, it is cut there. True: so it should be. */
-static bool aim_at_corner(struct subdiv *subdiv, const struct subdiv_tri *tri, uint32_t *edge)
+/* In a flat triangle the longest edge runs beside the corner across: where it is to be cut, it is cut there. False: it is not so flat. */
+static bool find_aim(const struct subdiv *subdiv, const struct subdiv_tri *tri, uint32_t *edge, float *share)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
     int i = longest_edge(subdiv, tri);
@@ -229,13 +264,51 @@ static bool aim_at_corner(struct subdiv *subdiv, const struct subdiv_tri *tri, u
     double ab = subdiv_length(subdiv_position(subdiv, v[0]), subdiv_position(subdiv, v[1])),
            ca = subdiv_length(subdiv_position(subdiv, v[2]), subdiv_position(subdiv, v[0])),
            cb = subdiv_length(subdiv_position(subdiv, v[2]), subdiv_position(subdiv, v[1]));
-    struct subdiv_edge *at = &mesh->cuts[tri->e[i]];
     *edge = tri->e[i];
     if (min_of(ca, cb) < max_of(subdiv->shortest_m, ASIDE * ab) || ca + cb > ab * (1 + FLAT))
         return false;
-    if (at->middle == TRIMESH_NONE)
-        at->share = (float)((mesh->welded.of_vertex[v[0]] == mesh->welded.of_vertex[at->a] ? ca : cb) / (ca + cb));
+    *share = (float)((mesh->welded.of_vertex[v[0]] == mesh->welded.of_vertex[mesh->cuts[*edge].a] ? ca : cb) / (ca + cb));
     return true;
+}
+
+static bool aim_at_corner(struct subdiv *subdiv, const struct subdiv_tri *tri, uint32_t *edge)
+{
+    float share;
+    if (!find_aim(subdiv, tri, edge, &share))
+        return false;
+    if (subdiv->mesh.cuts[*edge].middle == TRIMESH_NONE)
+        subdiv->mesh.cuts[*edge].share = share;
+    return true;
+}
+
+struct aims {
+    const struct subdiv *subdiv;
+    char *flat; /* of the triangles made */
+};
+
+static void find_flat(void *arg, size_t begin, size_t end)
+{
+    const struct aims *aims = arg;
+    const struct subdiv_mesh *mesh = &aims->subdiv->mesh;
+    for (size_t m = begin; m < end; m++) {
+        const struct subdiv_tri *tri = &mesh->tris[mesh->made.at[m]];
+        aims->flat[m] = !tri->aimed && find_aim(aims->subdiv, tri, &(uint32_t){ 0 }, &(float){ 0 });
+    }
+}
+
+/* Of triangles that are new. */
+static void aim_at_corners(struct subdiv *subdiv)
+{
+    struct subdiv_mesh *mesh = &subdiv->mesh;
+    struct aims aims = { subdiv, mem_array(mesh->made.count, 1) };
+    subdiv_parallel(subdiv, mesh->made.count, GRAIN, find_flat, &aims);
+    for (size_t m = 0; m < mesh->made.count; m++) {
+        struct subdiv_tri *tri = &mesh->tris[mesh->made.at[m]];
+        if (aims.flat[m])
+            aim_at_corner(subdiv, tri, &(uint32_t){ 0 });
+        tri->aimed = true;
+    }
+    mem_free(aims.flat);
 }
 
 /* Edges beside corners at which other edges are cut, or the pieces would stay as long as they are. */
@@ -262,7 +335,12 @@ static struct subdiv_finding *list_errors(const struct subdiv *subdiv, double li
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
     struct subdiv_list corners = { 0 };
-    for (size_t m = 0; m < mesh->made.count; m++)
+    bool all = mesh->made.count == mesh->tri_count; /* then each corner is met in order */
+    for (size_t t = 0; t < mesh->tri_count && all; t++)
+        for (uint32_t i = 0; i < 3; i++)
+            if ((double)mesh->cuts[mesh->tris[t].e[i]].error > limit)
+                subdiv_mesh_list(&corners, 3 * (uint32_t)t + i);
+    for (size_t m = 0; m < mesh->made.count && !all; m++)
         for (int i = 0; i < 3; i++) {
             const struct subdiv_edge *edge = &mesh->cuts[mesh->tris[mesh->made.at[m]].e[i]];
             for (uint32_t corner = edge->corner; corner != TRIMESH_NONE && (double)edge->error > limit; corner = mesh->next[corner])
@@ -285,12 +363,7 @@ static bool cut_worst(struct subdiv *subdiv, double limit)
     size_t listed, room = subdiv->most_tris > mesh->tri_count ? (subdiv->most_tris - mesh->tri_count) / 2 : 0;
     subdiv_mesh_sort(&mesh->made);
     struct subdiv_finding *findings = list_errors(subdiv, limit, &listed);
-    for (size_t m = 0; m < mesh->made.count; m++) {
-        struct subdiv_tri *tri = &mesh->tris[mesh->made.at[m]];
-        if (!tri->aimed)
-            aim_at_corner(subdiv, tri, &(uint32_t){ 0 });
-        tri->aimed = true;
-    }
+    aim_at_corners(subdiv);
     subdiv->full = (double)room < FULL * (double)mesh->tri_count;
     size_t count = keep_worst(findings, listed, room);
     cut_edges(subdiv, findings, count);

@@ -72,6 +72,7 @@ struct subdiv_finding {
     bool jumps;
     bool is_cached;   /* it is of the last time */
     float doubt, off; /* subdiv_cache.h */
+    uint64_t key;     /* likewise */
 };
 
 /* Assigns each position the part (connected component by edges) that it belongs to. Returns false if out of memory. */
@@ -96,11 +97,14 @@ size_t subdiv_take_sample(struct level *sample, const struct level *level);
 
 /* --- keeping (subdiv_cache.c) --- */
 
-/* Looks up the finding of the last run about an edge or triangle by its corners, if it still holds. *next: a guess of where it is stored, 0
-   at first; updated for the next call. Returns false if it is not known, or may no longer hold. */
-bool subdiv_cache_find(const struct subdiv *subdiv, const uint32_t *corners, size_t count, uint32_t *next, struct subdiv_finding *finding);
-/* Records a finding for the next run. */
-void subdiv_cache_add(struct subdiv *subdiv, const uint32_t *corners, size_t count, const struct subdiv_finding *finding);
+/* Returns the key by which a finding about an edge or triangle with these corners is kept; 0 where none is. Thread: any. */
+uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, size_t count);
+/* Looks up the finding of the last run with that key, if it still holds. *next: a guess of where it is stored, 0 at first; updated for the
+   next call. Returns false if it is not known, or may no longer hold. Thread: any. */
+bool subdiv_cache_find(const struct subdiv *subdiv, uint64_t key, const uint32_t *corners, size_t count, uint32_t *next,
+                       struct subdiv_finding *finding);
+/* Records a finding, with its key, for the next run. */
+void subdiv_cache_add(struct subdiv *subdiv, const struct subdiv_finding *finding);
 
 /* --- turning (subdiv_flip.c) --- */
 

@@ -46,11 +46,13 @@ static size_t border_edges(const struct trimesh *mesh)
     edge_table_init(&edges, mesh->tri_count * 3 / 2);
     unsigned char *faces = mem_array(mesh->tri_count * 3, 1);
     size_t count = 0;
-    for (size_t t = 0; t < mesh->tri_count; t++)
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        edge_table_prefetch_ahead(&edges, (const uint32_t(*)[3])mesh->tris, t, mesh->tri_count);
         for (int i = 0; i < 3; i++) {
             uint32_t e = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
             faces[e] = (unsigned char)(faces[e] < 2 ? faces[e] + 1 : 2);
         }
+    }
     for (size_t e = 0; e < edges.count; e++)
         count += faces[e] == 1;
     mem_free(faces);

@@ -11,6 +11,8 @@ static void list_edges(struct tri_edges *e)
     edge_table_init(&table, e->tri_count * 3 / 2);
     for (uint32_t side = 0; side < 3 * e->tri_count; side++) {
         const uint32_t *tri = e->tris[side / 3];
+        if (side % 3 == 0)
+            edge_table_prefetch_ahead(&table, e->tris, side / 3, e->tri_count);
         uint32_t number = edge_table_add(&table, tri[side % 3], tri[(side % 3 + 1) % 3]);
         struct tri_edge *edge = &e->edges[number];
         if (edge->faces < 2)

@@ -90,6 +90,13 @@ void edge_table_prefetch(const struct edge_table *table, uint32_t a, uint32_t b)
     __builtin_prefetch(&table->numbers[slot]);
 }
 
+#define AHEAD 8 /* triangles */
+void edge_table_prefetch_ahead(const struct edge_table *table, const uint32_t (*tris)[3], size_t tri, size_t tri_count)
+{
+    for (int i = 0; i < 3 && tri + AHEAD < tri_count; i++)
+        edge_table_prefetch(table, tris[tri + AHEAD][i], tris[tri + AHEAD][(i + 1) % 3]);
+}
+
 /* --- building ------------------------------------------------------------------------------------------------------------ */
 
 void trimesh_finish(struct trimesh *mesh)

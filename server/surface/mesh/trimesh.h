@@ -75,5 +75,7 @@ uint32_t edge_table_add(struct edge_table *table, uint32_t a, uint32_t b);
 uint32_t edge_table_find(const struct edge_table *table, uint32_t a, uint32_t b);
 /* Prefetches the memory where the edge will be looked up soon. */
 void edge_table_prefetch(const struct edge_table *table, uint32_t a, uint32_t b);
+/* The same of the edges of the triangle that comes a few after this one, of so many. */
+void edge_table_prefetch_ahead(const struct edge_table *table, const uint32_t (*tris)[3], size_t tri, size_t tri_count);
 
 #endif

@@ -26,17 +26,22 @@ static void find_open_edges(struct borders *b, const struct trimesh *mesh, const
     struct edge_table edges;
     edge_table_init(&edges, mesh->tri_count * 3 / 2);
     unsigned char *faces = mem_array(mesh->tri_count * 3, 1), *rim = mem_array(mesh->tri_count * 3, 1);
-    for (size_t t = 0; t < mesh->tri_count; t++)
+    uint32_t(*numbers)[3] = mem_array(mesh->tri_count, sizeof(*numbers));
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        edge_table_prefetch_ahead(&edges, (const uint32_t(*)[3])mesh->tris, t, mesh->tri_count);
         for (int i = 0; i < 3; i++) {
-            uint32_t e = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
+            uint32_t e = numbers[t][i] = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
             faces[e] = (unsigned char)(faces[e] < 2 ? faces[e] + 1 : 2);
         }
-    for (size_t t = 0; hidden && t < hidden->tri_count; t++)
+    }
+    for (size_t t = 0; hidden && t < hidden->tri_count; t++) {
+        edge_table_prefetch_ahead(&edges, (const uint32_t(*)[3])hidden->tris, t, hidden->tri_count);
         for (int i = 0; i < 3; i++) {
             uint32_t e = edge_table_find(&edges, hidden->tris[t][i], hidden->tris[t][(i + 1) % 3]);
             if (e != TRIMESH_NONE)
                 rim[e] = 1;
         }
+    }
     for (size_t e = 0; e < edges.count; e++) {
         rim[e] = faces[e] == 1 && (!hidden || rim[e]);
         b->edge_count += rim[e];
@@ -47,7 +52,7 @@ static void find_open_edges(struct borders *b, const struct trimesh *mesh, const
     for (uint32_t t = 0; t < mesh->tri_count; t++)
         for (int i = 0; i < 3; i++) {
             uint32_t p = mesh->tris[t][i], q = mesh->tris[t][(i + 1) % 3];
-            if (!rim[edge_table_find(&edges, p, q)])
+            if (!rim[numbers[t][i]])
                 continue;
             b->edges[n][0] = p;
             b->edges[n][1] = q;
@@ -55,6 +60,7 @@ static void find_open_edges(struct borders *b, const struct trimesh *mesh, const
         }
     mem_free(faces);
     mem_free(rim);
+    mem_free(numbers);
     edge_table_finish(&edges);
 }
 
