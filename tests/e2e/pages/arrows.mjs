@@ -80,8 +80,8 @@ after(async () => {
     await plant?.destroy();
 });
 
-// Of the picture that is drawn, as the page was told: [x, y, dx, dy, value, uncertain, half], and the picture's size. whole: it is no preview
-// of fewer pixels, as a busy machine makes them, which has fewer arrows.
+// Of the picture that is drawn, as the page was told: [x, y, dx, dy, value, uncertain, half], and the picture's size. whole: it is no
+// preview of fewer pixels, as a busy machine makes them, which has fewer arrows.
 const arrows = () => browser.page.evaluate(() => {
     const { session } = globalThis.plantcast, { picture, size } = session;
     return { rows: session.markersOf(picture.seq)?.arrows ?? [], width: picture.fullWidth, height: picture.fullHeight,
