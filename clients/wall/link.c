@@ -322,6 +322,11 @@ static int on_link(struct link *link, struct lws *wsi, enum lws_callback_reasons
         else if (len > 2)
             link->retry_after_s = retry_after((const char *)in + 2, len - 2);
         break;
+    case LWS_CALLBACK_CLOSED_CLIENT_HTTP: /* before the upgrade: it took the connection, and nothing came */
+        if (link->index == 0 && !link->asked)
+            tell_why(link->links, "it does not answer");
+        on_gone(link);
+        break;
     case LWS_CALLBACK_CLIENT_CLOSED: on_gone(link); break;
     default: break;
     }

@@ -3,6 +3,7 @@
    server at once, by real sockets: twice, with PLANTCAST_LONG=1 200 times, with LOSSES=N so often. */
 #include <libwebsockets.h>
 #include <math.h>
+#include <netinet/in.h>
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,7 +12,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -236,11 +239,50 @@ static void each_loss_ends_by_itself(void **state)
     lws_context_destroy(server.context);
 }
 
+/* Takes connections, and nothing else: as one that is frozen, or that the machine gives no time. */
+static int listen_only(int *port)
+{
+    struct sockaddr_in address = { .sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
+    int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    *port = free_port();
+    address.sin_port = htons((uint16_t)*port);
+    assert_int_equal(bind(fd, (const struct sockaddr *)&address, sizeof(address)), 0);
+    assert_int_equal(listen(fd, LINKS_MOST), 0);
+    return fd;
+}
+
+static void a_server_that_answers_nothing_is_left(void **state)
+{
+    static const struct link_events events = { hello, text, text, frame, refused };
+    static struct links links;
+    static struct daemon_url url = { .host = "127.0.0.1" };
+    pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+    int tries[2] = { 0 }, fd = listen_only(&url.port);
+    int64_t begun_ns = clock_mono_ns();
+    (void)state;
+    links.lock = &lock;
+    links.url = &url;
+    for (int i = 0; i < 2; i++)
+        links.at[i] = (struct link){ .links = &links, .events = &events, .index = i, .wanted = true };
+    assert_true(links_start(&links));
+    do {
+        assert_true(clock_mono_ns() - begun_ns < PATIENCE_S * NS_PER_S);
+        rest();
+        pthread_mutex_lock(&lock);
+        for (int i = 0; i < 2; i++)
+            tries[i] = links.at[i].tries;
+        pthread_mutex_unlock(&lock);
+    } while (tries[0] == 0 || tries[1] == 0);
+    links_stop(&links);
+    close(fd);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(waits_are_bounded_and_staggered),
         cmocka_unit_test(each_loss_ends_by_itself),
+        cmocka_unit_test(a_server_that_answers_nothing_is_left),
     };
     srand((unsigned)sweep_seed());
     cmocka_set_message_output(CM_OUTPUT_TAP);
