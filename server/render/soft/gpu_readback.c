@@ -23,6 +23,7 @@ void soft_free_light(const struct soft *soft, struct soft_light *light)
         mem_free(light->baked[i]);
     mem_free(light->baked);
     mem_free(light->sun_map);
+    mem_free(light->sun_bounds);
     mem_free(light->ground);
     mem_free(light->open);
     *light = (struct soft_light){ 0 };
@@ -48,8 +49,8 @@ struct sun_band { /* rows of the sun map, and the first of those that follow the
     int width_px, row_count;
 };
 
-/* The map's last row and column come twice, as lower and right neighbours. */
-static void fill_sun_tile(const struct sun_band *band, int u, int v, uint16_t *to)
+/* The map's last row and column come twice, as lower and right neighbours. Returns the tile's bounds. */
+static uint32_t fill_sun_tile(const struct sun_band *band, int u, int v, uint16_t *to)
 {
     static const uint16_t nothing[SUN_TILE_TEXELS];
     const int last_u = band->width_px - 1, last_v = band->row_count - 1;
@@ -65,6 +66,7 @@ static void fill_sun_tile(const struct sun_band *band, int u, int v, uint16_t *t
     }
     if (memcmp(texels, nothing, sizeof(texels)) != 0)
         memcpy(to, texels, sizeof(texels));
+    return soft_sun_bounds(texels);
 }
 
 /* One band after the other, in the same memory. Tiles in which nothing stands are left as they were allocated: pages that hold no others
@@ -73,13 +75,14 @@ static void fill_sun_tiles(struct soft_light *light, GLuint map, struct sun_band
 {
     const int size = light->sun_map_px, tiles = light->sun_tiles;
     uint16_t *to = light->sun_map;
+    uint32_t *bounds = light->sun_bounds;
     for (int first = 0; first < tiles; first += SUN_BAND_TILES) {
         const int begin = first * SUN_TILE_STEP_PX, count = tiles - first < SUN_BAND_TILES ? tiles - first : SUN_BAND_TILES;
         band->row_count = size - begin < SUN_BAND_ROWS ? size - begin : SUN_BAND_ROWS;
         glGetTextureSubImage(map, 0, 0, begin, 0, size, band->row_count, 1, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT,
                              (GLsizei)(sizeof(*band->rows) * (size_t)size * (size_t)band->row_count), band->rows);
         for (int tile = 0; tile < count * tiles; tile++, to += SUN_TILE_TEXELS)
-            fill_sun_tile(band, tile % tiles * SUN_TILE_STEP_PX, tile / tiles * SUN_TILE_STEP_PX, to);
+            *bounds++ = fill_sun_tile(band, tile % tiles * SUN_TILE_STEP_PX, tile / tiles * SUN_TILE_STEP_PX, to);
     }
 }
 
@@ -92,8 +95,9 @@ static bool read_sun_map(const struct soft *soft, struct soft_light *light, GLui
     const size_t bytes = soft_sun_map_bytes(light);
     struct sun_band band = { .rows = mem_try_array((size_t)size * SUN_BAND_ROWS, sizeof(*band.rows)), .width_px = size };
     light->sun_map = mem_try_array(bytes, 1);
+    light->sun_bounds = mem_try_array(soft_sun_bounds_bytes(light), 1);
     huge_pages_advise(light->sun_map, bytes);
-    bool good = band.rows && light->sun_map;
+    bool good = band.rows && light->sun_map && light->sun_bounds;
     if (good) {
         glPixelStorei(GL_PACK_ALIGNMENT, 2);
         fill_sun_tiles(light, map, &band);

@@ -31,33 +31,60 @@ SOFT_INLINE lanes byte_of(lanes_int packed, int number)
     return __builtin_convertvector(packed >> (8 * number) & 0xff, lanes);
 }
 
-/* Where a texel of the sun's map is. u, v: whole. */
-SOFT_INLINE lanes_int sun_texel_at(const struct soft_light *light, lanes u, lanes v)
+/* Where on the sun's map eight places are, and what the bounds of its tiles tell already: most are as light or as dark as all of their
+   tile. Looked up in three steps, with other work between them: each fetches what the next one needs. */
+struct sun_aim {
+    lanes u_part, v_part, place; /* between texels; depth, as the map has it */
+    lanes_int tile, at;          /* at: the upper left one of four texels */
+    lanes_int open;              /* those that have to be looked up; of the others `lit` is how much of the sun is seen */
+    lanes lit;
+};
+
+/* s, t: 0..1 over the map. */
+SOFT_INLINE void sun_aim(const struct soft_light *light, const lanes s_t_depth[3], lanes_int wanted, struct sun_aim *aim)
 {
-    const float over = 1.0f / SUN_TILE_STEP_PX;
-    lanes_int column = lanes_whole((u + 0.5f) * over), row = lanes_whole((v + 0.5f) * over);
-    lanes_int x = lanes_whole(u) - column * SUN_TILE_STEP_PX, y = lanes_whole(v) - row * SUN_TILE_STEP_PX;
-    return (row * light->sun_tiles + column) * SUN_TILE_TEXELS + y * SUN_TILE_PX + x;
+    const float over = 1.0f / SUN_TILE_STEP_PX, size = (float)light->sun_map_px;
+    lanes u = lanes_clamp(s_t_depth[0] * size - 0.5f, 0, size - 1), v = lanes_clamp(s_t_depth[1] * size - 0.5f, 0, size - 1);
+    lanes_int whole_u = lanes_whole(u), whole_v = lanes_whole(v);
+    lanes u0 = __builtin_convertvector(whole_u, lanes), v0 = __builtin_convertvector(whole_v, lanes);
+    lanes_int column = lanes_whole((u0 + 0.5f) * over), row = lanes_whole((v0 + 0.5f) * over);
+    aim->u_part = u - u0;
+    aim->v_part = v - v0;
+    aim->place = lanes_clamp(s_t_depth[2], 0, 1) * 65535.0f;
+    aim->tile = row * light->sun_tiles + column;
+    aim->at = aim->tile * SUN_TILE_TEXELS + (whole_v - row * SUN_TILE_STEP_PX) * SUN_TILE_PX + whole_u - column * SUN_TILE_STEP_PX;
+    aim->open = wanted;
 }
 
-/* Asks for what sun_tap() will look up soon. */
-SOFT_INLINE void sun_prefetch(const struct soft_light *light, lanes s, lanes t)
+/* Asks for what sun_bound() will look up soon: as a rule neighbours lie in one line. */
+SOFT_INLINE void sun_prefetch_bounds(const struct soft_light *light, const struct sun_aim *aim)
 {
-    float size = (float)light->sun_map_px;
-    lanes u = lanes_clamp(s * size - 0.5f, 0, size - 1), v = lanes_clamp(t * size - 0.5f, 0, size - 1);
-    lanes_int at = sun_texel_at(light, whole_part(u), whole_part(v));
+    lanes_int tile = aim->tile & aim->open;
+    for (int i = 0; i < LANES; i += LANES - 1)
+        __builtin_prefetch(light->sun_bounds + tile[i]);
+}
+
+/* Leaves open what the bounds of tiles do not tell. */
+SOFT_INLINE void sun_bound(const struct soft_light *light, struct sun_aim *aim)
+{
+    lanes_int bounds = gather(light->sun_bounds, aim->tile & aim->open);
+    lanes one = (lanes){ 0 } + 1.0f, none = { 0 };
+    lanes_int lit = aim->place >= __builtin_convertvector(bounds >> 16 & 0xffff, lanes);
+    aim->open &= ~lit & (aim->place >= __builtin_convertvector(bounds & 0xffff, lanes));
+    aim->lit = lanes_choose(lit, one, none);
+}
+
+/* Asks for what sun_look() will look up soon. */
+SOFT_INLINE void sun_prefetch(const struct soft_light *light, const struct sun_aim *aim)
+{
+    lanes_int at = aim->at & aim->open;
     for (int i = 0; i < LANES; i++)
         __builtin_prefetch(light->sun_map + at[i]);
 }
 
-/* How much of the sun is seen, 0..1: four comparisons, weighted as a GL sampler with linear filter does. s, t: 0..1 over the map. */
-SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lanes depth)
+/* Four comparisons, weighted as a GL sampler with linear filter does. at: as in aim. */
+SOFT_INLINE lanes sun_compare(const struct soft_light *light, const struct sun_aim *aim, lanes_int at)
 {
-    float size = (float)light->sun_map_px;
-    lanes u = lanes_clamp(s * size - 0.5f, 0, size - 1), v = lanes_clamp(t * size - 0.5f, 0, size - 1);
-    lanes place = lanes_clamp(depth, 0, 1) * 65535.0f;
-    lanes u0 = whole_part(u), v0 = whole_part(v), u_part = u - u0, v_part = v - v0;
-    lanes_int at = sun_texel_at(light, u0, v0);
     uint32_t pairs[2][LANES]; /* of neighbours; above, below */
     for (int i = 0; i < LANES; i++) {
         memcpy(&pairs[0][i], light->sun_map + at[i], 4);
@@ -65,10 +92,27 @@ SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lane
     }
     lanes_uint above = *(const lanes_uint *)pairs[0], below = *(const lanes_uint *)pairs[1];
     lanes one = (lanes){ 0 } + 1.0f, none = { 0 };
-#define LIT(pair) lanes_choose(place >= __builtin_convertvector((lanes_int)((pair)&0xffff), lanes), one, none)
-    lanes upper = LIT(above) + u_part * (LIT(above >> 16) - LIT(above)), lower = LIT(below) + u_part * (LIT(below >> 16) - LIT(below));
+#define LIT(pair) lanes_choose(aim->place >= __builtin_convertvector((lanes_int)((pair)&0xffff), lanes), one, none)
+    lanes upper = LIT(above) + aim->u_part * (LIT(above >> 16) - LIT(above));
+    lanes lower = LIT(below) + aim->u_part * (LIT(below >> 16) - LIT(below));
 #undef LIT
-    return upper + v_part * (lower - upper);
+    return upper + aim->v_part * (lower - upper);
+}
+
+/* How much of the sun is seen, 0..1. */
+SOFT_INLINE lanes sun_look(const struct soft_light *light, const struct sun_aim *aim)
+{
+    if (!lanes_any(aim->open))
+        return aim->lit;
+    return lanes_choose(aim->open, sun_compare(light, aim, aim->at & aim->open), aim->lit);
+}
+
+/* The same at once, without bounds: refined frames, which look up four places near each other, are not faster by them. */
+SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lanes depth)
+{
+    struct sun_aim aim;
+    sun_aim(light, (lanes[3]){ s, t, depth }, (lanes_int){ 0 }, &aim);
+    return sun_compare(light, &aim, aim.at);
 }
 
 /* Heights over the horizon, as columns of the backdrop. They bend so little that they are worked out at the ends of stretches only: of

@@ -7,7 +7,9 @@
 #include "render/soft/lookups.h"
 #include "render/soft/section_colors.h"
 
-enum { AHEAD = 2 * LANES }; /* pixels, whose shadows are asked for early: they lie far apart in memory */
+/* How many pixels ahead of those being coloured the bounds of shadows are asked for, and what these leave open: they lie far apart in
+   memory. Aims are kept from when they are made until their pixels are coloured. */
+enum { BOUNDS_AHEAD = 8 * LANES, SHADOWS_AHEAD = 4 * LANES, AIMS = 16 };
 
 /* The place on the sun's map, 0..1, and the depth there. */
 SOFT_INLINE void sun_place(const struct raster *raster, lanes x, float y, lanes depth, lanes place[3])
@@ -21,30 +23,34 @@ SOFT_INLINE void sun_place(const struct raster *raster, lanes x, float y, lanes 
         place[r] = s[r] * over;
 }
 
-/* How much of the sun is seen, 0..1. */
-SOFT_INLINE lanes sun_at(const struct raster *raster, lanes x, float y, lanes depth)
-{
-    lanes at[3];
-    sun_place(raster, x, y, depth, at);
-    return sun_tap(raster->light, at[0], at[1], at[2]);
-}
-
-/* Asks for the shadows on what is drawn there. */
-SOFT_INLINE void prefetch_shadows(const struct raster *raster, int column, int row)
+/* Finds where the shadows on what is drawn there are; what faces away from the sun needs none. */
+SOFT_INLINE void aim_at_sun(const struct raster *raster, int column, int row, struct sun_aim *aim)
 {
     size_t place = (size_t)row * (size_t)raster->pitch_px + (size_t)column;
     lanes_int marks = *(const lanes_int *)(raster->marks + place);
     lanes at[3];
-    if (!lanes_any((marks & (int32_t)MARK_KIND) == (int32_t)MARK_CONTEXT))
+    aim->open = ((marks & (int32_t)MARK_KIND) == (int32_t)MARK_CONTEXT) & ((marks & 0xff) != 0);
+    aim->lit = (lanes){ 0 };
+    if (!lanes_any(aim->open))
         return;
     sun_place(raster, LANES_IOTA + ((float)column + 0.5f), (float)row + 0.5f, *(const lanes *)(raster->depth + place), at);
-    sun_prefetch(raster->light, at[0], at[1]);
+    sun_aim(raster->light, at, aim->open, aim);
+    sun_prefetch_bounds(raster->light, aim);
 }
 
-SOFT_INLINE lanes_int context_color(const struct raster *raster, lanes_int marks, lanes x, float y, lanes depth)
+SOFT_INLINE void bound_shadows(const struct raster *raster, struct sun_aim *aim)
+{
+    if (!lanes_any(aim->open))
+        return;
+    sun_bound(raster->light, aim);
+    if (lanes_any(aim->open))
+        sun_prefetch(raster->light, aim);
+}
+
+SOFT_INLINE lanes_int context_color(const struct raster *raster, lanes_int marks, const struct sun_aim *aim)
 {
     lanes ambient = byte_of(marks, 1) * (1 / 255.0f), facing = byte_of(marks, 0) * (1 / 255.0f);
-    lanes sum = lanes_clamp((float)LIGHT_AMBIENT * ambient + (float)LIGHT_SUN * facing * sun_at(raster, x, y, depth), 0, 1);
+    lanes sum = lanes_clamp((float)LIGHT_AMBIENT * ambient + (float)LIGHT_SUN * facing * sun_look(raster->light, aim), 0, 1);
     lanes_int step = lanes_whole(sum * (RAMP_STEPS - 1) + 0.5f);
     lanes_int color = gather(raster->ramps, (marks >> 16 & (MOST_RAMPS - 1)) * RAMP_STEPS + step);
     float bright = raster->block.up[3] > 0 ? raster->block.up[3] : 1;
@@ -136,7 +142,7 @@ SOFT_INLINE lanes_int section_color(const struct raster *raster, lanes_int marks
 }
 
 /* All eight of a field, or all empty: as most are. */
-SOFT_INLINE lanes_int color_at(const struct raster *raster, const struct heights *heights, int column, int row)
+SOFT_INLINE lanes_int color_at(const struct raster *raster, const struct heights *heights, const struct sun_aim *aim, int column, int row)
 {
     size_t place = (size_t)row * (size_t)raster->pitch_px + (size_t)column;
     const uint32_t *mark = raster->marks + place;
@@ -157,28 +163,36 @@ SOFT_INLINE lanes_int color_at(const struct raster *raster, const struct heights
     lanes x = LANES_IOTA + ((float)column + 0.5f);
     if (lanes_any(is_section))
         color = lanes_choose_int(is_section, section_color(raster, marks, x, (float)row + 0.5f), color);
-    if (lanes_any(is_context)) {
-        lanes depth = *(const lanes *)(raster->depth + place);
-        color = lanes_choose_int(is_context, context_color(raster, marks & is_context, x, (float)row + 0.5f, depth), color);
-    }
+    if (lanes_any(is_context))
+        color = lanes_choose_int(is_context, context_color(raster, marks & is_context, aim), color);
     if (lanes_any(is_sky))
         color = lanes_choose_int(is_sky, sky_color(raster, heights, column, row), color);
     return color;
 }
 
+/* out: where the row begins. */
+SOFT_INLINE void color_row(const struct raster *raster, int left, int right, int row, uint8_t *out)
+{
+    struct heights heights = { 0 };
+    struct sun_aim aims[AIMS]; /* by column */
+    for (int column = left - BOUNDS_AHEAD; column <= right; column += LANES) {
+        int aimed = column + BOUNDS_AHEAD, bounded = column + SHADOWS_AHEAD;
+        if (aimed <= right)
+            aim_at_sun(raster, aimed, row, &aims[aimed / LANES % AIMS]);
+        if (bounded >= left && bounded <= right)
+            bound_shadows(raster, &aims[bounded / LANES % AIMS]);
+        if (column < left)
+            continue;
+        if ((column & (raster->stretch_px - 1)) == 0)
+            heights = heights_from(raster, column, row);
+        lanes_int color = color_at(raster, &heights, &aims[column / LANES % AIMS], column, row);
+        int count = raster->width_px - column;
+        memcpy(out + 4 * column, &color, count < LANES ? 4 * (size_t)count : sizeof(color));
+    }
+}
+
 void raster_color(const struct raster *raster, const struct soft_rect *rect)
 {
-    for (int row = rect->top; row <= rect->bottom; row++) {
-        uint8_t *out = raster->out + (size_t)row * raster->out_stride_bytes;
-        struct heights heights = { 0 };
-        for (int column = rect->left; column <= rect->right; column += LANES) {
-            if ((column & (raster->stretch_px - 1)) == 0)
-                heights = heights_from(raster, column, row);
-            if (column + AHEAD <= rect->right)
-                prefetch_shadows(raster, column + AHEAD, row);
-            lanes_int color = color_at(raster, &heights, column, row);
-            int count = raster->width_px - column;
-            memcpy(out + 4 * column, &color, count < LANES ? 4 * (size_t)count : sizeof(color));
-        }
-    }
+    for (int row = rect->top; row <= rect->bottom; row++)
+        color_row(raster, rect->left, rect->right, row, raster->out + (size_t)row * raster->out_stride_bytes);
 }

@@ -137,7 +137,8 @@ size_t soft_light_bytes(const struct soft *soft)
     for (int i = 0; i < SOFT_LIGHTS; i++) {
         const struct soft_light *light = &soft->lights[i];
         size_t side = light->ground ? (size_t)light->ground_px : 0;
-        bytes += (light->sun_map ? soft_sun_map_bytes(light) : 0) + side * side * (sizeof(*light->ground) + sizeof(*light->open));
+        bytes += light->sun_map ? soft_sun_map_bytes(light) + soft_sun_bounds_bytes(light) : 0;
+        bytes += side * side * (sizeof(*light->ground) + sizeof(*light->open));
         for (size_t a = 0; light->baked && a < soft->gpu_scene->scene->asset_count; a++)
             bytes += 4 * soft->gpu_scene->of_asset[a]->mesh.vertex_count;
     }

@@ -71,6 +71,7 @@ struct soft_light {       /* a light_set, read back */
     uint64_t id;          /* of the set; 0: empty */
     uint8_t (**baked)[4]; /* by asset */
     uint16_t *sun_map;    /* in square tiles of two cache lines, row by row as what is in them: neighbours lie together */
+    uint32_t *sun_bounds; /* of each tile: the least of its texels | the greatest << 16 */
     int sun_map_px;       /* of a side, as it was on the GPU */
     int sun_tiles;        /* in a row of tiles */
     uint32_t *ground; /* a byte each: this texel, its right, lower, lower right neighbour; 255: no shadow */
@@ -80,6 +81,19 @@ struct soft_light {       /* a light_set, read back */
 };
 /* A texel is looked up with its right and lower neighbours, so its tile has these: its last row and column are the next ones' first. */
 enum { SUN_TILE_PX = 8, SUN_TILE_STEP_PX = SUN_TILE_PX - 1, SUN_TILE_TEXELS = SUN_TILE_PX * SUN_TILE_PX };
+static inline uint32_t soft_sun_bounds(const uint16_t texels[SUN_TILE_TEXELS])
+{
+    uint16_t least = UINT16_MAX, greatest = 0;
+    for (int i = 0; i < SUN_TILE_TEXELS; i++) {
+        least = texels[i] < least ? texels[i] : least;
+        greatest = texels[i] > greatest ? texels[i] : greatest;
+    }
+    return least | (uint32_t)greatest << 16;
+}
+static inline size_t soft_sun_bounds_bytes(const struct soft_light *light)
+{
+    return (size_t)light->sun_tiles * (size_t)light->sun_tiles * sizeof(*light->sun_bounds);
+}
 static inline size_t soft_sun_map_bytes(const struct soft_light *light)
 {
     return (size_t)light->sun_tiles * (size_t)light->sun_tiles * SUN_TILE_TEXELS * sizeof(*light->sun_map);
