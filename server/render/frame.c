@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "base/huge_pages.h"
 #include "base/mem.h"
 #include "render/frame_record.h"
 #include "value/quality.h"
@@ -38,8 +39,10 @@ static uint8_t *take_pixels(size_t bytes)
             spares.at[i].pixels = NULL;
         }
     pthread_mutex_unlock(&spares.lock);
-    if (!pixels && (pixels = mem_try_array(bytes, 1)))
+    if (!pixels && (pixels = mem_try_array(bytes, 1))) {
+        huge_pages_advise(pixels, bytes);
         atomic_fetch_add_explicit(&all_bytes, bytes, memory_order_relaxed);
+    }
     return pixels;
 }
 

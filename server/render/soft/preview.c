@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "base/huge_pages.h"
 #include "base/mem.h"
 #include "render/soft/ramps.h"
 #include "render/soft/soft_impl.h"
@@ -29,6 +30,8 @@ bool raster_make_room(struct raster *raster, const struct frame *frame)
     mem_free(raster->marks);
     raster->depth = mem_try_array(pixels, sizeof(*raster->depth));
     raster->marks = mem_try_array(pixels, sizeof(*raster->marks));
+    huge_pages_advise(raster->depth, pixels * sizeof(*raster->depth));
+    huge_pages_advise(raster->marks, pixels * sizeof(*raster->marks));
     raster->pixel_capacity = raster->depth && raster->marks ? pixels : 0;
     return raster->pixel_capacity > 0;
 }
