@@ -348,6 +348,13 @@ bool viewer_done(const struct viewer *viewer)
     return viewer->done;
 }
 
+int64_t viewer_rests_until_ns(const struct viewer *viewer, int *fd)
+{
+    bool reads = !viewer->params.stalls || !viewer->result.frames;
+    *fd = viewer->wsi && reads ? lws_get_socket_fd(viewer->wsi) : -1;
+    return viewer->wsi && !viewer->done && !viewer_has_output(viewer) ? viewer->next_ns : 0;
+}
+
 const struct viewer_result *viewer_result(const struct viewer *viewer)
 {
     return &viewer->result;

@@ -70,6 +70,8 @@ struct viewer *viewer_create(const struct viewer_params *params);
 void viewer_connect(struct viewer *viewer, struct lws_context *context);
 /* Returns whether it has ended. */
 bool viewer_done(const struct viewer *viewer);
+/* Returns when its timer fires next, monotonic, if until then it only waits for what its socket brings (*fd; -1: for nothing); else 0. */
+int64_t viewer_rests_until_ns(const struct viewer *viewer, int *fd);
 /* Returns what it measured. Belongs to the viewer. */
 const struct viewer_result *viewer_result(const struct viewer *viewer);
 /* Frees the viewer; after its context. &NULL is fine; leaves NULL. */

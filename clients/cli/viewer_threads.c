@@ -2,10 +2,13 @@
 /* Threads that drive viewers. */
 #include "viewer_threads.h"
 
+#include <poll.h>
 #include <stdio.h>
 #include <sys/resource.h>
 
-enum { MAX_THREADS = 64, MAX_FILES = 8192 };
+#include "base/clock.h"
+
+enum { MAX_THREADS = 64, MAX_FILES = 8192, MAX_WAITING = 64 };
 
 struct worker {
     pthread_t thread;
@@ -22,13 +25,35 @@ static bool all_done(const struct worker *worker)
     return true;
 }
 
+/* libwebsockets waits for whole milliseconds only: what is left of one before the next timer fires it would spend on asking again and
+   again, which takes the processor from a daemon on the same machine. */
+static void wait_for_timer(const struct worker *worker)
+{
+    struct pollfd sockets[MAX_WAITING];
+    int64_t until_ns = INT64_MAX, now_ns = clock_mono_ns();
+    nfds_t count = 0;
+    for (int i = 0; i < worker->count; i += worker->stride) {
+        if (viewer_done(worker->viewers[i]))
+            continue;
+        if (count == MAX_WAITING)
+            return;
+        int64_t rests_ns = viewer_rests_until_ns(worker->viewers[i], &sockets[count].fd);
+        sockets[count++].events = POLLIN;
+        until_ns = rests_ns < until_ns ? rests_ns : until_ns;
+    }
+    if (until_ns > now_ns && until_ns - now_ns < NS_PER_MS)
+        ppoll(sockets, count, &(struct timespec){ .tv_nsec = until_ns - now_ns }, NULL);
+}
+
 static void *worker_main(void *arg)
 {
     struct worker *worker = arg;
     for (int i = 0; i < worker->count; i += worker->stride)
         viewer_connect(worker->viewers[i], worker->context);
-    while (!all_done(worker))
+    while (!all_done(worker)) {
+        wait_for_timer(worker);
         lws_service(worker->context, 0);
+    }
     lws_context_destroy(worker->context);
     return NULL;
 }
