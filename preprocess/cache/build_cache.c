@@ -17,7 +17,7 @@ static const struct {
     [BUILD_CACHE_SURFACE] = { ".surface", SURFACE_MAGIC, false },
     [BUILD_CACHE_SAMPLES] = { ".spots", "PLCSPOTS", false },
     [BUILD_CACHE_DISTANCES] = { ".columns", NULL, true },
-    [BUILD_CACHE_SUBDIVISION] = { ".splitting", "PLCSPLIT", true },
+    [BUILD_CACHE_SUBDIVISION] = { ".splitting", "PLCSPLT2", true },
 };
 
 char *build_cache_path(const char *folder, enum build_cache_kind kind, uint64_t key)

@@ -30,9 +30,16 @@ struct sensor { /* all that its shares depend on */
 };
 
 struct head {
-    uint64_t sensors, findings;       /* how many follow */
+    uint64_t sensors, findings, rest; /* how many follow */
     uint64_t given_up, changes_since; /* subdiv_cache.h */
 };
+
+/* What is kept of a finding beside its key and its error: most have little more. Of what follows in the list of the rest, in this order. */
+#define SHARE_FOLLOWS 1
+#define BARRED_FOLLOWS 2
+#define DOUBT_FOLLOWS 4 /* and by how much it may be off */
+#define SHARE_IS_HALF 8 /* else it is 0, if it does not follow */
+#define JUMPS 16
 
 /* --- sensors ---------------------------------------------------------------------------------------------------------------------- */
 
@@ -101,6 +108,13 @@ static bool find_changes(struct subdiv_cache *cache, const struct linear_error *
 
 /* --- the file --------------------------------------------------------------------------------------------------------------------- */
 
+#define ENTRY_BYTES (sizeof(uint64_t) + sizeof(float) + 1) /* without the rest */
+
+static size_t rest_of(unsigned kind)
+{
+    return (kind & SHARE_FOLLOWS ? 1u : 0) + (kind & BARRED_FOLLOWS ? 1u : 0) + (kind & DOUBT_FOLLOWS ? 2u : 0);
+}
+
 static void index_findings(struct subdiv_cache *cache, size_t count)
 {
     cache->finding_count = count;
@@ -109,11 +123,23 @@ static void index_findings(struct subdiv_cache *cache, size_t count)
         cache->mask = cache->mask * 2 + 1;
     cache->slots = mem_array(cache->mask + 1, sizeof(*cache->slots));
     for (uint32_t i = 0; i < count; i++) {
-        size_t slot = cache->findings[i].key & cache->mask;
+        size_t slot = cache->keys[i] & cache->mask;
         while (cache->slots[slot])
             slot = (slot + 1) & cache->mask;
         cache->slots[slot] = i + 1;
     }
+}
+
+/* Where the rest of each begins. Returns how many numbers that is. */
+static size_t index_rest(struct subdiv_cache *cache, size_t count)
+{
+    size_t rest = 0;
+    cache->rest_at = mem_array(count, sizeof(*cache->rest_at));
+    for (size_t i = 0; i < count; i++) {
+        cache->rest_at[i] = (uint32_t)rest;
+        rest += rest_of(cache->kinds[i]);
+    }
+    return rest;
 }
 
 static void read_file(struct subdiv_cache *cache, const struct linear_error *linear)
@@ -123,13 +149,19 @@ static void read_file(struct subdiv_cache *cache, const struct linear_error *lin
         return;
     memcpy(&head, cache->file.bytes, sizeof(head));
     size_t left = cache->file.count - sizeof(head);
-    if (head.sensors > left / sizeof(struct sensor) || head.findings > UINT32_MAX / 2 ||
-        left != head.sensors * sizeof(struct sensor) + head.findings * sizeof(struct subdiv_cache_entry))
+    if (head.sensors > left / sizeof(struct sensor) || head.findings > left / ENTRY_BYTES || head.findings > UINT32_MAX / 4 ||
+        head.rest > left / sizeof(float) ||
+        left != head.sensors * sizeof(struct sensor) + head.findings * ENTRY_BYTES + head.rest * sizeof(float))
         return;
-    const char *sensors = cache->file.bytes + sizeof(head), *findings = sensors + head.sensors * sizeof(struct sensor);
+    const char *sensors = cache->file.bytes + sizeof(head), *keys = sensors + head.sensors * sizeof(struct sensor);
     if (!find_changes(cache, linear, (const struct sensor *)(const void *)sensors, head.sensors))
         return;
-    cache->findings = (const struct subdiv_cache_entry *)(const void *)findings;
+    cache->keys = (const uint64_t *)(const void *)keys;
+    cache->errors = (const float *)(const void *)(cache->keys + head.findings);
+    cache->rest = cache->errors + head.findings;
+    cache->kinds = (const unsigned char *)(cache->rest + head.rest);
+    if (index_rest(cache, head.findings) != head.rest)
+        return;
     index_findings(cache, head.findings);
     if (FEW * (head.changes_since + cache->change_count) < cache->sensors.length / sizeof(struct sensor)) {
         cache->hopeless = head.given_up;
@@ -152,21 +184,74 @@ void subdiv_cache_close(struct subdiv_cache *cache)
 {
     cache_file_close(&cache->file);
     mem_free(cache->slots);
+    mem_free(cache->rest_at);
     mem_free(cache->changes);
     text_finish(&cache->sensors);
     text_finish(&cache->found);
     *cache = (struct subdiv_cache){ 0 };
 }
 
+/* Findings as they are written. */
+struct packed {
+    uint64_t *keys;
+    float *errors, *rest;
+    unsigned char *kinds;
+    size_t count, rest_count;
+};
+
+static unsigned char pack_finding(const struct subdiv_cache_entry *found, float rest[4])
+{
+    unsigned kind = found->jumps ? JUMPS : 0, count = 0;
+    kind |= found->share == 0.5f ? SHARE_IS_HALF : found->share != 0 ? SHARE_FOLLOWS : 0;
+    kind |= found->barred != 0 ? BARRED_FOLLOWS : 0;
+    kind |= found->doubt != 0 || found->off != 0 ? DOUBT_FOLLOWS : 0;
+    if (kind & SHARE_FOLLOWS)
+        rest[count++] = found->share;
+    if (kind & BARRED_FOLLOWS)
+        rest[count++] = found->barred;
+    if (kind & DOUBT_FOLLOWS) {
+        rest[count++] = found->doubt;
+        rest[count++] = found->off;
+    }
+    return (unsigned char)kind;
+}
+
+static void pack_findings(const struct subdiv_cache *cache, struct packed *packed)
+{
+    const struct subdiv_cache_entry *found = (const struct subdiv_cache_entry *)(const void *)cache->found.at;
+    size_t count = cache->found.length / sizeof(*found);
+    *packed = (struct packed){ .keys = mem_array(count, sizeof(*packed->keys)),
+                               .errors = mem_array(count, sizeof(*packed->errors)),
+                               .rest = mem_array(4 * count + 4, sizeof(*packed->rest)),
+                               .kinds = mem_array(count, 1),
+                               .count = count };
+    for (size_t i = 0; i < count; i++) {
+        packed->keys[i] = found[i].key;
+        packed->errors[i] = found[i].error;
+        packed->kinds[i] = pack_finding(&found[i], packed->rest + packed->rest_count);
+        packed->rest_count += rest_of(packed->kinds[i]);
+    }
+}
+
 void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, uint64_t key)
 {
-    const struct head head = { cache->sensors.length / sizeof(struct sensor), cache->found.length / sizeof(struct subdiv_cache_entry),
-                               cache->given_up, cache->changes_since };
+    struct packed packed;
+    if (!cache->applies)
+        return;
+    pack_findings(cache, &packed);
+    const struct head head = { cache->sensors.length / sizeof(struct sensor), packed.count, packed.rest_count, cache->given_up,
+                               cache->changes_since };
     const struct atomic_file_part parts[] = { { &head, sizeof(head) },
                                               { cache->sensors.at, cache->sensors.length },
-                                              { cache->found.at, cache->found.length } };
-    if (cache->applies)
-        build_cache_write(folder, BUILD_CACHE_SUBDIVISION, key, parts, sizeof(parts) / sizeof(*parts));
+                                              { packed.keys, packed.count * sizeof(*packed.keys) },
+                                              { packed.errors, packed.count * sizeof(*packed.errors) },
+                                              { packed.rest, packed.rest_count * sizeof(*packed.rest) },
+                                              { packed.kinds, packed.count } };
+    build_cache_write(folder, BUILD_CACHE_SUBDIVISION, key, parts, sizeof(parts) / sizeof(*parts));
+    mem_free(packed.keys);
+    mem_free(packed.errors);
+    mem_free(packed.rest);
+    mem_free(packed.kinds);
 }
 
 /* --- findings --------------------------------------------------------------------------------------------------------------------- */
@@ -241,36 +326,54 @@ static bool is_settled(const struct subdiv_cache_entry *old, float doubt, float 
     return doubt <= MOST_SETTLED && (most <= LITTLE * matters || (error > LITTLE * matters && most <= matters) || least > matters);
 }
 
-/* Most come in the order that they had the last time. */
-static const struct subdiv_cache_entry *find(const struct subdiv_cache *cache, uint64_t key, uint32_t *next)
+static void unpack_finding(const struct subdiv_cache *cache, size_t i, struct subdiv_cache_entry *found)
 {
-    if (*next >= cache->finding_count || cache->findings[*next].key != key) {
+    const float *rest = cache->rest + cache->rest_at[i];
+    unsigned kind = cache->kinds[i];
+    *found = (struct subdiv_cache_entry){
+        .key = cache->keys[i], .error = cache->errors[i], .share = kind & SHARE_IS_HALF ? 0.5f : 0, .jumps = (kind & JUMPS) != 0
+    };
+    if (kind & SHARE_FOLLOWS)
+        found->share = *rest++;
+    if (kind & BARRED_FOLLOWS)
+        found->barred = *rest++;
+    if (kind & DOUBT_FOLLOWS) {
+        found->doubt = rest[0];
+        found->off = rest[1];
+    }
+}
+
+/* Most come in the order that they had the last time. */
+static bool find(const struct subdiv_cache *cache, uint64_t key, uint32_t *next, struct subdiv_cache_entry *found)
+{
+    if (*next >= cache->finding_count || cache->keys[*next] != key) {
         size_t slot = key & cache->mask;
-        while (cache->slots[slot] && cache->findings[cache->slots[slot] - 1].key != key)
+        while (cache->slots[slot] && cache->keys[cache->slots[slot] - 1] != key)
             slot = (slot + 1) & cache->mask;
         if (!cache->slots[slot])
-            return NULL;
+            return false;
         *next = cache->slots[slot] - 1;
     }
-    return &cache->findings[(*next)++];
+    unpack_finding(cache, (*next)++, found);
+    return true;
 }
 
 bool subdiv_cache_find(const struct subdiv *subdiv, uint64_t key, const uint32_t *corners, size_t count, uint32_t *next,
                        struct subdiv_finding *finding)
 {
     const struct subdiv_cache *cache = subdiv->in->cache;
-    const struct subdiv_cache_entry *old = cache && cache->findings ? find(cache, key, next) : NULL;
-    if (!old)
+    struct subdiv_cache_entry old;
+    if (!cache || !cache->slots || !find(cache, key, next, &old))
         return false;
-    float off, doubt = old->doubt + share_of_changes(subdiv, corners, count, &off);
-    off += old->off;
-    if (!(doubt <= MOST_DOUBT) && !is_settled(old, doubt, off))
+    float off, doubt = old.doubt + share_of_changes(subdiv, corners, count, &off);
+    off += old.off;
+    if (!(doubt <= MOST_DOUBT) && !is_settled(&old, doubt, off))
         return false;
     *finding = (struct subdiv_finding){ .number = finding->number,
-                                        .error = old->error,
-                                        .share = old->share,
-                                        .barred = old->barred,
-                                        .jumps = old->jumps != 0,
+                                        .error = old.error,
+                                        .share = old.share,
+                                        .barred = old.barred,
+                                        .jumps = old.jumps != 0,
                                         .is_cached = true,
                                         .doubt = doubt,
                                         .off = off };

@@ -19,8 +19,11 @@
 struct subdiv_cache {
     bool applies; /* else nothing is kept */
     struct cache_file file;
-    const struct subdiv_cache_entry *findings; /* of the last time, in the file; NULL: none of use */
-    uint32_t *slots;                           /* findings by key, one more than their number; 0: none */
+    const uint64_t *keys; /* of the findings of the last time, in the file */
+    const float *errors, *rest;
+    const unsigned char *kinds;
+    uint32_t *rest_at; /* of each finding */
+    uint32_t *slots;   /* findings by key, one more than their number; 0: none. NULL: none of use */
     size_t mask, finding_count;
     struct subdiv_sensor_change { /* a sensor that is new or gone */
         float place_m[3], power;

@@ -93,6 +93,10 @@ bool surface_check(struct surface *surface, const struct surface_field *field)
     struct surface_report *report = &surface->report;
     struct check check = { .surface = surface, .field = field };
     int64_t start_ns = clock_mono_ns(), factored_ns;
+    if (!surface->component) {
+        surface->component = mem_array(surface->mesh.point_count, sizeof(*surface->component));
+        trimesh_components(&surface->visible, surface->component);
+    }
     double decay_m = max_of(sqrt(TIME_OF_SPACING) * surface->edge_m, 2 * reach_of(surface) / LONGEST_DECAY);
     struct heat *heat = heat_create(surface->log, &surface->intrinsic, surface->component, decay_m * decay_m);
     factored_ns = clock_mono_ns();

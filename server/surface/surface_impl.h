@@ -19,7 +19,7 @@ struct surface {
     uint32_t *vertex_point; /* of the model's vertices */
     struct trimesh mesh;    /* welded, bridged, sampled; visible triangles first */
     struct trimesh visible; /* the same without the hidden ones; its arrays are the mesh's */
-    uint32_t *component;    /* of its points, over visible triangles */
+    uint32_t *component;    /* of its points, over visible triangles; NULL: read from a file, and not asked for yet */
     struct stray *strays;   /* by vertex */
     size_t stray_count;
     struct intrinsic intrinsic;

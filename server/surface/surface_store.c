@@ -11,6 +11,43 @@ struct numbers {
     struct surface_report report;
 };
 
+/* Sides that are glued are equally long: those with the lower number are kept. */
+static bool is_kept(const struct intrinsic *in, uint32_t side)
+{
+    uint32_t other = in->glue[side / 3][side % 3];
+    return other == TRIMESH_NONE || other >= side;
+}
+
+static void pack_lengths(const struct intrinsic *in, struct text *to)
+{
+    double *kept = mem_array(3 * in->tri_count, sizeof(*kept));
+    size_t count = 0;
+    for (uint32_t side = 0; side < 3 * in->tri_count; side++)
+        if (is_kept(in, side))
+            kept[count++] = in->lengths[side / 3][side % 3];
+    pack_array(to, kept, count, sizeof(*kept));
+    mem_free(kept);
+}
+
+static void unpack_lengths(struct unpack *from, struct intrinsic *in)
+{
+    size_t count, next = 0;
+    double *kept = unpack_array(from, &count, sizeof(*kept));
+    in->lengths = mem_try_array(in->tri_count, sizeof(*in->lengths));
+    from->bad |= !in->lengths;
+    for (uint32_t side = 0; side < 3 * in->tri_count && !from->bad; side++) {
+        uint32_t other = in->glue[side / 3][side % 3];
+        if (!is_kept(in, side))
+            in->lengths[side / 3][side % 3] = in->lengths[other / 3][other % 3];
+        else if (next < count)
+            in->lengths[side / 3][side % 3] = kept[next++];
+        else
+            from->bad = true;
+    }
+    from->bad |= next != count;
+    mem_free(kept);
+}
+
 void surface_pack(const struct surface *surface, struct text *to)
 {
     const struct trimesh *mesh = &surface->mesh;
@@ -26,12 +63,11 @@ void surface_pack(const struct surface *surface, struct text *to)
     pack_array(to, mesh->points, mesh->point_count, sizeof(*mesh->points));
     pack_array(to, mesh->tris, mesh->tri_count, sizeof(*mesh->tris));
     pack_array(to, mesh->tri_source, mesh->tri_count, sizeof(*mesh->tri_source));
-    pack_array(to, surface->component, mesh->point_count, sizeof(*surface->component));
     pack_array(to, surface->plane, surface->report.triangles, sizeof(*surface->plane));
     pack_array(to, surface->strays, surface->stray_count, sizeof(*surface->strays));
     pack_array(to, in->points, in->tri_count, sizeof(*in->points));
-    pack_array(to, in->lengths, in->tri_count, sizeof(*in->lengths));
     pack_array(to, in->glue, in->tri_count, sizeof(*in->glue));
+    pack_lengths(in, to);
     pack_array(to, surface->bridges, surface->bridge_count, sizeof(*surface->bridges));
 }
 
@@ -41,7 +77,7 @@ struct surface *surface_unpack(struct unpack *from, struct log *log, struct work
     struct trimesh *mesh = &surface->mesh;
     struct intrinsic *in = &surface->intrinsic;
     struct numbers numbers = { 0 };
-    size_t vertices, sources, components, planes, lengths, glues;
+    size_t vertices, sources, planes, glues;
     unpack_into(from, &numbers, 1, sizeof(numbers));
     *surface = (struct surface){ .log = log,
                                  .workers = workers,
@@ -53,21 +89,20 @@ struct surface *surface_unpack(struct unpack *from, struct log *log, struct work
     mesh->points = unpack_array(from, &mesh->point_count, sizeof(*mesh->points));
     mesh->tris = unpack_array(from, &mesh->tri_count, sizeof(*mesh->tris));
     mesh->tri_source = unpack_array(from, &sources, sizeof(*mesh->tri_source));
-    surface->component = unpack_array(from, &components, sizeof(*surface->component));
     surface->plane = unpack_array(from, &planes, sizeof(*surface->plane));
     surface->strays = unpack_array(from, &surface->stray_count, sizeof(*surface->strays));
     in->points = unpack_array(from, &in->tri_count, sizeof(*in->points));
-    in->lengths = unpack_array(from, &lengths, sizeof(*in->lengths));
     in->glue = unpack_array(from, &glues, sizeof(*in->glue));
+    from->bad |= glues != in->tri_count;
+    unpack_lengths(from, in);
     surface->bridges = unpack_array(from, &surface->bridge_count, sizeof(*surface->bridges));
     in->point_count = mesh->point_count;
     in->flips = numbers.flips;
     mesh->point_capacity = mesh->point_count;
     mesh->tri_capacity = mesh->source_capacity = mesh->tri_count;
     surface->bridge_capacity = surface->bridge_count;
-    if (from->bad || vertices != surface->vertex_count || sources != mesh->tri_count || components != mesh->point_count ||
-        planes != surface->report.triangles ||
-        numbers.visible_count != in->tri_count || in->tri_count > mesh->tri_count || lengths != in->tri_count || glues != in->tri_count) {
+    if (from->bad || vertices != surface->vertex_count || sources != mesh->tri_count || planes != surface->report.triangles ||
+        numbers.visible_count != in->tri_count || in->tri_count > mesh->tri_count) {
         surface_destroy(&surface);
         return NULL;
     }

@@ -12,6 +12,6 @@ void surface_pack(const struct surface *surface, struct text *to);
 struct surface *surface_unpack(struct unpack *from, struct log *log, struct workers *workers);
 
 /* Its file holds that and no more (base/cache_file.h). */
-#define SURFACE_MAGIC "PLCSURF2"
+#define SURFACE_MAGIC "PLCSURF3"
 
 #endif
