@@ -125,6 +125,7 @@ def stream_rows(bin_folder):
         if plant.failed:
             yield row("stream", None, "", why=plant.failed)
             return
+        plant.rest()  # what a start leaves to be done takes the processor from the first row
         yield from orbit_rows(plant)
         hold_all(plant)
         time.sleep(2)
