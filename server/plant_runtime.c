@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "scene/far_sensors.h"
 #include "field/colormap.h"
+#include "message/view_named.h"
 #include "scene/scene_create.h"
 #include "version.h"
 
@@ -41,6 +42,12 @@ static void warn_of_far_sensors(struct log *log, const struct scene *scene)
     mem_free(far);
 }
 
+static void warn_of_view(void *arg, const struct named_view *view, const char *wrong)
+{
+    const struct plant_runtime_context *context = arg;
+    log_warn(context->log, "%s:%d: view %s: %s", context->params->plant_path, view->line, view->id, wrong);
+}
+
 struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *context, struct diag *diag)
 {
     struct plant_runtime *runtime = mem_new(sizeof(*runtime));
@@ -52,6 +59,7 @@ struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *con
         return NULL;
     }
     warn_of_far_sensors(context->log, runtime->scene);
+    view_named_check_all(runtime->scene, warn_of_view, (void *)context);
     runtime->store = store_create(runtime->plant);
     runtime->baselines = baselines_create();
     runtime->snapshot_cache = snapshot_cache_create();

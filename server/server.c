@@ -25,6 +25,7 @@
 #include "provenance/signing_key.h"
 #include "reload.h"
 #include "sibling.h"
+#include "message/view_named.h"
 #include "plant/model_check.h"
 #include "plant/plant_folder.h"
 #include "scene/scene_create.h"
@@ -544,6 +545,11 @@ int server_run(const struct server_params *params)
     return (good || atomic_load(&told_to_end)) && !server.lost ? 0 : 1;
 }
 
+static void print_wrong_view(void *arg, const struct named_view *view, const char *wrong)
+{
+    printf("%s:%d: warning: view %s: %s\n", (const char *)arg, view->line, view->id, wrong);
+}
+
 static int check_prepared(const struct server_params *params, const struct plant *plant)
 {
     char *folder = plant_runtime_prepared_folder(params, plant);
@@ -567,6 +573,7 @@ static int check_prepared(const struct server_params *params, const struct plant
                    tag->name, far[i].sensor->surface_distance_m, far[i].asset->plant->id, far[i].limit_m);
         }
         mem_free(far);
+        view_named_check_all(scene, print_wrong_view, (void *)params->plant_path);
     }
     scene_destroy(&scene);
     log_destroy(&log);

@@ -223,6 +223,7 @@ void player_finish(struct player *player)
         text_finish(&player->panes[i].state);
         text_finish(&player->panes[i].wanted);
         text_finish(&player->panes[i].words);
+        text_finish(&player->panes[i].wrong);
         trend_finish(&player->panes[i].trend);
         snapshot_finish(&player->panes[i].snapshot);
     }
@@ -496,12 +497,13 @@ static void say_state(const struct player *player, const struct pane *pane, int6
                  say("walls.lost", "time", player_time(player, model_now_us(&player->model) - (now_ns - link->heard_ns) / 1000), NULL));
     else if (pane->view.tile.late_us)
         text_add(state, "lost\n%s", say("walls.late", "time", player_time(player, pane->view.tile.late_us), NULL));
-    else if (pane->view.refused[0])
-        text_add(state, "refused\n%s", pane->view.refused);
+    else if (pane->view.refused[0] || (pane->wrong.length > 0 && !pane->view.tile.display))
+        text_add(state, "refused\n%s", pane->wrong.length > 0 ? pane->wrong.at : pane->view.refused);
     else if (!pane->view.picture || !pane->view.is_current)
         text_add(state, "wait\n%s", pane->view.greeted ? "\u2026" : say("health.connecting", NULL));
     else {
         bool incomplete = pane->view.tile.leads && pane->view.tile.missing[0];
+        const char *wrong = pane->wrong.length > 0 ? pane->wrong.at : "";
         text_add(state, "picture %u", pane->view.frames);
         if (player->pointed == pane && now_ns - player->pointed_ns < POINT_NS)
             text_add(state, " %s %.3f %.3f %.3f", player->pointed_by, player->pointed_m[0], player->pointed_m[1], player->pointed_m[2]);
@@ -509,7 +511,7 @@ static void say_state(const struct player *player, const struct pane *pane, int6
         text_add(state, "\n%s",
                  !player->model.live ? say("health.nodata", NULL)
                  : incomplete        ? say("walls.missing", "displays", pane->view.tile.missing, NULL)
-                                     : "");
+                                     : wrong);
     }
 }
 
@@ -550,7 +552,8 @@ static void draw_state(struct player *player, struct pane *pane, cairo_t *cairo,
 static void say_view_title(const struct player *player, const struct pane *pane, int64_t now_ns, struct text *said)
 {
     const struct model *model = &player->model;
-    int group = pane->view.is_current ? pane->view.told.field.group : -1;
+    bool shown = pane->view.is_current && (pane->wrong.length == 0 || pane->view.tile.display);
+    int group = shown ? pane->view.told.field.group : -1;
     char counts[200] = "";
     if (pane->view.tile.display) /* no list of alarms is beside it */
         pane_count_alarms(player, counts);

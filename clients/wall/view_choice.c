@@ -83,6 +83,14 @@ static void want(struct player *player, struct pane *pane, const json_t *order, 
     text_add(wanted, " %dx%d %s", player->width_px, player->height_px, pane->view.configuration);
 }
 
+/* Whose address names what the plant does not have: another picture in its place would pass for it. */
+static void say_wrong(const json_t *view, struct text *wrong)
+{
+    const char *why = string_of(view, "wrong");
+    wrong->length = 0;
+    text_add(wrong, "%s", *why ? say("named.wrong", "why", why, NULL) : "");
+}
+
 /* How long a view is shown. */
 static int64_t dwell_ns(const struct pane *pane)
 {
@@ -124,6 +132,7 @@ void pane_choose(struct player *player, struct pane *pane, int64_t now_ns)
     if (chooses && order && !alarm)
         say_order(player, order, &pane->words);
     want(player, pane, order, alarm, address, &wanted);
+    say_wrong(chooses && !alarm && !*sent ? view : NULL, &pane->wrong);
     if (!chooses)
         pane->wanted.length = 0;
     if (chooses && pane->view.greeted && view_pane_fits(&pane->view, model) &&

@@ -23,6 +23,10 @@ char *reply_time_text(const struct session *session);
 char *reply_present_text(uint32_t seq, uint64_t picture, int64_t at_us);
 char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, const struct tile_layout *layout, const bool *there,
                        const int64_t *late_us, bool leads);
+/* Lists the views with names; id: also the earlier versions of that one (NULL: of none). */
+char *reply_views_text(const struct session_context *context, const char *id);
+/* Adds to a view with a name, as `wrong`, what its address names that this plant does not have, if there is something. */
+void reply_add_wrong(const struct session_context *context, json_t *view, const char *address);
 /* Answers a fit. */
 char *reply_camera_text(const struct camera *camera, uint32_t seq);
 /* Answers a pick; query.seq 0: without a number. */

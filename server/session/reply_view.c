@@ -6,9 +6,11 @@
 #include "field/colormap.h"
 #include "message/json_values.h"
 #include "message/names.h"
+#include "message/view_named.h"
 #include "message/visibility.h"
 #include "session/session.h"
 #include "session/session_view.h"
+#include "views/named_views.h"
 
 static json_t *tag_name(const struct plant *plant, int tag)
 {
@@ -169,4 +171,23 @@ char *reply_camera_text(const struct camera *camera, uint32_t seq)
         json_object_set_new(object, "fov", number(camera->fov_deg));
     }
     return json_text(object, DIGITS);
+}
+
+/* --- views with names -------------------------------------------------------------------------------------------------------- */
+
+void reply_add_wrong(const struct session_context *context, json_t *view, const char *address)
+{
+    struct message_error error = { 0 };
+    if (!view_named_check(context->scene, address, &error))
+        json_object_set_new(view, "wrong", string(error.text));
+}
+
+char *reply_views_text(const struct session_context *context, const char *id)
+{
+    json_t *message = named_views_message(context->named_views, id), *list = json_object_get(message, "list");
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        json_t *view = json_array_get(list, i);
+        reply_add_wrong(context, view, json_string_value(json_object_get(view, "view")));
+    }
+    return json_text(message, 0);
 }

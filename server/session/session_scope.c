@@ -7,9 +7,9 @@
 #include "base/json_text.h"
 #include "base/mem.h"
 #include "message/json_fields.h"
-#include "message/view_address.h"
-#include "message/view_query.h"
+#include "message/view_named.h"
 #include "plant/plant.h"
+#include "session/reply.h"
 #include "session/session_impl.h"
 
 enum { LEAST_PX = 16, FILTERED_DIGITS = 9 };
@@ -37,19 +37,8 @@ static bool read_view(const struct session *session, const struct named_view *na
     const struct params_context params = {
         .scene = context->scene, .baselines = context->baselines, .snapshot = session_snapshot(session), .bare = true
     };
-    struct view_address address;
-    char width[16], height[16];
     struct view read;
-    snprintf(width, sizeof(width), "%d", view->width_px);
-    snprintf(height, sizeof(height), "%d", view->height_px);
-    bool good = view_address_read(&address, named->address, error);
-    if (good && !(view_address_add(&address, "width", width) && view_address_add(&address, "height", height))) {
-        message_fail(error, "bad_field", "named: '%.48s' has more arguments than fit", named->id);
-        good = false;
-    }
-    good = good && view_query_parse(&params, ROLE_ENGINEER, (const char *const *)address.args, address.count, &read, NULL, error);
-    view_address_finish(&address);
-    if (!good)
+    if (!view_named_read(&params, named->address, view->width_px, view->height_px, &read, error))
         return false;
     if (read.at_us) {
         message_fail(error, "bad_field", "named: '%.48s' is of an instant, and a stream shows now", named->id);
@@ -103,10 +92,14 @@ json_t *session_scope_views(const struct session *session)
 {
     const struct plant *plant = session->context->plant;
     json_t *list = json_array();
-    for (size_t i = 0; i < plant->view_count; i++)
-        if (tokens_may_see(&session->identity.holder, plant->views[i].id))
-            json_array_append_new(list, json_pack("{s:s,s:s}", "id", plant->views[i].id, "title",
-                                                  plant->views[i].title ? plant->views[i].title : plant->views[i].id));
+    for (size_t i = 0; i < plant->view_count; i++) {
+        const struct named_view *view = &plant->views[i];
+        if (!tokens_may_see(&session->identity.holder, view->id))
+            continue;
+        json_t *o = json_pack("{s:s,s:s}", "id", view->id, "title", view->title ? view->title : view->id);
+        reply_add_wrong(session->context, o, view->address);
+        json_array_append_new(list, o);
+    }
     return list;
 }
 

@@ -126,7 +126,7 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (loop_checks_due(session)) {
         add_loop_checks(session, out);
     } else if (views_due(session)) {
-        add_owned(session, out, named_views_text(context->named_views, NULL));
+        add_owned(session, out, reply_views_text(context, NULL));
         session->owed.views_sent = named_views_number(context->named_views);
     } else if (notes_due(session)) {
         add_owned(session, out, notes_text(context->notes, now_utc_ns / 1000));

@@ -135,7 +135,7 @@ uint64_t named_views_number(const struct named_views *views)
     return views->kept.number;
 }
 
-char *named_views_text(const struct named_views *views, const char *id)
+json_t *named_views_message(const struct named_views *views, const char *id)
 {
     json_t *list = json_array();
     for (size_t i = 0; i < views->plant->view_count; i++) {
@@ -153,7 +153,7 @@ char *named_views_text(const struct named_views *views, const char *id)
         else
             json_array_append_new(list, view);
     }
-    return json_text(json_pack("{s:s,s:o}", "type", "views", "list", list), 0);
+    return json_pack("{s:s,s:o}", "type", "views", "list", list);
 }
 
 json_t *named_views_list(const struct named_views *views)

@@ -30,9 +30,9 @@ const char *named_views_save(struct named_views *views, const struct named_view_
 const char *named_views_remove(struct named_views *views, const char *id);
 /* Returns a number that increases with each change; 0: there has been no view. */
 uint64_t named_views_number(const struct named_views *views);
-/* Returns the message `views` with all of them, without earlier versions, or with those of the view `id` as `before` (NULL: of none). Free
-   with mem_free. */
-char *named_views_text(const struct named_views *views, const char *id);
+/* Returns the message `views` with all of them, without earlier versions, or with those of the view `id` as `before` (NULL: of none),
+   which belongs to the caller. */
+json_t *named_views_message(const struct named_views *views, const char *id);
 /* For a core and its renderers: return the list of views that people saved, which belongs to them; and take it from the other one (false:
    it is none, and nothing changed). */
 json_t *named_views_list(const struct named_views *views);

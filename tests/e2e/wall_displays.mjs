@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Displays of a control room, as `walls` of the plant file has them: each pane, an alarm that takes the place of a view, and a lost server.
 import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
+import { BIN } from './support/plant.mjs';
 import { missing, startTiny } from './support/tiny_plant.mjs';
 
 const absent = missing(), why = absent.length > 0 && `not built: ${absent.join(', ')}`;
@@ -11,6 +14,9 @@ const WALLS = `
 views:
 - { id: whole, title: Whole unit, view: "group=temperature" }
 - { id: above, title: From above, view: "group=temperature&camera=0,-0.5,30,0,0,0,0,0,1,10" }
+- { id: gone, title: Pressures, view: "group=presure" }
+- { id: odd, title: One thing, view: "group=pressure&show_only=E-1" }
+- { id: since, title: Since noon, view: "group=temperature&show=difference&baseline=noon" }
 tours:
 - id: round
   stops:
@@ -33,6 +39,10 @@ walls:
     - { area: bottom, title: To do, text: [Check P-101A, Clean F-101] }
   - grid: [tour]
     panes: [{ area: tour, tour: round }]
+  - grid: [left right]
+    panes:
+    - { area: left, views: [gone], on_alarm: yes }
+    - { area: right, views: [whole] }
 `;
 let plant, browser, page;
 
@@ -124,6 +134,38 @@ test('another display has its own panes', options, async () => {
     await gone.page.locator('.wrong', { hasText: "no wall 'nowhere'" }).waitFor();
     assert.match(await gone.page.locator('.wrong').textContent(), /room/);
     await gone.close();
+});
+
+// Another picture in its place would pass for it.
+test('a view that names what the plant does not have is not shown, and said', options, async () => {
+    const { list } = await (await fetch(new URL('api/v1/views', plant.url))).json();
+    const wrong = Object.fromEntries(list.map(({ id, wrong: why }) => [id, why]));
+    assert.match(wrong.gone, /group: 'presure' is no group of this plant/);
+    assert.match(wrong.odd, /show_only: a picture cannot show that/);
+    assert.deepEqual([wrong.whole, wrong.above, wrong.since], [undefined, undefined, undefined]);
+    const { stdout, status } = spawnSync(join(BIN, 'plantcastd'), ['--check', plant.file], { encoding: 'utf8' });
+    assert.equal(status, 0, stdout);
+    assert.match(stdout, /plant\.yaml:\d+: warning: view gone: group: 'presure' is no group of this plant/);
+    assert.match(stdout, /warning: view odd: .*show_only/);
+    assert.doesNotMatch(stdout, /view (whole|above|since):/);
+    const other = await openPage(`${plant.url}?wall=room&display=4`, { viewport: { width: 1280, height: 720 } });
+    const left = other.page.locator('.pane.views').first(), right = other.page.locator('.pane.views').nth(1);
+    await left.locator('.why', { hasText: 'cannot be shown: this plant has no quantity “presure”' }).waitFor({ timeout: 60000 });
+    assert.equal(await left.locator('h2 .said').textContent(), 'Pressures');
+    assert.equal(await left.locator('iframe').isVisible(), false);
+    await right.locator('h2 .about', { hasText: 'Temperature' }).waitFor({ timeout: 60000 });
+    assert.equal(await right.locator('.why').isVisible(), false);
+    await shoot(other.page, 'wall-display-wrong-view');
+    await plant.ask('set TI-2 95'); // an alarm's place is another matter
+    await other.page.waitForFunction(() => document.querySelector('.pane.views.called:not(.unshown, .coming)'), null, { timeout: 60000 });
+    assert.equal(await left.locator('iframe').isVisible(), true);
+    await plant.ask('set TI-2 20');
+    await other.page.goto(plant.url);
+    await other.page.click('#views-toggle');
+    await other.page.locator('#named-list em').first().waitFor({ timeout: 60000 });
+    const said = await other.page.locator('#named-list em').allTextContents();
+    assert.equal(said.length, 2, 'the two that are wrong say so in the list');
+    await other.close();
 });
 
 // As long as an alarm waits the tour rests: whatever comes, as where the PLC answers late, is acknowledged.

@@ -64,23 +64,20 @@ static const char *save(struct fixture *f, const char *id, const char *title, in
 /* The ids in their order, with blanks between them; then compared. */
 static void assert_order(struct fixture *f, const char *expected)
 {
-    char *text = named_views_text(f->views, NULL), found[400] = "";
-    json_t *message = json_loads(text, 0, NULL), *list = json_object_get(message, "list");
+    char found[400] = "";
+    json_t *message = named_views_message(f->views, NULL), *list = json_object_get(message, "list");
     for (size_t i = 0; i < json_array_size(list); i++)
         snprintf(found + strlen(found), sizeof(found) - strlen(found), "%s%s", i ? " " : "",
                  json_string_value(json_object_get(json_array_get(list, i), "id")));
     json_decref(message);
-    mem_free(text);
     assert_string_equal(found, expected);
 }
 
 static size_t versions_of(struct fixture *f, const char *id, size_t index)
 {
-    char *text = named_views_text(f->views, id);
-    json_t *message = json_loads(text, 0, NULL), *list = json_object_get(message, "list");
+    json_t *message = named_views_message(f->views, id), *list = json_object_get(message, "list");
     size_t count = json_array_size(json_object_get(json_array_get(list, index), "before"));
     json_decref(message);
-    mem_free(text);
     return count;
 }
 

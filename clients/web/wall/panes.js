@@ -3,6 +3,7 @@
 import { byEquipment } from '../core/alarm_call.js';
 import { isGone } from '../core/alarms.js';
 import { ageText, decimalsFor, numberText, qualityText, quantityText, unitText, zoneClock } from '../core/format.js';
+import { refusalText } from '../core/refusals.js';
 import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText, setVariable } from '../app/common/dom.js';
@@ -62,8 +63,9 @@ function ViewsPane(pane, context) {
     let at = (Number(sessionStorage.getItem(remembered)) || 0) % pane.items.length, changedAt = null, shown = null, shownIn = null;
     const viewsOf = ({ model, views }) => model?.plant.only ?? views; // a token may be for some views only, which it names
     const titleOf = (id) => pane.title ?? viewsOf(session).find((view) => view.id === id)?.title ?? id;
-    const words = make('span', { class: 'said' }), about = make('span', { class: 'about' });
+    const words = make('span', { class: 'said' }), about = make('span', { class: 'about' }), why = make('p', { class: 'why' });
     title.append(words, about);
+    context.body.append(why);
 
     // Who sent or holds it, and since when.
     function byWhom({ desk, by, held, time_us: us }) {
@@ -73,7 +75,9 @@ function ViewsPane(pane, context) {
 
     function showView(page, order) {
         const id = pane.items[at];
-        if (order?.view)
+        if (element.classList.contains('unshown')) // another one in its place would pass for it
+            setText(why, say('named.wrong', { why: refusalText(viewsOf(page.session).find((view) => view.id === id).wrong) }));
+        else if (order?.view)
             page.modules.use('views', (views) => views.lookAt(order.view));
         else if (page.session.model.plant.only)
             page.session.post({ type: 'look', seq: 1, named: id });
@@ -118,8 +122,10 @@ function ViewsPane(pane, context) {
             sessionStorage.setItem(remembered, at); // a display that is loaded anew goes on
             shown = null;
         }
-        const text = page.session.views.find((view) => view.id === pane.items[at])?.view, { width, height } = page.session.size;
-        const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}/${isGone(alarm.state)}` : JSON.stringify([at, order, text, width, height]);
+        const { view, wrong } = viewsOf(page.session).find(({ id }) => id === pane.items[at]) ?? {}, { width, height } = page.session.size;
+        const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}/${isGone(alarm.state)}`
+            : JSON.stringify([at, order, view, wrong, width, height]);
+        element.classList.toggle('unshown', Boolean(wrong && !alarm && !order?.view));
         element.classList.toggle('called', Boolean(alarm));
         element.classList.toggle('coming', Boolean(alarm) && ofOther(page.session, alarm)); // no legend of another quantity below its name
         if (wanted === shown && page === shownIn)

@@ -8,6 +8,7 @@ import { browserDecoding } from '../core/decoding.js';
 import { ageText, decimalsFor, numberText, quantityText, unitText, zoneClock } from '../core/format.js';
 import { viewOf } from '../core/named_views.js';
 import { inForce, placeOf as placeOfNote } from '../core/notes.js';
+import { refusalText } from '../core/refusals.js';
 import { SPREAD_MS } from '../core/wall.js';
 import { say } from '../core/words.js';
 import { badge } from '../app/alarms/alarm_bar.js';
@@ -58,7 +59,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     let refused = '';
     session.on('error', ({ text }) => { refused = text; });
 
-    let at = 0, changedAt = null, shown = null, called = null;
+    let at = 0, changedAt = null, shown = null, called = null, wrong = null; // wrong: with the view that it shows, by who leads
     const timeOf = (us) => zoneClock(words.model.plant.time_zone)(us / 1000).time;
     session.on('fitted', (camera) => session.setCamera(camera));
 
@@ -81,7 +82,8 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
             shown = null;
         }
         const view = session.views.find(({ id }) => id === pane.items[at]);
-        const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}/${isGone(alarm.state)}` : JSON.stringify([at, order, view?.view]);
+        const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}/${isGone(alarm.state)}` : JSON.stringify([at, order, view]);
+        wrong = !alarm && !order?.view ? view?.wrong : null;
         if (wanted === shown)
             return;
         if (alarm) {
@@ -126,7 +128,8 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         const text = refused && !session.welcomed ? refused : own ? say('walls.late', { time: timeOf(own.since_us) })
             : silent ? say('walls.lost', { time: timeOf(words.clockUs(session.freshAt)) })
                 : words.model.live === false ? say('health.nodata')
-                    : session.tiles.leads && others.length > 0 ? say('walls.missing', { displays: others.join(', ') }) : '';
+                    : session.tiles.leads && others.length > 0 ? say('walls.missing', { displays: others.join(', ') })
+                        : session.tiles.leads && wrong ? say('named.wrong', { why: refusalText(wrong) }) : '';
         said.hidden = text === '';
         said.classList.toggle('card', Boolean(own || silent || (refused && !session.welcomed)));
         element.classList.toggle('blank', Boolean(own || silent || !picture));

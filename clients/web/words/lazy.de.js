@@ -224,6 +224,7 @@ legend: Benannte Ansichten
 title: Name für das Gezeigte
 save: Speichern
 unknown: Eine Ansicht „{id}“ gibt es hier nicht
+wrong: Diese Ansicht lässt sich nicht zeigen: {why}
 more: Mehr zu {title}
 by: {who}, {time}
 update: Gezeigtes hier speichern

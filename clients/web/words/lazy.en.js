@@ -222,6 +222,7 @@ legend: Views with names
 title: Name for what is seen
 save: Save
 unknown: There is no view '{id}' here
+wrong: This view cannot be shown: {why}
 more: More about {title}
 by: {who}, {time}
 update: Save what is seen here

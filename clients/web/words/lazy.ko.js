@@ -222,6 +222,7 @@ legend: 저장된 뷰
 title: 현재 화면의 이름
 save: 저장
 unknown: '{id}' 뷰가 없습니다
+wrong: 이 뷰를 표시할 수 없습니다: {why}
 more: {title} 더 보기
 by: {who}, {time}
 update: 현재 화면으로 저장

@@ -228,7 +228,7 @@ int api_views(struct server_context *server, struct request *request)
     struct args args;
     if (!request_args(request->wsi, &args, &error) || args.count > 1 || (args.count == 1 && strncmp(args.list[0], "id=", 3) != 0))
         return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected nothing, or id=ID\n");
-    return request_answer_json(request, named_views_text(server->params.plant.named_views, args.count ? args.list[0] + 3 : NULL));
+    return request_answer_json(request, reply_views_text(&server->session_context, args.count ? args.list[0] + 3 : NULL));
 }
 
 /* Those in force between `from` and `to`; by default in the last hour, and now. */

@@ -39,6 +39,8 @@ export class NamedViews {
             return;
         }
         this.look(view.view, fly);
+        if (view.wrong)
+            this.tell(say('named.wrong', { why: refusalText(view.wrong) }));
         this.opened = id;
         this.mark();
     }
@@ -98,7 +100,7 @@ export class NamedViews {
         if (known)
             picture.src = known.url;
         const open = make('button', { type: 'button', class: 'named-open', onclick: () => this.open(view.id) }, picture,
-            make('span', {}, view.title));
+            make('span', {}, view.title, view.wrong ? make('em', {}, refusalText(view.wrong)) : null));
         return make('li', { 'data-id': view.id }, open, !view.fixed && this.may ? this.moreOf(view, saved) : null);
     }
 
