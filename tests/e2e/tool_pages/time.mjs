@@ -183,16 +183,19 @@ test('a gap is a gap in the picture too', options, async () => {
 test('it plays, pauses, and goes back to live', options, async () => {
     await travel(page, (BEGIN_S + 100) * 1e6);
     await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, (BEGIN_S + 100) * 1e6);
-    await page.locator('#time-speed').selectOption('300');
+    await page.locator('#time-speed').selectOption('60'); // it is at now after 48 s, on a busy machine before another one
     await page.locator('#time-play').click();
-    await page.waitForFunction((us) => globalThis.plantcast.session.picture.dataTimeUs > us, (BEGIN_S + 400) * 1e6);
-    assert.match(await page.locator('#banner .detail').textContent(), /playing 300×/);
+    await page.waitForFunction((us) => globalThis.plantcast.session.picture.dataTimeUs > us, (BEGIN_S + 160) * 1e6);
+    assert.match(await page.locator('#banner .detail').textContent(), /playing 60×/);
     assert.equal(await page.locator('#time-play').getAttribute('aria-label'), 'Pause');
     await page.locator('#time-play').click();
-    await page.waitForFunction(() => globalThis.plantcast.session.time.speed === 0);
+    await page.waitForFunction(() => { // the picture of the instant at which it was stopped comes a little later
+        const { time, picture } = globalThis.plantcast.session;
+        return time.speed === 0 && Math.abs(picture.dataTimeUs - time.atUs) < 1e6;
+    });
     const { atUs } = await shown();
-    await page.waitForTimeout(800);
-    assert.ok(Math.abs((await shown()).atUs - atUs) < 120e6);
+    await page.waitForTimeout(800); // 48 s by that speed
+    assert.ok(Math.abs((await shown()).atUs - atUs) < 1e6);
     await page.locator('#time-live').click();
     await waitForHealth(page, 'live');
     assert.equal((await shown()).past, false);
