@@ -11,6 +11,7 @@
 #include "surface/mesh/trimesh.h"
 
 #define APART (ASSET_DISTANCE_BLOCK + 32) /* of columns while rows are dealt to them: so that they do not meet in the cache */
+#define AHEAD 8                           /* vertices: their rows lie anywhere, and memory is slow */
 #define LINE 32u                          /* sensors at a time: a line of codes each, in the nearest cache */
 
 void distance_rows_finish(struct distance_rows *rows)
@@ -38,6 +39,13 @@ struct turn {
     atomic_int error; /* errno */
 };
 
+static void fetch_row(const struct distance_rows *rows, size_t vertex, size_t begin, size_t width)
+{
+    const char *row = (const char *)(rows->distances_m + rows->place_of[vertex] * rows->sensor_count + begin);
+    for (size_t at = 0; at < width * sizeof(float); at += 64)
+        __builtin_prefetch(row + at);
+}
+
 /* The codes of one block of vertices. */
 static void turn_block(const struct distance_rows *rows, size_t first, size_t count, uint16_t *codes)
 {
@@ -47,6 +55,8 @@ static void turn_block(const struct distance_rows *rows, size_t first, size_t co
         for (size_t v = 0; v < count; v++) {
             const float *row = rows->distances_m + rows->place_of[first + v] * rows->sensor_count + begin;
             uint16_t code[LINE];
+            if (v + AHEAD < count)
+                fetch_row(rows, first + v + AHEAD, begin, width);
             for (size_t s = 0; s < width; s++)
                 code[s] = asset_distance_code(row[s]);
             for (size_t s = 0; s < width; s++)
