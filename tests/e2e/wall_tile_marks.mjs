@@ -119,9 +119,10 @@ test('notes and where a desk points stand where they are', options, async () => 
     } finally {
         clearInterval(pointing);
     }
-    await pages[0].page.locator('.marks .pointer').waitFor({ state: 'detached' });
+    for (const { page } of pages)
+        await page.locator('.marks .pointer').waitFor({ state: 'detached' });
     said({ type: 'remove_note', id });
-    await pages[1].page.locator('.marks .note').waitFor({ state: 'detached' });
+    await pages[1].page.locator('.marks .note', { hasText: 'Manhole open' }).waitFor({ state: 'detached' });
     point(FAR, 'other');
     await sleep(500);
     assert.equal(await count(0, '.marks .pointer') + await count(1, '.marks .pointer'), 0);
