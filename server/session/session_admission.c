@@ -16,9 +16,11 @@ static void hold(struct session *session, int64_t pixels)
     session->room.pixels = pixels;
 }
 
-static int64_t pixels_of(const struct view *view)
+/* A tile takes those of its own display: all of them share the picture. */
+static int64_t pixels_of(const struct session *session)
 {
-    return (int64_t)view->width_px * view->height_px;
+    const int *display_px = session->tile.layout.display_px;
+    return session_is_tile(session) ? (int64_t)display_px[0] * display_px[1] : (int64_t)session->view.width_px * session->view.height_px;
 }
 
 bool session_reserve_pixels(struct session *session, int width_px, int height_px, struct message_error *error)
@@ -52,7 +54,7 @@ bool session_has_pixels(const struct session *session)
 
 static bool take_again(struct session *session, const char **why)
 {
-    int64_t pixels = pixels_of(&session->view);
+    int64_t pixels = pixels_of(session);
     *why = admission_refuses_pixels(session->context->admission, session->room.share, 0, pixels);
     if (!*why)
         hold(session, pixels);

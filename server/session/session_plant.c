@@ -173,10 +173,10 @@ void session_take_plant(struct session *session, const char *carried)
     if (session->identity.holder.views[0] && !session_scope_view(session, session->scope.named, &session->view, &error))
         session_reply_error(session, &error);
     if (session_is_tile(session)) {
-        const struct tile_layout *layout = &session->tile.layout;
+        struct tile_layout *layout = &session->tile.layout;
         mem_free(session->tile.told);
         session->tile.told = NULL;
-        if (!session_tile_fit(session, &session->tile.place, layout->width_px, layout->height_px, &session->view, &session->tile.layout))
+        if (!session_tile_fit(session, &session->tile.place, layout->display_px[0], layout->display_px[1], &session->view, layout))
             session_close(session, 1012, "the plant has no such tile any more");
     }
     session->owed.welcome = session->owed.tags_all = session->owed.status = session->demand.any = true;

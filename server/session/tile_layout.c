@@ -43,6 +43,7 @@ void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int w
     double px_per_mm = hypot(width_px, height_px) / (wall->inches * MM_PER_INCH);
     struct tile_layout full = { .columns = tile->columns,
                                 .rows = tile->rows,
+                                .display_px = { width_px, height_px },
                                 .width_px = width_px,
                                 .height_px = height_px,
                                 .margin_px = { BURN_SHIFT_PX, BURN_SHIFT_PX } };

@@ -9,7 +9,8 @@
 
 struct tile_layout {
     int columns, rows;
-    int width_px, height_px; /* of a tile */
+    int display_px[2];       /* of the display: across, down */
+    int width_px, height_px; /* of a tile, which may be smaller */
     int gap_px[2];           /* between two of them: across, down */
     int margin_px[2];        /* around all of them: left and right, above and below */
     struct burn_shift shift; /* by which all tiles see the picture moved, in the display's own pixels */

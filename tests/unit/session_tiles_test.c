@@ -154,6 +154,28 @@ static void test_a_picture_is_never_larger_than_one_may_be(void **state)
     }
 }
 
+/* Whose display was not looked at for a while takes as many pixels as when it came: those of its display, not of the whole picture. */
+static void test_a_tile_seen_again_takes_its_own_pixels(void **state)
+{
+    const struct wall wall = { .inches = 10, .tile = { .columns = 3, .rows = 2 } };
+    const int64_t own = 1920 * 1080;
+    const struct quotas quotas = { .at = { [QUOTA_PIXELS] = 2 * own } };
+    struct admission admission = { .quotas = &quotas };
+    const struct session_context context = { .quotas = &quotas, .admission = &admission };
+    struct session *session = mem_new(sizeof(*session));
+    (void)state;
+    session->context = &context;
+    session->hidden = true;
+    session->tile.place.display = 2;
+    tile_layout_init(&session->tile.layout, &wall, 1920, 1080, VIEW_MAX_PIXELS);
+    session->view.width_px = tile_layout_width(&session->tile.layout);
+    session->view.height_px = tile_layout_height(&session->tile.layout);
+    session_on_visible(session, true, 1);
+    assert_int_equal(admission.pixels, own);
+    assert_int_equal(session->owed.reply_count, 0);
+    mem_free(session);
+}
+
 static void test_a_move_is_sent_once(void **state)
 {
     struct wall_case wall;
@@ -203,6 +225,7 @@ int main(void)
         cmocka_unit_test(test_an_answer_without_a_frame_overtakes_one),
         cmocka_unit_test(test_tiles_are_moved_within_the_picture),
         cmocka_unit_test(test_a_picture_is_never_larger_than_one_may_be),
+        cmocka_unit_test(test_a_tile_seen_again_takes_its_own_pixels),
         cmocka_unit_test(test_a_move_is_sent_once),
         cmocka_unit_test(test_a_server_that_takes_long_makes_smaller_pictures),
     };
