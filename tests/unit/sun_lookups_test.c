@@ -113,5 +113,6 @@ static void test_bounds_tell_what_texels_tell(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_bounds_tell_what_texels_tell) };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
