@@ -491,19 +491,19 @@ static void draw_tile_title(const struct player *player, const struct pane *pane
 static void say_state(const struct player *player, const struct pane *pane, int64_t now_ns, struct text *state)
 {
     const struct link *link = pane->view.link;
+    const char *wrong = pane->wrong.length > 0 ? pane->wrong.at : NULL;
     bool lost = link->heard_ns && now_ns - link->heard_ns >= player->lost_ns;
     if (lost)
         text_add(state, "lost\n%s",
                  say("walls.lost", "time", player_time(player, model_now_us(&player->model) - (now_ns - link->heard_ns) / 1000), NULL));
     else if (pane->view.tile.late_us)
         text_add(state, "lost\n%s", say("walls.late", "time", player_time(player, pane->view.tile.late_us), NULL));
-    else if (pane->view.refused[0] || (pane->wrong.length > 0 && !pane->view.tile.display))
-        text_add(state, "refused\n%s", pane->wrong.length > 0 ? pane->wrong.at : pane->view.refused);
+    else if (pane->view.refused[0] || (wrong && !pane->view.tile.display))
+        text_add(state, "refused\n%s", wrong ? wrong : pane->view.refused);
     else if (!pane->view.picture || !pane->view.is_current)
         text_add(state, "wait\n%s", pane->view.greeted ? "\u2026" : say("health.connecting", NULL));
     else {
         bool incomplete = pane->view.tile.leads && pane->view.tile.missing[0];
-        const char *wrong = pane->wrong.length > 0 ? pane->wrong.at : "";
         text_add(state, "picture %u", pane->view.frames);
         if (player->pointed == pane && now_ns - player->pointed_ns < POINT_NS)
             text_add(state, " %s %.3f %.3f %.3f", player->pointed_by, player->pointed_m[0], player->pointed_m[1], player->pointed_m[2]);
@@ -511,7 +511,8 @@ static void say_state(const struct player *player, const struct pane *pane, int6
         text_add(state, "\n%s",
                  !player->model.live ? say("health.nodata", NULL)
                  : incomplete        ? say("walls.missing", "displays", pane->view.tile.missing, NULL)
-                                     : wrong);
+                 : wrong             ? wrong
+                                     : "");
     }
 }
 

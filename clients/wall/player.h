@@ -58,7 +58,7 @@ struct pane {
     bool on_alarm, called;
     struct text wanted; /* what was asked for */
     struct text words;  /* its title now */
-    struct text wrong;  /* why the view that it is to show cannot be shown as it is written; "": it can */
+    struct text wrong;  /* why the view that it is to show cannot be shown as it is written; of length 0: it can */
     struct text state;  /* of views, likewise: what is seen below the title */
 };
 

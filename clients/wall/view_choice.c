@@ -88,7 +88,8 @@ static void say_wrong(const json_t *view, struct text *wrong)
 {
     const char *why = string_of(view, "wrong");
     wrong->length = 0;
-    text_add(wrong, "%s", *why ? say("named.wrong", "why", why, NULL) : "");
+    if (*why)
+        text_add(wrong, "%s", say("named.wrong", "why", why, NULL));
 }
 
 /* How long a view is shown. */

@@ -73,10 +73,11 @@ function ViewsPane(pane, context) {
         return make('i', {}, say(held ? 'walls.held' : 'walls.sent', { who, time }));
     }
 
-    function showView(page, order) {
+    // wrong: what the view names that the plant does not have; another picture in its place would pass for it.
+    function showView(page, order, wrong) {
         const id = pane.items[at];
-        if (element.classList.contains('unshown')) // another one in its place would pass for it
-            setText(why, say('named.wrong', { why: refusalText(viewsOf(page.session).find((view) => view.id === id).wrong) }));
+        if (wrong)
+            setText(why, say('named.wrong', { why: refusalText(wrong) }));
         else if (order?.view)
             page.modules.use('views', (views) => views.lookAt(order.view));
         else if (page.session.model.plant.only)
@@ -125,7 +126,8 @@ function ViewsPane(pane, context) {
         const { view, wrong } = viewsOf(page.session).find(({ id }) => id === pane.items[at]) ?? {}, { width, height } = page.session.size;
         const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}/${isGone(alarm.state)}`
             : JSON.stringify([at, order, view, wrong, width, height]);
-        element.classList.toggle('unshown', Boolean(wrong && !alarm && !order?.view));
+        const unshown = alarm || order?.view ? null : wrong;
+        element.classList.toggle('unshown', Boolean(unshown));
         element.classList.toggle('called', Boolean(alarm));
         element.classList.toggle('coming', Boolean(alarm) && ofOther(page.session, alarm)); // no legend of another quantity below its name
         if (wanted === shown && page === shownIn)
@@ -135,7 +137,7 @@ function ViewsPane(pane, context) {
         if (alarm)
             showAlarm(page, alarm);
         else
-            showView(page, order);
+            showView(page, order, unshown);
     } };
 }
 
