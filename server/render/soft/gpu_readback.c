@@ -64,8 +64,9 @@ static uint32_t fill_sun_tile(const struct sun_band *band, int u, int v, uint16_
             for (int x = 0; x < SUN_TILE_PX; x++)
                 out[x] = row[u + x < last_u ? u + x : last_u];
     }
-    if (memcmp(texels, nothing, sizeof(texels)) != 0)
-        memcpy(to, texels, sizeof(texels));
+    if (memcmp(texels, nothing, sizeof(texels)) == 0)
+        return 0; /* the least is nothing, and so is the greatest */
+    memcpy(to, texels, sizeof(texels));
     return soft_sun_bounds(texels);
 }
 
