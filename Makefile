@@ -320,8 +320,11 @@ include deploy/deploy.mk
 clean:
 	rm -rf $(build)
 
-# What was built with other codecs, or without OPC UA, is built anew.
+# Objects depend on this stamp, so that a build with other codecs, or without OPC UA, compiles again. Goals in no_packages do not know
+# whether OPC UA is there, and leave the stamp alone.
+ifneq ($(filter-out $(no_packages),$(asked)),)
 parts := $(CODECS) $(if $(opcua_libs),opcua)
 $(shell mkdir -p $(out); echo '$(parts)' | cmp -s - $(out)/codecs || echo '$(parts)' >$(out)/codecs)
+endif
 
 -include $(shell find $(out)/obj -name '*.d' 2>/dev/null)
