@@ -8,10 +8,10 @@ deps:
 test-deps:
 	@deploy/deps build test
 
-# A second make, because this one looked for libraries before they were installed.
+# A second make, because this one looked for libraries before they were installed. setpriv ends deploy/run with make, even a killed make.
 run: deps
-	@$(MAKE) --no-print-directory all $(filter $(build)/demo/%,$(PLANT))
-	@exec deploy/run $(bin) $(PLANT) $(PORT)
+	@deploy/compile $(build)/compile.log $(MAKE) --no-print-directory $(jobs) all $(filter $(build)/demo/%,$(PLANT))
+	@exec setpriv --pdeathsig TERM deploy/run $(bin) $(PLANT) $(PORT)
 
 # The demo plant is generated; preparing it again costs only a look at the files.
 demo: $(build)/demo/plant.yaml $(bin)/plantcast-prep

@@ -2,15 +2,15 @@
 # Running the tests, the checks of the source, and the bench.
 jobs := -j$(shell nproc)
 test: test-deps
-	@$(MAKE) --no-print-directory $(jobs) tests checked
+	@deploy/compile $(build)/compile.log $(MAKE) --no-print-directory $(jobs) tests checked
 	@tests/run $(out) $(bin) quick
 # What a developer runs before each commit.
 check: test-deps
-	@$(MAKE) --no-print-directory $(jobs) tests checked
+	@deploy/compile $(build)/compile.log $(MAKE) --no-print-directory $(jobs) tests checked
 	@tests/run $(out) $(bin) check
 # All sweeps whole, each GL test on each context; then all under each sanitizer, and built by clang.
 test-long: test-deps
-	@$(MAKE) --no-print-directory $(jobs) tests checked
+	@deploy/compile $(build)/compile.log $(MAKE) --no-print-directory $(jobs) tests checked
 	@tests/run $(out) $(bin) whole
 	@deploy/deps build test long
 	@$(MAKE) --no-print-directory CC=clang build=$(build)/clang all tests

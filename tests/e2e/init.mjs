@@ -3,9 +3,9 @@
 // by certbot's hook; a build without the charts of the page fails.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { basename, join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
 import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { freePort } from './support/ports.mjs';
@@ -90,17 +90,22 @@ test('a certificate that certbot renewed is copied to the plants that name it', 
     assert.match(readFileSync(etc('three/tls/privkey.pem'), 'utf8'), /BEGIN PRIVATE KEY/);
 });
 
+// A plant whose PLC is simulated by `make run`.
+async function simulatedPlant() {
+    const own = await TinyPlant.create();
+    const block = `  - id: plc1\n    type: modbus\n    host: 127.0.0.1\n    port: ${own.modbusPort}\n    poll_ms: 100\n` +
+        '    byte_order: ABCD\n    address_base: 1\n    simulated: yes\n';
+    writeFileSync(own.file, readFileSync(own.file, 'utf8').replace(/^ *- \{ id: plc1, .*\n/m, block));
+    return own;
+}
+
 test('`make run` twice on a machine: the second takes another port, and both are fed', { skip, timeout: 200000 }, async (t) => {
-    const own = await TinyPlant.create(), runs = [];
+    const own = await simulatedPlant(), runs = [], yaml = readFileSync(own.file, 'utf8');
     t.after(async () => {
         for (const run of runs)
             await run.stop();
         await own.destroy();
     });
-    const block = `  - id: plc1\n    type: modbus\n    host: 127.0.0.1\n    port: ${own.modbusPort}\n    poll_ms: 100\n` +
-        '    byte_order: ABCD\n    address_base: 1\n    simulated: yes\n';
-    const yaml = readFileSync(own.file, 'utf8').replace(/^ *- \{ id: plc1, .*\n/m, block);
-    writeFileSync(own.file, yaml);
     const ports = [await freePort(), await freePort()];
     for (const port of ports) {
         runs.push(new Program('', [own.file, String(port)], {}, ['deploy/run']));
@@ -118,6 +123,40 @@ test('`make run` twice on a machine: the second takes another port, and both are
     for (const run of runs)
         assert.deepEqual(await run.stop(), { code: 0, signal: null }, run.said);
 });
+
+// `make run` builds and runs the release configuration.
+const OUT = resolve(process.env.PLANTCAST_OUT ?? 'build/release');
+const notReleased = OUT === join(BIN, 'release') ? false : 'not the release build';
+
+// Processes of a plant, by the plant file in their arguments.
+const processesOf = (file) => readdirSync('/proc').filter((pid) => /^\d+$/.test(pid)).map((pid) => {
+    try {
+        return readFileSync(`/proc/${pid}/cmdline`, 'utf8').split('\0');
+    } catch {
+        return [];
+    }
+}).filter(([program, ...args]) => /plantcast/.test(program) && args.includes(file)).map(([program]) => basename(program));
+
+for (const [how, end] of [['kill of make alone', (make) => make.kill('SIGTERM')], ['kill -9 of make alone', (make) => make.kill('SIGKILL')],
+    ['Ctrl-C', (make) => process.kill(-make.pid, 'SIGINT')], ['a closed terminal', (make) => process.kill(-make.pid, 'SIGHUP')]])
+    test(`the simulator and the daemon of \`make run\` end by ${how}`, { skip: skip || notReleased, timeout: 200000 }, async (t) => {
+        const own = await simulatedPlant(), port = await freePort(), stamp = statSync(join(OUT, 'codecs')).mtimeMs;
+        t.after(() => own.destroy());
+        const make = spawn('make', ['run', `build=${BIN}`, `PLANT=${own.file}`, `PORT=${port}`], { detached: true });
+        let said = '';
+        await new Promise((ready, failed) => {
+            make.stdout.on('data', (text) => /^plantcast: ready .*\n$/m.test(said += text) && ready());
+            make.once('exit', () => failed(new Error(said)));
+        });
+        assert.ok(said.trim().split('\n').length < 20, said);
+        assert.match(said.trim().split('\n').at(-1), new RegExp(`^plantcast: ready http://127.0.0.1:${port}/$`));
+        assert.equal(statSync(join(OUT, 'codecs')).mtimeMs, stamp, 'the next make compiles everything again');
+        assert.deepEqual(processesOf(own.file).sort(), ['plantcast-sim', 'plantcastd']);
+        make.removeAllListeners('exit');
+        end(make);
+        while (processesOf(own.file).length > 0)
+            await new Promise((done) => setTimeout(done, 50));
+    });
 
 test('without npm or a network no page without charts is built', () => {
     const tree = join(root, 'tree'), bin = join(root, 'bin');
