@@ -13,6 +13,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "base/timestamp.h"
+#include "film_boxes.h"
 
 #define FILM_KEY "plantcast_statements"
 static const size_t MOST_BYTES = (size_t)64 << 20, MOST_TEXT_BYTES = (size_t)1 << 30; /* compressed, and not */
@@ -82,6 +83,7 @@ struct film_reader {
     AVPacket *packet;
     AVFrame *frame;
     bool ended;
+    struct film_size size; /* at which players show it */
     json_t *statements; /* [[statement, signature], ...] */
     char why[SIGNED_PICTURE_WHY_BYTES];
 };
@@ -115,17 +117,18 @@ static bool read_statements(struct film_reader *reader)
     return json_is_array(reader->statements) || FAIL("its statements cannot be read");
 }
 
-/* One stream, which players show as it is. */
+/* Opens a film of one stream that every player shows unchanged. The decoder takes colours from the stream alone: those of the file are
+   forgotten, after film_boxes_plain has looked at them. */
 static bool open_film(struct film_reader *reader, const char *path)
 {
     av_log_set_level(AV_LOG_QUIET);
+    if (!film_boxes_plain(path, &reader->size, reader->why))
+        return false;
     if (avformat_open_input(&reader->format, path, NULL, NULL) < 0 || avformat_find_stream_info(reader->format, NULL) < 0)
         return FAIL("it is no whole film");
     const AVStream *stream = reader->format->nb_streams == 1 ? reader->format->streams[0] : NULL;
     if (!stream || stream->codecpar->codec_id != AV_CODEC_ID_H264)
         return FAIL("it has more, or something else, in it than one film of H.264");
-    if (av_stream_get_side_data(stream, AV_PKT_DATA_DISPLAYMATRIX, NULL))
-        return FAIL("it would be shown turned");
     const AVCodec *decoder = avcodec_find_decoder(AV_CODEC_ID_H264);
     reader->codec = decoder ? avcodec_alloc_context3(decoder) : NULL;
     reader->packet = av_packet_alloc();
@@ -133,6 +136,10 @@ static bool open_film(struct film_reader *reader, const char *path)
     if (!reader->codec || !reader->packet || !reader->frame || avcodec_parameters_to_context(reader->codec, stream->codecpar) < 0)
         return FAIL("there is no decoder for it");
     reader->codec->thread_count = 1;
+    reader->codec->color_primaries = AVCOL_PRI_UNSPECIFIED;
+    reader->codec->color_trc = AVCOL_TRC_UNSPECIFIED;
+    reader->codec->colorspace = AVCOL_SPC_UNSPECIFIED;
+    reader->codec->color_range = AVCOL_RANGE_UNSPECIFIED;
     reader->codec->err_recognition = AV_EF_EXPLODE | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_CRCCHECK;
     return (avcodec_open2(reader->codec, decoder, NULL) >= 0 || FAIL("there is no decoder for it")) && read_statements(reader);
 }
@@ -161,6 +168,8 @@ static bool next_picture(struct film_reader *reader)
         if (status < 0 && status != AVERROR_EOF)
             return FAIL("it cannot be read to its end");
         reader->ended = status < 0;
+        if (!reader->ended && !film_units_plain(reader->packet->data, (size_t)reader->packet->size, reader->why))
+            return false;
         status = avcodec_send_packet(reader->codec, reader->ended ? NULL : reader->packet);
         av_packet_unref(reader->packet);
         if (status < 0 && status != AVERROR_EOF)
@@ -168,14 +177,29 @@ static bool next_picture(struct film_reader *reader)
     }
 }
 
-/* Red, green, blue. NULL: the picture has other colours. */
+/* Returns whether the stream describes the picture's colours and shape as video.c has them described: in each picture, since a stream may
+   describe later ones differently. */
+static bool is_plain_picture(struct film_reader *reader)
+{
+    const AVFrame *frame = reader->frame;
+    if (frame->format != AV_PIX_FMT_GBRP || frame->crop_left || frame->crop_right || frame->crop_top || frame->crop_bottom)
+        return FAIL("a picture is not as plantcast clip --signed encodes it");
+    if (frame->color_primaries != AVCOL_PRI_BT709 || frame->color_trc != AVCOL_TRC_IEC61966_2_1 || frame->colorspace != AVCOL_SPC_RGB ||
+        frame->color_range != AVCOL_RANGE_JPEG)
+        return FAIL("its stream of H.264 (VUI) describes other colours than ours: primaries %d, transfer %d, matrix %d, range %d",
+                    (int)frame->color_primaries, (int)frame->color_trc, (int)frame->colorspace, (int)frame->color_range);
+    if (frame->sample_aspect_ratio.num != 0 && av_cmp_q(frame->sample_aspect_ratio, (AVRational){ 1, 1 }) != 0)
+        return FAIL("its stream of H.264 (VUI) says that pixels are not square");
+    return (frame->width == reader->size.width_px && frame->height == reader->size.height_px) ||
+           FAIL("its box avc1 says another size than its pictures have");
+}
+
+/* Red, green, blue. NULL: players may show the picture differently. */
 static uint8_t *pixels_of(struct film_reader *reader)
 {
     const AVFrame *frame = reader->frame;
-    if (frame->format != AV_PIX_FMT_GBRP || frame->crop_left || frame->crop_right || frame->crop_top || frame->crop_bottom) {
-        snprintf(reader->why, sizeof(reader->why), "a picture is not as plantcast clip --signed encodes it");
+    if (!is_plain_picture(reader))
         return NULL;
-    }
     uint8_t *rgb = mem_array((size_t)frame->width * (size_t)frame->height, 3), *out = rgb;
     for (int y = 0; y < frame->height; y++)
         for (int x = 0; x < frame->width; x++, out += 3) {

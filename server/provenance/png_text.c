@@ -2,6 +2,7 @@
 /* A chunk: length, type, data, CRC-32 of type and data; all numbers big-endian. */
 #include "provenance/png_text.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <zlib.h>
 
@@ -70,7 +71,8 @@ static char *inflate_text(const uint8_t *at, size_t count, size_t max_bytes, siz
 {
     char *text = mem_try_array(max_bytes + 1, 1);
     uLongf length = max_bytes;
-    if (text && uncompress((Bytef *)text, &length, at, count) == Z_OK) {
+    uLong taken = count;
+    if (text && uncompress2((Bytef *)text, &length, at, &taken) == Z_OK && taken == count) {
         text[length] = 0;
         *out_length = length;
         return text;
@@ -103,21 +105,92 @@ static bool next_chunk(const uint8_t *png, size_t count, size_t *at, struct chun
     return true;
 }
 
-bool png_is_plain(const uint8_t *png, size_t count, char type[5])
+/* A chunk that our writer emits. `bytes`: its exact data; NULL: any data of at least one byte. */
+struct plain_chunk {
+    char type[5];
+    bool required, repeats;
+    const char *bytes;
+    size_t length;
+};
+
+/* sRGB with perceptual intent, and what gAMA and cHRM say beside it (PNG, third edition, 11.3.2.5). Our writer emits sRGB alone. */
+static const struct plain_chunk plain[] = {
+    { "sRGB", true, false, "\0", 1 },
+    { "gAMA", false, false, "\0\0\xb1\x8f", 4 },
+    { "cHRM", false, false,
+      "\0\0\x7a\x26\0\0\x80\x84\0\0\xfa\0\0\0\x80\xe8\0\0\x75\x30\0\0\xea\x60\0\0\x3a\x98\0\0\x17\x70", 32 },
+    { "IDAT", true, true, NULL, 0 },
+    { "IEND", true, false, "", 0 },
+};
+enum { PLAIN_CHUNKS = sizeof(plain) / sizeof(*plain) };
+
+#define FAIL(...) (snprintf(why, PNG_PLAIN_WHY_BYTES, __VA_ARGS__), false)
+
+/* Eight bits of red, green and blue, not interlaced: nothing else is shown as its bytes are. */
+static bool is_plain_header(const struct chunk *chunk, char why[PNG_PLAIN_WHY_BYTES])
 {
-    static const char *const plain[] = { "IHDR", "sRGB", "gAMA", "cHRM", "zTXt", "tEXt", "iTXt", "IDAT", "IEND" };
+    static const uint8_t format[] = { 8, 2, 0, 0, 0 };
+    bool is_header = memcmp(chunk->type, "IHDR", 4) == 0 && chunk->length == 13;
+    if (!is_header)
+        return FAIL("its first chunk is not IHDR");
+    return memcmp(chunk->data + 8, format, sizeof(format)) == 0 ||
+           FAIL("its chunk IHDR says another format than 8 bits of red, green and blue");
+}
+
+/* Returns the row of `plain` that the chunk is of; PLAIN_CHUNKS: of none. */
+static int plain_row(const struct chunk *chunk)
+{
+    int row = 0;
+    while (row < PLAIN_CHUNKS && memcmp(chunk->type, plain[row].type, 4) != 0)
+        row++;
+    return row;
+}
+
+static char printable(uint8_t byte)
+{
+    return byte > ' ' && byte < 0x7f ? (char)byte : '?';
+}
+
+static bool takes_plain_chunk(const struct chunk *chunk, int *next, char why[PNG_PLAIN_WHY_BYTES])
+{
+    int row = plain_row(chunk);
+    if (row == PLAIN_CHUNKS)
+        return FAIL("it has a chunk that none of our pictures has: %c%c%c%c", printable(chunk->type[0]), printable(chunk->type[1]),
+                    printable(chunk->type[2]), printable(chunk->type[3]));
+    bool again = row + 1 == *next && plain[row].repeats;
+    if (row < *next && !again)
+        return FAIL("its chunk %.4s is there twice, or in another order than in our pictures", plain[row].type);
+    for (int i = *next; i < row; i++)
+        if (plain[i].required)
+            return FAIL("its chunk %.4s is missing, or in another order than in our pictures", plain[i].type);
+    if (plain[row].bytes && (chunk->length != plain[row].length || memcmp(chunk->data, plain[row].bytes, chunk->length) != 0))
+        return FAIL("its chunk %.4s says something else than that of our pictures", plain[row].type);
+    *next = row + 1;
+    return true;
+}
+
+bool png_is_plain(const uint8_t *png, size_t count, const char *const *keywords, int keyword_count, char why[PNG_PLAIN_WHY_BYTES])
+{
     struct chunk chunk;
-    memset(type, 0, 5);
-    for (size_t at = SIGNATURE; is_png(png, count) && next_chunk(png, count, &at, &chunk);) {
-        bool known = false;
-        for (size_t i = 0; i < sizeof(plain) / sizeof(*plain); i++)
-            known |= memcmp(chunk.type, plain[i], 4) == 0;
-        if (!known)
-            memcpy(type, chunk.type, 4);
-        if (!known || memcmp(chunk.type, "IEND", 4) == 0)
-            return known && at == count;
+    size_t at = SIGNATURE;
+    int texts = 0, next = 0;
+    if (!is_png(png, count) || !next_chunk(png, count, &at, &chunk))
+        return FAIL("it is no whole PNG file");
+    if (!is_plain_header(&chunk, why))
+        return false;
+    while (next_chunk(png, count, &at, &chunk)) {
+        bool is_text = memcmp(chunk.type, "zTXt", 4) == 0;
+        if (is_text && (texts == keyword_count || next > 0 || !has_keyword(chunk.data, chunk.length, keywords[texts])))
+            return FAIL("its chunk zTXt is there once more, or in another order than in our pictures");
+        texts += is_text;
+        if (!is_text && texts < keyword_count)
+            return FAIL("there is no %s in it, or not behind its header", keywords[texts]);
+        if (!is_text && !takes_plain_chunk(&chunk, &next, why))
+            return false;
+        if (next == PLAIN_CHUNKS)
+            return at == count || FAIL("it is no whole PNG file: there are %zu bytes behind its last chunk", count - at);
     }
-    return false;
+    return FAIL("it is no whole PNG file: it is cut or damaged");
 }
 
 char *png_text_find(const uint8_t *png, size_t count, const char *keyword, size_t max_bytes, size_t *out_length)

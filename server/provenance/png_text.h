@@ -15,11 +15,13 @@ struct png_text {
 /* Returns a copy of the PNG file with the texts behind its header, and its size in *out_count; the caller frees it (mem_free). NULL: it is
    no PNG file, or there is no memory. */
 uint8_t *png_text_add(const uint8_t *png, size_t count, const struct png_text *texts, int text_count, size_t *out_count);
-/* Returns whether the file is whole, ends with its last chunk and has no chunks but those that show one picture as its pixels are: no
-   animation, no colour profile. If not, writes the type of the first chunk that is too much, or "", to `type`. */
-bool png_is_plain(const uint8_t *png, size_t count, char type[5]);
+enum { PNG_PLAIN_WHY_BYTES = 160 };
+/* Returns whether the file consists of exactly the chunks that our writer emits: IHDR of 8-bit RGB, compressed texts with these keywords,
+   sRGB, IDAT, IEND, in this order and with the same contents; gAMA and cHRM only with the values of sRGB. Every browser shows the pixels
+   of such a file unchanged. If not, writes the reason, with the name of the chunk, to `why`. */
+bool png_is_plain(const uint8_t *png, size_t count, const char *const *keywords, int keyword_count, char why[PNG_PLAIN_WHY_BYTES]);
 /* Returns the text of the only chunk with that keyword, followed by a 0 byte, and its length; the caller frees it (mem_free). NULL: there
-   is none, there are several, the file is cut or damaged, or the text has more than max_bytes. */
+   is none, there are several, the file is cut or damaged, bytes follow the compressed text, or the text has more than max_bytes. */
 char *png_text_find(const uint8_t *png, size_t count, const char *keyword, size_t max_bytes, size_t *out_length);
 
 #endif

@@ -103,13 +103,10 @@ json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png,
     char *text = png_text_find(png, count, PICTURE_STATEMENT_KEYWORD, PICTURE_STATEMENT_MAX_BYTES, &length);
     char *signature = png_text_find(png, count, PICTURE_SIGNATURE_KEYWORD, PICTURE_SIGNATURE_BYTES, &signature_length);
     json_t *statement = NULL;
-    char type[5];
-    if (!png_is_plain(png, count, type))
-        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "%s%.4s",
-                 *type ? "it has a chunk that none of our pictures has: " : "it is no whole PNG file", type);
-    else if (!text || !signature)
+    bool is_plain = png_is_plain(png, count, (const char *const[]){ PICTURE_STATEMENT_KEYWORD, PICTURE_SIGNATURE_KEYWORD }, 2, why);
+    if (is_plain && (!text || !signature))
         snprintf(why, SIGNED_PICTURE_WHY_BYTES, "there is no %s in it, or the file is damaged", text ? "signature" : "statement");
-    else
+    else if (is_plain)
         statement = signed_statement_verify(key, text, length, signature, why);
     if (statement && !has_pixels(statement, png, count, why)) {
         json_decref(statement);

@@ -8,6 +8,7 @@ import { get } from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, shoot, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { alteredFilms } from './support/mp4_boxes.mjs';
 import { chunksOf, pngOf, textOf, withRows, withText } from './support/png_chunks.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
@@ -145,14 +146,57 @@ test('a statement of version 1 is verified, and its picture drawn again', { skip
     refused(withText(first, STATEMENT, (text) => text.replace('"TI-1",80.0', '"TI-1",79.0')), /the signature is wrong/);
 });
 
-test('no file that would show something else is good', { skip }, () => {
-    const chunks = chunksOf(picture), animated = { type: 'acTL', data: Buffer.from([0, 0, 0, 2, 0, 0, 0, 0]) };
-    refused(pngOf(picture, [chunks[0], animated, ...chunks.slice(1)]), /a chunk that none of our pictures has: acTL/);
-    refused(Buffer.concat([picture, Buffer.from('more')]), /no whole PNG file/);
-    refused(picture.subarray(0, picture.length - 20), /no whole PNG file/);
-    refused(Buffer.from('GIF89a'), /no whole PNG file/);
-    refused(pngOf(picture, [...chunks.slice(0, 2), ...chunks.slice(1)]), /no statement in it/);
-    refused(pngOf(picture, chunks.filter(({ type }) => type !== 'zTXt')), /no statement in it/);
+test('no file that would show something else is good: the chunk is named', { skip }, () => {
+    const chunks = chunksOf(picture), place = (type) => chunks.findIndex((chunk) => chunk.type === type);
+    const hex = (text) => Buffer.from(text, 'hex');
+    const SRGB = '00007a26000080840000fa00000080e8000075300000ea6000003a9800001770';
+    const SWAPPED = '00007a2600008084000075300000ea600000fa00000080e800003a9800001770';
+    const put = (type, data, before = 'IDAT') => pngOf(picture, chunks.toSpliced(place(before), 0, { type, data: hex(data) }));
+    const change = (type, data) => pngOf(picture, chunks.with(place(type), { type, data }));
+    const header = (at, value) => { const data = Buffer.from(chunks[0].data); data[at] = value; return change('IHDR', data); };
+    const only = (...unwanted) => chunks.filter((chunk) => !unwanted.includes(chunk));
+    const more = 'a chunk that none of our pictures has: ';
+    assert.deepEqual(chunks.map(({ type }) => type).filter((type) => type !== 'IDAT'), ['IHDR', 'zTXt', 'zTXt', 'sRGB', 'IEND']);
+    assert.match(verify(put('gAMA', '0000b18f')).out, /signature is good/, 'what sRGB says, said once more');
+    assert.match(verify(put('cHRM', SRGB)).out, /signature is good/);
+    const cases = [
+        ['another gamma', put('gAMA', '000186a0'), 'its chunk gAMA says something else'],
+        ['gamma before sRGB', put('gAMA', '0000b18f', 'sRGB'), 'its chunk sRGB is missing, or in another order'],
+        ['primaries swapped', put('cHRM', SWAPPED), 'its chunk cHRM says something else'],
+        ['no sRGB', pngOf(picture, only(chunks[place('sRGB')])), 'its chunk sRGB is missing'],
+        ['primaries swapped, without sRGB', pngOf(picture, chunks.with(place('sRGB'), { type: 'cHRM', data: hex(SWAPPED) })),
+            'its chunk sRGB is missing'],
+        ['another intent', change('sRGB', hex('01')), 'its chunk sRGB says something else'],
+        ['sRGB twice', put('sRGB', '00'), 'its chunk sRGB is there twice'],
+        ['sRGB behind the pixels', pngOf(picture, [...only(chunks[place('sRGB')], chunks.at(-1)), chunks[place('sRGB')], chunks.at(-1)]),
+            'its chunk sRGB is missing, or in another order'],
+        ...['acTL', 'fcTL', 'fdAT', 'iCCP', 'cICP', 'mDCV', 'cLLI', 'tRNS', 'bKGD', 'sBIT', 'PLTE', 'eXIf', 'pHYs', 'oFFs', 'tEXt', 'iTXt',
+            'tIME', 'abCd'].map((type) => [type, put(type, '0000000200000000'), more + type]),
+        ['another text', pngOf(picture, chunks.toSpliced(3, 0, chunks[1])), 'its chunk zTXt is there once more'],
+        ['a text behind', pngOf(picture, chunks.toSpliced(-1, 0, chunks[1])), 'its chunk zTXt is there once more'],
+        ['texts swapped', pngOf(picture, chunks.toSpliced(1, 2, chunks[2], chunks[1])), 'its chunk zTXt is .* in another order'],
+        ['no texts', pngOf(picture, chunks.filter(({ type }) => type !== 'zTXt')), 'no Plantcast statement in it'],
+        ['bytes behind a text', pngOf(picture, chunks.with(1, { type: 'zTXt', data: Buffer.concat([chunks[1].data, hex('00')]) })),
+            'no statement in it'],
+        ['16 bits', header(8, 16), 'its chunk IHDR says another format'],
+        ['a palette', header(9, 3), 'its chunk IHDR says another format'],
+        ['transparency', header(9, 6), 'its chunk IHDR says another format'],
+        ['interlaced', header(12, 1), 'its chunk IHDR says another format'],
+        ['no header', pngOf(picture, chunks.slice(1)), 'its first chunk is not IHDR'],
+        ['no pixels', pngOf(picture, chunks.filter(({ type }) => type !== 'IDAT')), 'its chunk IDAT is missing'],
+        ['no end', pngOf(picture, chunks.slice(0, -1)), 'no whole PNG file'],
+        ['bytes in the end', change('IEND', hex('00')), 'its chunk IEND says something else'],
+        ['bytes behind it', Buffer.concat([picture, Buffer.from('more')]), 'no whole PNG file: there are 4 bytes behind'],
+        ['another picture behind it', Buffer.concat([picture, picture]), 'no whole PNG file: there are'],
+        ['cut', picture.subarray(0, picture.length - 20), 'no whole PNG file'],
+        ['GIF', Buffer.from('GIF89a'), 'no whole PNG file'],
+    ];
+    for (const [what, png, why] of cases) {
+        const { code, out, err } = verify(png);
+        assert.equal(code, 1, `${what}: ${out}`);
+        assert.match(err, new RegExp(why), what);
+    }
+    console.log(`# ${cases.length} altered pictures are refused, each with its reason`);
 });
 
 const url = () => `http://127.0.0.1:${plant.port}/`;
@@ -339,17 +383,37 @@ test('a film is good picture by picture; one that was changed, cut or made anew 
     };
     const LOSSLESS = ['-c:v', 'libx264rgb', '-qp', '0'];
     assert.equal(check(anew('same.mp4', ...LOSSLESS)).code, 0, 'the same pictures in other bytes');
+    const bits = (name, set) => anew(name, '-c', 'copy', '-bsf:v', `h264_metadata=${set}`);
+    assert.equal(check(bits('copied.mp4', 'video_full_range_flag=1')).code, 0, 'written by another program with the same colours');
+    bad(bits('transfer.mp4', 'transfer_characteristics=8'), /its box colr says something else|VUI.* describes other colours/);
+    bad(bits('primaries.mp4', 'colour_primaries=5'), /its box colr says something else|VUI.* describes other colours/);
+    bad(bits('range.mp4', 'video_full_range_flag=0'), /its box colr says something else|VUI.* describes other colours/);
+    bad(bits('shape.mp4', 'sample_aspect_ratio=2'), /pixels are not square|its box (tkhd|pasp) says something else/);
+    bad(bits('sei.mp4', 'display_orientation=insert:rotate=90'),
+        /a message of H.264 \(SEI\) that none of our films has: type 47|more than one message of H.264 \(SEI\)/);
+    bad(bits('cropped.mp4', 'crop_right=40'), /another size|says something else/);
+    assert.equal(spawnSync('ffmpeg', ['-v', 'error', '-y', '-i', film, '-f', 'lavfi', '-i', 'anullsrc', '-shortest', '-c:v', 'copy',
+        '-map_metadata', '0', '-movflags', 'use_metadata_tags', path('sound.mp4')]).status, 0);
+    bad(path('sound.mp4'), /its box trak is there twice/);
+    bad(anew('pieces.mp4', '-c', 'copy', '-movflags', 'use_metadata_tags+frag_keyframe'), /a box that none of our films has: mvex/);
     bad(anew('lossy.mp4', '-c:v', 'libx264rgb', '-crf', '20'), /picture 1: the pixels are not those that were signed/);
-    bad(anew('yuv.mp4', '-c:v', 'libx264', '-pix_fmt', 'yuv420p', '-vf', 'crop=320:200'), /not as plantcast clip --signed encodes it/);
+    bad(anew('yuv.mp4', '-c:v', 'libx264', '-pix_fmt', 'yuv420p', '-vf', 'crop=320:200'),
+        /not as plantcast clip --signed encodes it|its box colr/);
     bad(anew('box.mp4', ...LOSSLESS, '-vf', "drawbox=10:10:1:1:red:fill:enable='eq(n,2)'"), /picture 3: the pixels are not those/);
     const PASS = [...LOSSLESS, '-fps_mode', 'passthrough'];
     bad(anew('less.mp4', ...PASS, '-vf', "select='not(eq(n,1))'"), /picture [23]: (the pixels are not those|it is not shown as long)/);
     bad(anew('short.mp4', ...LOSSLESS, '-frames:v', '3'), /it has 3 pictures, and statements of 4/);
     bad(anew('slow.mp4', ...PASS, '-vf', "setpts='if(gte(N,2),PTS+3/TB,PTS)'"), /not shown as long as the others/);
-    bad(anew('turned.mp4', '-c', 'copy', '-metadata:s:v', 'rotate=180'), /it would be shown turned/);
+    bad(anew('turned.mp4', '-c', 'copy', '-metadata:s:v', 'rotate=180'), /its box tkhd says something else/);
     assert.equal(spawnSync('ffmpeg', ['-v', 'error', '-y', '-i', film, '-map_metadata', '-1', '-c', 'copy', path('bare.mp4')]).status, 0);
-    bad(path('bare.mp4'), /no statements in it/);
+    bad(path('bare.mp4'), /its box (udta is missing|meta says something else)/);
     const bytes = readFileSync(film);
+    for (const [what, changed, why] of alteredFilms(bytes)) {
+        writeFileSync(path('altered.mp4'), changed);
+        const told = check(path('altered.mp4'));
+        assert.equal(told.code, 1, `${what}: ${told.out}`);
+        assert.match(told.err, new RegExp(why), what);
+    }
     writeFileSync(path('cut.mp4'), bytes.subarray(0, bytes.length - 2000));
     bad(path('cut.mp4'), /pictures|decoded|whole|read|damaged/);
     const plain = runProgram('plantcast', ['clip', plant.file, '-o', film, '--from', from, '--to', to, '--signed']);

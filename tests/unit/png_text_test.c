@@ -33,11 +33,12 @@ static void a_text_is_found_again(void **state)
     memset(long_text, 'x', sizeof(long_text));
     const struct png_text texts[] = { { "One", "first", 5 }, { "Other", long_text, sizeof(long_text) }, { "Empty", "", 0 } };
     size_t count, length;
-    char type[5];
+    char why[PNG_PLAIN_WHY_BYTES];
     uint8_t *with = png_text_add(file.bytes, file.count, texts, 3, &count);
     assert_non_null(with);
     assert_true(count < file.count + 300);
-    assert_true(png_is_plain(with, count, type));
+    assert_true(png_is_plain(with, count, (const char *const[]){ "One", "Other", "Empty" }, 3, why));
+    assert_false(png_is_plain(with, count, (const char *const[]){ "One", "Other" }, 2, why));
     for (int i = 0; i < 3; i++) {
         char *found = png_text_find(with, count, texts[i].keyword, sizeof(long_text), &length);
         assert_non_null(found);
@@ -70,20 +71,20 @@ static void what_is_cut_or_damaged_is_refused(void **state)
     struct file file = picture();
     const struct png_text text = { "One", "first", 5 };
     size_t count, length;
-    char type[5];
+    char why[PNG_PLAIN_WHY_BYTES];
     uint8_t *with = png_text_add(file.bytes, file.count, &text, 1, &count);
     for (size_t i = 0; i < count; i++) {
         uint8_t *cut = mem_array(i, 1);
         if (i)
             memcpy(cut, with, i);
-        assert_false(png_is_plain(cut, i, type));
+        assert_false(png_is_plain(cut, i, &text.keyword, 1, why));
         mem_free(png_text_find(cut, i, "One", 100, &length));
         mem_free(cut);
         with[i] ^= 0x55;
-        assert_false(png_is_plain(with, count, type));
+        assert_false(png_is_plain(with, count, &text.keyword, 1, why));
         with[i] ^= 0x55;
     }
-    assert_true(png_is_plain(with, count, type));
+    assert_true(png_is_plain(with, count, &text.keyword, 1, why));
     mem_free(with);
     assert_null(png_text_add((const uint8_t *)"GIF89a", 6, &text, 1, &count));
 }
