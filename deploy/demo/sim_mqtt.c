@@ -97,46 +97,111 @@ size_t sim_mqtt_tag_count(const struct sim_mqtt *mqtt)
 
 /* --- publishing ------------------------------------------------------------------------------------------------------------- */
 
-/* The member or the item of *at that a step leads to; made where it is not there. NULL: it cannot be. */
-static json_t **slot_of(json_t **at, const struct json_path_step *step, json_t **made)
+/* Returns the object that a filter's comparisons describe, such as {"id": "A.T2"}; NULL where a path in them has several steps. */
+static json_t *described(const struct json_path_step *filter)
 {
-    if (!*at)
-        *at = step->name ? json_object() : json_array();
-    if (step->name && json_is_object(*at)) {
-        *made = json_object_getn(*at, step->name, step->length);
-        return made;
+    json_t *object = json_object();
+    for (int i = 0; i < filter->test_count; i++) {
+        const struct json_path_test *test = &filter->tests[i];
+        struct json_path_step step;
+        char why[200];
+        const char *at = test->path;
+        if (!json_path_next_operand(&at, &step, why) || step.kind != JSON_PATH_NAME || at < test->end) {
+            json_decref(object);
+            return NULL;
+        }
+        json_object_set_new(object, step.name,
+                            test->kind == JSON_LITERAL_STRING   ? json_string(test->text)
+                            : test->kind == JSON_LITERAL_NUMBER ? json_real(test->number)
+                            : test->kind == JSON_LITERAL_NULL   ? json_null()
+                                                                : json_boolean(test->kind == JSON_LITERAL_TRUE));
     }
-    if (step->name || !json_is_array(*at) || step->index >= MOST_ITEMS)
+    return object;
+}
+
+/* Returns the index of the array's item that a filter selects; appends such an item if there is none. -1: it cannot be made. */
+static long selected_index(json_t *array, const struct json_path_step *filter)
+{
+    json_t *wanted = described(filter), *item;
+    size_t i, found = SIZE_MAX;
+    json_array_foreach(array, i, item)
+    {
+        json_t *both = wanted && json_is_object(item) ? json_copy(item) : NULL;
+        if (both && found == SIZE_MAX && !json_object_update(both, wanted) && json_equal(both, item))
+            found = i;
+        json_decref(both);
+    }
+    if (found == SIZE_MAX && wanted && json_array_size(array) < MOST_ITEMS) {
+        found = json_array_size(array);
+        json_array_append(array, wanted);
+    }
+    json_decref(wanted);
+    return found == SIZE_MAX ? -1 : (long)found;
+}
+
+/* Returns the member or the item of *root that a step leads to, and makes what is missing on the way; *at: its index, of an item.
+   NULL: it cannot be made. The value is new: json_decref(). */
+static json_t *slot_of(json_t **root, const struct json_path_step *step, long *at)
+{
+    if (!*root)
+        *root = step->kind == JSON_PATH_NAME ? json_object() : json_array();
+    *at = step->index;
+    if (step->kind == JSON_PATH_NAME && json_is_object(*root)) {
+        json_t *member = json_object_get(*root, step->name);
+        return member ? json_incref(member) : json_null();
+    }
+    if (step->kind == JSON_PATH_FILTER && json_is_array(*root))
+        *at = selected_index(*root, step);
+    if (step->kind == JSON_PATH_NAME || !json_is_array(*root) || *at < 0 || *at >= MOST_ITEMS)
         return NULL;
-    while (json_array_size(*at) <= step->index)
-        json_array_append_new(*at, json_null());
-    *made = json_array_get(*at, step->index);
-    if (json_is_null(*made))
-        *made = NULL;
-    return made;
+    while (json_array_size(*root) <= (size_t)*at)
+        json_array_append_new(*root, json_null());
+    return json_incref(json_array_get(*root, (size_t)*at));
 }
 
 /* Puts a value, which is taken over, at a path below root. */
 static void put(json_t **root, const char *path, json_t *value)
 {
     struct json_path_step step;
-    json_t *below = NULL;
+    char why[200];
+    long at;
     if (!*path) {
         json_decref(*root);
         *root = value;
         return;
     }
-    json_t **slot = json_path_next(&path, &step) ? slot_of(root, &step, &below) : NULL;
-    if (!slot) {
+    json_t *made = json_path_next(&path, &step, why) ? slot_of(root, &step, &at) : NULL;
+    if (!made) {
         json_decref(value);
         return;
     }
-    json_t *made = *slot ? json_incref(*slot) : NULL;
+    if (json_is_null(made))
+        made = NULL; /* json_null() is one shared value that is not counted */
     put(&made, path, value);
-    if (step.name)
-        json_object_setn_new(*root, step.name, step.length, made);
+    if (step.kind == JSON_PATH_NAME)
+        json_object_set_new(*root, step.name, made);
     else
-        json_array_set_new(*root, step.index, made);
+        json_array_set_new(*root, (size_t)at, made);
+}
+
+/* Puts a value at a path of the source. A path that begins with `@` begins beside the value at `of`. */
+static void put_stated(json_t **root, const char *path, const char *of, json_t *value)
+{
+    struct json_path_step step;
+    char why[200];
+    const char *last = json_path_begin(of);
+    if (*path != '@') {
+        put(root, json_path_begin(path), value);
+        return;
+    }
+    for (const char *at = last; *at; last = at)
+        if (!json_path_next(&at, &step, why) || !*at)
+            break;
+    int length = (int)(last - json_path_begin(of)) - (last > of && last[-1] == '.');
+    const char *rest = json_path_begin(path);
+    char *whole = mem_printf("%.*s%s%s", length < 0 ? 0 : length, json_path_begin(of), length > 0 && *rest != '[' ? "." : "", rest);
+    put(root, whole, value);
+    mem_free(whole);
 }
 
 static json_t *json_of(const struct sim_mqtt *mqtt, const struct plant_mqtt *config, const struct mqtt_topic *topic,
@@ -148,11 +213,11 @@ static json_t *json_of(const struct sim_mqtt *mqtt, const struct plant_mqtt *con
         double value = sim_encode_raw(tag, sim_values_at(values, (size_t)topic->tags[i]));
         const char *path = *tag->path ? tag->path : config->value ? config->value : "value";
         put(&root, json_path_begin(path), isfinite(value) ? json_real(value) : json_null());
+        if (config->time)
+            put_stated(&root, config->time, path, json_integer(now_utc_ns / 1000000));
+        if (config->quality)
+            put_stated(&root, config->quality, path, json_integer(0));
     }
-    if (config->time)
-        put(&root, json_path_begin(config->time), json_integer(now_utc_ns / 1000000));
-    if (config->quality)
-        put(&root, json_path_begin(config->quality), json_integer(0));
     return root;
 }
 

@@ -108,7 +108,7 @@ bool mqtt_address_resolve(const struct plant *plant, struct plant_tag *tag, char
         good = false;
     }
     if (good && *tag->path && mqtt->payload == MQTT_JSON)
-        good = json_path_check(tag->path, why);
+        good = json_path_check(tag->path, false, why);
     text_finish(&topic);
     mem_free(address);
     return good;

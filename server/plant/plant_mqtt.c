@@ -55,7 +55,7 @@ static void check_paths(struct yaml_reader *reader, const struct yaml_map *map, 
     for (size_t i = 0; i < sizeof(paths) / sizeof(*paths); i++)
         if (paths[i].path && mqtt->payload != MQTT_JSON)
             yaml_error(reader, yaml_map_place(map, paths[i].key), "%s: has no meaning without payload: json", paths[i].key);
-        else if (paths[i].path && !json_path_check(paths[i].path, why))
+        else if (paths[i].path && !json_path_check(paths[i].path, i > 0, why))
             yaml_error(reader, yaml_map_place(map, paths[i].key), "%s: '%.60s': %s", paths[i].key, paths[i].path, why);
 }
 

@@ -16,6 +16,8 @@ static const struct {
     { QUALITY_BAD_COMMUNICATION_ERROR, "Bad_CommunicationError" },
     { QUALITY_BAD_NO_COMMUNICATION, "Bad_NoCommunication" },
     { QUALITY_BAD_WAITING, "Bad_WaitingForInitialData" },
+    { QUALITY_BAD_TOO_MANY_MATCHES, "Bad_TooManyMatches" },
+    { QUALITY_BAD_NO_MATCH, "Bad_NoMatch" },
     { QUALITY_BAD_CONFIGURATION, "Bad_ConfigurationError" },
     { QUALITY_BAD_DEVICE_FAILURE, "Bad_DeviceFailure" },
     { QUALITY_BAD_SENSOR_FAILURE, "Bad_SensorFailure" },

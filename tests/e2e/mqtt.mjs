@@ -125,6 +125,39 @@ test('JSON: by path, with the time and the quality that it states', options, asy
     assert.ok((await until('TI-2', { ...good, value: 21 })).age_ms < 9000);
 });
 
+// What Kepware's IoT Gateway publishes: an array of the tags that have changed, in any order.
+test('a gateway that publishes what has changed: no tag gets the value of another', options, async () => {
+    const paths = { A2: 'values[1].v', A3: 'values[2].v', F1: "values[?@.id=='G.A1'].v", F2: "$.values[?id=='G.A2'].v",
+        F9: "values[?id=='G.A9'].v" };
+    const rows = ['A1,#values[0].v,,°C,temperature,E-101,0.5,0,0,30,,,,,',
+        ...Object.entries(paths).map(([name, path]) => `${name},#${path},,,,,,,,30,,,,,`)];
+    await run('payload: json, topic: gateway, time: "@.t", quality: "@.q"', rows);
+    publisher = await broker.client();
+    const item = ([id, v, q = true]) => ({ id, v, q, t: Date.now() });
+    const tell = (...items) => publisher.tell('gateway', { timestamp: 5, values: items.map(item) });
+    await tell(['G.A2', 22]);
+    await until('F2', { ...good, value: 22 });
+    let tags = await plant.tags();
+    for (const name of ['A1', 'A2', 'A3', 'F1', 'F9'])
+        assert.deepEqual([tags[name].quality_name, tags[name].value], ['Bad_NoMatch', null], name);
+    await tell(['G.A1', 21], ['G.A2', 23], ['G.A3', 24]); // all, each where its tag has it
+    for (const [name, value] of [['A3', 24], ['A1', 21], ['F1', 21], ['F2', 23]])
+        await until(name, { ...good, value });
+    await tell(['G.A3', 34], ['G.A1', 31, false]);
+    await until('F1', { quality_name: 'Bad' }); // the quality of its own item
+    tags = await plant.tags();
+    assert.equal(tags.A1.quality_name, 'Bad_NoMatch');
+    assert.equal(tags.F2.value, 23); // nothing was said of it
+    await tell(['G.A1', 41], ['G.A1', 42]);
+    await until('F1', { quality_name: 'Bad_TooManyMatches', value: null });
+    await tell(['G.A1', 51]);
+    await until('F1', { ...good, value: 51 });
+    await plant.daemon.line(/names itself G\.A2; address it by name/);
+    await plant.daemon.line(/gateway: no message has held the value of /);
+    const { out } = runProgram('plantcast', ['tags', `http://127.0.0.1:${plant.plant.port}/`]);
+    assert.match(out, /F9.*NoMatch/i);
+});
+
 test('a persistent session brings what was published meanwhile, as old as it is', options, async () => {
     const keys = 'payload: json, topic: "plant/{tag}", time: ts, session: persistent, client_id: plantcast-test';
     await run(keys, TAGS.json);
@@ -179,6 +212,7 @@ test('payloads that are none are refused by name, and nothing else suffers', opt
     await publisher.tell('plant/xs1', 1);
     await publisher.tell('plant/ti1', 20);
     await until('TI-1', good);
+    const begun = performance.now();
     const bytes = [Buffer.from([0, 1, 2, 255]), Buffer.alloc(100 << 20, '1')];
     for (const wrong of ['warm', '21.5 C', 'NaN', '1e999', '', '1'.repeat(1000), ...bytes]) {
         await publisher.tell('plant/ti1', wrong);
@@ -187,7 +221,13 @@ test('payloads that are none are refused by name, and nothing else suffers', opt
         await until('TI-1', good);
     }
     await plant.daemon.line(/plant\/ti1: 4 bytes are refused: expected one number/);
-    await plant.daemon.line(/plant\/ti1: 104857600 bytes are refused: too long/);
+    for (let i = 0; i < 300; i++)
+        await publisher.tell('plant/ti1', 'warm', { qos: i === 299 ? 1 : 0 });
+    for (const end = performance.now() + 60000; await metric('messages_total{source="broker",result="refused"}') < 308; await sleep(20))
+        assert.ok(performance.now() < end, 'all are counted');
+    const seconds = Math.ceil((performance.now() - begun) / 1000);
+    const lines = plant.daemon.said.match(/refused/g).length;
+    assert.ok(lines <= 1 + Math.floor(seconds / 60), `one line a minute at most:\n${plant.daemon.said}`);
     await until('XS-1', { ...good, value: 1 });
 });
 
@@ -215,7 +255,11 @@ test('what cannot be is said of the plant file', options, async () => {
         assert.equal(code, 1, err);
         return err;
     };
-    assert.match(said('payload: json, value: "a..b"', TAGS.number), /plant\.yaml:9:\d+: error: value: 'a\.\.b': expected a path/);
+    assert.match(said('payload: json, value: "a..b"', TAGS.number), /plant\.yaml:9:\d+: error: value: 'a\.\.b': descendants/);
+    const refused = [['a[*].v', 'wildcards'], ['a[0:2].v', 'slices'], ['a..v', 'descendants'], ["a[?id!='x'].v", 'expected ==']];
+    for (const [path, why] of refused)
+        assert.match(said('payload: json, topic: a', [`TI-1,#${path},,,,,,,,,,,,,`]),
+            new RegExp(`tags\\.csv:2:6: error: Address: .*${why}`), path);
     assert.match(said('time: ts', TAGS.number), /time: has no meaning without payload: json/);
     assert.match(said('session: persistent', TAGS.number), /would look fresh[^]*needs client_id/);
     assert.match(said('topic: "plant/+/{tag}"', TAGS.number), /topic: 'plant\/\+\/\{tag\}': \+ and # stand for many topics/);

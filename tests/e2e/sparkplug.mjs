@@ -181,10 +181,15 @@ test('what is no Sparkplug, and metrics that change their type, are refused by n
     const node = await startNode();
     await until('XS-1', { ...good, value: 1 });
     const stranger = await broker.client();
+    const refused = async (count) => {
+        const name = 'messages_total{source="broker",result="refused"}';
+        for (const end = performance.now() + 60000; await plant.metric(name) < count; await sleep(20))
+            assert.ok(performance.now() < end, `${count} messages are refused`);
+    };
     await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.from([0xff, 0xff, 0xff, 0xff, 0x0f, 1, 2, 3]));
     await plant.daemon.line(/NDATA\/edge: 8 bytes are refused: no Sparkplug B payload/);
     await stranger.tell(`spBv1.0/U100/DDATA/edge/${'x'.repeat(65000)}`, encode({ metrics: [] }));
-    await plant.daemon.line(/U100\/DDATA\/edge\/x+\.\.\.: \d+ bytes are refused/);
+    await refused(2); // of these the log has one line a minute
     await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.alloc(5 << 20)).catch(() => {});
     await stranger.leave();
     node.bear();
@@ -193,7 +198,7 @@ test('what is no Sparkplug, and metrics that change their type, are refused by n
         { alias: 4, type: 'Boolean', value: false }] });
     await until('TI-2', { quality_name: 'Bad_ConfigurationError' });
     await until('XS-1', { ...good, value: 0 });
-    await plant.daemon.line(/DDATA\/edge\/skid: \d+ bytes are refused: metric TI-2 was born as Float and is Int32 now/);
+    await refused(3);
     node.publishDeviceBirth('skid', { timestamp: Date.now(), metrics: [{ name: 'TI-2', type: 'Int32', value: -5 }] });
     await until('TI-2', { ...good, value: -5 }); // it may be born anew
     await until('PI-1', { quality_name: 'Bad_ConfigurationError' });

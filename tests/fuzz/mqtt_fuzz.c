@@ -104,12 +104,13 @@ static void read_json(const uint8_t *bytes, size_t count)
 {
     static const struct plant_mqtt plain = { .payload = MQTT_JSON },
                                    all = { .payload = MQTT_JSON, .value = "v", .time = "t", .quality = "q" };
+    static const char *const paths[] = { "", "a[0].b", "v", "a[?@.id=='x' && @.a[-1]==1]['v']" };
     char why[200] = "";
     struct stamped_value value;
     json_t *root = mqtt_json_parse(bytes, count, why);
     require(root || *why, "a refusal says why");
-    for (int i = 0; root && i < 3; i++)
-        if (mqtt_json_read(root, i < 2 ? &plain : &all, i == 1 ? "a[0].b" : "", &value, why) == MQTT_FOUND) {
+    for (int i = 0; root && i < 4; i++)
+        if (mqtt_json_read(root, &(struct mqtt_reader){ i < 2 ? &plain : &all, paths[i], "T1" }, &value, why) == MQTT_FOUND) {
             require(quality_is_bad(value.quality) || isfinite(value.value), "a value is a number");
             require(value.utc_ns >= 0, "a time is after 1970");
         }

@@ -38,15 +38,93 @@ static void only_one_number_is_a_number(void **state)
 static void paths_are_as_written(void **state)
 {
     (void)state;
-    static const char *const good[] = { "a", "$", "$.a", "$[0]", "a.b[12].c", "[0][1]", "[\"odd. name\"].x", "$[\"a\"][3]",
-                                        "a b" };
-    static const char *const wrong[] = { "a.", ".a.", "a..b", "a[", "a[]", "a[x]", "a[-1]", "a[1", "[\"a]", "[\"\"]", "a.[0]",
-                                         "a[1234567]" };
+    static const char *const good[] = {
+        "a",
+        "$",
+        "$.a",
+        "$[0]",
+        "a.b[12].c",
+        "[0][1]",
+        "[\"odd. name\"].x",
+        "$[\"a\"][3]",
+        "a b",
+        "a-b.c",
+        "a[-1]",
+        "$['a']['b\\'c']",
+        "[ 'a' ]",
+        "[\"\\u00b0C\"]",
+        "v[?@.id=='A.T2'].v",
+        "v[?id=='A.T2'].v",
+        "v[?(@.id==\"A.T2\")].v",
+        "v[? @.a.b == 3 && @['c d']==true ]",
+        "v[?'A'==@.id].v",
+        "v[?@.a[0].b==-1.5e2].v",
+        "v[?@==1]",
+        "v[?id=='a']['v']",
+        "v[?(@.a==1 && (@.b==null))]",
+        "v[?id==']'].v",
+    };
     char why[200];
     for (size_t i = 0; i < sizeof(good) / sizeof(*good); i++)
-        assert_true(json_path_check(good[i], why));
-    for (size_t i = 0; i < sizeof(wrong) / sizeof(*wrong); i++)
-        assert_false(json_path_check(wrong[i], why));
+        if (!json_path_check(good[i], false, why))
+            fail_msg("%s: %s", good[i], why);
+    assert_true(json_path_check("@.t", true, why));
+}
+
+static void paths_to_several_values_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *why;
+    } wrong[] = {
+        { "a.", "behind the dot" },
+        { ".a.", "behind the dot" },
+        { "a..b", "descendants" },
+        { "$..b", "descendants" },
+        { "a[", "expected a path" },
+        { "a[]", "expected a path" },
+        { "a[x]", "expected a path" },
+        { "a[1", "and ]" },
+        { "[\"a]", "a string" },
+        { "[\"\"]", "not empty" },
+        { "a.[0]", "behind the dot" },
+        { "a[1234567]", "expected a path" },
+        { "a[*]", "wildcards" },
+        { "a.*", "wildcards" },
+        { "$.*.b", "wildcards" },
+        { "a[0:2]", "slices" },
+        { "a[:2]", "slices" },
+        { "a[::2]", "slices" },
+        { "a[0,1]", "several selectors" },
+        { "a['b','c']", "several selectors" },
+        { "a[-0]", "expected a path" },
+        { "a[?id!='x']", "expected ==" },
+        { "a[?@.v<3]", "expected ==" },
+        { "a[?@.id]", "expected ==" },
+        { "a[?@.a==1 || @.b==2]", "||" },
+        { "a[?!@.a==1]", "expected" },
+        { "a[?length(@.a)==1]", "functions" },
+        { "a[?@.a==@.b]", "a string, a number" },
+        { "a[?$.a==1]", "expected @.member" },
+        { "a[?@.a[?@.b==1]==1]", "filter inside" },
+        { "a[?@.*==1]", "expected" },
+        { "a[?@..b==1]", "descendants" },
+        { "a[?id=='x]", "a string" },
+        { "a[?id=='x'", "and ]" },
+        { "a[?(id=='x']", "expected )" },
+        { "a[?a==1&&b==1&&c==1&&d==1&&e==1]", "at most 4" },
+        { "@.t", "not from the value" },
+        { "a[0]b", "expected . or [" },
+        { "['\\x']", "a string" },
+        { "['\\ud800']", "a string" },
+    };
+    char why[200];
+    for (size_t i = 0; i < sizeof(wrong) / sizeof(*wrong); i++) {
+        if (json_path_check(wrong[i].path, false, why))
+            fail_msg("%s is accepted", wrong[i].path);
+        if (!strstr(why, wrong[i].why))
+            fail_msg("%s: %s", wrong[i].path, why);
+    }
 }
 
 struct expected {
@@ -63,7 +141,12 @@ static void check(const struct plant_mqtt *mqtt, const struct expected *expected
     struct stamped_value value;
     json_t *root = mqtt_json_parse(expected->json, strlen(expected->json), why);
     assert_non_null(root);
-    assert_int_equal(mqtt_json_read(root, mqtt, expected->path, &value, why), expected->found);
+    const char *path = *expected->path ? expected->path : mqtt->value ? mqtt->value : "";
+    enum mqtt_found found = mqtt_json_read(root, &(struct mqtt_reader){ mqtt, path, "T1" }, &value, why);
+    if (found != expected->found)
+        fail_msg("%s of %s: %d, wanted %d", expected->path, expected->json, found, expected->found);
+    if (found == MQTT_WRONG && expected->quality)
+        assert_string_equal(quality_name(value.quality), quality_name(expected->quality));
     if (expected->found == MQTT_FOUND) {
         assert_true(value.quality == expected->quality);
         assert_true(value.utc_ns == expected->utc_ns);
@@ -95,6 +178,77 @@ static void values_are_found_by_path(void **state)
         check(&plain, &plainly[i]);
     check(&named, &(struct expected){ "{\"d\": [1, 2]}", "", MQTT_FOUND, 2, 0, 0 });
     check(&named, &(struct expected){ "{\"d\": [1, 2]}", "d[0]", MQTT_FOUND, 1, 0, 0 });
+}
+
+/* Each path selects exactly one value, or none is taken. The tag is T1. */
+static void a_value_of_another_member_is_never_taken(void **state)
+{
+    (void)state;
+    static const char T2[] = "{\"values\": [{\"id\": \"A.T2\", \"v\": 22}]}";
+    static const char BOTH[] = "{\"values\": [{\"id\": \"A.T1\", \"v\": 21}, {\"id\": \"A.T2\", \"v\": 22}]}";
+    static const char TWICE[] = "{\"values\": [{\"id\": \"A.T1\", \"v\": 21}, {\"id\": \"A.T1\", \"v\": 22}]}";
+    static const char NUMBERED[] = "[{\"id\": 1, \"v\": 5, \"ok\": true}, {\"id\": \"1\", \"v\": 6, \"ok\": false}]";
+    static const char NESTED[] =
+        "{\"d\": [{\"m\": {\"n\": \"a\", \"k\": 1}, \"v\": [7, 8]}, {\"m\": {\"n\": \"a\", \"k\": 2}, \"v\": [9]}]}";
+    static const char MEMBERS[] = "{\"x\": {\"p\": {\"u\": \"bar\", \"v\": 3}, \"q\": {\"u\": \"K\", \"v\": \"4\"}}}";
+    static const struct plant_mqtt plain = { .payload = MQTT_JSON };
+    static const struct expected cases[] = {
+        { T2, "values[0].v", MQTT_WRONG, 0, QUALITY_BAD_NO_MATCH, 0 },
+        { T2, "values[-1].v", MQTT_WRONG, 0, QUALITY_BAD_NO_MATCH, 0 },
+        { T2, "values[1].v", MQTT_ABSENT, 0, 0, 0 },
+        { T2, "values[?@.id=='A.T1'].v", MQTT_ABSENT, 0, 0, 0 },
+        { T2, "values[?id=='A.T2'].v", MQTT_FOUND, 22, 0, 0 },
+        { T2, "$.values[?(@.id==\"A.T2\")]['v']", MQTT_FOUND, 22, 0, 0 },
+        { T2, "values[?id=='A.T'].v", MQTT_ABSENT, 0, 0, 0 },
+        { T2, "values[?id=='A.T2'].w", MQTT_ABSENT, 0, 0, 0 },
+        { T2, "values[?id=='A.T2']", MQTT_WRONG, 0, QUALITY_BAD_CONFIGURATION, 0 },
+        { BOTH, "values[0].v", MQTT_FOUND, 21, 0, 0 }, /* it names itself A.T1 */
+        { BOTH, "values[1].v", MQTT_WRONG, 0, QUALITY_BAD_NO_MATCH, 0 },
+        { BOTH, "values[?@.id=='A.T1'].v", MQTT_FOUND, 21, 0, 0 },
+        { BOTH, "values[?@.id=='A.T1' && @.v==22].v", MQTT_ABSENT, 0, 0, 0 },
+        { TWICE, "values[?id=='A.T1'].v", MQTT_WRONG, 0, QUALITY_BAD_TOO_MANY_MATCHES, 0 },
+        { TWICE, "values[?id=='A.T1' && v==22].v", MQTT_FOUND, 22, 0, 0 },
+        { NUMBERED, "[?id==1].v", MQTT_FOUND, 5, 0, 0 },
+        { NUMBERED, "[?id=='1'].v", MQTT_FOUND, 6, 0, 0 },
+        { NUMBERED, "[?ok==false].v", MQTT_FOUND, 6, 0, 0 },
+        { NUMBERED, "[?ok=='false'].v", MQTT_ABSENT, 0, 0, 0 },
+        { NUMBERED, "[0].v", MQTT_WRONG, 0, QUALITY_BAD_NO_MATCH, 0 },
+        { NESTED, "d[?@.m.n=='a'].v[0]", MQTT_WRONG, 0, QUALITY_BAD_TOO_MANY_MATCHES, 0 },
+        { NESTED, "d[?@.m.n=='a' && @.m['k']==1].v[-1]", MQTT_FOUND, 8, 0, 0 },
+        { NESTED, "d[?@.m.k==2].v[1]", MQTT_ABSENT, 0, 0, 0 },
+        { NESTED, "d[?@.v[0]==9].v[0]", MQTT_FOUND, 9, 0, 0 },
+        { NESTED, "d[?@.m=='a'].v[0]", MQTT_ABSENT, 0, 0, 0 },
+        { MEMBERS, "x[?@.u=='K'].v", MQTT_FOUND, 4, 0, 0 },
+        { "{\"a\": [5]}", "a[0]", MQTT_FOUND, 5, 0, 0 },
+        { "{\"a\": [5]}", "a", MQTT_WRONG, 0, QUALITY_BAD_CONFIGURATION, 0 },
+        { "{\"a\": [5]}", "a[-2]", MQTT_ABSENT, 0, 0, 0 },
+        { "{\"a\": [5, 6]}", "a[?@==6]", MQTT_FOUND, 6, 0, 0 },
+        { "{\"a\": {\"0\": 5}}", "a[0]", MQTT_ABSENT, 0, 0, 0 },
+        { "{\"a\": {\"0\": 5}}", "a['0']", MQTT_FOUND, 5, 0, 0 },
+        { "{\"a\": [{\"id\": \"T1\", \"v\": null}]}", "a[?id=='T1'].v", MQTT_FOUND, 0, QUALITY_BAD_SENSOR_FAILURE, 0 },
+        { "{\"a\": [{\"v\": 3, \"unit\": \"K\"}]}", "a[0].v", MQTT_FOUND, 3, 0, 0 }, /* an item without a name is its position */
+        { "{\"\u00b0'C\": 2}", "['\\u00b0\\'C']", MQTT_FOUND, 2, 0, 0 },
+    };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++)
+        check(&plain, &cases[i]);
+}
+
+static void time_and_quality_are_those_beside_the_value(void **state)
+{
+    (void)state;
+    static const char ALL[] = "{\"t\": 5, \"values\": [{\"id\": \"A.T2\", \"v\": 22, \"q\": true, \"t\": 1795341600500},"
+                              "{\"id\": \"A.T1\", \"v\": 21, \"q\": false, \"t\": 1795341600600}]}";
+    static const int64_t T_NS = 1795341600500000000;
+    static const struct plant_mqtt beside = { .payload = MQTT_JSON, .time = "@.t" }, judged = { .payload = MQTT_JSON, .quality = "@.q" },
+                                   first = { .payload = MQTT_JSON, .time = "values[0].t" },
+                                   many = { .payload = MQTT_JSON, .quality = "values[?@.v==22 && @.q==true].q" };
+    check(&beside, &(struct expected){ ALL, "values[?id=='A.T2'].v", MQTT_FOUND, 22, 0, T_NS });
+    check(&beside, &(struct expected){ ALL, "values[?id=='A.T1'].v", MQTT_FOUND, 21, 0, T_NS + 100000000 });
+    check(&beside, &(struct expected){ "7", "$", MQTT_WRONG, 0, QUALITY_BAD_CONFIGURATION, 0 });
+    check(&judged, &(struct expected){ ALL, "values[?id=='A.T1'].v", MQTT_FOUND, 0, QUALITY_BAD, 0 });
+    check(&judged, &(struct expected){ ALL, "values[?id=='A.T2'].v", MQTT_FOUND, 22, 0, 0 });
+    check(&first, &(struct expected){ ALL, "values[?id=='A.T1'].v", MQTT_WRONG, 0, QUALITY_BAD_CONFIGURATION, 0 });
+    check(&many, &(struct expected){ ALL, "values[?id=='A.T1'].v", MQTT_FOUND, 21, 0, 0 });
 }
 
 static void times_and_qualities_are_as_stated(void **state)
@@ -134,7 +288,7 @@ static void times_and_qualities_are_as_stated(void **state)
 static void what_is_no_json_is_refused(void **state)
 {
     (void)state;
-    static const char *const wrong[] = { "", "{", "{\"a\": 1e999}", "nan", "{\"a\": 1} x", "\xff\xfe" };
+    static const char *const wrong[] = { "", "{", "{\"a\": 1e999}", "nan", "{\"a\": 1} x", "\xff\xfe", "{\"v\": 1, \"v\": 2}" };
     char why[200] = "", deep[100000];
     for (size_t i = 0; i < sizeof(wrong) / sizeof(*wrong); i++)
         assert_null(mqtt_json_parse(wrong[i], strlen(wrong[i]), why));
@@ -147,8 +301,13 @@ int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(only_one_number_is_a_number), cmocka_unit_test(paths_are_as_written),
-        cmocka_unit_test(values_are_found_by_path),    cmocka_unit_test(times_and_qualities_are_as_stated),
+        cmocka_unit_test(only_one_number_is_a_number),
+        cmocka_unit_test(paths_are_as_written),
+        cmocka_unit_test(paths_to_several_values_are_refused),
+        cmocka_unit_test(values_are_found_by_path),
+        cmocka_unit_test(a_value_of_another_member_is_never_taken),
+        cmocka_unit_test(time_and_quality_are_those_beside_the_value),
+        cmocka_unit_test(times_and_qualities_are_as_stated),
         cmocka_unit_test(what_is_no_json_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -419,6 +419,8 @@ CommunicationError: Kommunikationsfehler
 ConfigurationError: Konfigurationsfehler
 DeviceFailure: Gerätefehler
 NoCommunication: keine Kommunikation
+NoMatch: kein Wert an der Adresse
+TooManyMatches: mehrere Werte an der Adresse
 OutOfService: außer Betrieb
 SensorFailure: Sensorfehler
 WaitingForInitialData: wartet auf erste Daten

@@ -417,6 +417,8 @@ CommunicationError: communication error
 ConfigurationError: configuration error
 DeviceFailure: device failure
 NoCommunication: no communication
+NoMatch: no value at its address
+TooManyMatches: several values at its address
 OutOfService: out of service
 SensorFailure: sensor failure
 WaitingForInitialData: waiting for initial data

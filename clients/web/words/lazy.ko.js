@@ -415,6 +415,8 @@ CommunicationError: 통신 오류
 ConfigurationError: 구성 오류
 DeviceFailure: 장치 고장
 NoCommunication: 통신 없음
+NoMatch: 주소에 값 없음
+TooManyMatches: 주소에 값이 여러 개
 OutOfService: 사용 중지
 SensorFailure: 센서 고장
 WaitingForInitialData: 첫 데이터 대기

@@ -11,6 +11,7 @@
 #include "value/mqtt/mqtt_impl.h"
 
 static const int64_t CONNECT_NS = 10 * NS_PER_S; /* to a session with the broker; also the time for its answers to subscriptions */
+static const int64_t LINE_NS = 60 * NS_PER_S;    /* between two log lines about refused messages */
 
 static bool stopping(const struct mqtt_source *mqtt, int64_t until_ns)
 {
@@ -91,6 +92,7 @@ static int run_session(struct mqtt_source *mqtt, char why[200])
     int status = mqtt->client ? mqtt_client_wait(mqtt->client, mqtt->base.stop_fd, deadline_ns, why) : -EINVAL;
     while (status == 0) {
         int64_t now_ns = clock_mono_ns();
+        mqtt_log_left_out(mqtt, now_ns);
         status = mqtt_client_serve(mqtt->client, mqtt->base.stop_fd, now_ns + NS_PER_S, why);
         if (status == 0 && !mqtt->subscribed && now_ns > deadline_ns) {
             snprintf(why, 200, "the broker does not answer");
@@ -127,6 +129,7 @@ static void mqtt_destroy(struct source *source)
     for (size_t i = 0; i < mqtt->subscription_count; i++)
         mem_free(mqtt->subscriptions[i]);
     mem_free(mqtt->subscriptions);
+    mem_free(mqtt->matched);
     mem_free(mqtt->client_id);
     mem_free(mqtt);
 }
@@ -195,6 +198,8 @@ static struct source *mqtt_create(const struct source *base, struct counters *co
 {
     struct mqtt_source *mqtt = mem_new(sizeof(*mqtt));
     mqtt->base = *base;
+    mqtt->refusals = mqtt->absences = (struct log_pace){ .first_ns = LINE_NS, .longest_ns = LINE_NS };
+    mqtt->matched = mem_array(base->plant->tag_count, sizeof(*mqtt->matched));
     add_counters(mqtt, counters);
     add_topics(mqtt);
     stamped_writer_init(&mqtt->writer, base->plant, base->store);

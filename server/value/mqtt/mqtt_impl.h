@@ -2,6 +2,7 @@
 /* An MQTT source, as its files share it: one thread with one connection. Private to value/mqtt/. Thread: the source's own. */
 #ifndef VALUE_MQTT_IMPL_H
 #define VALUE_MQTT_IMPL_H
+#include "base/log_pace.h"
 #include "value/backoff.h"
 #include "value/mqtt/mqtt_client.h"
 #include "value/mqtt/mqtt_payload.h"
@@ -24,15 +25,18 @@ struct mqtt_source {
     struct host_turn turn;
     bool link_up, link_known;
     bool subscribed;             /* what comes now was published now, unless it says otherwise */
-    int64_t refusals_ns;         /* since when refusals are counted: a second at most */
-    int refusals_said;           /* of this second */
-    long refusals_unsaid;
-    int64_t skew_said_ns[2];     /* likewise of clocks that are behind, ahead */
+    struct log_pace refusals;    /* of messages */
+    char last_refused[300];      /* topic and reason of the last one, for the log */
+    struct log_pace absences;    /* messages without the value of a tag that was in none yet */
+    bool *matched;               /* by index in plant->tags: a JSON message has held its value */
+    int64_t skew_said_ns[2];     /* when clocks that are behind, ahead were last logged */
 };
 
 /* Handles a message for the source's tags: refuses it, with words in the log, or writes its values. */
 void mqtt_take_message(struct mqtt_source *mqtt, const struct mqtt_message *message);
-/* Counts a message that is refused and logs it, at most eight times a second. */
+/* Counts a message that is refused, and logs one line a minute at most. */
 void mqtt_refuse(struct mqtt_source *mqtt, const struct mqtt_message *message, const char *why);
+/* Logs how many messages were left out of the log, once a minute has gone by. */
+void mqtt_log_left_out(struct mqtt_source *mqtt, int64_t now_ns);
 
 #endif

@@ -8,7 +8,6 @@
 #include "value/mqtt/mqtt_impl.h"
 #include "value/quality.h"
 
-enum { REFUSALS_SAID = 8 }; /* a second */
 static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
 
 /* For a log line: short, and without what would break it. */
@@ -23,22 +22,21 @@ static const char *shown(const char *name, char out[64])
 
 void mqtt_refuse(struct mqtt_source *mqtt, const struct mqtt_message *message, const char *why)
 {
-    char topic[64], more[60] = "";
-    int64_t now_ns = clock_mono_ns();
+    char topic[64], more[LOG_PACE_BYTES];
     counter_inc(mqtt->messages_refused, 1);
-    if (now_ns - mqtt->refusals_ns > NS_PER_S) {
-        mqtt->refusals_ns = now_ns;
-        mqtt->refusals_said = 0;
-    }
-    if (++mqtt->refusals_said > REFUSALS_SAID) {
-        mqtt->refusals_unsaid++;
-        return;
-    }
-    if (mqtt->refusals_unsaid > 0)
-        snprintf(more, sizeof(more), " (and %ld more refused since)", mqtt->refusals_unsaid);
-    log_warn(mqtt->base.log, "source %s: %s: %zu bytes are refused: %s%s", mqtt->base.config->id, shown(message->topic, topic),
-             message->count, why, more);
-    mqtt->refusals_unsaid = 0;
+    snprintf(mqtt->last_refused, sizeof(mqtt->last_refused), "%s: %zu bytes are refused: %s", shown(message->topic, topic), message->count,
+             why);
+    if (log_pace_take(&mqtt->refusals, clock_mono_ns(), more))
+        log_warn(mqtt->base.log, "source %s: %s%s", mqtt->base.config->id, mqtt->last_refused, more);
+}
+
+void mqtt_log_left_out(struct mqtt_source *mqtt, int64_t now_ns)
+{
+    char more[LOG_PACE_BYTES];
+    if (log_pace_flush(&mqtt->refusals, now_ns, more))
+        log_warn(mqtt->base.log, "source %s: %s%s", mqtt->base.config->id, mqtt->last_refused, more);
+    if (log_pace_flush(&mqtt->absences, now_ns, more))
+        log_warn(mqtt->base.log, "source %s: messages without a tag's value%s", mqtt->base.config->id, more);
 }
 
 static void report_skew(struct mqtt_source *mqtt, const char *topic)
@@ -71,19 +69,37 @@ static bool take_number(struct mqtt_source *mqtt, const struct mqtt_topic *topic
     return true;
 }
 
-/* False: at least one tag has a value that is none; it is Bad. */
+/* A message may leave a tag out. One that never was in a message has an address that is probably wrong: it is Bad_NoMatch. */
+static void note_absent(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const struct mqtt_reader *reader, int tag)
+{
+    char name[64], more[LOG_PACE_BYTES];
+    if (mqtt->matched[tag])
+        return;
+    stamped_writer_add_bad(&mqtt->writer, tag, QUALITY_BAD_NO_MATCH);
+    if (log_pace_take(&mqtt->absences, clock_mono_ns(), more))
+        log_warn(mqtt->base.log, "source %s: %s: no message has held the value of %s yet, at %.80s%s", mqtt->base.config->id,
+                 shown(topic->name, name), reader->tag, *reader->path ? reader->path : "value", more);
+}
+
+/* Returns false if at least one tag's value is refused; that tag is Bad. */
 static bool take_json(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const json_t *root, const struct mqtt_message *message,
                       char why[200])
 {
+    const struct plant_mqtt *config = &mqtt->base.config->mqtt;
     bool all_good = true;
     for (size_t i = 0; i < topic->tag_count; i++) {
         struct stamped_value value;
         int tag = topic->tags[i];
-        enum mqtt_found found = mqtt_json_read(root, &mqtt->base.config->mqtt, mqtt->base.plant->tags[tag].path, &value, why);
+        const struct plant_tag *of = &mqtt->base.plant->tags[tag];
+        const struct mqtt_reader reader = { config, *of->path ? of->path : config->value ? config->value : "", of->name };
+        enum mqtt_found found = mqtt_json_read(root, &reader, &value, why);
         if (found == MQTT_FOUND)
             stamped_writer_add(&mqtt->writer, tag, &value, message->is_retained || (!mqtt->subscribed && !value.utc_ns), false);
         else if (found == MQTT_WRONG)
-            stamped_writer_add_bad(&mqtt->writer, tag, QUALITY_BAD_CONFIGURATION);
+            stamped_writer_add_bad(&mqtt->writer, tag, value.quality);
+        else
+            note_absent(mqtt, topic, &reader, tag);
+        mqtt->matched[tag] |= found == MQTT_FOUND;
         all_good &= found != MQTT_WRONG;
     }
     return all_good;

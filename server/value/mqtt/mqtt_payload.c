@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers as text, and paths walked through JSON. */
+/* Reads numbers as text, and values, times and qualities out of JSON. */
 #include "value/mqtt/mqtt_payload.h"
 
 #include <math.h>
@@ -8,8 +8,8 @@
 #include <strings.h>
 
 #include "base/timestamp.h"
-#include "plant/json_path.h"
 #include "plant/number.h"
+#include "value/mqtt/json_select.h"
 #include "value/quality.h"
 
 enum { NUMBER_BYTES = 64 };
@@ -46,20 +46,9 @@ bool mqtt_number_read(const void *bytes, size_t count, double *out)
 json_t *mqtt_json_parse(const void *bytes, size_t count, char why[200])
 {
     json_error_t error;
-    json_t *root = json_loadb(bytes, count, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
+    json_t *root = json_loadb(bytes, count, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, &error);
     if (!root)
         snprintf(why, 200, "no JSON: %.150s", error.text);
-    return root;
-}
-
-static const json_t *find(const json_t *root, const char *path)
-{
-    struct json_path_step step;
-    for (const char *at = json_path_begin(path); root && *at;) {
-        if (!json_path_next(&at, &step))
-            return NULL;
-        root = step.name ? json_object_getn(root, step.name, step.length) : json_array_get(root, step.index);
-    }
     return root;
 }
 
@@ -115,32 +104,66 @@ static uint32_t read_quality(const json_t *json)
     return is_code ? (uint32_t)number : QUALITY_UNCERTAIN;
 }
 
-/* Of a payload that says nothing else: itself, or its member `value`. */
-static const json_t *value_of(const json_t *root, const struct plant_mqtt *mqtt, const char *path)
+/* --- a tag's value ---------------------------------------------------------------------------------------------------------- */
+
+/* Without a path: the payload itself, or its member `value`. */
+static struct json_selected value_of(const json_t *root, const struct mqtt_reader *reader)
 {
-    if (*path || mqtt->value)
-        return find(root, *path ? path : mqtt->value);
-    return json_is_object(root) ? json_object_get(root, "value") : root;
+    if (*reader->path)
+        return json_select(root, reader->path, reader->tag);
+    return json_select(root, json_is_object(root) ? "value" : "$", reader->tag);
 }
 
-enum mqtt_found mqtt_json_read(const json_t *root, const struct plant_mqtt *mqtt, const char *path, struct stamped_value *out,
-                               char why[200])
+/* A path that begins with `@` begins beside the value. */
+static const json_t *beside(const json_t *root, const struct json_selected *value, const char *path, const char *tag)
 {
-    const json_t *value = value_of(root, mqtt, path), *time = mqtt->time ? find(root, mqtt->time) : NULL;
-    const json_t *quality = mqtt->quality ? find(root, mqtt->quality) : NULL;
-    *out = (struct stamped_value){ .quality = QUALITY_GOOD };
-    if (!value)
+    struct json_selected found = json_select(*path == '@' ? value->holder : root, path, tag);
+    return found.count == 1 ? found.value : NULL;
+}
+
+static enum mqtt_found refuse(struct stamped_value *out, uint32_t quality)
+{
+    *out = (struct stamped_value){ .quality = quality };
+    return MQTT_WRONG;
+}
+
+static enum mqtt_found refuse_selection(const struct json_selected *found, const struct mqtt_reader *reader, struct stamped_value *out,
+                                        char why[200])
+{
+    const char *tag = reader->tag, *path = reader->path;
+    if (found->count > 1) {
+        snprintf(why, 200, "%.40s: %.60s selects %zu values; expected one", tag, path, found->count);
+        return refuse(out, QUALITY_BAD_TOO_MANY_MATCHES);
+    }
+    if (!found->foreign)
         return MQTT_ABSENT;
+    char number[32];
+    snprintf(number, sizeof(number), "%.15g", json_number_value(found->foreign));
+    const char *name = json_is_string(found->foreign) ? json_string_value(found->foreign) : number;
+    snprintf(why, 200, "%.40s: the item at that position of %.40s names itself %.40s; address it by name, as [?@.id=='...']", tag, path,
+             name);
+    return refuse(out, QUALITY_BAD_NO_MATCH);
+}
+
+enum mqtt_found mqtt_json_read(const json_t *root, const struct mqtt_reader *reader, struct stamped_value *out, char why[200])
+{
+    const struct plant_mqtt *mqtt = reader->mqtt;
+    struct json_selected found = value_of(root, reader);
+    *out = (struct stamped_value){ .quality = QUALITY_GOOD };
+    if (found.count != 1)
+        return refuse_selection(&found, reader, out, why);
+    const json_t *time = mqtt->time ? beside(root, &found, mqtt->time, reader->tag) : NULL;
+    const json_t *quality = mqtt->quality ? beside(root, &found, mqtt->quality, reader->tag) : NULL;
     if (mqtt->time && (!time || !read_time(time, &out->utc_ns))) {
         snprintf(why, 200, "%.60s holds no time", mqtt->time);
-        return MQTT_WRONG;
+        return refuse(out, QUALITY_BAD_CONFIGURATION);
     }
     if (mqtt->quality)
         out->quality = quality ? read_quality(quality) : QUALITY_UNCERTAIN;
-    if (json_is_null(value) && !quality_is_bad(out->quality))
+    if (json_is_null(found.value) && !quality_is_bad(out->quality))
         out->quality = QUALITY_BAD_SENSOR_FAILURE;
-    if (quality_is_bad(out->quality) || read_number(value, &out->value))
+    if (quality_is_bad(out->quality) || read_number(found.value, &out->value))
         return MQTT_FOUND;
-    snprintf(why, 200, "%.60s is no number", *path ? path : mqtt->value ? mqtt->value : "the value");
-    return MQTT_WRONG;
+    snprintf(why, 200, "%.60s is no number", *reader->path ? reader->path : "the value");
+    return refuse(out, QUALITY_BAD_CONFIGURATION);
 }

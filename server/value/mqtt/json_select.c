@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Walks a path through JSON and counts all that it selects. */
+#include "value/mqtt/json_select.h"
+
+#include <stdbool.h>
+#include <string.h>
+#include <strings.h>
+
+#include "plant/json_path.h"
+
+static const json_t *item_at(const json_t *array, long index)
+{
+    size_t count = json_array_size(array);
+    if (index >= 0)
+        return json_array_get(array, (size_t)index);
+    return (size_t)-index <= count ? json_array_get(array, count - (size_t)-index) : NULL;
+}
+
+/* --- items that name themselves --------------------------------------------------------------------------------------------- */
+
+static bool names_its_object(const char *key)
+{
+    static const char *const keys[] = { "id",     "name",     "tag",       "tagname", "tag_name", "tagid",   "tag_id",
+                                        "key",    "n",        "metric",    "signal",  "variable", "point",   "channel",
+                                        "sensor", "sensorid", "sensor_id", "node",    "nodeid",   "node_id", "address" };
+    for (size_t i = 0; i < sizeof(keys) / sizeof(*keys); i++)
+        if (!strcasecmp(key, keys[i]))
+            return true;
+    return false;
+}
+
+/* Returns whether a name is the tag's, or ends in it behind a separator: `A.T1` is that of T1. */
+static bool is_name_of(const json_t *name, const char *tag)
+{
+    const char *text = json_string_value(name);
+    size_t length = text ? strlen(text) : 0, tag_length = strlen(tag);
+    if (!text || length < tag_length || strcmp(text + length - tag_length, tag) != 0)
+        return false;
+    return length == tag_length || strchr("./:\\!|", text[length - tag_length - 1]);
+}
+
+/* Returns the name of an item that names itself, and by none of its names as the tag; else NULL. */
+static const json_t *foreign_name(const json_t *item, const char *tag)
+{
+    const char *key;
+    json_t *member;
+    const json_t *name = NULL;
+    json_object_foreach((json_t *)item, key, member)
+    {
+        if (!names_its_object(key) || !(json_is_string(member) || json_is_number(member)))
+            continue;
+        if (is_name_of(member, tag))
+            return NULL;
+        name = name ? name : member;
+    }
+    return name;
+}
+
+/* --- filters ---------------------------------------------------------------------------------------------------------------- */
+
+static const json_t *operand_of(const json_t *item, const struct json_path_test *test)
+{
+    struct json_path_step step;
+    char why[200];
+    for (const char *at = test->path; item && at < test->end;) {
+        if (!json_path_next_operand(&at, &step, why))
+            return NULL;
+        item = step.kind == JSON_PATH_NAME ? json_object_get(item, step.name) : item_at(item, step.index);
+    }
+    return item;
+}
+
+static bool holds(const json_t *item, const struct json_path_test *test)
+{
+    const json_t *value = operand_of(item, test);
+    switch (test->kind) {
+    case JSON_LITERAL_STRING: return json_is_string(value) && !strcmp(json_string_value(value), test->text);
+    case JSON_LITERAL_NUMBER: return json_is_number(value) && json_number_value(value) == test->number;
+    case JSON_LITERAL_TRUE: return json_is_true(value);
+    case JSON_LITERAL_FALSE: return json_is_false(value);
+    case JSON_LITERAL_NULL: return json_is_null(value);
+    }
+    return false;
+}
+
+static bool all_hold(const json_t *item, const struct json_path_step *step)
+{
+    for (int i = 0; i < step->test_count; i++)
+        if (!holds(item, &step->tests[i]))
+            return false;
+    return true;
+}
+
+/* --- walking ---------------------------------------------------------------------------------------------------------------- */
+
+static void walk(const json_t *value, const json_t *holder, const char *at, const char *tag, struct json_selected *out);
+
+static void walk_matches(const json_t *holder, const struct json_path_step *step, const char *at, const char *tag,
+                         struct json_selected *out)
+{
+    const char *key;
+    json_t *item;
+    size_t i;
+    json_array_foreach((json_t *)holder, i, item)
+    {
+        if (all_hold(item, step))
+            walk(item, holder, at, tag, out);
+    }
+    json_object_foreach((json_t *)holder, key, item)
+    {
+        if (all_hold(item, step))
+            walk(item, holder, at, tag, out);
+    }
+}
+
+/* As deep as the path has steps; the address of a tag bounds them. */
+static void walk(const json_t *value, const json_t *holder, const char *at, const char *tag, struct json_selected *out)
+{
+    struct json_path_step step;
+    char why[200];
+    if (!*at) {
+        out->count++;
+        out->value = value;
+        out->holder = holder;
+        return;
+    }
+    if (!json_path_next(&at, &step, why))
+        return;
+    if (step.kind == JSON_PATH_FILTER) {
+        walk_matches(value, &step, at, tag, out);
+        return;
+    }
+    const json_t *child = step.kind == JSON_PATH_NAME ? json_object_get(value, step.name) : item_at(value, step.index);
+    const json_t *foreign = child && step.kind == JSON_PATH_INDEX ? foreign_name(child, tag) : NULL;
+    if (foreign)
+        out->foreign = foreign;
+    else if (child)
+        walk(child, value, at, tag, out);
+}
+
+struct json_selected json_select(const json_t *root, const char *path, const char *tag)
+{
+    struct json_selected out = { 0 };
+    if (root)
+        walk(root, NULL, json_path_begin(path), tag, &out);
+    return out;
+}
