@@ -28,6 +28,7 @@ bin := $(if $(filter release,$(config)),$(build),$(out)/bin)
 no_packages := deps test-deps run test check test-long clean style layers deb bundle image test-deploy
 packages := yaml-0.1 jansson sqlite3 libpq libcurl libmodbus libmosquitto libprotobuf-c libwebsockets libssl libcrypto cjose \
             libturbojpeg \
+            uchardet libutf8proc \
             libjpeg libpng zlib cairo cairo-ft fontconfig libxxhash OpenImageIO
 ifneq ($(filter-out jpeg h264,$(CODECS))$(if $(filter jpeg,$(CODECS)),,none),)
 $(error CODECS=$(CODECS) is unknown: jpeg, or jpeg h264)
@@ -150,14 +151,15 @@ $(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(arc
 $(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(out)/lib/match.a $(out)/lib/prep.a $(archives)
 	$(link) -lGLU
 by_occt := $(call objects,$(addprefix preprocess/import/readers/,occt iges_tree))
+by_reader := $(call objects,preprocess/import/encoding)
 $(by_occt): CXXFLAGS += -isystem $(occt)
-$(bin)/plantcast-import-occt: $(by_occt) $(out)/lib/prep.a $(out)/lib/base.a
+$(bin)/plantcast-import-occt: $(by_occt) $(by_reader) $(out)/lib/prep.a $(out)/lib/base.a
 	@mkdir -p $(@D); echo "  LINK $@"
 	@$(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group \
-	    $(occt_libs) -ljansson
-$(bin)/plantcast-import-assimp: $(call objects,preprocess/import/readers/assimp) $(out)/lib/prep.a $(out)/lib/base.a
+	    $(occt_libs) -luchardet -ljansson
+$(bin)/plantcast-import-assimp: $(call objects,preprocess/import/readers/assimp) $(by_reader) $(out)/lib/prep.a $(out)/lib/base.a
 	@mkdir -p $(@D); echo "  LINK $@"
-	@$(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lassimp -ljansson -lm
+	@$(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lassimp -luchardet -ljansson -lm
 $(bin)/plantcast-match: $(call objects,preprocess/match/main.c) $(out)/lib/match.a $(archives)
 	$(link) -lminizip -lexpat
 $(bin)/plantcast-images.so: $(patsubst %,$(out)/obj/server/base/%.pic.o,image_shim mem)

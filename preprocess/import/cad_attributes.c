@@ -99,28 +99,25 @@ static void take_separator(const char *line, char *separator, size_t separator_b
     snprintf(separator, separator_bytes, "%.*s", (int)strcspn(at, " ,\r\n"), at);
 }
 
-bool cad_attributes_read(struct cad_model *model, const char *text, size_t length, struct attribute_counts *counts, char *why,
-                         size_t why_bytes)
+static bool read_lines(struct cad_model *model, char *text, size_t length, struct attribute_counts *counts, char *why, size_t why_bytes)
 {
     struct index index;
     int stack[MAX_DEPTH], depth = 0;
     char separator[16] = "&end&";
     size_t number = 0;
     bool good = true;
-    *counts = (struct attribute_counts){ 0 };
     index_init(&index, model);
-    if (length >= 3 && !memcmp(text, "\xef\xbb\xbf", 3)) {
-        text += 3;
-        length -= 3;
-    }
     for (size_t at = 0; at < length && good;) {
-        const char *end = memchr(text + at, '\n', length - at);
+        char *end = memchr(text + at, '\n', length - at);
         size_t bytes = end ? (size_t)(end - text) - at : length - at;
-        char *line = encoding_to_utf8(text + at, bytes, true), *word = trim(line);
-        counts->not_utf8 += strlen(line) != bytes;
+        text[at + bytes] = 0;
+        for (char *c = text + at; *c; c++)
+            if ((unsigned char)*c < 32 || *c == 127)
+                *c = ' ';
+        char *word = trim(text + at);
         at += bytes + 1;
         if (++number == 1)
-            take_separator(line, separator, sizeof(separator));
+            take_separator(word, separator, sizeof(separator));
         if (!strncmp(word, "NEW ", 4) && depth == MAX_DEPTH) {
             snprintf(why, why_bytes, "line %zu: elements are nested more than %d deep", number, MAX_DEPTH);
             good = false;
@@ -137,7 +134,6 @@ bool cad_attributes_read(struct cad_model *model, const char *text, size_t lengt
         } else if (depth > 0) {
             take_line(model, stack[depth - 1], word, separator, counts);
         }
-        mem_free(line);
     }
     if (good && depth > 0) {
         snprintf(why, why_bytes, "line %zu: the file ends within %d element%s", number, depth, depth > 1 ? "s" : "");
@@ -145,5 +141,16 @@ bool cad_attributes_read(struct cad_model *model, const char *text, size_t lengt
     }
     mem_free(index.below);
     mem_free(index.anywhere);
+    return good;
+}
+
+bool cad_attributes_read(struct cad_model *model, const char *bytes, size_t count, const struct attribute_params *params,
+                         struct attribute_counts *counts, char *why, size_t why_bytes)
+{
+    struct charset_text text;
+    *counts = (struct attribute_counts){ .encoding = encoding_choose(bytes, count, params->encoding, params->model_encoding) };
+    charset_decode(bytes, count, counts->encoding.name, &text);
+    bool good = read_lines(model, text.utf8, text.length, counts, why, why_bytes);
+    mem_free(text.utf8);
     return good;
 }

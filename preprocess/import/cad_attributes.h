@@ -3,16 +3,22 @@
  * them to the model's nodes of those names. Thread: any. */
 #ifndef PREPROCESS_IMPORT_CAD_ATTRIBUTES_H
 #define PREPROCESS_IMPORT_CAD_ATTRIBUTES_H
+#include "base/charset.h"
 #include "preprocess/import/cad_model.h"
 
 struct attribute_counts {
     size_t elements, matched; /* NEW ... END, and those that a node was found for */
     size_t attributes;        /* given to nodes */
-    size_t not_utf8;          /* lines that are read as Latin-1, or with U+FFFD where they are neither */
+    struct charset_choice encoding;
 };
 
-/* Returns false if the file is broken: `why` names the line; the model keeps what was read before it. */
-bool cad_attributes_read(struct cad_model *model, const char *text, size_t length, struct attribute_counts *counts, char *why,
-                         size_t why_bytes);
+struct attribute_params {
+    const char *encoding;       /* as a person says; NULL: nobody has */
+    const char *model_encoding; /* that of the model's names: the same program wrote both; "": unknown */
+};
+
+/* `bytes` is the whole file. Returns false if the file is broken: `why` names the line; the model keeps what was read before it. */
+bool cad_attributes_read(struct cad_model *model, const char *bytes, size_t count, const struct attribute_params *params,
+                         struct attribute_counts *counts, char *why, size_t why_bytes);
 
 #endif

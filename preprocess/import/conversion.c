@@ -12,6 +12,7 @@
 #include "preprocess/child/child.h"
 #include "preprocess/import/cad_attributes.h"
 #include "preprocess/import/cad_glb.h"
+#include "preprocess/import/encoding.h"
 #include "preprocess/import/file_name.h"
 #include "preprocess/import/formats.h"
 #include "preprocess/import/gltf_pack.h"
@@ -46,7 +47,8 @@ static char *attributes_beside(const char *path)
     return NULL;
 }
 
-static bool add_attributes(struct cad_model *model, const char *path, struct text *said, char why[CONVERSION_WHY_BYTES])
+static bool add_attributes(struct cad_model *model, const char *path, const struct attribute_params *params, struct text *said,
+                           char why[CONVERSION_WHY_BYTES])
 {
     struct attribute_counts counts;
     size_t length;
@@ -54,14 +56,15 @@ static bool add_attributes(struct cad_model *model, const char *path, struct tex
     char *text = text_read_file(path, max_bytes, &length);
     if (!text)
         return fail(why, "%s: %s", path, strerror(errno));
-    bool good = cad_attributes_read(model, text, length, &counts, reason, sizeof(reason));
+    bool good = cad_attributes_read(model, text, length, params, &counts, reason, sizeof(reason));
     mem_free(text);
     if (!good)
         return fail(why, "%s: %s", path, reason);
     if (counts.elements == 0)
         return fail(why, "%s: no elements (NEW ... END): this is no attribute file; give one of the two another name", path);
-    text_add(said, "attributes of %s: %zu elements, %zu of them in the model; %zu values%s\n", path, counts.elements, counts.matched,
-             counts.attributes, counts.not_utf8 > 0 ? "; read as Latin-1 where it is not UTF-8" : "");
+    text_add(said, "attributes of %s: %zu elements, %zu of them in the model; %zu values\n", path, counts.elements, counts.matched,
+             counts.attributes);
+    encoding_say(said, "attributes", &counts.encoding);
     return true;
 }
 
@@ -92,17 +95,22 @@ static bool convert_rvm(const char *path, const char *glb, const struct conversi
     char *bytes = text_read_file(path, max_bytes, &length);
     if (!bytes)
         return fail(why, "%s", strerror(errno));
-    const struct rvm_params how = { .chord_m = params->chord_m, .keep_covered = params->keep_covered };
+    const struct rvm_params how = { .chord_m = params->chord_m, .keep_covered = params->keep_covered, .encoding = params->encoding };
     struct cad_model *model = cad_model_create();
     char *attributes = attributes_beside(path), *stem = file_name_stem(path);
     bool good = rvm_read(model, bytes, length, &how, &counts, why, CONVERSION_WHY_BYTES);
     mem_free(bytes);
     if (good && counts.primitives > 0 && counts.empty == counts.primitives)
         good = fail(why, "none of its %zu primitives can be shown: they have no extent, or numbers that are not finite", counts.primitives);
-    if (good)
+    if (good) {
         say_counts(said, &counts);
-    if (good && attributes)
-        good = add_attributes(model, attributes, said, why);
+        encoding_say(said, "names", &counts.encoding);
+    }
+    if (good && attributes) {
+        const struct attribute_params read = { .encoding = params->encoding,
+                                               .model_encoding = counts.encoding.ascii ? "" : counts.encoding.name };
+        good = add_attributes(model, attributes, &read, said, why);
+    }
     int status = good ? cad_glb_write(model, stem, glb) : 0;
     if (status != 0)
         good = fail(why, status == -EFBIG ? "a GLB file holds at most 4 GiB: export the plant in parts" : "%s", strerror(-status));
@@ -114,21 +122,41 @@ static bool convert_rvm(const char *path, const char *glb, const struct conversi
 
 /* --- other programs ------------------------------------------------------------------------------------------------------------------- */
 
+/* For readers that cannot find it themselves. Returns false with errno if the file cannot be read. */
+static bool find_encoding(const char *path, const char *asked, char encoding[CHARSET_NAME_BYTES], struct text *said)
+{
+    size_t length;
+    char *text = text_read_file(path, max_bytes, &length);
+    if (!text)
+        return false;
+    struct charset_choice choice = encoding_choose(text, length, asked, "");
+    mem_free(text);
+    encoding_say(said, "names", &choice);
+    if (!choice.ascii)
+        snprintf(encoding, CHARSET_NAME_BYTES, "%s", choice.name);
+    return true;
+}
+
 static bool convert_by_program(const struct import_format *format, const char *path, const char *glb, const char *folder,
                                const struct conversion_params *params, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
-    char *program = import_format_program(format);
+    char *program = import_format_program(format), encoding[CHARSET_NAME_BYTES] = "-";
+    if (!strcmp(format->name, "IFC") && !find_encoding(path, params->encoding, encoding, said))
+        return fail(why, "%s", strerror(errno));
+    if (params->encoding)
+        snprintf(encoding, sizeof(encoding), "%s", params->encoding);
     if (!program)
         return fail(why, "%s is not read: %s", format->name, format->missing);
     char *chord = mem_printf("%g", params->chord_m * 1000), *memory = mem_printf("--max-old-space-size=%zu", params->memory_bytes >> 20);
     char *input = realpath(path, NULL), *output = mem_printf("%s/output.glb", folder);
-    const char *argv[10];
+    const char *argv[11];
     int count = 0;
     if (format->runtime) {
         argv[count++] = format->runtime;
         argv[count++] = memory;
     }
-    const char *const rest[] = { program, input, output, chord, params->units ? params->units : "-", params->up ? params->up : "-", NULL };
+    const char *const rest[] = { program, input, output, chord, params->units ? params->units : "-", params->up ? params->up : "-",
+                                 encoding, NULL };
     memcpy(argv + count, rest, sizeof(rest));
     const struct child_params child = {
         .argv = argv, .folder = folder, .timeout_s = params->timeout_s, .memory_bytes = params->memory_bytes

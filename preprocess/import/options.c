@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/charset.h"
+
 const struct conversion_params options_default = { .chord_m = 0.001, .timeout_s = 900, .memory_bytes = (size_t)12 << 30 };
 
 void options_print(FILE *out)
@@ -12,6 +14,8 @@ void options_print(FILE *out)
     fputs("  --chord MM        how far a triangle may be from a round surface (1), where the model has true surfaces\n"
           "  --units UNIT      m, mm, cm, in or ft, of models that do not say\n"
           "  --up AXIS         y or z, likewise\n"
+          "  --encoding NAME   of names, such as GB18030, Shift-JIS, EUC-KR, Windows-1251; without it, the encoding that the model\n"
+          "                    states or that its names look like is taken, and said\n"
           "  --keep-covered    RVM: keep faces that lie on a neighbour's face, which nobody can see\n"
           "  --timeout S       for reading one model by another program (900)\n"
           "  --memory MB       likewise (12288)\n"
@@ -37,6 +41,7 @@ static bool number(const char *value, double least, double most, double *out)
 
 bool options_take(struct conversion_params *params, const char *command, int option, const char *value)
 {
+    static char encoding[CHARSET_NAME_BYTES];
     const char *wanted = NULL, *name = NULL;
     double taken;
     switch (option) {
@@ -53,6 +58,10 @@ bool options_take(struct conversion_params *params, const char *command, int opt
         params->memory_bytes = wanted ? 0 : (size_t)taken << 20;
         break;
     case 'u': name = "units", wanted = (params->units = one_of("m mm cm in ft", value)) ? NULL : "m, mm, cm, in or ft"; break;
+    case 'e':
+        name = "encoding", wanted = charset_resolve(value, encoding) ? NULL : "unknown; iconv --list shows the names that are known";
+        params->encoding = encoding;
+        break;
     case 'U': name = "up", wanted = (params->up = one_of("y z", value)) ? NULL : "y or z"; break;
     case 'k': params->keep_covered = true; return true;
     default: return false;

@@ -40,7 +40,7 @@ struct reader {
     struct face *faces;
     size_t primitive_count, primitive_room, contour_count, contour_room, point_count, point_room, face_count, face_room;
     int stack[MAX_DEPTH], depth;
-    bool utf8;
+    char encoding[64]; /* as the head says; "": nothing */
     char *why;
     size_t why_bytes;
 };
@@ -88,7 +88,8 @@ static bool read_float(struct reader *r, double *out)
     return true;
 }
 
-/* A number of words, then that many words of text that ends with the first 0. */
+/* A number of words, then that many words of text that ends with the first 0. It stays in the file's encoding; control characters become
+   blanks. */
 static bool read_text(struct reader *r, char *out, size_t out_bytes)
 {
     uint32_t words;
@@ -97,9 +98,10 @@ static bool read_text(struct reader *r, char *out, size_t out_bytes)
     if (words > (r->chunk_end - r->at) / 4)
         return fail(r, "a text of %u bytes is longer than its chunk", words * 4U);
     size_t length = strnlen((const char *)r->bytes + r->at, words * 4UL);
-    char *text = encoding_to_utf8((const char *)r->bytes + r->at, length, !r->utf8);
-    snprintf(out, out_bytes, "%s", text);
-    mem_free(text);
+    snprintf(out, out_bytes, "%.*s", (int)length, (const char *)r->bytes + r->at);
+    for (char *c = out; *c; c++)
+        if ((unsigned char)*c < 32 || *c == 127)
+            *c = ' ';
     r->at += words * 4UL;
     return true;
 }
@@ -109,16 +111,13 @@ static bool read_text(struct reader *r, char *out, size_t out_bytes)
 static bool read_head(struct reader *r)
 {
     uint32_t version;
-    char ignored[256], encoding[64] = ""; /* info, note, date, user */
+    char ignored[256]; /* info, note, date, user */
     if (!read_word(r, &version))
         return false;
     for (int i = 0; i < 4; i++)
         if (!read_text(r, ignored, sizeof(ignored)))
             return false;
-    if (version >= 2 && !read_text(r, encoding, sizeof(encoding)))
-        return false;
-    r->utf8 = strstr(encoding, "UTF8") || strstr(encoding, "UTF-8") || strstr(encoding, "Unicode");
-    return true;
+    return version < 2 || read_text(r, r->encoding, sizeof(r->encoding));
 }
 
 static bool read_color(struct reader *r)
@@ -282,6 +281,22 @@ static bool read_chunks(struct reader *r)
     return true;
 }
 
+/* One encoding for all names: short ones do not tell theirs. */
+static void decode_names(struct reader *r, size_t first, const char *asked)
+{
+    struct text all = { 0 };
+    struct charset_choice *choice = &r->counts->encoding;
+    for (size_t i = first; i < r->model->node_count; i++)
+        text_add(&all, "%s\n", r->model->nodes[i].name);
+    *choice = encoding_choose(all.at ? all.at : "", all.length, asked, r->encoding);
+    for (size_t i = first; i < r->model->node_count && !choice->ascii; i++) {
+        char *name = r->model->nodes[i].name;
+        r->model->nodes[i].name = charset_convert(name, strlen(name), choice->name, NULL);
+        mem_free(name);
+    }
+    text_finish(&all);
+}
+
 /* --- faces that meet --------------------------------------------------------------------------------------------------------------- */
 
 static const double near_m = 0.001;
@@ -372,10 +387,12 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const st
               char *why, size_t why_bytes)
 {
     struct reader *r = mem_new(sizeof(*r));
+    size_t first = model->node_count;
     *r = (struct reader){ .bytes = bytes, .count = count, .model = model, .counts = counts, .why = why, .why_bytes = why_bytes };
     *counts = (struct rvm_counts){ 0 };
     why[0] = 0;
     bool good = is_rvm(bytes, count) ? read_chunks(r) : fail(r, "not an RVM file: it does not begin with HEAD");
+    decode_names(r, first, params->encoding);
     for (size_t i = 0; i < r->primitive_count; i++)
         if (r->primitives[i].shape.contour_count > 0) {
             r->primitives[i].shape.contours = r->contours + r->primitives[i].first_contour;

@@ -3,6 +3,7 @@
  * primitives and CNTE, END:). There is no published specification; the layout is as open readers describe it. Thread: any. */
 #ifndef PREPROCESS_IMPORT_RVM_H
 #define PREPROCESS_IMPORT_RVM_H
+#include "base/charset.h"
 #include "preprocess/import/cad_model.h"
 
 struct rvm_counts {
@@ -12,11 +13,13 @@ struct rvm_counts {
     size_t empty;                         /* primitives without extent, or with numbers that are not finite: left out */
     size_t obstructions, insulations;     /* left out: volumes kept free, and lagging */
     size_t unknown_chunks, unknown_kinds; /* skipped */
+    struct charset_choice encoding;       /* of its names */
 };
 
 struct rvm_params {
     double chord_m;    /* no chord is further from the surface */
     bool keep_covered; /* faces that lie on a neighbour's face stay */
+    const char *encoding; /* of its names, as a person says; NULL: as the file says, or as they look */
 };
 
 /* Appends the file's groups and their triangles to the model. `bytes` is the whole file.

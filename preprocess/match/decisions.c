@@ -11,7 +11,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
-#include "preprocess/match/charset.h"
+#include "base/charset.h"
 #include "preprocess/match/table.h"
 
 enum { TAG, STATUS, ASSET, PLACE, CONFIDENCE, REASON, MAY_BE, CHECK, COLUMNS };
@@ -151,7 +151,7 @@ bool decisions_read(struct decisions *decisions, const char *path, char why[MATC
         snprintf(why, MATCH_WHY_BYTES, "%s", strerror(errno));
         return false;
     }
-    charset_decode(bytes, count, &text);
+    charset_decode(bytes, count, NULL, &text);
     bool good = table_read_csv(&table, text.utf8, table_separator(text.utf8), why, MATCH_WHY_BYTES) &&
                 (table.count == 0 || find_columns(&table.rows[0], columns, why));
     for (size_t i = 1; i < table.count && good; i++) {

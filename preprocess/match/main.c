@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/charset.h"
 #include "base/mem.h"
 #include "plant/address.h"
 #include "preprocess/match/matching.h"
@@ -19,6 +20,7 @@ static void print_usage(FILE *out)
           "  PLANT                 the plant's folder, or its plant.yaml\n"
           "  TAGS                  Kepware, Ignition, AVEVA, Emerson, Honeywell, plain CSV or .xlsx\n"
           "  --equipment CHOICE    what becomes an asset: level=N, a pattern of names, or @FILE of names; may be repeated\n"
+          "  --encoding NAME       of TAGS, such as GB18030, Shift-JIS, EUC-KR, Windows-1251; without it, the encoding is found and said\n"
           "  --rules FILE          ordered patterns, CSV: Tag,Equipment (match_rules.csv in the folder)\n"
           "  --aliases FILE        what people call equipment, CSV: Alias,Equipment (aliases.csv in the folder)\n"
           "  --decide FILE         decisions as if they had been written into matches.csv by hand, CSV: Tag,Status,Asset\n"
@@ -36,8 +38,9 @@ enum { EQUIPMENT_MOST = 100 };
 
 int main(int argc, char **argv)
 {
-    enum { RULES = 1, ALIASES, SOURCE, MODBUS, UNIT, ORDER, BASE, EQUIPMENT, DECIDE, LENT, DRY, HELP };
-    static const struct option options[] = { { "rules", required_argument, NULL, RULES },
+    enum { ENCODING = 1, RULES, ALIASES, SOURCE, MODBUS, UNIT, ORDER, BASE, EQUIPMENT, DECIDE, LENT, DRY, HELP };
+    static const struct option options[] = { { "encoding", required_argument, NULL, ENCODING },
+                                             { "rules", required_argument, NULL, RULES },
                                              { "aliases", required_argument, NULL, ALIASES },
                                              { "source", required_argument, NULL, SOURCE },
                                              { "modbus", required_argument, NULL, MODBUS },
@@ -53,9 +56,16 @@ int main(int argc, char **argv)
     const char *equipment[EQUIPMENT_MOST];
     struct matching_params params = { .unit = -1, .address_base = 1, .equipment = equipment };
     enum byte_order order;
-    char *end;
+    char *end, encoding[CHARSET_NAME_BYTES];
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;)
         switch (option) {
+        case ENCODING:
+            params.encoding = encoding;
+            if (!charset_resolve(optarg, encoding)) {
+                fprintf(stderr, "plantcast match: --encoding %s: unknown; iconv --list shows the names that are known\n", optarg);
+                return 2;
+            }
+            break;
         case RULES: params.rules = optarg; break;
         case ALIASES: params.aliases = optarg; break;
         case SOURCE: params.source = optarg; break;

@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "preprocess/match/charset.h"
+#include "base/charset.h"
 #include "preprocess/match/matcher_impl.h"
 #include "preprocess/match/table.h"
 
@@ -203,7 +203,7 @@ static bool read_table(struct table *table, const char *path, const char *first,
     if (!good)
         snprintf(why, MATCH_WHY_BYTES, "%s", strerror(errno));
     if (good) {
-        charset_decode(bytes, count, &text);
+        charset_decode(bytes, count, NULL, &text);
         good = table_read_csv(table, text.utf8, table_separator(text.utf8), reason, sizeof(reason));
         if (!good)
             snprintf(why, MATCH_WHY_BYTES, "%s", reason);

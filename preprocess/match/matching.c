@@ -56,11 +56,14 @@ static void print_list(const struct run *run)
     const struct tag_export *list = &run->list;
     const char *path = run->params->tags, separator = list->separator;
     printf("%s: %s", path, list->format);
-    if (list->encoding)
-        printf(", %s", list->encoding);
+    if (*list->encoding.name)
+        printf(", %s", list->encoding.name);
     if (separator)
         printf(", separated by %s", separator == ',' ? "commas" : separator == ';' ? "semicolons" : separator == '\t' ? "tabs" : "bars");
     printf("; %zu tags\n", list->count);
+    if (*list->encoding.other)
+        printf("%s: read as %s, but it may be %s: --encoding NAME says which\n", path, list->encoding.name,
+               list->encoding.other);
     if (list->same > 0)
         printf("%s: %zu rows repeat a tag word for word: taken once\n", path, list->same);
     if (list->differing > 0)
@@ -73,7 +76,8 @@ static void print_list(const struct run *run)
     if (list->control > 0)
         printf("%s: %zu control characters: read as blanks\n", path, list->control);
     if (list->damaged > 0)
-        printf("%s: %zu characters are not %s: shown as \xef\xbf\xbd\n", path, list->damaged, list->encoding ? list->encoding : "text");
+        printf("%s: %zu characters are not %s: shown as \xef\xbf\xbd\n", path, list->damaged,
+               *list->encoding.name ? list->encoding.name : "text");
 }
 
 /* Assets are chosen anew, unless the tag list names some: what people placed would lose its equipment. */
@@ -134,7 +138,7 @@ static bool read_all(struct run *run)
         return fail_at(params->plant, why);
     if (params->equipment_count > 0 && !choose_equipment(run))
         return false;
-    if (!tag_export_read(&run->list, params->tags, why, sizeof(why)))
+    if (!tag_export_read(&run->list, params->tags, params->encoding, why, sizeof(why)))
         return fail_at(params->tags, why);
     print_list(run);
     run->matcher.site = &run->site;

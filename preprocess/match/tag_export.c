@@ -12,7 +12,6 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "plant/number.h"
-#include "preprocess/match/charset.h"
 #include "preprocess/match/table.h"
 
 static const size_t max_bytes = (size_t)256 << 20;
@@ -379,11 +378,11 @@ static const char *first_sign(const char *text)
     return text + strspn(text, " \t\r\n");
 }
 
-static bool read_text(struct tag_export *list, const char *bytes, size_t count, char *why, size_t why_bytes)
+static bool read_text(struct tag_export *list, const char *bytes, size_t count, const char *encoding, char *why, size_t why_bytes)
 {
     struct charset_text text;
     struct table table = { 0 };
-    charset_decode(bytes, count, &text);
+    charset_decode(bytes, count, encoding, &text);
     list->encoding = text.encoding;
     list->damaged = text.damaged;
     bool good, json = *first_sign(text.utf8) == '{' || *first_sign(text.utf8) == '[';
@@ -403,7 +402,7 @@ static bool read_text(struct tag_export *list, const char *bytes, size_t count, 
     return good;
 }
 
-bool tag_export_read(struct tag_export *list, const char *path, char *why, size_t why_bytes)
+bool tag_export_read(struct tag_export *list, const char *path, const char *encoding, char *why, size_t why_bytes)
 {
     size_t count;
     char *bytes = text_read_file(path, max_bytes, &count);
@@ -418,7 +417,7 @@ bool tag_export_read(struct tag_export *list, const char *path, char *why, size_
     } else if (count >= 4 && !memcmp(bytes, "\xd0\xcf\x11\xe0", 4)) {
         snprintf(why, why_bytes, "a spreadsheet of Excel 97 to 2003 (.xls); save it as .xlsx or CSV");
     } else {
-        good = read_text(list, bytes, count, why, why_bytes);
+        good = read_text(list, bytes, count, encoding, why, why_bytes);
     }
     mem_free(bytes);
     if (good && list->count == 0) {

@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/charset.h"
+
 enum export_field { /* of a tag, as text; numbers have a decimal point */
                     EXPORT_NAME,
                     EXPORT_ADDRESS,
@@ -33,7 +35,8 @@ struct export_tag {
 };
 
 struct tag_export {                /* zero-initialise */
-    const char *format, *encoding; /* static; encoding NULL: a spreadsheet */
+    const char *format;            /* static */
+    struct charset_choice encoding; /* name "": a spreadsheet */
     char separator;                /* 0: none */
     struct export_tag *tags;       /* by name unique, upper and lower case taken as one; in the order of the file */
     size_t count, capacity;
@@ -44,8 +47,9 @@ struct tag_export {                /* zero-initialise */
     size_t renamed;                    /* tags with one name in several folders, which now have their path in front */
 };
 
-/* Reads a file. Returns false with the reason in `why`; then the list is empty. */
-bool tag_export_read(struct tag_export *list, const char *path, char *why, size_t why_bytes);
+/* Reads a file, of an encoding that charset_resolve() knows; NULL: charset_find() decides. Returns false with the reason in `why`; then the
+   list is empty. */
+bool tag_export_read(struct tag_export *list, const char *path, const char *encoding, char *why, size_t why_bytes);
 void tag_export_finish(struct tag_export *list);
 
 /* For the readers of formats. Appends an empty tag and returns it; valid until the next. */

@@ -11,7 +11,7 @@
 
 #include "base/mem.h"
 #include "plant/address.h"
-#include "preprocess/match/charset.h"
+#include "base/charset.h"
 #include "preprocess/match/table.h"
 
 enum column {
@@ -91,7 +91,7 @@ static bool read_file(struct tag_rows *rows, const char *path, char why[MATCH_WH
         snprintf(why, MATCH_WHY_BYTES, "%s", strerror(errno));
         return errno == ENOENT;
     }
-    charset_decode(bytes, count, &text);
+    charset_decode(bytes, count, NULL, &text);
     rows->separator = table_separator(text.utf8);
     bool good = table_read_csv(&table, text.utf8, rows->separator, why, MATCH_WHY_BYTES);
     if (good && table.count > 1) { /* more than a header */

@@ -21,7 +21,7 @@ static bool read_bytes(struct tag_export *list, const void *bytes, size_t count)
 {
     char *path = temp_write(folder, "tags", bytes, count);
     *list = (struct tag_export){ 0 };
-    bool good = tag_export_read(list, path, why, sizeof(why));
+    bool good = tag_export_read(list, path, NULL, why, sizeof(why));
     mem_free(path);
     return good;
 }
@@ -49,7 +49,7 @@ static void test_kepware(void **state)
                   "\"E101.TT-101\",\"400001\",\"Word\",1,\"R/W\",100,\"Linear\",0,27648,0,200,\"Double\",0,0,\"degC\",\"inlet, "
                   "\"\"hot\"\" side\",0\r\n"));
     assert_string_equal(list.format, "Kepware");
-    assert_string_equal(list.encoding, "UTF-8");
+    assert_string_equal(list.encoding.name, "UTF-8");
     assert_int_equal(list.separator, ',');
     check(&list, 0, EXPORT_NAME, "E101.TT-101");
     check(&list, 0, EXPORT_RAW_HIGH, "27648");
@@ -156,17 +156,17 @@ static void test_encodings(void **state)
     struct tag_export list;
     (void)state;
     assert_true(read_bytes(&list, latin1, sizeof(latin1) - 1));
-    assert_string_equal(list.encoding, "cp1252");
+    assert_string_equal(list.encoding.name, "Windows-1252");
     check(&list, 0, EXPORT_DESCRIPTION, "Wärmetauscher für Öl");
     check(&list, 0, EXPORT_UNIT, "°C");
     tag_export_finish(&list);
     assert_true(read_bytes(&list, korean, sizeof(korean) - 1));
-    assert_string_equal(list.encoding, "cp949");
+    assert_string_equal(list.encoding.name, "EUC-KR");
     check(&list, 0, EXPORT_DESCRIPTION, "열교환기 출구");
     tag_export_finish(&list);
     for (size_t mark = 0; mark <= 2; mark += 2) {
         assert_true(read_bytes(&list, wide + mark, sizeof(wide) - 1 - mark));
-        assert_string_equal(list.encoding, "UTF-16LE");
+        assert_string_equal(list.encoding.name, "UTF-16LE");
         assert_int_equal(list.separator, '\t');
         check(&list, 0, EXPORT_UNIT, "°C");
         tag_export_finish(&list);
@@ -213,7 +213,7 @@ static bool read_xlsx(struct tag_export *list, const char *strings, const char *
     add_part(zip, "xl/worksheets/sheet1.xml", sheet);
     zipClose(zip, NULL);
     *list = (struct tag_export){ 0 };
-    bool good = tag_export_read(list, path, why, sizeof(why));
+    bool good = tag_export_read(list, path, NULL, why, sizeof(why));
     mem_free(path);
     return good;
 }
@@ -228,7 +228,7 @@ static void test_spreadsheet(void **state)
                   "<worksheet><sheetData><row r=\"1\"><c r=\"A1\" t=\"s\"><v>0</v></c><c r=\"C1\" t=\"s\"><v>1</v></c></row>"
                   "<row r=\"4\"><c r=\"A4\" t=\"s\"><v>2</v></c><c r=\"C4\" t=\"inlineStr\"><is><t>°C</t></is></c></row></sheetData>"
                   "</worksheet>"));
-    assert_null(list.encoding);
+    assert_string_equal(list.encoding.name, "");
     check(&list, 0, EXPORT_NAME, "TT-1");
     check(&list, 0, EXPORT_UNIT, "°C");
     assert_int_equal(list.tags[0].line, 4);

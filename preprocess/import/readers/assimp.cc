@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-import-assimp INPUT OUTPUT.glb CHORD_MM UNITS UP`: OBJ, STL, PLY, FBX, COLLADA and 3DS by Assimp, in a process of its own.
- * UNITS or UP `-`: as the file says, else guessed, and said. Its last line on stderr says why it failed. */
+/* `plantcast-import-assimp INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: OBJ, STL, PLY, FBX, COLLADA and 3DS by Assimp, in a process
+ * of its own. UNITS, UP or ENCODING `-`: as the file says, else guessed, and said. Its last line on stderr says why it failed. */
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/MemoryIOWrapper.h>
@@ -42,6 +42,7 @@ const format formats[] = { { ".obj", nullptr, nullptr, true }, { ".stl", nullptr
 struct reader {
     const aiScene *scene;
     struct glb_scene *out;
+    text_encoding encoding;                      /* of names that Assimp hands over as they are in the file */
     std::vector<int> materials;                  /* of each of the scene's; -2: not made yet */
     std::map<std::vector<unsigned>, int> meshes; /* by the scene's meshes in it */
     size_t triangles = 0, lost = 0;              /* lost: with corners that are not finite */
@@ -69,22 +70,49 @@ void keep_blanks(char *bytes, size_t count)
     }
 }
 
-/* Files as they are, but for names in OBJ files. */
+/* Returns the encoding that an XML declaration states, and blanks it out: the text is UTF-8 when it is parsed. */
+std::string take_declared(std::string *text)
+{
+    size_t end = text->compare(0, 5, "<?xml") == 0 ? text->find("?>") : std::string::npos, from = text->find("encoding=");
+    if (end == std::string::npos || from >= end || from + 10 >= end)
+        return "";
+    size_t close = text->find((*text)[from + 9], from + 10);
+    if (close == std::string::npos || close >= end)
+        return "";
+    std::string name = text->substr(from + 10, close - from - 10);
+    text->replace(from, close + 1 - from, close + 1 - from, ' ');
+    return name;
+}
+
+/* Texts in UTF-8, and with names of OBJ files in one word. Materials are found by their names: the first file's encoding is that of all. */
 struct files : Assimp::DefaultIOSystem {
+    text_encoding *encoding;
+    const char *asked;
+
+    files(text_encoding *encoding_of_all, const char *asked_for) : encoding(encoding_of_all), asked(asked_for)
+    {
+    }
     Assimp::IOStream *Open(const char *path, const char *mode) override
     {
         const char *dot = strrchr(path, '.');
         Assimp::IOStream *file = DefaultIOSystem::Open(path, mode);
-        if (!file || !dot || strcasecmp(dot, ".obj") != 0)
+        bool obj = dot && !strcasecmp(dot, ".obj"), dae = dot && !strcasecmp(dot, ".dae");
+        if (!file || (!obj && !dae && !(dot && !strcasecmp(dot, ".mtl"))))
             return file;
-        size_t count = file->FileSize();
-        std::vector<char> bytes(count);
-        count = count > 0 ? file->Read(bytes.data(), 1, count) : 0;
+        std::string text(file->FileSize(), 0);
+        text.resize(text.empty() ? 0 : file->Read(&text[0], 1, text.size()));
         Close(file);
-        keep_blanks(bytes.data(), count);
-        auto *copy = new uint8_t[count + 1];
-        memcpy(copy, bytes.data(), count);
-        return new Assimp::MemoryIOStream(copy, count, true);
+        std::string said = dae ? take_declared(&text) : "";
+        if (encoding->choice.ascii) {
+            encoding->choose(text, asked, said.c_str());
+            encoding->say();
+        }
+        text = encoding->utf8(text);
+        if (obj)
+            keep_blanks(&text[0], text.size());
+        auto *copy = new uint8_t[text.size() + 1];
+        memcpy(copy, text.data(), text.size());
+        return new Assimp::MemoryIOStream(copy, text.size(), true);
     }
 };
 
@@ -230,9 +258,9 @@ void add_primitive(reader *r, int to, const aiMesh *mesh, const std::vector<uint
 }
 
 /* What Assimp makes up has angle brackets, as <STL_BINARY>. */
-std::string name_of(const aiString &from)
+std::string name_of(const reader *r, const aiString &from)
 {
-    std::string name = from.C_Str()[0] == '<' ? "" : from.C_Str();
+    std::string name = from.C_Str()[0] == '<' ? "" : r->encoding.utf8(from.C_Str());
     for (char &c : name)
         c = c == BLANK ? ' ' : c;
     return name;
@@ -252,7 +280,7 @@ int mesh_of(reader *r, const aiNode *node)
         if (corners.empty())
             continue;
         if (made < 0)
-            made = glb_scene_add_mesh(r->out, name_of(mesh->mName).c_str());
+            made = glb_scene_add_mesh(r->out, name_of(r, mesh->mName).c_str());
         add_primitive(r, made, mesh, corners);
     }
     r->meshes[parts] = made;
@@ -276,7 +304,7 @@ void add_properties(reader *r, int to, const aiMetadata *data)
         default: continue;
         }
         if (text[0] && strcmp(data->mKeys[i].C_Str(), "IsNull") != 0)
-            glb_scene_set_property(r->out, to, data->mKeys[i].C_Str(), text);
+            glb_scene_set_property(r->out, to, r->encoding.utf8(data->mKeys[i].C_Str()).c_str(), r->encoding.utf8(text).c_str());
     }
 }
 
@@ -290,6 +318,22 @@ void matrix_of(const aiNode *node, double matrix[16])
         }
 }
 
+/* All names and texts of a node and those below it, a line each. */
+void collect(const aiScene *scene, const aiNode *node, std::string *out)
+{
+    *out += std::string(node->mName.C_Str()) + "\n";
+    for (unsigned i = 0; i < node->mNumMeshes; i++)
+        *out += std::string(scene->mMeshes[node->mMeshes[i]]->mName.C_Str()) + "\n";
+    for (unsigned i = 0; node->mMetaData && i < node->mMetaData->mNumProperties; i++) {
+        const aiMetadataEntry &entry = node->mMetaData->mValues[i];
+        *out += std::string(node->mMetaData->mKeys[i].C_Str()) + "\n";
+        if (entry.mType == AI_AISTRING)
+            *out += std::string(static_cast<const aiString *>(entry.mData)->C_Str()) + "\n";
+    }
+    for (unsigned i = 0; i < node->mNumChildren; i++)
+        collect(scene, node->mChildren[i], out);
+}
+
 void add(reader *r, const aiNode *node, int parent, int depth)
 {
     double matrix[16];
@@ -299,7 +343,7 @@ void add(reader *r, const aiNode *node, int parent, int depth)
     matrix_of(node, matrix);
     int number = parent;
     if (!made_up) {
-        number = glb_scene_add_node(r->out, parent, name_of(node->mName).c_str(), mesh_of(r, node),
+        number = glb_scene_add_node(r->out, parent, name_of(r, node->mName).c_str(), mesh_of(r, node),
                                     node->mTransformation.IsIdentity() ? nullptr : matrix);
         add_properties(r, number, node->mMetaData);
     }
@@ -347,7 +391,7 @@ void say_textures(const aiScene *scene)
         printf("left out: %zu textures, such as %.100s\n", names.size(), names.begin()->c_str());
 }
 
-void convert(const char *input, const char *output, const char *units, const char *up)
+void convert(const char *input, const char *output, const char *units, const char *up, const char *asked)
 {
     const format &from = format_of(input);
     Assimp::Importer importer;
@@ -358,12 +402,19 @@ void convert(const char *input, const char *output, const char *units, const cha
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
-    importer.SetIOHandler(new files); /* and owns it */
+    text_encoding of_file; /* of formats that are text and are decoded before Assimp reads them */
+    importer.SetIOHandler(new files(&of_file, asked)); /* and owns it */
     const aiScene *scene = importer.ReadFile(input, steps | (from.own_normals ? 0U : static_cast<unsigned>(aiProcess_RemoveComponent)));
     if (!scene || !scene->mRootNode)
         refuse("%.250s", strcmp(importer.GetErrorString(), "std::bad_alloc") ? importer.GetErrorString() : "out of memory");
     reader r = {};
     r.scene = scene;
+    if (of_file.choice.ascii) {
+        std::string names;
+        collect(scene, scene->mRootNode, &names);
+        r.encoding.choose(names, asked, "");
+        r.encoding.say();
+    }
     r.out = glb_scene_create("plantcast-import, Assimp");
     r.materials.assign(scene->mNumMaterials, -2);
     const char *slash = strrchr(input, '/'), *base = slash ? slash + 1 : input;
@@ -384,6 +435,6 @@ void convert(const char *input, const char *output, const char *units, const cha
 int main(int argc, char **argv)
 {
     return reader_main(argc, argv, "plantcast-import-assimp", [](char **arguments) {
-        convert(arguments[0], arguments[1], arguments[3], arguments[4]);
+        convert(arguments[0], arguments[1], arguments[3], arguments[4], arguments[5]);
     });
 }

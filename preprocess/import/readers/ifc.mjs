@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `node ifc.mjs INPUT OUTPUT.glb CHORD_MM UNITS UP`: IFC by web-ifc, which lies beside this file, in a process of its own. The spatial
-// tree becomes nodes with GUID, class, storey and property sets; geometry that several elements have is there once. Its last line on
-// stderr says why it failed.
+// `node ifc.mjs INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: IFC by web-ifc, which lies beside this file, in a process of its own.
+// The spatial tree becomes nodes with GUID, class, storey and property sets; geometry that several elements have is there once. Its last
+// line on stderr says why it failed.
 import { createRequire } from 'node:module';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, extname } from 'node:path';
@@ -180,8 +180,21 @@ function addTree(glb, model, { shown, geometries }, root) {
     return { elements, storeys };
 }
 
-async function main([input, output]) {
-    const bytes = readFileSync(input), folder = dirname(fileURLToPath(import.meta.url));
+// IFC is ASCII with escapes by its standard; many programs write names as their system has them.
+function inUtf8(bytes, encoding) {
+    if (['-', 'UTF-8'].includes(encoding))
+        return bytes;
+    let decoder;
+    try {
+        decoder = new TextDecoder(encoding);
+    } catch {
+        throw new Error(`Node.js does not know the encoding ${encoding}: save the file as UTF-8`);
+    }
+    return Buffer.from(decoder.decode(bytes));
+}
+
+async function main([input, output, , , , encoding]) {
+    const bytes = inUtf8(readFileSync(input), encoding), folder = dirname(fileURLToPath(import.meta.url));
     if (!bytes.subarray(0, 4096).toString('latin1').includes('ISO-10303-21'))
         throw new Error('it is no IFC file: it does not begin with ISO-10303-21');
     if (!bytes.subarray(-4096).toString('latin1').includes('END-ISO-10303-21'))

@@ -48,6 +48,7 @@ struct tree {
     Handle(XCAFDoc_ShapeTool) shapes;
     Handle(XCAFDoc_ColorTool) colors;
     Handle(XCAFDoc_LayerTool) layers;
+    const struct text_encoding *encoding;
     Handle(Transfer_TransientProcess) process; /* which shape each entity became */
     double unit_mm;
     std::map<const Standard_Transient *, TDF_Label> made;
@@ -175,7 +176,7 @@ std::vector<item> items_of(const tree &t, const item &group)
 void describe_layer(const tree &t, const TDF_Label &label, const std::string &layer)
 {
     if (!layer.empty())
-        t.layers->SetLayer(label, TCollection_ExtendedString(layer.c_str()));
+        t.layers->SetLayer(label, TCollection_ExtendedString(t.encoding->utf8(layer).c_str(), Standard_True));
 }
 
 /* What it does not say stays as it is. */
@@ -184,7 +185,7 @@ void describe(const tree &t, const TDF_Label &label, const entity &from)
     Quantity_Color color;
     std::string name = name_of(from);
     if (!name.empty())
-        TDataStd_Name::Set(label, TCollection_ExtendedString(name.c_str(), Standard_True));
+        TDataStd_Name::Set(label, TCollection_ExtendedString(t.encoding->utf8(name).c_str(), Standard_True));
     if (color_of(from, &color))
         t.colors->SetColor(label, color, XCAFDoc_ColorSurf);
     describe_layer(t, label, layer_of(from));
@@ -338,7 +339,7 @@ void add_root(tree *t, const item &root)
 
 } // namespace
 
-void iges_tree_add(IGESControl_Reader &iges, const Handle(TDocStd_Document) & document)
+void iges_tree_add(IGESControl_Reader &iges, const Handle(TDocStd_Document) & document, const struct text_encoding &encoding)
 {
     tree t;
     std::vector<item> loose;
@@ -346,6 +347,7 @@ void iges_tree_add(IGESControl_Reader &iges, const Handle(TDocStd_Document) & do
     t.shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
     t.colors = XCAFDoc_DocumentTool::ColorTool(document->Main());
     t.layers = XCAFDoc_DocumentTool::LayerTool(document->Main());
+    t.encoding = &encoding;
     t.process = iges.WS()->TransferReader()->TransientProcess();
     t.unit_mm = model->GlobalSection().UnitValue();
     for (int i = 1; i <= iges.NbRootsForTransfer(); i++) {
@@ -360,8 +362,8 @@ void iges_tree_add(IGESControl_Reader &iges, const Handle(TDocStd_Document) & do
     }
     for (const auto &entry : by_layer(loose)) {
         TDF_Label part = add_surfaces(t, entry.second);
-        std::string name = entry.first.empty() ? "Surfaces" : "Layer " + entry.first;
-        TDataStd_Name::Set(part, TCollection_ExtendedString(name.c_str()));
+        std::string name = entry.first.empty() ? "Surfaces" : "Layer " + encoding.utf8(entry.first);
+        TDataStd_Name::Set(part, TCollection_ExtendedString(name.c_str(), Standard_True));
         describe_layer(t, part, entry.first);
     }
     t.shapes->UpdateAssemblies();

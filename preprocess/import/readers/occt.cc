@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP`: STEP and IGES by Open CASCADE, in a process of its own. The assembly tree
- * becomes nodes; a part is tessellated once and shared by all its places. Prints what it noticed; its last line on stderr says why it
- * failed. */
+/* `plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: STEP and IGES by Open CASCADE, in a process of its own. The
+ * assembly tree becomes nodes; a part is tessellated once and shared by all its places. Prints what it noticed; its last line on stderr
+ * says why it failed. */
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Interface_InterfaceModel.hxx>
@@ -53,13 +53,24 @@ std::string utf8_of(const TCollection_ExtendedString &from)
     return at;
 }
 
+/* Open CASCADE takes a name whose last character is not ASCII for an empty one, and shows a number in its place: such names end in this. */
+constexpr char NAME_END[] = "`|";
+
+std::string without_end(std::string name)
+{
+    size_t length = strlen(NAME_END);
+    if (name.size() >= length && name.compare(name.size() - length, length, NAME_END) == 0)
+        name.resize(name.size() - length);
+    return name;
+}
+
 /* "=>[0:1:1:3]" is what Open CASCADE calls a component without a name. */
 std::string name_of(const TDF_Label &label)
 {
     Handle(TDataStd_Name) name;
     if (!label.FindAttribute(TDataStd_Name::GetID(), name))
         return "";
-    std::string text = utf8_of(name->Get());
+    std::string text = without_end(utf8_of(name->Get()));
     return text.compare(0, 3, "=>[") == 0 || text == "COMPOUND" || text == "SOLID" || text == "SHELL" || text == "ASSEMBLY" ? "" : text;
 }
 
@@ -70,7 +81,7 @@ std::string layers_of(const Handle(XCAFDoc_LayerTool) & tool, const TDF_Label &l
     if (!tool->GetLayers(label, names) || names.IsNull())
         return out;
     for (int i = 1; i <= names->Length(); i++)
-        out += (out.empty() ? "" : ", ") + utf8_of(names->Value(i));
+        out += (out.empty() ? "" : ", ") + without_end(utf8_of(names->Value(i)));
     return out;
 }
 
@@ -274,6 +285,56 @@ void say_damaged(const Handle(Interface_InterfaceModel) & model)
         printf("damaged: %d of its %d entities could not be read, the first one is number %d\n", damaged, model->NbEntities(), first);
 }
 
+/* Appends NAME_END to each string with characters beyond ASCII, as bytes or as escapes. */
+std::string with_name_ends(const std::string &text)
+{
+    std::string out;
+    bool within = false, beyond = false;
+    for (size_t i = 0; i < text.size(); i++) {
+        size_t comment = !within && text.compare(i, 2, "/*") == 0 ? text.find("*/", i + 2) : std::string::npos;
+        if (comment != std::string::npos) {
+            out.append(text, i, comment + 2 - i);
+            i = comment + 1;
+            continue;
+        }
+        if (within && text[i] == '\'' && text.compare(i, 2, "''") == 0) {
+            out += "''";
+            i++;
+            continue;
+        }
+        if (text[i] == '\'') {
+            if (within && beyond)
+                out += NAME_END;
+            within = !within;
+            beyond = false;
+        }
+        beyond |= within && (static_cast<unsigned char>(text[i]) >= 0x80 || text[i] == '\\');
+        out += text[i];
+    }
+    return out;
+}
+
+/* STEP is ASCII with escapes by its standard, but many programs write names as their system has them. Open CASCADE reads UTF-8: writes a
+   copy in it to `copy` where some name is not plain ASCII. Returns the path that is to be read. */
+const char *step_in_utf8(const char *path, const std::string &copy, const char *asked)
+{
+    std::string text = read_whole(path);
+    text_encoding encoding;
+    encoding.choose(text, asked, "");
+    encoding.say();
+    std::string converted = with_name_ends(encoding.utf8(text));
+    if (converted == text)
+        return path;
+    text.swap(converted);
+    FILE *file = fopen(copy.c_str(), "wb");
+    bool good = file && fwrite(text.data(), 1, text.size(), file) == text.size();
+    if (file && fclose(file) != 0)
+        good = false;
+    if (!good)
+        refuse("%s", strerror(errno));
+    return copy.c_str();
+}
+
 /* Returns the units that the file says it has. */
 std::string read_step(const char *path, Handle(TDocStd_Document) document)
 {
@@ -295,13 +356,16 @@ std::string read_step(const char *path, Handle(TDocStd_Document) document)
     return units;
 }
 
-std::string read_iges(const char *path, Handle(TDocStd_Document) document)
+std::string read_iges(const char *path, Handle(TDocStd_Document) document, const char *asked)
 {
     IGESControl_Reader iges;
     Interface_Static::SetCVal("read.iges.sequence", "none");
     if (iges.ReadFile(path) != IFSelect_RetDone)
         refuse("it is no IGES file, or is cut off");
-    iges_tree_add(iges, document);
+    text_encoding encoding;
+    encoding.choose(read_whole(path), asked, "");
+    encoding.say();
+    iges_tree_add(iges, document, encoding);
     if (iges.NbShapes() < 1)
         refuse("its shapes could not be read");
     say_damaged(iges.WS()->Model());
@@ -316,14 +380,16 @@ void root_matrix(bool y_up, double out[16])
     memcpy(out, y_up ? as_is : z_up, sizeof(z_up));
 }
 
-void convert(const char *input, const char *output, double chord_mm, bool y_up)
+void convert(const char *input, const char *output, double chord_mm, bool y_up, const char *asked)
 {
     Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
     Handle(TDocStd_Document) document;
     XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
     bool iges = has_ending(input, ".igs") || has_ending(input, ".iges");
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
-    std::string units = iges ? read_iges(input, document) : read_step(input, document);
+    std::string copy = std::string(output) + ".step";
+    std::string units = iges ? read_iges(input, document, asked) : read_step(step_in_utf8(input, copy, asked), document);
+    remove(copy.c_str());
     const char *slash = strrchr(input, '/'), *base = slash ? slash + 1 : input;
     std::string stem(base, strrchr(base, '.') ? static_cast<size_t>(strrchr(base, '.') - base) : strlen(base));
     reader r = {};
@@ -358,7 +424,7 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up)
 void convert_or_refuse(char **arguments)
 {
     try {
-        convert(arguments[0], arguments[1], strtod(arguments[2], nullptr), !strcmp(arguments[4], "y"));
+        convert(arguments[0], arguments[1], strtod(arguments[2], nullptr), !strcmp(arguments[4], "y"), arguments[5]);
     } catch (const Standard_Failure &e) {
         refuse("its shapes could not be read: %s", e.GetMessageString());
     } catch (const std::exception &) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the readers in C++ share: how one refuses a file, writes its scene, and ends. Thread: one. */
+/* What the readers in C++ share: how one refuses a file, decodes its names, writes its scene, and ends. Thread: one. */
 #ifndef PREPROCESS_IMPORT_READERS_READER_HH
 #define PREPROCESS_IMPORT_READERS_READER_HH
 #include <cerrno>
@@ -9,7 +9,12 @@
 #include <exception>
 #include <new>
 #include <stdexcept>
+#include <string>
 
+extern "C" {
+#include "base/mem.h"
+#include "preprocess/import/encoding.h"
+}
 #include "preprocess/glb/glb_scene.h"
 
 constexpr int MAX_DEPTH = 400; /* of a tree; plantcast-prep reads 512 levels */
@@ -26,6 +31,50 @@ inline void refuse(const char *fmt, ...)
     throw std::runtime_error(text);
 }
 
+/* The encoding of a file's texts. */
+struct text_encoding {
+    struct charset_choice choice = { "UTF-8", "", true };
+
+    /* asked: by a person; "-": nobody has. said: by the file, or "". */
+    void choose(const std::string &texts, const char *asked, const char *said)
+    {
+        choice = encoding_choose(texts.data(), texts.size(), strcmp(asked, "-") != 0 ? asked : nullptr, said);
+    }
+    /* Whether texts have to be converted. */
+    bool converts() const
+    {
+        return !choice.ascii && strcmp(choice.name, "UTF-8") != 0;
+    }
+    std::string utf8(const std::string &text) const
+    {
+        if (!converts())
+            return text;
+        char *converted = charset_convert(text.data(), text.size(), choice.name, nullptr);
+        std::string out = converted;
+        mem_free(converted);
+        return out;
+    }
+    void say() const
+    {
+        struct text line = {};
+        encoding_say(&line, "names", &choice);
+        fputs(line.at ? line.at : "", stdout);
+        text_finish(&line);
+    }
+};
+
+/* Returns a whole file; refuses one that cannot be read. */
+inline std::string read_whole(const char *path)
+{
+    size_t count;
+    char *bytes = text_read_file(path, static_cast<size_t>(4) << 30, &count);
+    if (!bytes)
+        refuse("%s", strerror(errno));
+    std::string out(bytes, count);
+    mem_free(bytes);
+    return out;
+}
+
 /* Writes the scene, frees it and leaves NULL. advice: what makes a file smaller that is too large, or "". */
 inline void write_scene(struct glb_scene **scene, const char *output, const char *advice)
 {
@@ -37,11 +86,11 @@ inline void write_scene(struct glb_scene **scene, const char *output, const char
         refuse("%s", strerror(-status));
 }
 
-/* The main function: convert takes INPUT OUTPUT.glb CHORD_MM UNITS UP. Returns the exit status; the last line on stderr says why it failed. */
+/* The main function: convert takes INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING. Returns the exit status; the last line on stderr says why it failed. */
 inline int reader_main(int argc, char **argv, const char *name, void (*convert)(char **arguments))
 {
-    if (argc != 6) {
-        fprintf(stderr, "usage: %s INPUT OUTPUT.glb CHORD_MM UNITS UP\n", name);
+    if (argc != 7) {
+        fprintf(stderr, "usage: %s INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING\n", name);
         return 2;
     }
     try {
