@@ -13,28 +13,33 @@
 #include "history/month.h"
 #include "history/series_text.h"
 #include "base/timestamp.h"
+#include "plant/number.h"
 
 struct history_options {
-    const char *plant, *folder, *csv, *tags, *from, *to, *start, *unit;
+    const char *plant, *folder, *csv, *tags, *from, *to, *start, *unit, *longest_gap;
     int points;
 };
 
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcast history import PLANT.yaml FILE.csv [--folder DIR] [--start INSTANT [--unit ms|s|min|h]]\n"
+          "                                [--longest-gap TIME]\n"
           "       plantcast history export PLANT.yaml --tags A,B [--from INSTANT] [--to INSTANT] [--points N] [--folder DIR]\n"
           "\n"
-          "import takes series into the plant's history, also while its daemon records: what happened before it was there.\n"
-          "The CSV has the columns Tag, Time, Value and perhaps Quality and Unit, or Time and one column for each tag. Values are in\n"
-          "the tag's Eng Units, as its device gives them, unless Unit says another. Times are instants\n"
+          "import adds series to the plant's history, such as data from before Plantcast was installed. The daemon may be recording.\n"
+          "The CSV file has the columns Tag, Time, Value and optionally Quality and Unit, or Time and one column for each tag.\n"
+          "Values are in the tag's Eng Units, as its device gives them, unless Unit names another. Times are instants\n"
           "such as 2026-11-20T10:00:00Z (without a zone: the plant's), or, with --start, numbers that count from there. They are in a\n"
           "column called Time, Timestamp, UTC, DateTime or Date, or in the first one.\n"
-          "Nothing is imported where anything is wrong; every error is printed with its line.\n"
+          "A blank cell, NaN and words such as Bad, No Data or I/O Timeout are Bad samples. Of rows with equal times the last one counts.\n"
+          "If a row has an error, nothing is imported; every error is printed with its line and column.\n"
           "\n"
-          "export prints what import takes: the points that were kept (of the last hour, unless --from and --to say otherwise).\n"
+          "export prints the recorded points in a form that import reads (of the last hour, unless --from and --to are given).\n"
           "\n"
-          "  --folder DIR     where history is (as the plant file says; else beside it)\n"
-          "  --points N       at most so many of each tag (20000); where there are more: lowest, highest and mean of stretches of time\n"
+          "  --folder DIR     folder of the history (default: the one that the plant file names, or the one beside it)\n"
+          "  --points N       at most N points of each tag (20000); if there are more: lowest, highest and mean of intervals\n"
+          "  --longest-gap TIME  a longer time between two samples has no data: 90s, 15min, 8h, 2d (default: the tag's Stale s if its row\n"
+          "                   states it and the series is not slower, else ten times the median spacing of the series)\n"
           "  INSTANT          2026-11-20T10:00:00Z, with an offset such as +01:00, seconds since 1970, or back from now: -8h\n",
           out);
 }
@@ -53,7 +58,7 @@ static bool parse_unit(const char *text, int64_t *unit_us)
     static const struct {
         const char *name;
         int64_t us;
-    } units[] = { { "ms", 1000 }, { "s", US_PER_S }, { "min", 60 * US_PER_S }, { "h", 3600 * US_PER_S } };
+    } units[] = { { "ms", 1000 }, { "s", US_PER_S }, { "min", 60 * US_PER_S }, { "h", 3600 * US_PER_S }, { "d", 86400 * US_PER_S } };
     for (size_t i = 0; i < sizeof(units) / sizeof(units[0]); i++)
         if (!strcmp(text, units[i].name)) {
             *unit_us = units[i].us;
@@ -62,12 +67,51 @@ static bool parse_unit(const char *text, int64_t *unit_us)
     return false;
 }
 
+/* "90s", "1.5h"; without a unit: seconds. */
+static bool parse_span(const char *text, int64_t *span_us)
+{
+    char number[24];
+    double count;
+    size_t length = strspn(text, "0123456789.");
+    int64_t unit_us = US_PER_S;
+    if (length == 0 || length >= sizeof(number) || (text[length] && !parse_unit(text + length, &unit_us)))
+        return false;
+    snprintf(number, sizeof(number), "%.*s", (int)length, text);
+    if (number_parse(number, &count) != NUMBER_GOOD || !(count * (double)unit_us >= 1 && count * (double)unit_us < 9e18))
+        return false;
+    *span_us = (int64_t)(count * (double)unit_us);
+    return true;
+}
+
+/* In the largest unit in which the number is at least 1. */
+static void print_span(int64_t span_us, char out[32])
+{
+    double s = (double)span_us / US_PER_S;
+    if (span_us == INT64_MAX)
+        snprintf(out, 32, "any time");
+    else if (s < 120)
+        snprintf(out, 32, "%.4g s", s);
+    else if (s < 7200)
+        snprintf(out, 32, "%.4g min", s / 60);
+    else if (s < 2 * 86400)
+        snprintf(out, 32, "%.4g h", s / 3600);
+    else
+        snprintf(out, 32, "%.4g d", s / 86400);
+}
+
 static void print_counts(const char *path, const struct import_counts *counts)
 {
-    char from[TIMESTAMP_BYTES], to[TIMESTAMP_BYTES];
+    char from[TIMESTAMP_BYTES], to[TIMESTAMP_BYTES], least[32], most[32];
     timestamp_print(counts->from_us, from);
     timestamp_print(counts->to_us, to);
-    printf("%s: %lld samples of %d tags from %s to %s: %lld points kept\n", path, counts->samples, counts->tags, from, to, counts->points);
+    print_span(counts->longest_us[0], least);
+    print_span(counts->longest_us[1], most);
+    printf("%s: %lld samples of %d tag%s from %s to %s: %lld points recorded\n", path, counts->samples, counts->tags,
+           counts->tags == 1 ? "" : "s", from, to, counts->points);
+    printf("Bad samples: %lld\nDuplicate times: %lld (the last row of each counts)\n", counts->bad, counts->duplicates);
+    if (counts->samples)
+        printf("Gaps without data: %lld (longer than %s%s%s)\n", counts->gaps, least, strcmp(least, most) ? " to " : "",
+               strcmp(least, most) ? most : "");
 }
 
 static int run_import(const struct history_options *options, const struct plant *plant, const char *folder, struct log *log)
@@ -83,6 +127,8 @@ static int run_import(const struct history_options *options, const struct plant 
         return wrong("--start: expected " TIMESTAMP_FORMS ", found", options->start);
     if (options->unit && (!options->start || !parse_unit(options->unit, &params.unit_us)))
         return wrong("--unit: expected ms, s, min or h, and --start, found", options->unit);
+    if (options->longest_gap && !parse_span(options->longest_gap, &params.longest_gap_us))
+        return wrong("--longest-gap: expected a time such as 90s, 15min, 8h or 2d, found", options->longest_gap);
     bool good = history_import(&params, &diag, &counts);
     diag_print(&diag, stderr);
     if (good)
@@ -151,7 +197,8 @@ static int parse(int argc, char **argv, struct history_options *out)
     static const struct option options[] = {
         { "folder", required_argument, NULL, 'd' }, { "tags", required_argument, NULL, 't' },  { "from", required_argument, NULL, 'f' },
         { "to", required_argument, NULL, 'u' },     { "start", required_argument, NULL, 's' }, { "unit", required_argument, NULL, 'n' },
-        { "points", required_argument, NULL, 'p' }, { "help", no_argument, NULL, 'h' },        { NULL, 0, NULL, 0 },
+        { "points", required_argument, NULL, 'p' }, { "longest-gap", required_argument, NULL, 'g' },
+        { "help", no_argument, NULL, 'h' },         { NULL, 0, NULL, 0 },
     };
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         switch (option) {
@@ -161,6 +208,7 @@ static int parse(int argc, char **argv, struct history_options *out)
         case 'u': out->to = optarg; break;
         case 's': out->start = optarg; break;
         case 'n': out->unit = optarg; break;
+        case 'g': out->longest_gap = optarg; break;
         case 'p':
             out->points = atoi(optarg);
             if (out->points < 2)

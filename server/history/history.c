@@ -223,17 +223,25 @@ void history_series_finish(struct history_series *series)
 
 /* --- one instant -------------------------------------------------------------------------------------------------------------- */
 
-static void read_pair(const struct history_pair *pair, int64_t t_us, struct reading *out)
+/* A usable point that nothing follows is the newest sample of its tag. A daemon that was still running would have recorded that it got
+   stale. */
+static bool has_ended(const struct history_pair *pair, int64_t t_us, int64_t stale_us)
+{
+    return pair->after.t_us == INT64_MIN && history_point_usable(&pair->before) && stale_us < INT64_MAX - HISTORY_SETTLED_US &&
+           t_us - pair->before.t_us > stale_us + HISTORY_SETTLED_US;
+}
+
+static void read_pair(const struct history_pair *pair, int64_t t_us, int64_t stale_us, struct reading *out)
 {
     const struct history_point *before = &pair->before;
     *out = (struct reading){ .quality = QUALITY_BAD_WAITING, .age_ns = INT64_MAX };
     if (before->t_us == INT64_MIN)
         return;
-    out->quality = before->quality;
+    out->quality = has_ended(pair, t_us, stale_us) ? QUALITY_BAD_NO_COMMUNICATION : before->quality;
     out->value = isnan(before->value) ? 0 : before->value;
     out->received_utc_ns = t_us * 1000;
     out->age_ns = 0;
-    if (!quality_is_good(before->quality)) { /* since then nothing came that counts */
+    if (!quality_is_good(out->quality)) { /* no Good reading arrived since then */
         out->received_utc_ns = before->t_us * 1000;
         out->age_ns = (t_us - before->t_us) * 1000;
     } else if (pair->after.t_us != INT64_MIN && history_point_joined(before, &pair->after, pair->step)) {
@@ -262,7 +270,7 @@ int history_at(struct history_reader *reader, const struct history_tag *tags, in
     for (int i = 0; i < 3 && !error; i++) /* lines cross the borders */
         error = at_month(reader, month + (int[]){ 0, -1, 1 }[i], tags, t_us, into->count, pairs);
     for (size_t i = 0; i < into->count; i++)
-        read_pair(&pairs[i], t_us, &into->readings[i]);
+        read_pair(&pairs[i], t_us, tags[i].stale_us, &into->readings[i]);
     into->taken_utc_ns = t_us * 1000;
     mem_free(pairs);
     return error;

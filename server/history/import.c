@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a CSV twice: once to find everything that is wrong, once through the doors of its tags into the months' files. */
+/* Reads a CSV file twice: first to find all errors and the spacing of each series, then to record the samples in the months' files. */
 #include "history/import.h"
 
+#include <ctype.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,20 +15,35 @@
 #include "history/history.h"
 #include "history/month.h"
 #include "history/recorder.h"
+#include "history/spacing.h"
 #include "base/timestamp.h"
 #include "plant/csv.h"
 #include "plant/number.h"
 #include "value/quality.h"
+#include "value/state_word.h"
 
-enum { FLUSH_ROWS = 500000, MAX_ERRORS = 50 };
+enum { FLUSH_ROWS = 500000, MAX_ERRORS = 50, MEDIANS = 10 /* a gap is longer than so many median spacings */ };
+
+/* The samples of one tag. */
+struct import_series {
+    bool has_row;                  /* in this pass */
+    int64_t row_us;                /* time of its newest row in this pass */
+    bool seen;                     /* in the first pass */
+    int64_t first_us, last_us;
+    struct spacing spacing;
+    int64_t longest_us;            /* a longer time between two samples has no data */
+    bool has_pending;              /* second pass: the newest sample, until the next one has another time */
+    struct history_point pending;
+    struct history_points before;  /* what history had of this time before the import */
+    size_t next;                   /* in `before` */
+};
 
 struct import {
     const struct import_params *params;
     struct csv csv;
     int time, tag, value, quality, unit; /* columns; tag -1: wide */
     int *tags;                           /* wide: of each column; -1: passed over */
-    int64_t *last_us;                    /* by tag */
-    bool *seen;
+    struct import_series *series;        /* by tag */
     int64_t row_us; /* wide: of the last row; else INT64_MIN */
     struct import_counts *counts;
 };
@@ -74,6 +91,8 @@ static bool find_columns(struct import *import)
     }
     if (import->tag >= 0 && import->value >= 0) {
         import->unit = csv_find(&import->csv, "Unit");
+        import->counts->exported = import->csv.header.count == 5 && import->tag == 0 && import->time == 1 && import->value == 2 &&
+                                   import->quality == 3 && import->unit == 4; /* as series_text_csv_head() writes them */
         return true;
     }
     import->tag = -1;
@@ -82,7 +101,7 @@ static bool find_columns(struct import *import)
 
 /* --- rows ----------------------------------------------------------------------------------------------------------------------- */
 
-/* Of rows in the hour that was there twice, those that do not come after the one before are of the second. */
+/* In the hour that occurs twice when clocks are set back, a row that is not later than the row before belongs to the second one. */
 static bool take_time(struct import *import, int64_t after_us, int64_t *t_us)
 {
     const char *text = csv_text(&import->csv, import->time);
@@ -122,6 +141,12 @@ static bool take_quality(struct import *import, uint32_t *quality)
     *quality = (uint32_t)strtoul(text, &end, 0);
     if (!*end && (*text == '0'))
         return true;
+    if (!strncasecmp(text, "good", 4) || !strncasecmp(text, "uncertain", 9)) {
+        *quality = tolower((unsigned char)*text) == 'g' ? QUALITY_GOOD : QUALITY_UNCERTAIN;
+        return true;
+    }
+    if (state_word_is_bad(text, quality))
+        return true;
     csv_error(&import->csv, import->quality, "expected Good, Uncertain, Bad or a code such as 0x80050000, found '%.60s'", text);
     return false;
 }
@@ -140,19 +165,25 @@ static bool take_unit(struct import *import, int tag, double *value)
     return true;
 }
 
-/* One cell: a number, or nothing while the quality is Bad. */
+/* One cell: a number, or a word that says that there is none. */
 static bool take_cell(struct import *import, take_sample *take, void *arg, int tag, int column, int64_t t_us, uint32_t quality)
 {
     const char *text = csv_text(&import->csv, column);
     struct history_point point = { t_us, NAN, quality };
-    if (!quality_is_bad(quality) && number_parse(text, &point.value) != NUMBER_GOOD) {
-        csv_error(&import->csv, column, "expected a number, found '%.60s'", text);
-        return false;
+    if (!quality_is_bad(quality)) {
+        enum number_result result = number_parse(text, &point.value);
+        bool word = result != NUMBER_GOOD && state_word_is_bad(text, &point.quality);
+        if (result == NUMBER_NOT_FINITE && !word)
+            point.quality = QUALITY_BAD;
+        if (result == NUMBER_NOT_A_NUMBER && !word) {
+            csv_error(&import->csv, column, "expected a number, or a word such as Bad or No Data, found '%.60s'", text);
+            return false;
+        }
     }
     if (!take_unit(import, tag, &point.value) || !take(import, arg, tag, &point, column))
         return false;
-    import->seen[tag] = true;
-    import->last_us[tag] = t_us;
+    import->series[tag].has_row = true;
+    import->series[tag].row_us = t_us;
     return true;
 }
 
@@ -162,7 +193,7 @@ static bool take_long(struct import *import, take_sample *take, void *arg)
     int tag = plant_find_tag(import->params->plant, name);
     uint32_t quality;
     int64_t t_us;
-    if (!take_time(import, tag >= 0 && import->seen[tag] ? import->last_us[tag] : INT64_MIN, &t_us))
+    if (!take_time(import, tag >= 0 && import->series[tag].has_row ? import->series[tag].row_us : INT64_MIN, &t_us))
         return false;
     if (tag < 0)
         csv_error(&import->csv, import->tag, "the plant has no tag '%.60s'", name);
@@ -178,41 +209,42 @@ static bool take_row(struct import *import, take_sample *take, void *arg)
     if (good)
         import->row_us = t_us;
     for (size_t i = 0; good && i < import->csv.header.count; i++)
-        if (import->tags[i] >= 0 && *csv_text(&import->csv, (int)i))
+        if (import->tags[i] >= 0)
             good = take_cell(import, take, arg, import->tags[i], (int)i, t_us, QUALITY_GOOD);
     return good;
 }
 
-/* Every row, to `take`. False: findings, or it said so. */
-static bool read_file(const struct import_params *params, struct diag *diag, struct import_counts *counts, take_sample *take, void *arg)
+/* Gives every sample to `take`. Returns false if there were errors, or `take` failed. */
+static bool read_file(const struct import_params *params, struct diag *diag, struct import_counts *counts, struct import_series *series,
+                      take_sample *take, void *arg)
 {
-    struct import import = { .params = params, .counts = counts, .row_us = INT64_MIN };
+    struct import import = { .params = params, .counts = counts, .series = series, .row_us = INT64_MIN };
     int errors = diag->errors;
     bool going = true;
     if (!csv_open(&import.csv, params->path, diag))
         return false;
-    import.last_us = mem_array(params->plant->tag_count + 1, sizeof(*import.last_us));
-    import.seen = mem_array(params->plant->tag_count + 1, sizeof(*import.seen));
+    for (size_t i = 0; i < params->plant->tag_count; i++)
+        series[i].has_row = false;
     if (find_columns(&import))
         while (going && diag->errors - errors < MAX_ERRORS && csv_next(&import.csv))
             going = take_row(&import, take, arg) || diag->errors > errors;
     csv_close(&import.csv);
     mem_free(import.tags);
-    mem_free(import.last_us);
-    mem_free(import.seen);
     return going && diag->errors == errors;
 }
 
-/* --- first: is it good? ----------------------------------------------------------------------------------------------------------- */
+/* --- first pass: errors and spacing ----------------------------------------------------------------------------------------------- */
 
 static bool check_sample(struct import *import, void *arg, int tag, const struct history_point *point, int column)
 {
     struct import_counts *counts = import->counts;
+    struct import_series *series = &import->series[tag];
     (void)arg;
-    if (import->seen[tag] && point->t_us <= import->last_us[tag]) {
+    if (series->seen && point->t_us < series->last_us) {
         char text[TIMESTAMP_BYTES];
-        timestamp_print(import->last_us[tag], text);
-        csv_error(&import->csv, column, "%s: expected a time after its last sample, %s", import->params->plant->tags[tag].name, text);
+        timestamp_print(series->last_us, text);
+        csv_error(&import->csv, column, "%s: expected a time that is not before its last sample, %s", import->params->plant->tags[tag].name,
+                  text);
         return false;
     }
     if (!counts->samples || point->t_us < counts->from_us)
@@ -220,17 +252,54 @@ static bool check_sample(struct import *import, void *arg, int tag, const struct
     if (!counts->samples || point->t_us > counts->to_us)
         counts->to_us = point->t_us;
     counts->samples++;
-    counts->tags += !import->seen[tag];
+    counts->tags += !series->seen;
+    counts->duplicates += series->seen && point->t_us == series->last_us;
+    spacing_put(&series->spacing, point);
+    series->first_us = series->seen ? series->first_us : point->t_us;
+    series->last_us = point->t_us;
+    series->seen = true;
     return true;
 }
 
-/* --- then: in with it ------------------------------------------------------------------------------------------------------------- */
+/* The longest time between two samples that has data. A stated Stale s is for live readings: it does not fit a slower series. */
+static int64_t longest_gap(const struct import_params *params, const struct plant_tag *tag, struct spacing *spacing, bool exported)
+{
+    bool goes_stale = tag->stale_s < PLANT_NEVER_STALE_S;
+    int64_t median_us = spacing_median(spacing), stale_us = goes_stale ? (int64_t)(tag->stale_s * US_PER_S) : INT64_MAX;
+    int64_t override_us = (int64_t)(2 * params->plant->history.override_s * US_PER_S);
+    if (params->longest_gap_us)
+        return params->longest_gap_us;
+    if (exported && !goes_stale)
+        return INT64_MAX;
+    bool by_stale = !median_us || (tag->states_stale && stale_us >= median_us);
+    int64_t longest_us = by_stale ? stale_us : median_us < INT64_MAX / MEDIANS ? median_us * MEDIANS : INT64_MAX;
+    return exported && longest_us < override_us ? override_us : longest_us;
+}
+
+/* Between the passes: the next one reads the same rows again. */
+static void judge_series(const struct import_params *params, struct import_series *series, struct import_counts *counts)
+{
+    *counts->longest_us = INT64_MAX;
+    for (size_t i = 0; i < params->plant->tag_count; i++) {
+        if (!series[i].seen)
+            continue;
+        series[i].longest_us = longest_gap(params, &params->plant->tags[i], &series[i].spacing, counts->exported);
+        if (series[i].longest_us < counts->longest_us[0])
+            counts->longest_us[0] = series[i].longest_us;
+        if (series[i].longest_us > counts->longest_us[1])
+            counts->longest_us[1] = series[i].longest_us;
+    }
+}
+
+/* --- second pass: recording -------------------------------------------------------------------------------------------------------- */
 
 struct filling {
     const struct import_params *params;
     struct history_tag *tags;
     struct recorder *recorder;
     struct recorder_rows rows;
+    struct import_series *series;
+    struct import_counts *counts;
     bool failed;
 };
 
@@ -278,37 +347,163 @@ static bool flush(struct filling *filling)
             end++;
         good = fill_month(filling, rows->at + begin, end - begin);
     }
+    filling->counts->points += (long long)rows->count;
     rows->count = 0;
     filling->failed |= !good;
     return good;
 }
 
+static void add_row(struct filling *filling, int tag, int64_t t_us, double value, uint32_t quality)
+{
+    struct recorder_rows *rows = &filling->rows;
+    mem_grow(&rows->at, &rows->capacity, rows->count + 1, sizeof(*rows->at));
+    rows->at[rows->count++] = (struct history_row){ tag, { t_us, value, quality } };
+}
+
+/* The point that ends a line: nothing is known after the sample before it. */
+static bool is_end_of_line(const struct history_point *point)
+{
+    return point->quality == QUALITY_BAD_NO_COMMUNICATION && isnan(point->value);
+}
+
+/* Whether an earlier import, or a daemon that was stopped, ended the line at that time. Times ascend from call to call. */
+static bool was_end_of_line(struct import_series *series, int64_t t_us)
+{
+    while (series->next < series->before.count && series->before.at[series->next].t_us < t_us)
+        series->next++;
+    return series->next < series->before.count && series->before.at[series->next].t_us == t_us &&
+           is_end_of_line(&series->before.at[series->next]);
+}
+
+/* Records the pending sample, and what follows it until the next one: a line, or no data. */
+static void record_pending(struct filling *filling, int tag, int64_t next_us)
+{
+    struct import_series *series = &filling->series[tag];
+    const struct history_point *sample = &series->pending;
+    bool usable = history_point_usable(sample);
+    bool ends = usable && (next_us == INT64_MAX || next_us - sample->t_us > series->longest_us);
+    recorder_put(filling->recorder, tag, sample, &filling->rows);
+    filling->counts->bad += quality_is_bad(sample->quality);
+    if (ends) {
+        const struct history_point end = { sample->t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION };
+        recorder_put(filling->recorder, tag, &end, &filling->rows);
+    } else if (usable && was_end_of_line(series, sample->t_us + 1)) { /* the line goes on: a value takes the place of the end */
+        recorder_end_tag(filling->recorder, tag, &filling->rows);
+        add_row(filling, tag, sample->t_us + 1, sample->value, sample->quality);
+    }
+    filling->counts->gaps += ends && next_us <= series->last_us;
+}
+
 static bool fill_sample(struct import *import, void *arg, int tag, const struct history_point *point, int column)
 {
     struct filling *filling = arg;
-    size_t before = filling->rows.count;
+    struct import_series *series = &import->series[tag];
     (void)column;
-    recorder_put(filling->recorder, tag, point, &filling->rows);
-    import->counts->points += (long long)(filling->rows.count - before);
+    if (series->has_pending && series->pending.t_us < point->t_us)
+        record_pending(filling, tag, point->t_us);
+    series->has_pending = true;
+    series->pending = *point;
     return filling->rows.count < FLUSH_ROWS || flush(filling);
 }
 
-bool history_import(const struct import_params *params, struct diag *diag, struct import_counts *counts)
+/* --- what was recorded before -------------------------------------------------------------------------------------------------------- */
+
+/* The line that led to the time of the series is ended, or goes on where an end is not needed any more. */
+static void join_before(struct filling *filling, struct history_reader *reader, int tag)
 {
-    *counts = (struct import_counts){ 0 };
-    if (!read_file(params, diag, counts, check_sample, NULL))
-        return false;
-    struct filling filling = { .params = params, .tags = history_tags(params->plant), .recorder = recorder_create(params->plant) };
-    mkdir(params->folder, 0777); /* where it cannot be made, opening says why */
-    struct diag again = { 0 };   /* says what diag has said */
-    bool good = read_file(params, &again, counts, fill_sample, &filling);
+    struct import_series *series = &filling->series[tag];
+    const struct history_point *last = series->before.count ? series->before.at : NULL;
+    struct history_series earlier = { 0 };
+    if (!last || last->t_us >= series->first_us)
+        return;
+    bool gap = series->first_us - last->t_us > series->longest_us;
+    if (gap && history_point_usable(last)) {
+        add_row(filling, tag, last->t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION);
+    } else if (!gap && is_end_of_line(last) &&
+               history_series(reader, filling->params->plant->tags[tag].name, last->t_us - 1, last->t_us - 1, 2, &earlier) == 0) {
+        const struct history_point *point = earlier.points.at;
+        if (earlier.points.count && point->t_us == last->t_us - 1 && history_point_usable(point))
+            add_row(filling, tag, last->t_us, point->value, point->quality);
+    }
+    history_series_finish(&earlier);
+}
+
+/* Reads what history has of the time of each series. */
+static bool read_before(struct filling *filling)
+{
+    const struct plant *plant = filling->params->plant;
+    struct history_reader *reader = history_reader_create(filling->params->log, filling->params->folder);
+    bool good = true;
+    history_reader_show_by(reader, plant);
+    for (size_t i = 0; i < plant->tag_count && good; i++) {
+        struct import_series *series = &filling->series[i];
+        struct history_series there = { 0 };
+        if (!series->seen)
+            continue;
+        good = history_series(reader, plant->tags[i].name, series->first_us, series->last_us + 1, INT_MAX, &there) == 0;
+        series->before = there.points;
+        there.points.at = NULL;
+        history_series_finish(&there);
+        if (good)
+            join_before(filling, reader, (int)i);
+    }
+    history_reader_destroy(&reader);
+    return good;
+}
+
+/* The last samples, each with what follows it in history. */
+static void record_last(struct filling *filling)
+{
+    for (size_t i = 0; i < filling->params->plant->tag_count; i++) {
+        struct import_series *series = &filling->series[i];
+        const struct history_points *before = &series->before;
+        if (!series->has_pending)
+            continue;
+        size_t k = before->count;
+        while (k > 0 && before->at[k - 1].t_us > series->last_us)
+            k--;
+        bool follows = k < before->count && !is_end_of_line(&before->at[k]);
+        record_pending(filling, (int)i, follows ? before->at[k].t_us : INT64_MAX);
+    }
+    recorder_end(filling->recorder, &filling->rows);
+}
+
+static bool fill(const struct import_params *params, struct import_series *series, struct import_counts *counts)
+{
+    struct filling filling = {
+        .params = params,
+        .tags = history_tags(params->plant),
+        .recorder = recorder_create(params->plant),
+        .series = series,
+        .counts = counts,
+    };
+    struct diag again = { 0 };   /* finds what diag has already */
+    mkdir(params->folder, 0777); /* if this fails, opening a month says why */
+    bool good = read_before(&filling) && read_file(params, &again, counts, series, fill_sample, &filling);
     diag_finish(&again);
-    size_t before = filling.rows.count;
-    recorder_end(filling.recorder, &filling.rows);
-    counts->points += (long long)(filling.rows.count - before);
+    if (good)
+        record_last(&filling);
     good = good && !filling.failed && flush(&filling);
     recorder_destroy(&filling.recorder);
     mem_free(filling.rows.at);
     mem_free(filling.tags);
+    return good;
+}
+
+bool history_import(const struct import_params *params, struct diag *diag, struct import_counts *counts)
+{
+    size_t tag_count = params->plant->tag_count;
+    struct import_series *series = mem_array(tag_count + 1, sizeof(*series));
+    *counts = (struct import_counts){ 0 };
+    bool good = read_file(params, diag, counts, series, check_sample, NULL);
+    if (good) {
+        judge_series(params, series, counts);
+        good = fill(params, series, counts);
+    }
+    for (size_t i = 0; i < tag_count; i++) {
+        spacing_finish(&series[i].spacing);
+        mem_free(series[i].before.at);
+    }
+    mem_free(series);
     return good;
 }

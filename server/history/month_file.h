@@ -18,6 +18,7 @@ struct history_tag {
     const char *name, *unit;
     bool step;     /* a switch: values hold until the next */
     double within; /* the recorded line is within this of every reading */
+    int64_t stale_us; /* how long a reading may be used after it arrived; INT64_MAX: always */
 };
 
 struct history_row {

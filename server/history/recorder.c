@@ -40,6 +40,7 @@ struct history_tag *history_tags(const struct plant *plant)
             .unit = tag->unit ? tag->unit : "",
             .step = tag->type == DATA_BIT,
             .within = isnan(tag->deadband) ? plant->history.deadband_percent / 100 * span_of(plant, tag) : tag->deadband,
+            .stale_us = tag->stale_s < PLANT_NEVER_STALE_S ? (int64_t)(tag->stale_s * US_PER_S) : INT64_MAX,
         };
     }
     return tags;
@@ -123,9 +124,14 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
     recorder->touched_count = 0;
 }
 
-void recorder_end(struct recorder *recorder, struct recorder_rows *kept)
+void recorder_end_tag(struct recorder *recorder, int tag, struct recorder_rows *kept)
 {
     struct history_point points[SWINGING_DOOR_MAX_POINTS];
+    add(kept, tag, points, swinging_door_end(&recorder->lanes[tag].door, &recorder->lanes[tag].params, points));
+}
+
+void recorder_end(struct recorder *recorder, struct recorder_rows *kept)
+{
     for (size_t i = 0; i < recorder->count; i++)
-        add(kept, (int)i, points, swinging_door_end(&recorder->lanes[i].door, &recorder->lanes[i].params, points));
+        recorder_end_tag(recorder, (int)i, kept);
 }

@@ -21,6 +21,8 @@ uint32_t recorder_quality(const struct recorder *recorder, int tag);
 void recorder_held(struct recorder *recorder, struct recorder_rows *held);
 /* Makes the next recorder_held() append those of all tags, because the last ones could not be written. */
 void recorder_hold_again(struct recorder *recorder);
-void recorder_end(struct recorder *recorder, struct recorder_rows *kept); /* appends the last rows of all tags */
+/* Appends the newest sample of a tag if it is not recorded yet, as if its override period were over. */
+void recorder_end_tag(struct recorder *recorder, int tag, struct recorder_rows *kept);
+void recorder_end(struct recorder *recorder, struct recorder_rows *kept); /* the same for all tags */
 
 #endif

@@ -3,6 +3,7 @@
 #include "value/source_impl.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -80,7 +81,9 @@ static void play_lane(struct replay *replay, struct lane *lane, int64_t now_mono
     for (int64_t due; !ended(replay, lane) && (due = due_ns(replay, lane, lane->next)) <= now_mono_ns; step(replay, lane)) {
         if (now_mono_ns - due > LATEST_NS)
             continue;
-        const struct sample sample = { .tag = lane->tag, .value = unit_change_value(&lane->change, lane->series.value[lane->next]) };
+        double value = lane->series.value[lane->next];
+        const struct sample sample = { .tag = lane->tag, .value = unit_change_value(&lane->change, value),
+                                       .quality = isnan(value) ? QUALITY_BAD : QUALITY_GOOD };
         store_write(replay->base.store, &sample, 1, due, now_utc_ns - (now_mono_ns - due));
         counter_inc(replay->samples, 1);
     }

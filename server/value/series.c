@@ -12,6 +12,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "base/timestamp.h"
+#include "value/state_word.h"
 
 enum { MAX_BYTES = 512 * 1024 * 1024, LONG_CELLS = 5 };
 #define NO_TIME "%s:1: no column is the time: expected a name that ends in _ms, _s, _min or _h, or instants such as 2026-11-20T10:00:00Z"
@@ -73,6 +74,18 @@ static bool number_of(const struct cell *cell, double *out)
     char *end;
     *out = cell->length ? strtod(cell->at, &end) : NAN;
     return cell->length && end == cell->at + cell->length && isfinite(*out);
+}
+
+/* A value of a series; NaN where a state word says that there is none. */
+static bool value_of(const struct cell *cell, double *out)
+{
+    char text[64];
+    uint32_t quality;
+    if (number_of(cell, out))
+        return true;
+    snprintf(text, sizeof(text), "%.*s", (int)(cell->length < sizeof(text) ? cell->length : sizeof(text) - 1), cell->at);
+    *out = NAN;
+    return state_word_is_bad(text, &quality);
 }
 
 static double unit_of_time(const struct cell *name)
@@ -163,7 +176,7 @@ static bool read_wide(struct series *series, struct lines *lines, size_t time_co
         }
         if (lines->cells[column].length == 0) /* no value at this time */
             continue;
-        if (!number_of(&lines->cells[column], &value)) {
+        if (!value_of(&lines->cells[column], &value)) {
             snprintf(why, 200, "%s:%d: %s: expected a number", lines->path, lines->number, series->name);
             return false;
         }
@@ -184,7 +197,7 @@ static bool read_long(struct series *series, struct lines *lines, struct clock *
         }
         if (!slash || !is(&lines->cells[2], series->name, entity) || !is(&lines->cells[3], slash + 1, strlen(slash + 1)))
             continue;
-        if (!number_of(&lines->cells[4], &value)) {
+        if (!value_of(&lines->cells[4], &value)) {
             snprintf(why, 200, "%s:%d: %s: expected a number", lines->path, lines->number, series->name);
             return false;
         }
@@ -216,7 +229,7 @@ static void scan_values(struct lines lines, const struct header *header, struct 
     mem_free(lines.cells);
 }
 
-/* Lines of one tag, one value: what `plantcast history export` prints. A value of Bad quality is none. */
+/* Lines of one tag and one value, as `plantcast history export` prints them. A blank value is none: its quality was Bad. */
 static bool read_values(struct series *series, struct lines *lines, const struct header *header, struct clock *file, char why[200])
 {
     double time_s, value;
@@ -236,9 +249,7 @@ static bool read_values(struct series *series, struct lines *lines, const struct
             snprintf(why, 200, "%s:%d: expected a time that is not before the last of %s", lines->path, lines->number, series->name);
             return false;
         }
-        if (lines->cells[header->value].length == 0)
-            continue;
-        if (!number_of(&lines->cells[header->value], &value)) {
+        if (!value_of(&lines->cells[header->value], &value)) {
             snprintf(why, 200, "%s:%d: %s: expected a number", lines->path, lines->number, series->name);
             return false;
         }

@@ -13,7 +13,7 @@
 struct series {
     char *name;
     char *unit;               /* as stated in its lines; NULL: not stated */
-    double *time_s, *value;   /* times rise; 0 is the first line of the file */
+    double *time_s, *value;   /* times rise; 0 is the first line of the file. A value is NaN where the file says that there is none */
     size_t count, capacity, value_capacity;
     double length_s;          /* of the whole file, one step after its last line: when a loop starts again */
 };

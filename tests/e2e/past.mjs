@@ -209,3 +209,38 @@ test('single pictures, pixels and films of the past', { skip, timeout: 280000 },
     const early = runProgram('plantcast', ['clip', plant.file, '-o', film, '--from', String(BEGIN_S - 60), ...args.slice(2)]);
     assert.deepEqual([early.code, /nothing was recorded/.test(early.err), existsSync(film)], [1, true, true]);
 });
+
+// The last one: history begins earlier afterwards.
+test('an imported gap, blanks and state words are no data, in pictures, readings, trends, exports and tables', { skip }, async () => {
+    const file = join(plant.folder, 'gap.csv'), from = BEGIN_S - 7 * 86400, day = 86400;
+    const rows = [[0, 10], [10, 10], [10, 11], [20, 'I/O Timeout'], [30, 'No Data'], [40, 12], [50, ''], [60, 12], [70, 12], [2 * day, 80],
+        [2 * day + 10, 80]];
+    writeFileSync(file, `Time,TI-1\n${rows.map(([s, value]) => `${from + s},${value}`).join('\n')}\n`);
+    const imported = runProgram('plantcast', ['history', 'import', plant.file, file]);
+    assert.equal(imported.code, 0, imported.err);
+    assert.match(imported.out, /11 samples of 1 tag .*\nBad samples: 3\nDuplicate times: 1 .*\nGaps without data: 1 \(longer than 100 s\)/);
+    const url = `http://127.0.0.1:${plant.port}`, client = await open();
+    client.say('fit', { seq: 1, id: 'TI-1' });
+    const camera = await client.text('camera');
+    const expected = [[5, 10.5], [25, null], [45, 12], [55, null], [65, 12], [75, null], [day, null], [2 * day - 1, null],
+        [2 * day + 5, 80]];
+    for (const [i, [s, value]] of expected.entries()) {
+        await travel(client, (from + s) * 1e6);
+        const severity = value ? undefined : 'bad';
+        await client.wait(`the reading at ${s} s`, () => reading(client, 0)[1] === value && reading(client, 0)[2] === severity);
+        client.say('pick', { seq: i + 2, x: 160.5, y: 90.5, camera });
+        const picked = await client.wait('a pick', () => client.texts.find((m) => m.type === 'picked' && m.seq === i + 2));
+        assert.ok(value ? Math.abs(picked.value - value) < 0.1 : picked.value === null, `${s} s: ${picked.value}`);
+    }
+    client.close();
+    const answer = await fetch(`${url}/api/v1/history?tags=TI-1&from=${from}&to=${from + 3 * day}&points=50`);
+    const { series: [{ points }] } = await answer.json();
+    assert.ok(points.every(([, low, high]) => low === null || (high < 13 || low > 79)), JSON.stringify(points));
+    const exported = runProgram('plantcast', ['history', 'export', plant.file, '--tags', 'TI-1', '--from', String(from + 65), '--to',
+        String(from + 2 * day + 5), '--points', '1000000']);
+    assert.match(exported.out, /TI-1,[^,]*,12,0x00000000,°C\r\nTI-1,[^,]*,,0x80310000,°C\r\nTI-1,[^,]*,80,0x00000000/);
+    const pick = (source, s) => JSON.parse(runProgram('plantcast', ['snapshot', source, '--at', String(from + s), '-o',
+        join(plant.folder, 'gap.png'), '--size', '320x180', '--fit', 'TI-1', '--pick', '160,90']).out).value;
+    for (const source of [`${url}/`, plant.file])
+        assert.deepEqual([pick(source, 65), pick(source, day)], [12, null], source);
+});

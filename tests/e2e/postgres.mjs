@@ -134,6 +134,29 @@ test('what is recorded is there, each point once and with its quality', options,
     assert.ok(await metric('postgres_points_total') > 100);
 });
 
+test('a gap and a Bad sample of an import are there, and a later import removes what is no gap any more', options, async () => {
+    configure();
+    const file = join(plant.folder, 'gap.csv'), from = Math.floor(Date.now() / 1000) - 3 * 86400;
+    writeFileSync(file, `Time,TI-1\n${[[0, 10], [10, 10], [20, 'Bad'], [30, 10], [40, 10], [86400, 90], [86410, 90]]
+        .map(([s, value]) => `${from + s},${value}`).join('\n')}\n`);
+    const bring = (...more) => {
+        const imported = runProgram('plantcast', ['history', 'import', plant.file, file, ...more]);
+        assert.equal(imported.code, 0, imported.err);
+    };
+    const sql = `SELECT extract(epoch FROM time)::numeric(20, 6) - ${from}, value, quality FROM plantcast.history
+        WHERE tag = 'TI-1' AND time < to_timestamp(${from + 86400 + 60}) ORDER BY time`;
+    const rows = () => server.ask(sql).map(([s, value, quality]) => [Number(s), value, quality]);
+    bring();
+    await plant.startDaemon();
+    await until('the import is sent', async () => await metric('postgres_points_total') >= 9 && rows().length >= 9);
+    const none = '0x80310000', good = '0x00000000';
+    assert.deepEqual(rows(), [[0, '10', good], [10, '10', good], [20, '', '0x80000000'], [30, '10', good], [40, '10', good],
+        [40.000001, '', none], [86400, '90', good], [86410, '90', good], [86410.000001, '', none]]);
+    bring('--longest-gap', '2d');
+    await until('the gap is gone', async () => rows().some(([s, value]) => s === 40.000001 && value === '10'));
+    assert.deepEqual(rows().filter(([, , quality]) => quality === none), [[86410.000001, '', none]]);
+});
+
 // As Grafana does, with these plants, tags and units chosen.
 function expanded(sql, from, chosen) {
     const time = (at) => `${at} BETWEEN to_timestamp(${from / 1e6}) AND now()`;

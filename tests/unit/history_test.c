@@ -765,7 +765,7 @@ static void what_waits_is_converted_with_the_rest(void **state)
 {
     struct setup *s = *state;
     int error;
-    struct history_tag kelvin = { "TT-9", "K", false, 0 }, celsius = { "TT-9", "degC", false, 0 };
+    struct history_tag kelvin = { "TT-9", "K", false, 0, INT64_MAX }, celsius = { "TT-9", "degC", false, 0, INT64_MAX };
     struct month_file *file = month_file_open(s->log, s->folder, month_of(NOVEMBER), &kelvin, 1, &error);
     struct history_row row = { 0, { NOVEMBER, 373.15, QUALITY_GOOD } };
     assert_int_equal(month_file_use_outbox(file), 0);

@@ -283,7 +283,7 @@ static void drop_file(char *path)
 static void wide_series(void **state)
 {
     (void)state;
-    char why[200], *path = write_file("wide.csv", "t_min,a,b\r\n10,1.5,-2\r\n13,2.5,\r\n16,3.5,4e1\r\n");
+    char why[200], *path = write_file("wide.csv", "t_min,a,b,d\r\n10,1.5,-2,1\r\n13,2.5,,I/O Timeout\r\n16,3.5,4e1,hot\r\n");
     struct series series;
     bool found;
     assert_true(series_read(&series, path, "a", &found, why) && found);
@@ -299,6 +299,9 @@ static void wide_series(void **state)
     assert_true(series_read(&series, path, "b", &found, why) && found);
     assert_int_equal(series.count, 2); /* an empty cell is no value */
     assert_true(series_at(&series, 200, false) == -2);
+    series_finish(&series);
+    assert_false(series_read(&series, path, "d", &found, why));
+    assert_non_null(strstr(why, ":4: d: expected a number")); /* and the state word in line 3 is none, which is no error */
     series_finish(&series);
     assert_true(series_read(&series, path, "c", &found, why));
     assert_false(found);

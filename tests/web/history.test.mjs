@@ -34,6 +34,8 @@ test('a stretch keeps its spike, and its gap', () => {
     assert.deepEqual([Math.max(...ys), Math.min(...ys.filter((y) => y !== null)), ys.at(-1)], [99, 1, null]);
     const lost = { step: false, bucket_us: 10e6, points: [stretch(0, 1, 2, 1, 2, null, 4e6, BAD_CODE)] };
     assert.equal(line(lost, 0, 10e6)[1].at(-1), null);
+    const ended = { ...lost, points: [stretch(0, 1, 2, 1, 2, null, 0, BAD_CODE)] };
+    assert.equal(line(ended, 0, 40e6)[1].at(-1), null, 'the series ends with the bucket: nothing is known afterwards');
     assert.deepEqual(gaps(lost, 0, 20e6), [{ from: 6, to: 20, severity: BAD }]);
 });
 

@@ -51,17 +51,15 @@ function putPoint(put, [us, value, quality], step, ys) {
     put(us, shown);
 }
 
-function putStretch(put, [us, low, high, , first, last, badUs], lengthUs) {
+// No value at the end of a bucket (`last`) ends the line, also where the series ends in that bucket.
+function putStretch(put, [us, low, high, , first, last], lengthUs) {
     if (low === null)
         return put(us, null);
     const falls = (first ?? low) > (last ?? high);
     put(us, first ?? low);
     put(us + lengthUs / 3, falls ? high : low);
     put(us + 2 * lengthUs / 3, falls ? low : high);
-    if (badUs > 0 && last === null)
-        put(us + lengthUs - 2, null);
-    else
-        put(us + lengthUs - 2, last ?? high);
+    put(us + lengthUs - 2, last);
 }
 
 // Returns the times without a value, or with an uncertain one: [{ from, to (seconds), severity }].

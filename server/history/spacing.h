@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Median time between the usable samples of a series, in bounded memory. Pure. Thread: one. */
+#ifndef HISTORY_SPACING_H
+#define HISTORY_SPACING_H
+#include <stddef.h>
+
+#include "history/point.h"
+
+struct spacing { /* zero-initialise */
+    bool has_last, last_usable;
+    int64_t last_us;
+    int64_t *at;          /* every stride-th spacing */
+    size_t count, capacity, stride, passed;
+};
+
+/* Adds the next sample in order of time. Only times between two usable samples count. */
+void spacing_put(struct spacing *spacing, const struct history_point *sample);
+/* Returns the median (the lower one of two) in microseconds, 0 if there is no spacing. Sorts the spacings. */
+int64_t spacing_median(struct spacing *spacing);
+void spacing_finish(struct spacing *spacing);
+
+#endif
