@@ -309,6 +309,9 @@ $(out)/obj/tests/faults/%.pic.o: CFLAGS += -fno-sanitize=all
 $(out)/tests/faults/%: ldflags += -fno-sanitize=all
 $(out)/tests/faults/%.so: $(out)/obj/tests/faults/%.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
+# Takes the place of a reader.
+$(out)/tests/faults/escape: $(out)/obj/tests/faults/escape.o
+	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -pie -o $@ $<
 # Where memory runs out: the test decides.
 $(out)/tests/unit/relocation_test: ldflags += -Wl,--wrap=mem_try_array
 $(out)/tests/gpu/field_memory_test: ldflags += -Wl,--wrap=mem_try_array,--wrap=pool_take

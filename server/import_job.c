@@ -126,7 +126,7 @@ static void say_nothing(void *arg, const char *text)
     (void)text;
 }
 
-static char *run(struct import_job *job, struct arguments *list, enum import_phase phase)
+static char *run(struct import_job *job, struct arguments *list, enum import_phase phase, char **remark)
 {
     plant_import_set_phase(job->params.import, phase);
     list->at[list->count] = NULL;
@@ -134,6 +134,7 @@ static char *run(struct import_job *job, struct arguments *list, enum import_pha
                                                       .stop = stop,
                                                       .say = phase == IMPORT_PREPARING ? say_nothing : say,
                                                       .arg = job,
+                                                      .remark = remark,
                                                       .lent = job->params.lock });
     for (size_t i = 0; i < list->owned; i++)
         mem_free(list->own[i]);
@@ -156,7 +157,8 @@ static void add_option(struct arguments *list, const char *option, const char *v
     }
 }
 
-static char *read_models(struct import_job *job, const struct import_order *order, const struct export_list *exports)
+/* *remark: some of the models could not be read (mem_free). */
+static char *read_models(struct import_job *job, const struct import_order *order, const struct export_list *exports, char **remark)
 {
     struct arguments list = { 0 };
     size_t models = 0;
@@ -173,7 +175,7 @@ static char *read_models(struct import_job *job, const struct import_order *orde
             add_export(&list, job, exports->at[i].name);
             models++;
         }
-    return models > 0 ? run(job, &list, IMPORT_READING) : mem_strdup("there is no model yet");
+    return models > 0 ? run(job, &list, IMPORT_READING, remark) : mem_strdup("there is no model yet");
 }
 
 static void add_source(struct arguments *list, const struct import_source *source)
@@ -212,7 +214,7 @@ static char *match_tags(struct import_job *job, const struct import_order *order
     char *why = NULL;
     if (tags) {
         add_export(&list, job, tags);
-        why = run(job, &list, IMPORT_MATCHING);
+        why = run(job, &list, IMPORT_MATCHING, NULL);
     } else if (!order->models) {
         why = mem_strdup("there is no tag list yet");
     }
@@ -228,18 +230,18 @@ static char *prepare(struct import_job *job)
     add(&list, "-o");
     add(&list, job->params.prepared);
     add(&list, job->params.plant_path);
-    return run(job, &list, IMPORT_PREPARING);
+    return run(job, &list, IMPORT_PREPARING, NULL);
 }
 
 char *import_job_run(struct import_job *job, const struct import_order *order, char **remark)
 {
     struct export_list exports = { 0 };
     export_folder_list(plant_import_exports(job->params.import), &exports);
-    char *why = NULL;
+    char *why = NULL, *unread = NULL;
     if (order->anew && *order->source.host && !find_tags(&exports)) /* only matching writes a source into a new plant file */
         why = mem_printf("the plant's source %s would be lost: there is no tag list among the exports; add it first", order->source.host);
     else if (order->models)
-        why = read_models(job, order, &exports);
+        why = read_models(job, order, &exports, &unread);
     remember(job, &job->read);
     remember(job, &job->last);
     *remark = why ? NULL : match_tags(job, order, &exports);
@@ -248,6 +250,12 @@ char *import_job_run(struct import_job *job, const struct import_order *order, c
         why = *remark;
         *remark = NULL;
     }
+    if (!why && unread) {
+        char *both = *remark ? mem_printf("%s; %s", unread, *remark) : mem_strdup(unread);
+        mem_free(*remark);
+        *remark = both;
+    }
+    mem_free(unread);
     if (!why)
         why = prepare(job);
     export_list_finish(&exports);
@@ -296,7 +304,7 @@ char *import_job_undo(struct import_job *job)
     add(&list, "-o");
     add(&list, job->folder);
     job->undoes = true;
-    char *why = run(job, &list, IMPORT_READING);
+    char *why = run(job, &list, IMPORT_READING, NULL);
     job->undoes = false;
     return why;
 }

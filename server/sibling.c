@@ -119,6 +119,8 @@ char *sibling_run(const struct sibling_params *params)
         why = mem_printf("%s cannot be run: %s", name, strerror(error));
     else if (sibling.told)
         why = mem_printf("%s was ended before it was done", name);
+    else if (params->remark && WIFEXITED(status) && WEXITSTATUS(status) == SIBLING_PARTLY)
+        *params->remark = last_line(&sibling.written);
     else if (WIFSIGNALED(status))
         why = mem_printf("%s crashed (%s)", name, strsignal(WTERMSIG(status)));
     else if (WEXITSTATUS(status) != 0 && !(why = last_line(&sibling.written)))

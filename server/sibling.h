@@ -4,13 +4,14 @@
 #define SIBLING_H
 #include <stdbool.h>
 
-enum { SIBLING_LENT = 3 };
+enum { SIBLING_LENT = 3, SIBLING_PARTLY = 3 /* exit status of plantcast-import that imported some models */ };
 
 struct sibling_params {
     const char *const *arguments;             /* ends in NULL; the first is the program's name */
     bool (*stop)(void *arg);                  /* asked several times a second: the program shall end */
     void (*say)(void *arg, const char *text); /* takes what it prints, piece by piece; NULL: it goes where ours goes */
     void *arg;                                /* of both */
+    char **remark;                            /* on SIBLING_PARTLY: the last line that it wrote to stderr (mem_free); NULL: is a failure */
     int lent;                                 /* a descriptor that it has as SIBLING_LENT; 0: none */
 };
 

@@ -18,7 +18,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "preprocess/child/child_confine.h"
+#include "base/mem.h"
 
 enum { MAX_OUTPUT = 1 << 20, PIPE_BYTES = 1 << 20 /* the most that a pipe may hold */, MAX_FILES = 512, EXIT_NOT_STARTED = 127 };
 enum watched { OUTPUT, ERRORS, END, SIGNALS, WATCHED };
@@ -45,29 +45,56 @@ static void limit(int resource, rlim_t most)
     setrlimit((__rlimit_resource_t)resource, &(struct rlimit){ most, most });
 }
 
-/* After the fork. Data is limited rather than address space, of which WebAssembly reserves much more than it uses. */
-static void become(const struct child_params *params, int out, int errors, const sigset_t *signals)
+static void close_all_but(int kept)
+{
+    unsigned first = STDERR_FILENO + 1;
+    if (kept > STDERR_FILENO) {
+        if ((unsigned)kept > first)
+            syscall(SYS_close_range, first, (unsigned)kept - 1, 0U);
+        first = (unsigned)kept + 1;
+    }
+    syscall(SYS_close_range, first, ~0U, 0U);
+}
+
+static void limit_all(const struct child_params *params)
+{
+    limit(RLIMIT_CORE, 0);
+    limit(RLIMIT_NOFILE, MAX_FILES);
+    limit(RLIMIT_FSIZE, (rlim_t)8 << 30);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* whose shadow counts as data */
+    limit(RLIMIT_DATA, params->memory_bytes); /* not address space, of which WebAssembly reserves much more than it uses */
+#else
+    (void)params;
+#endif
+}
+
+/* After the fork. */
+static void become(const struct child_params *params, int out, int errors, const sigset_t *signals, char **environment)
 {
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     sigprocmask(SIG_UNBLOCK, signals, NULL);
     int nothing = open("/dev/null", O_RDONLY);
     dup2(nothing, STDIN_FILENO);
-    dup2(out, STDOUT_FILENO);
-    dup2(errors, STDERR_FILENO);
-    syscall(SYS_close_range, 3U, ~0U, 0U);
-    limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_NOFILE, MAX_FILES);
-    limit(RLIMIT_FSIZE, (rlim_t)8 << 30);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* whose shadow counts as data */
-    limit(RLIMIT_DATA, params->memory_bytes);
-#endif
-    child_confine();
-    if (chdir(params->folder) == 0) {
-        setenv("TMPDIR", params->folder, 1);
-        setenv("HOME", params->folder, 1);
-        execvp(params->argv[0], (char *const *)params->argv);
+    if (!params->shares_output) {
+        dup2(out, STDOUT_FILENO);
+        dup2(errors, STDERR_FILENO);
     }
+    close_all_but(params->result);
+    limit_all(params);
+    const struct confine_params confined = { .role = params->role, .paths = params->paths, .path_count = params->path_count };
+    int status = confine(&confined);
+    if (status != 0 || chdir(params->folder) != 0) {
+        dprintf(STDERR_FILENO, "cannot be confined to %s: %s\n", params->folder, strerror(status != 0 ? -status : errno));
+        _exit(EXIT_NOT_STARTED);
+    }
+    environ = environment;
+    if (params->call) {
+        status = params->call(params->arg);
+        fflush(NULL);
+        _exit(status);
+    }
+    execvp(params->argv[0], (char *const *)params->argv);
     dprintf(STDERR_FILENO, "%s: %s\n", params->argv[0], strerror(errno));
     _exit(EXIT_NOT_STARTED);
 }
@@ -84,9 +111,11 @@ static bool start(struct child *child, const struct child_params *params)
     sigprocmask(SIG_BLOCK, &ours, NULL);
     child->fds[SIGNALS] = signalfd(-1, &ours, SFD_CLOEXEC | SFD_NONBLOCK);
     fflush(NULL);
+    char **environment = confine_environment(params->folder, false);
     child->pid = fork();
     if (child->pid == 0)
-        become(params, out[1], errors[1], &ours);
+        become(params, out[1], errors[1], &ours, environment);
+    mem_free(environment);
     if (child->pid > 0)
         child->fds[END] = (int)syscall(SYS_pidfd_open, child->pid, 0);
     if (child->pid < 0 || child->fds[END] < 0)
@@ -164,20 +193,40 @@ static void last_line(const struct text *errors, char why[CHILD_WHY_BYTES])
             *c = ' ';
 }
 
-static bool judge(const struct child *child, const struct child_params *params, int status, char why[CHILD_WHY_BYTES])
+/* Returns whether the child failed for want of memory: it used nearly all that it may have, or a library says so. */
+static bool ran_out(const struct child *child, const struct child_params *params, const struct rusage *usage)
 {
+    static const char *const words[] = { "out of memory", "bad_alloc", "Cannot allocate memory", "allocation failed", "memory exhausted" };
+    if ((size_t)usage->ru_maxrss << 10 >= params->memory_bytes / 8 * 7)
+        return true;
+    for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+        if (child->errors.at && strcasestr(child->errors.at, words[i]))
+            return true;
+    return false;
+}
+
+static bool judge(const struct child *child, const struct child_params *params, int status, const struct rusage *usage,
+                  char why[CHILD_WHY_BYTES])
+{
+    const char *name = params->name;
+    bool stopped = child->interrupted || child->timed_out;
+    if (!stopped && WIFEXITED(status) && WEXITSTATUS(status) == 0)
+        return true;
     if (child->interrupted)
         snprintf(why, CHILD_WHY_BYTES, "interrupted");
     else if (child->timed_out)
-        snprintf(why, CHILD_WHY_BYTES, "took longer than %d s", params->timeout_s);
+        snprintf(why, CHILD_WHY_BYTES, "%s was ended after %d s (%s)", name, params->timeout_s, params->timeout_option);
+    else if (ran_out(child, params, usage))
+        snprintf(why, CHILD_WHY_BYTES, "%s needs more than %zu MB of memory%s%s%s", name, params->memory_bytes >> 20,
+                 params->memory_option ? " (" : "", params->memory_option ? params->memory_option : "", params->memory_option ? ")" : "");
+    else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
+        snprintf(why, CHILD_WHY_BYTES, "%s was killed (SIGKILL): the memory of this machine or service is used up", name);
     else if (WIFSIGNALED(status))
-        snprintf(why, CHILD_WHY_BYTES, "its reader crashed (%s)", strsignal(WTERMSIG(status)));
-    else if (WEXITSTATUS(status) != 0)
-        last_line(&child->errors, why);
+        snprintf(why, CHILD_WHY_BYTES, "%s crashed (SIG%s)", name, sigabbrev_np(WTERMSIG(status)));
     else
-        return true;
+        last_line(&child->errors, why);
     if (!why[0])
-        snprintf(why, CHILD_WHY_BYTES, "exit status %d", WEXITSTATUS(status));
+        snprintf(why, CHILD_WHY_BYTES, "%s ended with status %d", name, WEXITSTATUS(status));
     return false;
 }
 
@@ -185,6 +234,7 @@ bool child_run(const struct child_params *params, struct text *out, char why[CHI
 {
     struct child child = { .fds = { -1, -1, -1, -1 } };
     sigset_t before;
+    struct rusage usage = { 0 };
     int status = 0;
     why[0] = 0;
     sigprocmask(SIG_BLOCK, NULL, &before);
@@ -196,14 +246,14 @@ bool child_run(const struct child_params *params, struct text *out, char why[CHI
     if (child.pid > 0) {
         kill(-child.pid, SIGKILL);
         kill(child.pid, SIGKILL); /* it may not have its group yet */
-        waitpid(child.pid, &status, 0);
-        kill(-child.pid, SIGKILL); /* what it started meanwhile */
+        wait4(child.pid, &status, 0, &usage);
+        kill(-child.pid, SIGKILL); /* processes that it started meanwhile */
     }
     if (child.fds[OUTPUT] >= 0)
         drain(child.fds[OUTPUT], out);
     if (child.fds[ERRORS] >= 0)
         drain(child.fds[ERRORS], &child.errors);
-    good = good && judge(&child, params, status, why);
+    good = good && judge(&child, params, status, &usage, why);
     for (int i = 0; i < WATCHED; i++)
         if (child.fds[i] >= 0)
             close(child.fds[i]);

@@ -62,9 +62,14 @@ static int remove_one(const char *path, const struct stat *st, int kind, struct 
     return remove(path) == 0 || errno == ENOENT ? 0 : -1;
 }
 
+int work_folder_remove(const char *path)
+{
+    return nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS) == 0 ? 0 : -errno;
+}
+
 void work_folder_end(struct work_folder *work, bool keep)
 {
-    if (work->path && nftw(work->path, remove_one, 16, FTW_DEPTH | FTW_PHYS) != 0)
+    if (work->path && work_folder_remove(work->path) != 0)
         fprintf(stderr, "plantcast: %s: %s\n", work->path, strerror(errno));
     if (work->target && work->created && !keep)
         rmdir(work->target);

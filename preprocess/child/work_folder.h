@@ -19,5 +19,7 @@ int work_folder_begin(struct work_folder *work, const char *target);
 bool work_folder_interrupted(void);
 /* Removes the folder and all in it, and with `keep` false the target too if it was made for it and is empty. */
 void work_folder_end(struct work_folder *work, bool keep);
+/* Removes a folder and everything in it, without following symlinks. Returns 0 or -errno. */
+int work_folder_remove(const char *path);
 
 #endif

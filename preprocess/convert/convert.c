@@ -16,6 +16,7 @@
 #include "base/text.h"
 #include "plant/model_header.h"
 #include "preprocess/child/child.h"
+#include "preprocess/child/child_paths.h"
 #include "preprocess/child/work_folder.h"
 
 static const size_t max_bytes = (size_t)16 << 30, memory_bytes = (size_t)12 << 30;
@@ -59,8 +60,21 @@ static bool make(const struct plant_conversion *how, char why[CHILD_WHY_BYTES])
     }
     char *output = mem_printf("%s/output.glb", work.path), *input = realpath(how->from, NULL);
     const char *const argv[] = { "/bin/sh", "-c", how->command, "convert", input ? input : how->from, output, NULL };
-    const struct child_params child = { .argv = argv, .folder = work.path, .timeout_s = (int)how->timeout_s, .memory_bytes = memory_bytes };
+    struct child_paths paths = { 0 };
+    child_paths_add_command(&paths, how->command);
+    child_paths_add_folder_of(&paths, input, CONFINE_READ);
+    child_paths_add(&paths, work.path, CONFINE_WRITE);
+    const struct child_params child = { .argv = argv,
+                                        .name = "the command",
+                                        .folder = work.path,
+                                        .timeout_s = (int)how->timeout_s,
+                                        .memory_bytes = memory_bytes,
+                                        .timeout_option = "timeout_s",
+                                        .role = CONFINE_COMMAND,
+                                        .paths = paths.at,
+                                        .path_count = paths.count };
     bool good = child_run(&child, &said, why);
+    child_paths_finish(&paths);
     if (good && !model_header_read(&header, output, why, CHILD_WHY_BYTES)) {
         char reason[CHILD_WHY_BYTES];
         snprintf(reason, sizeof(reason), "%.300s", why);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast import`: models are converted in a folder of their own; only when all are good do they go to the plant's. */
+/* `plantcast import`: converts models in a work folder, and moves those that could be read to the plant's folder. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,6 @@
 #include "preprocess/import/serve.h"
 #include "preprocess/child/work_folder.h"
 #include "preprocess/match/file_set.h"
-#include "preprocess/model/gltf_shim.h"
 
 enum { RVM_ITEM_LEVEL = 3 }; /* the file, its sites, their zones, and what is in them */
 
@@ -28,9 +27,10 @@ struct import {
     struct work_folder work;
     char **paths;
     struct plant_draft_model *models;
-    int count;
-    bool anew;
+    int count, unread; /* unread: models that failed; the arrays hold only the others */
+    bool anew, interrupted;
 };
+enum { EXIT_PARTLY = 3 };
 
 static void print_usage(FILE *out)
 {
@@ -53,29 +53,13 @@ static void print_usage(FILE *out)
         "  --port N          of that page (8080)\n",
         out);
     options_print(out);
-    fputs("Exit status: 0 good, 1 a model could not be read (nothing is written for any of them), 2 usage.\n", out);
+    fputs("Exit status: 0 good, 1 nothing was imported, 2 usage, 3 some models could not be read and the others were imported.\n", out);
 }
 
 static int fail_at(const char *path, const char *why)
 {
     fprintf(stderr, "plantcast import: %s: %s\n", path, why);
     return 1;
-}
-
-/* What plantcast-prep would refuse is refused here, before anything is written. */
-static bool check(const char *glb, char why[MODEL_WHY_BYTES])
-{
-    struct model_source source;
-    struct gltf_model model;
-    if (!model_source_open(&source, glb, why))
-        return false;
-    bool good = gltf_load(&model, &source, why);
-    if (good && model.node_count == 0)
-        good = wrong(why, "there is nothing in it");
-    else if (good)
-        gltf_free(&model);
-    model_source_finish(&source);
-    return good;
 }
 
 static void print_lines(const char *path, const char *lines)
@@ -87,14 +71,15 @@ static void print_lines(const char *path, const char *lines)
     }
 }
 
-static int convert(struct import *import, int number)
+/* Reads one model into the next place of the arrays. */
+static void convert(struct import *import, const char *path)
 {
-    const char *path = import->paths[number];
+    int number = import->count;
     struct plant_draft_model *model = &import->models[number];
     const struct import_format *format = import_format_of(path);
     char why[CONVERSION_WHY_BYTES] = "", *glb = mem_printf("%s/%d.glb", import->work.path, number), *stem = file_name_stem(path);
     struct text said = { 0 };
-    bool good = conversion_run(path, glb, import->work.path, &import->conversion, &said, why) && check(glb, why) &&
+    bool good = conversion_run(path, glb, import->work.path, &import->conversion, &said, why) &&
                 model_outline_read(&model->outline, glb, why, sizeof(why));
     if (good) {
         model->file = mem_printf("%s.glb", stem);
@@ -108,11 +93,46 @@ static int convert(struct import *import, int number)
         print_lines(path, summary.at);
         print_lines(path, said.at ? said.at : "");
         text_finish(&summary);
+        import->count++;
+    } else {
+        model_outline_finish(&model->outline);
+        *model = (struct plant_draft_model){ 0 };
+        fail_at(path, why);
+        import->unread++;
+        import->interrupted = work_folder_interrupted() || !strcmp(why, "interrupted");
     }
     text_finish(&said);
     mem_free(stem);
     mem_free(glb);
-    return good ? 0 : fail_at(path, why);
+}
+
+enum found_plant { NO_PLANT, BEGUN_PLANT /* by --serve, without models */, WHOLE_PLANT };
+
+static enum found_plant find_plant(const struct import *import)
+{
+    char *plant = mem_printf("%s/plant.yaml", import->folder);
+    enum found_plant found = plant_draft_is_begun(plant) ? BEGUN_PLANT : access(plant, F_OK) == 0 ? WHOLE_PLANT : NO_PLANT;
+    mem_free(plant);
+    return found;
+}
+
+/* A model that fails leaves the plant's own copy as it was. With --anew, the plant would lose the model's assets. */
+static int convert_all(struct import *import)
+{
+    int count = import->count;
+    import->count = 0;
+    for (int i = 0; i < count && !import->interrupted; i++)
+        convert(import, import->paths[i]);
+    if (import->interrupted || work_folder_interrupted())
+        return fail_at(import->folder, "interrupted");
+    if (import->unread > 0 && (import->count == 0 || (import->anew && find_plant(import) == WHOLE_PLANT))) {
+        if (import->count > 0)
+            fail_at(import->folder, "nothing was imported: --anew needs all models");
+        return 1;
+    }
+    if (import->unread > 0)
+        fprintf(stderr, "plantcast import: %d of %d models could not be read; the others are imported\n", import->unread, count);
+    return 0;
 }
 
 static int move_all(const struct import *import)
@@ -138,14 +158,12 @@ static int bring_in(const struct import *import)
                                           .models = import->models,
                                           .count = (size_t)import->count,
                                           .dry_run = import->dry_run };
-    char *plant = mem_printf("%s/plant.yaml", import->folder);
-    bool there = access(plant, F_OK) == 0, anew = import->anew || plant_draft_is_begun(plant);
-    mem_free(plant);
-    if (there && !anew)
+    enum found_plant found = find_plant(import);
+    if (found == WHOLE_PLANT && !import->anew)
         return revise(&params);
     if (import->dry_run)
         return fail_at(import->folder, "there is no plant yet that this could change");
-    if (anew)
+    if (import->anew || found == BEGUN_PLANT)
         return import_anew(&params, &draft);
     int status = move_all(import);
     return status == 0 && plant_draft_write(&draft) == 0 ? 0 : 1;
@@ -165,10 +183,8 @@ static int run(struct import *import)
         status = fail_at(import->work.path, strerror(errno));
     mem_free(why);
     import->models = mem_array((size_t)import->count, sizeof(*import->models));
-    for (int i = 0; i < import->count && status == 0; i++)
-        status = convert(import, i);
-    if (status == 0 && work_folder_interrupted())
-        status = fail_at(import->folder, "interrupted");
+    if (status == 0)
+        status = convert_all(import);
     if (status == 0)
         status = bring_in(import);
     for (int i = 0; i < import->count; i++) {
@@ -179,7 +195,7 @@ static int run(struct import *import)
     work_folder_end(&import->work, status == 0);
     if (lock >= 0)
         close(lock);
-    return status;
+    return status == 0 && import->unread > 0 ? EXIT_PARTLY : status;
 }
 
 /* Their GLB files would have one name. */

@@ -1,15 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Our own reader for RVM, a copy of what is glTF, another program for the rest. */
+/* Every reader is a confined child: our own readers of RVM and glTF as a forked copy of this program, the rest as other programs. Another
+ * child checks the GLB file that a reader wrote. */
 #include "preprocess/import/conversion.h"
 
 #include <errno.h>
 #include <limits.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 
 #include "base/mem.h"
 #include "preprocess/child/child.h"
+#include "preprocess/child/child_paths.h"
+#include "preprocess/child/work_folder.h"
 #include "preprocess/import/cad_attributes.h"
 #include "preprocess/import/cad_glb.h"
 #include "preprocess/import/encoding.h"
@@ -17,6 +22,7 @@
 #include "preprocess/import/formats.h"
 #include "preprocess/import/gltf_pack.h"
 #include "preprocess/import/rvm.h"
+#include "preprocess/model/gltf_shim.h"
 
 static const size_t max_bytes = (size_t)4 << 30;
 
@@ -87,8 +93,8 @@ static void say_counts(struct text *said, const struct rvm_counts *counts)
             text_add(said, "left out: %zu %s\n", left_out[i].count, left_out[i].what);
 }
 
-static bool convert_rvm(const char *path, const char *glb, const struct conversion_params *params, struct text *said,
-                        char why[CONVERSION_WHY_BYTES])
+static bool convert_rvm(const char *path, const char *attributes, const char *glb, const struct conversion_params *params,
+                        struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     struct rvm_counts counts;
     size_t length;
@@ -97,7 +103,7 @@ static bool convert_rvm(const char *path, const char *glb, const struct conversi
         return fail(why, "%s", strerror(errno));
     const struct rvm_params how = { .chord_m = params->chord_m, .keep_covered = params->keep_covered, .encoding = params->encoding };
     struct cad_model *model = cad_model_create();
-    char *attributes = attributes_beside(path), *stem = file_name_stem(path);
+    char *stem = file_name_stem(path);
     bool good = rvm_read(model, bytes, length, &how, &counts, why, CONVERSION_WHY_BYTES);
     mem_free(bytes);
     if (good && counts.primitives > 0 && counts.empty == counts.primitives)
@@ -114,62 +120,195 @@ static bool convert_rvm(const char *path, const char *glb, const struct conversi
     int status = good ? cad_glb_write(model, stem, glb) : 0;
     if (status != 0)
         good = fail(why, status == -EFBIG ? "a GLB file holds at most 4 GiB: export the plant in parts" : "%s", strerror(-status));
-    mem_free(attributes);
     mem_free(stem);
     cad_model_destroy(&model);
     return good;
 }
 
-/* --- other programs ------------------------------------------------------------------------------------------------------------------- */
+/* --- children ------------------------------------------------------------------------------------------------------------------------- */
 
-/* For readers that cannot find it themselves. Returns false with errno if the file cannot be read. */
-static bool find_encoding(const char *path, const char *asked, char encoding[CHARSET_NAME_BYTES], struct text *said)
+struct reading {
+    const struct import_format *format;
+    const char *path, *attributes; /* attributes: of RVM; NULL: none */
+    const char *output;            /* the GLB file that the reader writes */
+    const char *folder;
+    const struct conversion_params *params;
+    char *encoding; /* of find_encoding(): where the name goes, in memory shared with the child; "": none is needed */
+};
+
+/* In the child. Returns its exit status. */
+static int read_ourselves(void *arg)
 {
-    size_t length;
-    char *text = text_read_file(path, max_bytes, &length);
-    if (!text)
-        return false;
-    struct charset_choice choice = encoding_choose(text, length, asked, "");
-    mem_free(text);
-    encoding_say(said, "names", &choice);
-    if (!choice.ascii)
-        snprintf(encoding, CHARSET_NAME_BYTES, "%s", choice.name);
-    return true;
+    const struct reading *reading = arg;
+    struct text said = { 0 };
+    char why[CONVERSION_WHY_BYTES] = "";
+    bool good = reading->format->reader == FORMAT_GLTF
+                    ? gltf_pack(reading->path, reading->output, why)
+                    : convert_rvm(reading->path, reading->attributes, reading->output, reading->params, &said, why);
+    fputs(said.at ? said.at : "", stdout);
+    if (!good)
+        fprintf(stderr, "%s\n", why);
+    return good ? 0 : 1;
 }
 
-static bool convert_by_program(const struct import_format *format, const char *path, const char *glb, const char *folder,
-                               const struct conversion_params *params, struct text *said, char why[CONVERSION_WHY_BYTES])
+/* In a child of its own, because the reader may be in a stranger's hands. plantcast-prep would refuse the same models. */
+static int check(void *arg)
 {
-    char *program = import_format_program(format), encoding[CHARSET_NAME_BYTES] = "-";
-    if (!strcmp(format->name, "IFC") && !find_encoding(path, params->encoding, encoding, said))
+    const struct reading *reading = arg;
+    struct model_source source;
+    struct gltf_model model;
+    char why[MODEL_WHY_BYTES] = "";
+    bool good = model_source_open(&source, reading->output, why) && gltf_load(&model, &source, why);
+    if (good && model.node_count == 0)
+        good = wrong(why, "there is nothing in it");
+    if (!good)
+        fprintf(stderr, "%s\n", why);
+    return good ? 0 : 1;
+}
+
+static bool run(const struct reading *reading, struct child_params *child, struct child_paths *paths, struct text *said,
+                char why[CONVERSION_WHY_BYTES])
+{
+    char reason[CHILD_WHY_BYTES], *name = mem_printf("the %s reader", reading->format->name);
+    child->name = name;
+    child->folder = reading->folder;
+    child->timeout_s = reading->params->timeout_s;
+    child->memory_bytes = reading->params->memory_bytes;
+    child->timeout_option = "--timeout";
+    child->memory_option = "--memory";
+    child->role = CONFINE_READER;
+    child->paths = paths->at;
+    child->path_count = paths->count;
+    bool good = child_run(child, said, reason) || fail(why, "%s", reason);
+    child_paths_finish(paths);
+    mem_free(name);
+    return good;
+}
+
+/* In the child. For readers that cannot find the encoding themselves. */
+static int find_encoding(void *arg)
+{
+    const struct reading *reading = arg;
+    struct text said = { 0 };
+    size_t length;
+    char *text = text_read_file(reading->path, max_bytes, &length);
+    if (!text) {
+        fprintf(stderr, "%s\n", strerror(errno));
+        return 1;
+    }
+    struct charset_choice choice = encoding_choose(text, length, reading->params->encoding, "");
+    encoding_say(&said, "names", &choice);
+    fputs(said.at ? said.at : "", stdout);
+    if (!choice.ascii)
+        snprintf(reading->encoding, CHARSET_NAME_BYTES, "%s", choice.name);
+    return 0;
+}
+
+/* Takes what the child left in `shared` if it can be the name of an encoding. */
+static bool ask_encoding(const struct reading *reading, char encoding[CHARSET_NAME_BYTES], struct text *said,
+                         char why[CONVERSION_WHY_BYTES])
+{
+    static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_:.,+";
+    struct child_paths paths = { 0 };
+    char *shared = mmap(NULL, CHARSET_NAME_BYTES, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED)
         return fail(why, "%s", strerror(errno));
+    struct reading asking = *reading;
+    asking.encoding = shared;
+    child_paths_add(&paths, reading->path, CONFINE_READ);
+    bool good = run(reading, &(struct child_params){ .call = find_encoding, .arg = &asking }, &paths, said, why);
+    size_t length = strnlen(shared, CHARSET_NAME_BYTES);
+    if (good && length > 0 && length < CHARSET_NAME_BYTES) {
+        memcpy(encoding, shared, length + 1);
+        if (encoding[strspn(encoding, letters)])
+            good = fail(why, "the %s reader found no encoding", reading->format->name);
+    }
+    munmap(shared, CHARSET_NAME_BYTES);
+    return good;
+}
+
+static bool run_program(const struct reading *reading, struct child_paths *paths, struct text *said, char why[CONVERSION_WHY_BYTES])
+{
+    const struct import_format *format = reading->format;
+    const struct conversion_params *params = reading->params;
+    char *program = import_format_program(format), *runtime = import_format_runtime(format), encoding[CHARSET_NAME_BYTES] = "-";
+    bool good = !strcmp(format->name, "IFC") ? ask_encoding(reading, encoding, said, why) : true;
     if (params->encoding)
         snprintf(encoding, sizeof(encoding), "%s", params->encoding);
-    if (!program)
-        return fail(why, "%s is not read: %s", format->name, format->missing);
+    if (good && !program)
+        good = fail(why, "%s is not read: %s", format->name, format->missing);
+    if (!good) {
+        child_paths_finish(paths);
+        mem_free(program);
+        mem_free(runtime);
+        return false;
+    }
     char *chord = mem_printf("%g", params->chord_m * 1000), *memory = mem_printf("--max-old-space-size=%zu", params->memory_bytes >> 20);
-    char *input = realpath(path, NULL), *output = mem_printf("%s/output.glb", folder);
     const char *argv[11];
     int count = 0;
-    if (format->runtime) {
-        argv[count++] = format->runtime;
+    if (runtime) {
+        argv[count++] = runtime;
         argv[count++] = memory;
+        child_paths_add_folder_of(paths, program, CONFINE_READ);
     }
-    const char *const rest[] = { program, input, output, chord, params->units ? params->units : "-", params->up ? params->up : "-",
-                                 encoding, NULL };
-    memcpy(argv + count, rest, sizeof(rest));
-    const struct child_params child = {
-        .argv = argv, .folder = folder, .timeout_s = params->timeout_s, .memory_bytes = params->memory_bytes
+    child_paths_add(paths, runtime ? runtime : program, CONFINE_EXECUTE);
+    const char *const rest[] = {
+        program, reading->path, reading->output, chord, params->units ? params->units : "-", params->up ? params->up : "-", encoding, NULL
     };
-    char reason[CHILD_WHY_BYTES];
-    bool good = input ? child_run(&child, said, reason) || fail(why, "%s", reason) : fail(why, "%s", strerror(errno));
-    if (good && rename(output, glb) != 0)
-        good = fail(why, "its reader wrote nothing");
-    free(input);
-    mem_free(output);
+    memcpy(argv + count, rest, sizeof(rest));
+    good = run(reading, &(struct child_params){ .argv = argv }, paths, said, why);
     mem_free(chord);
     mem_free(memory);
     mem_free(program);
+    mem_free(runtime);
+    return good;
+}
+
+/* A reader may leave anything under that name, such as a symlink to a file of the daemon's. */
+static bool take_output(const struct reading *reading, const char *glb, char why[CONVERSION_WHY_BYTES])
+{
+    struct stat st;
+    if (lstat(reading->output, &st) != 0)
+        return fail(why, "the %s reader wrote nothing", reading->format->name);
+    if (!S_ISREG(st.st_mode) || st.st_nlink != 1)
+        return fail(why, "the %s reader wrote something that is not a file", reading->format->name);
+    struct child_paths paths = { 0 };
+    struct text said = { 0 };
+    child_paths_add(&paths, reading->output, CONFINE_READ);
+    bool good = run(reading, &(struct child_params){ .call = check, .arg = (void *)(uintptr_t)reading }, &paths, &said, why);
+    text_finish(&said);
+    if (good && rename(reading->output, glb) != 0)
+        good = fail(why, "%s", strerror(errno));
+    return good;
+}
+
+static bool read_model(const struct import_format *format, const char *path, const char *glb, const char *folder,
+                       const struct conversion_params *params, struct text *said, char why[CONVERSION_WHY_BYTES])
+{
+    /* a folder of its own, so that a reader in a stranger's hands cannot replace models that were read before */
+    char *own = mem_printf("%s/reading", folder), *output = mem_printf("%s/output.glb", own), *input = realpath(path, NULL);
+    bool made = mkdir(own, 0700) == 0;
+    char *attributes = input && format->reader == FORMAT_RVM ? attributes_beside(input) : NULL;
+    const struct reading reading = {
+        .format = format, .path = input, .attributes = attributes, .output = output, .folder = own, .params = params
+    };
+    struct child_params ourselves = { .call = read_ourselves, .arg = (void *)(uintptr_t)&reading };
+    struct child_paths paths = { 0 };
+    child_paths_add(&paths, input, CONFINE_READ);
+    child_paths_add(&paths, attributes, CONFINE_READ);
+    child_paths_add(&paths, own, CONFINE_WRITE);
+    if (input && format->beside)
+        child_paths_add_beside(&paths, input, format->beside);
+    bool good = !made || !input ? fail(why, "%s", strerror(errno))
+                : format->reader == FORMAT_PROGRAM ? run_program(&reading, &paths, said, why)
+                                                   : run(&reading, &ourselves, &paths, said, why);
+    good = good && take_output(&reading, glb, why);
+    child_paths_finish(&paths);
+    work_folder_remove(own);
+    free(input);
+    mem_free(own);
+    mem_free(output);
+    mem_free(attributes);
     return good;
 }
 
@@ -189,9 +328,5 @@ bool conversion_run(const char *path, const char *glb, const char *folder, const
         return fail(why, "%s says itself what its units are: leave out --units", format->name);
     if (params->up && !format->upless)
         return fail(why, "%s says itself which axis is up: leave out --up", format->name);
-    switch (format->reader) {
-    case FORMAT_RVM: return convert_rvm(path, glb, params, said, why);
-    case FORMAT_GLTF: return gltf_pack(path, glb, why);
-    default: return convert_by_program(format, path, glb, folder, params, said, why);
-    }
+    return read_model(format, path, glb, folder, params, said, why);
 }

@@ -14,18 +14,21 @@
 #define BY_ASSIMP "plantcast-import-assimp", NULL, "this Plantcast was built without Assimp: install libassimp-dev and build again"
 #define BY_WEB_IFC "plantcast-import-ifc/ifc.mjs", "node", "it is read by Node.js with web-ifc: install nodejs and npm, and build again"
 
+/* Files that a model of that format may be spread over. */
+#define OF_GLTF ".bin .buffer .dat .png .jpg .jpeg .webp .ktx .ktx2 .basis .dds .gif .bmp .tga .tif .tiff .exr .hdr"
+
 static const struct import_format formats[] = {
-    { "glTF", ".glb .gltf", FORMAT_GLTF, NULL, NULL, NULL, true, true },
-    { "RVM", ".rvm", FORMAT_RVM, NULL, NULL, NULL, false, false },
-    { "STEP", ".step .stp .p21", FORMAT_PROGRAM, BY_OCCT, false, true },
-    { "IGES", ".iges .igs", FORMAT_PROGRAM, BY_OCCT, false, true },
-    { "IFC", ".ifc", FORMAT_PROGRAM, BY_WEB_IFC, false, false },
-    { "OBJ", ".obj", FORMAT_PROGRAM, BY_ASSIMP, true, true },
-    { "STL", ".stl", FORMAT_PROGRAM, BY_ASSIMP, true, true },
-    { "PLY", ".ply", FORMAT_PROGRAM, BY_ASSIMP, true, true },
-    { "FBX", ".fbx", FORMAT_PROGRAM, BY_ASSIMP, false, false },
-    { "COLLADA", ".dae", FORMAT_PROGRAM, BY_ASSIMP, false, false },
-    { "3DS", ".3ds", FORMAT_PROGRAM, BY_ASSIMP, true, false },
+    { "glTF", ".glb .gltf", FORMAT_GLTF, NULL, NULL, NULL, OF_GLTF, true, true },
+    { "RVM", ".rvm", FORMAT_RVM, NULL, NULL, NULL, NULL, false, false },
+    { "STEP", ".step .stp .p21", FORMAT_PROGRAM, BY_OCCT, ".step .stp .p21", false, true },
+    { "IGES", ".iges .igs", FORMAT_PROGRAM, BY_OCCT, NULL, false, true },
+    { "IFC", ".ifc", FORMAT_PROGRAM, BY_WEB_IFC, NULL, false, false },
+    { "OBJ", ".obj", FORMAT_PROGRAM, BY_ASSIMP, ".mtl", true, true },
+    { "STL", ".stl", FORMAT_PROGRAM, BY_ASSIMP, NULL, true, true },
+    { "PLY", ".ply", FORMAT_PROGRAM, BY_ASSIMP, NULL, true, true },
+    { "FBX", ".fbx", FORMAT_PROGRAM, BY_ASSIMP, NULL, false, false },
+    { "COLLADA", ".dae", FORMAT_PROGRAM, BY_ASSIMP, NULL, false, false },
+    { "3DS", ".3ds", FORMAT_PROGRAM, BY_ASSIMP, NULL, true, false },
 };
 enum { FORMATS = sizeof(formats) / sizeof(formats[0]) };
 
@@ -49,15 +52,17 @@ const struct import_format *import_format_of(const char *path)
     return NULL;
 }
 
-static bool in_path(const char *program)
+char *import_format_runtime(const struct import_format *format)
 {
-    const char *at = getenv("PATH");
-    bool found = false;
+    const char *at = format->runtime ? getenv("PATH") : NULL;
+    char *found = NULL;
     while (at && *at && !found) {
         size_t length = strcspn(at, ":");
-        char *path = mem_printf("%.*s/%s", (int)length, at, program);
-        found = access(path, X_OK) == 0;
-        mem_free(path);
+        found = mem_printf("%.*s/%s", (int)length, at, format->runtime);
+        if (access(found, X_OK) != 0) {
+            mem_free(found);
+            found = NULL;
+        }
         at += length + (at[length] == ':');
     }
     return found;
@@ -66,8 +71,10 @@ static bool in_path(const char *program)
 char *import_format_program(const struct import_format *format)
 {
     static const char *const places[] = { "", "../libexec/plantcast/" };
-    char own[PATH_MAX] = "";
-    if (readlink("/proc/self/exe", own, sizeof(own) - 1) <= 0 || (format->runtime && !in_path(format->runtime)))
+    char own[PATH_MAX] = "", *runtime = import_format_runtime(format);
+    bool runs = !format->runtime || runtime;
+    mem_free(runtime);
+    if (readlink("/proc/self/exe", own, sizeof(own) - 1) <= 0 || !runs)
         return NULL;
     for (size_t i = 0; i < sizeof(places) / sizeof(places[0]); i++) {
         char *path = mem_printf("%.*s%s%s", (int)(strrchr(own, '/') + 1 - own), own, places[i], format->program);

@@ -14,6 +14,7 @@ struct import_format {
     const char *program; /* FORMAT_PROGRAM: its file name, beside this program or in ../libexec/plantcast/ */
     const char *runtime; /* what runs that file; NULL: itself */
     const char *missing; /* what to do where the program is not there */
+    const char *beside;  /* endings of files that a model refers to, ".mtl", lower case; NULL: none */
     bool unitless;       /* it does not say its units: --units may */
     bool upless;         /* nor which axis is up: --up may */
 };
@@ -22,6 +23,8 @@ struct import_format {
 const struct import_format *import_format_of(const char *path);
 /* Finds the program of a format. Returns its path, to be freed with mem_free, or NULL. */
 char *import_format_program(const struct import_format *format);
+/* Finds the runtime of a format in PATH. Returns its path, to be freed with mem_free; NULL: the format has none, or it is not installed. */
+char *import_format_runtime(const struct import_format *format);
 /* Prints each format, and whether this build reads it. */
 void import_formats_print(FILE *out);
 

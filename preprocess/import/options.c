@@ -7,7 +7,7 @@
 
 #include "base/charset.h"
 
-const struct conversion_params options_default = { .chord_m = 0.001, .timeout_s = 900, .memory_bytes = (size_t)12 << 30 };
+const struct conversion_params options_default = { .chord_m = 0.001, .timeout_s = 120, .memory_bytes = (size_t)2 << 30 };
 
 void options_print(FILE *out)
 {
@@ -17,8 +17,8 @@ void options_print(FILE *out)
           "  --encoding NAME   of names, such as GB18030, Shift-JIS, EUC-KR, Windows-1251; without it, the encoding that the model\n"
           "                    states or that its names look like is taken, and said\n"
           "  --keep-covered    RVM: keep faces that lie on a neighbour's face, which nobody can see\n"
-          "  --timeout S       for reading one model by another program (900)\n"
-          "  --memory MB       likewise (12288)\n"
+          "  --timeout S       limit of the time that reading one model may take (120)\n"
+          "  --memory MB       limit of the memory that reading one model may take (2048)\n"
           "  --formats         which formats this build reads\n",
           out);
 }

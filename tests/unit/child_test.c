@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Other programs: what they print, how they end, and what they may not do. */
+#include <fcntl.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -13,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "base/mem.h"
 #include "preprocess/child/child.h"
 #include "preprocess/child/work_folder.h"
 
@@ -24,7 +26,17 @@ static bool run(const char *script, int timeout_s, size_t memory_bytes)
 {
     struct timespec from, to;
     const char *const argv[] = { "sh", "-c", script, NULL };
-    const struct child_params params = { .argv = argv, .folder = "/tmp", .timeout_s = timeout_s, .memory_bytes = memory_bytes };
+    const struct confine_path paths[] = { { "/usr", CONFINE_EXECUTE }, { "/bin", CONFINE_EXECUTE }, { "/tmp", CONFINE_WRITE } };
+    const struct child_params params = { .argv = argv,
+                                         .name = "the script",
+                                         .folder = "/tmp",
+                                         .timeout_s = timeout_s,
+                                         .memory_bytes = memory_bytes,
+                                         .timeout_option = "--timeout",
+                                         .memory_option = "--memory",
+                                         .role = CONFINE_COMMAND,
+                                         .paths = paths,
+                                         .path_count = sizeof(paths) / sizeof(paths[0]) };
     text_finish(&output);
     clock_gettime(CLOCK_MONOTONIC, &from);
     bool good = child_run(&params, &output, why);
@@ -43,7 +55,7 @@ static void test_output_and_the_last_line_of_errors(void **state)
     assert_false(run("echo first >&2; printf 'the\\treason\\n\\n' >&2; exit 3", 10, room));
     assert_string_equal(why, "the reason");
     assert_false(run("exit 3", 10, room));
-    assert_string_equal(why, "exit status 3");
+    assert_string_equal(why, "the script ended with status 3");
     assert_true(run("pwd; echo $TMPDIR", 10, room));
     assert_string_equal(output.at, "/tmp\n/tmp\n");
 }
@@ -52,7 +64,7 @@ static void test_a_program_that_is_not_there(void **state)
 {
     (void)state;
     const char *const argv[] = { "/nowhere/reader", NULL };
-    assert_false(child_run(&(struct child_params){ argv, "/tmp", 10, room }, &output, why));
+    assert_false(child_run(&(struct child_params){ .argv = argv, .folder = "/tmp", .timeout_s = 10, .memory_bytes = room }, &output, why));
     assert_string_equal(why, "/nowhere/reader: No such file or directory");
 }
 
@@ -60,7 +72,7 @@ static void test_a_crash_is_told(void **state)
 {
     (void)state;
     assert_false(run("kill -SEGV $$", 10, room));
-    assert_non_null(strstr(why, "crashed (Segmentation fault)"));
+    assert_string_equal(why, "the script crashed (SIGSEGV)");
 }
 
 /* Also what it started in the background, which holds its pipes. */
@@ -68,7 +80,7 @@ static void test_a_hang_ends(void **state)
 {
     (void)state;
     assert_false(run("sleep 1000 & sleep 1000", 1, room));
-    assert_string_equal(why, "took longer than 1 s");
+    assert_string_equal(why, "the script was ended after 1 s (--timeout)");
     assert_true(seconds < 5);
     assert_false(run("exec >/dev/null 2>&1; sleep 1000", 1, room));
     assert_true(seconds < 5);
@@ -89,7 +101,7 @@ static void test_memory_is_limited(void **state)
     (void)state;
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     assert_false(run("dd if=/dev/zero of=/dev/null bs=512M count=1", 20, (size_t)64 << 20));
-    assert_non_null(strstr(why, "memory"));
+    assert_string_equal(why, "the script needs more than 64 MB of memory (--memory)");
 #endif
 }
 
@@ -97,18 +109,78 @@ static void test_there_is_no_network(void **state)
 {
     (void)state;
     assert_false(run("python3 -c 'import socket; socket.socket()'", 20, room));
-    assert_non_null(strstr(why, "Permission"));
+    assert_non_null(strstr(why, "not permitted"));
     assert_true(run("python3 -c 'import socket; socket.socketpair()'", 20, room));
+}
+
+static int use_up(void *arg)
+{
+    size_t bytes = (size_t)1 << 20;
+    for (void **last = arg; bytes > 0; bytes += bytes / 2)
+        memset(*last = mem_new(bytes), 1, bytes);
+    return 0;
+}
+
+static int give_up(void *arg)
+{
+    (void)arg;
+    abort();
+}
+
+static bool call(int (*function)(void *arg), void *arg)
+{
+    const struct child_params params = { .call = function,
+                                         .arg = arg,
+                                         .name = "the STEP reader",
+                                         .folder = "/",
+                                         .timeout_s = 10,
+                                         .memory_bytes = (size_t)64 << 20,
+                                         .timeout_option = "--timeout",
+                                         .memory_option = "--memory" };
+    text_finish(&output);
+    return child_run(&params, &output, why);
+}
+
+static int print_number(void *arg)
+{
+    return printf("%d\n", *(int *)arg) > 0 && close(open("/etc/passwd", O_RDONLY)) != 0 ? 0 : 1;
+}
+
+static void test_a_function_of_this_program(void **state)
+{
+    (void)state;
+    int number = 7;
+    char lacks[CONFINE_LACKS_BYTES];
+    if (!confine_lacks(lacks)) {
+        assert_true(call(print_number, &number));
+        assert_string_equal(output.at, "7\n");
+    }
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    assert_false(call(use_up, &(void *){ NULL }));
+    assert_string_equal(why, "the STEP reader needs more than 64 MB of memory (--memory)");
+#endif
+    assert_false(call(give_up, NULL));
+    assert_string_equal(why, "the STEP reader crashed (SIGABRT)");
 }
 
 static void test_a_signal_ends_it(void **state)
 {
     (void)state;
-    char script[64];
-    snprintf(script, sizeof(script), "kill -TERM %d; sleep 1000", (int)getpid());
-    assert_false(run(script, 20, room));
+    sigset_t term, before;
+    char script[64], lacks[CONFINE_LACKS_BYTES];
+    sigemptyset(&term);
+    sigaddset(&term, SIGTERM);
+    sigprocmask(SIG_BLOCK, &term, &before);
+    raise(SIGTERM);
+    assert_false(run("sleep 1000", 20, room));
+    sigprocmask(SIG_SETMASK, &before, NULL);
     assert_string_equal(why, "interrupted");
     assert_true(seconds < 5);
+    snprintf(script, sizeof(script), "kill -TERM %d", (int)getpid());
+    if (!confine_lacks(lacks)) {
+        assert_false(run(script, 20, room));
+        assert_non_null(strstr(why, "not permitted"));
+    }
 }
 
 static bool gone_when_signalled;
@@ -154,6 +226,7 @@ int main(void)
         cmocka_unit_test(test_endless_output_is_cut),
         cmocka_unit_test(test_memory_is_limited),
         cmocka_unit_test(test_there_is_no_network),
+        cmocka_unit_test(test_a_function_of_this_program),
         cmocka_unit_test(test_a_signal_ends_it),
         cmocka_unit_test(test_a_signal_waits_for_the_work_folder),
     };
