@@ -26,9 +26,7 @@ static int verify(const char *path, const struct audit_chain *known)
 {
     struct audit_report report;
     audit_file_verify(path, known, &report);
-    if (report.good && report.lines == 0)
-        printf("%s: empty\n", path);
-    else if (report.good)
+    if (report.good)
         printf("%s: good: lines %" PRIu64 " to %" PRIu64 " in %zu file%s%s\n"
                "the last is %" PRIu64 ":%s\n",
                path, report.first_seq, report.end.seq, report.files, report.files == 1 ? "" : "s",

@@ -318,6 +318,14 @@ size_t tokens_count(const struct tokens *tokens)
     return tokens->count;
 }
 
+bool tokens_has_name(const struct tokens *tokens, const char *name)
+{
+    for (size_t i = 0; i < tokens->count; i++)
+        if (!strcmp(tokens->holders[i].name, name))
+            return true;
+    return false;
+}
+
 static bool is_for_us(const struct tokens *tokens, const struct token_holder *holder)
 {
     return !holder->plant[0] || !tokens->plant || !strcmp(holder->plant, tokens->plant);

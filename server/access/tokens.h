@@ -38,6 +38,8 @@ void tokens_destroy(struct tokens **tokens); /* &NULL is fine; leaves NULL */
 bool tokens_look(struct tokens *tokens);
 /* Returns how many tokens are in force. */
 size_t tokens_count(const struct tokens *tokens);
+/* Returns whether a token of the file has that name. */
+bool tokens_has_name(const struct tokens *tokens, const char *name);
 
 /* Looks a token up, in the file and among paired devices, and writes its holder into *out. Returns false if it is in neither (then
    out->role is ROLE_NOBODY), or has expired. */

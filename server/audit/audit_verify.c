@@ -107,7 +107,9 @@ void audit_file_verify(const char *path, const struct audit_chain *known, struct
     verify_full(&walk, path);
     if (report->good)
         verify_file(&walk, path);
-    if (report->good && !has_head && report->lines > 0)
+    if (report->good && report->lines == 0 && walk.head.seq == 0)
+        set_fault(report, mem_printf("%s: has no lines; a daemon writes one when it starts, so the trail was emptied or is not one", path));
+    if (report->good && !has_head)
         set_fault(report, mem_printf("%s: is not there: nobody can say whether last lines were removed", head_path));
     if (report->good && walk.head.seq > report->end.seq)
         set_fault(report, mem_printf("%s: ends at line %" PRIu64 "; the last %" PRIu64 " lines were removed (%s)", path, report->end.seq,

@@ -94,7 +94,8 @@ static void keep_whole(const struct scene *scene, bool bare, struct view *view)
     framing_keep(scene, (double)half.width_px / half.height_px, &window, &view->camera);
 }
 
-bool view_query_camera(const struct scene *scene, const json_t *o, bool bare, struct view *view, struct message_error *error)
+bool view_query_camera(const struct scene *scene, const struct plant *plant, const json_t *o, bool bare, struct view *view,
+                       struct message_error *error)
 {
     json_t *fit_o = json_object();
     struct fit fit;
@@ -102,7 +103,7 @@ bool view_query_camera(const struct scene *scene, const json_t *o, bool bare, st
     json_object_set(fit_o, "id", json_object_get(o, "fit"));
     json_object_set(fit_o, "side", json_object_get(o, "side"));
     json_object_set(fit_o, "projection", json_object_get(o, "projection"));
-    bool good = fit_parse(scene->plant, fit_o, &fit, error) && parse_given(o, !fits, view, error);
+    bool good = fit_parse(plant, fit_o, &fit, error) && parse_given(o, !fits, view, error);
     if (good && fits && !bare)
         overlay_window(scene, view, &fit.framing.window);
     if (good && fits)

@@ -14,6 +14,7 @@ void fit_apply(const struct scene *scene, const struct fit *fit, const struct vi
    or one that shows all of it. bare: the picture has no legend and no clock, which a fit otherwise leaves room for. All else of the view
    must be set. In either half of a split view the plant's own camera shows as much of the plant as it does at 16:9. Returns
    false with *error naming the member that is wrong. */
-bool view_query_camera(const struct scene *scene, const json_t *o, bool bare, struct view *view, struct message_error *error);
+bool view_query_camera(const struct scene *scene, const struct plant *plant, const json_t *o, bool bare, struct view *view,
+                       struct message_error *error);
 
 #endif

@@ -83,6 +83,15 @@ bool role_may_send(enum role role, const struct message *message, struct message
     return params_allowed(role, &message->params, error) && params_allowed(role, &message->split.right, error);
 }
 
+const struct plant *role_plant(enum role role, const struct plant *plant, struct plant *copy)
+{
+    if (role >= ROLE_VIEWER)
+        return plant;
+    *copy = *plant;
+    copy->tag_count = 0;
+    return copy;
+}
+
 bool message_is_handed_on(const struct message *message)
 {
     switch (message->type) {

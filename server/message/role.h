@@ -19,6 +19,10 @@ extern const struct name names_role[]; /* ends with a NULL text */
 /* Returns whether a client of that role may send the message. If not, fills *error with the refusal to answer. */
 bool role_may_send(enum role role, const struct message *message, struct message_error *error);
 
+/* Returns the plant that names in a message of that role are looked up in. A role below viewer is told of no tag, and would learn from
+   refusals which tags there are: it gets *copy, the same plant without tags. copy shares all else with plant. */
+const struct plant *role_plant(enum role role, const struct plant *plant, struct plant *copy);
+
 /* Returns whether a renderer hands on messages of that type to its core: those that change what all share. */
 bool message_is_handed_on(const struct message *message);
 

@@ -294,6 +294,8 @@ static bool apply(const struct params_context *context, enum role role, const js
 {
     double w = 1280, h = 720;
     struct message asked = { .type = MESSAGE_PARAMS };
+    struct plant copy;
+    const struct plant *plant = role_plant(role, context->scene->plant, &copy);
     if (!may_number(o, "width", 16, VIEW_MAX_SIDE_PX, &w, NULL, error) || !may_number(o, "height", 16, VIEW_MAX_SIDE_PX, &h, NULL, error))
         return false;
     if (!view_size_valid(w, h)) {
@@ -302,9 +304,9 @@ static bool apply(const struct params_context *context, enum role role, const js
     }
     view_default(context->scene, (int)w, (int)h, view);
     view->tier = TIER_REFINED;
-    return params_parse(context->scene->plant, o, &asked.params, error) && split_parse(context->scene->plant, o, &asked.split, error) &&
+    return params_parse(plant, o, &asked.params, error) && split_parse(plant, o, &asked.split, error) &&
            role_may_send(role, &asked, error) && params_apply(context, &asked.params, view, error) &&
-           split_apply(context, &asked.split, view, error) && view_query_camera(context->scene, o, context->bare, view, error) &&
+           split_apply(context, &asked.split, view, error) && view_query_camera(context->scene, plant, o, context->bare, view, error) &&
            apply_at(context, o, view, error);
 }
 

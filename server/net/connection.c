@@ -11,6 +11,10 @@
 #include "message/names.h"
 #include "net/tls.h"
 
+static const char LOCAL[] = "local";            /* a user of this machine who needs no token */
+static const char SIGNED_IN[] = " (signed in)"; /* suffix of a person whose name somebody else has as well */
+
+static const struct refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n" };
 static const struct refusal WRONG_HOST = { 403, "this server is not asked for by that name (Host); --host NAME lets it\n" };
 static const struct refusal LOCAL_ONLY = { 403, "this server answers to localhost, 127.0.0.1 and [::1] only\n" };
 static const struct refusal PROXY = { 403, "a proxy speaks for somebody here; the server needs --behind-proxy for that\n" };
@@ -183,7 +187,7 @@ static bool find_token(struct lws *wsi, char token[TOKEN_MAX_CHARS + 1])
 
 const char *connection_who(const struct connection *connection)
 {
-    return connection->holder.name[0] ? connection->holder.name : "local";
+    return connection->holder.name[0] ? connection->holder.name : LOCAL;
 }
 
 void connection_record(const struct server_context *server, struct lws *wsi, const char *event, const char *result, const char *path,
@@ -213,7 +217,7 @@ static void record_login(struct server_context *server, const struct connection 
         return;
     audit_say(server->params.audit, &(struct audit_entry){ .event = "login",
                                                            .result = good ? "done" : "refused",
-                                                           .who = holder->name[0] ? holder->name : good ? "local" : NULL,
+                                                           .who = holder->name[0] ? holder->name : good ? LOCAL : NULL,
                                                            .role = known ? name_of(names_role, (int)holder->role) : NULL,
                                                            .from = connection->address,
                                                            .how = way,
@@ -262,13 +266,23 @@ static const struct refusal *judge_token(struct server_context *server, struct l
     return login_is_good(login) ? NULL : login == LOGIN_HELD ? &HELD : &BAD_TOKEN;
 }
 
-/* A cookie that is nobody's any more is none: its owner is asked to sign in again. */
+/* Journals and the audit trail name people by the provider, and others by their token or as LOCAL. A person whose name is one of theirs
+   gets a suffix, which has characters that no token's name has. */
+static void tell_apart(const struct server_context *server, struct token_holder *person)
+{
+    size_t length = strlen(person->name), most = sizeof(person->name) - sizeof(SIGNED_IN);
+    if (!strcasecmp(person->name, LOCAL) || (server->tokens && tokens_has_name(server->tokens, person->name)))
+        memcpy(person->name + (length < most ? length : most), SIGNED_IN, sizeof(SIGNED_IN));
+}
+
+/* Finds the person who is signed in with the request's cookie. A cookie whose session has ended counts as none. */
 static void find_person(struct server_context *server, struct lws *wsi, struct connection *connection)
 {
     char cookie[64];
     size_t size = sizeof(cookie);
-    if (server->openid && lws_http_cookie_get(wsi, openid_config_of(server->openid)->cookie, cookie, &size) == 0)
-        openid_find(server->openid, cookie, &connection->holder);
+    if (server->openid && lws_http_cookie_get(wsi, openid_config_of(server->openid)->cookie, cookie, &size) == 0 &&
+        openid_find(server->openid, cookie, &connection->holder))
+        tell_apart(server, &connection->holder);
 }
 
 /* Somebody on this machine, who asks for it by a local name, and whom no token is wanted from. */
@@ -278,6 +292,12 @@ static bool is_trusted(const struct server_context *server, const struct connect
     if (!connection->usage->local || params->behind_proxy || (server->tokens && !params->trust_local))
         return false;
     return !name[0] || access_name_is_local(name) || (params->trust_local && is_named(params, name));
+}
+
+static bool is_http_1_0(struct lws *wsi)
+{
+    char version[16];
+    return connection_header(wsi, WSI_TOKEN_HTTP, version, sizeof(version)) && !strcmp(version, "HTTP/1.0");
 }
 
 bool connection_identify(struct server_context *server, struct lws *wsi, struct refusal *refusal)
@@ -292,7 +312,9 @@ bool connection_identify(struct server_context *server, struct lws *wsi, struct 
     connection->role = ROLE_NOBODY;
     if (!find_client(server, wsi, connection, refusal))
         return false;
-    if (has_host && (!connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) || !access_host_name(host, name, sizeof(name)) ||
+    if (!has_host && !is_http_1_0(wsi))
+        *refusal = NO_HOST;
+    else if (has_host && (!connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) || !access_host_name(host, name, sizeof(name)) ||
                      !is_ours(server, name)))
         *refusal = server->local_only ? LOCAL_ONLY : WRONG_HOST;
     else if (connection->usage->local && !params->behind_proxy && has_forwarding(wsi))

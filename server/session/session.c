@@ -420,6 +420,17 @@ static void count_message(struct session *session, int64_t now_ns)
         session_too_fast(session, most, "");
 }
 
+static bool parse(const struct session *session, const char *text, size_t count, struct message *message, struct message_error *error)
+{
+    struct plant copy;
+    const struct plant *plant = session->context->plant, *known = role_plant(session->identity.role, plant, &copy);
+    struct message_error other;
+    if (message_parse(known, text, count, message, error))
+        return true;
+    /* A hello that brings a token may name tags: its token decides afterwards what the role may see. */
+    return known != plant && !session->hello && message_parse(plant, text, count, message, &other) && message->token[0];
+}
+
 void session_on_message(struct session *session, const char *text, size_t count, int64_t now_ns, int64_t now_utc_ns)
 {
     struct message message;
@@ -427,7 +438,7 @@ void session_on_message(struct session *session, const char *text, size_t count,
     count_message(session, now_ns);
     if (!login_is_good(session->identity.login)) /* it is being closed */
         return;
-    bool good = message_parse(session->context->plant, text, count, &message, &error);
+    bool good = parse(session, text, count, &message, &error);
     if (good)
         clear_claimed_name(session, &message);
     if (good && session->context->hand_on && in_order(session, &message, &error) && hand_on(session, &message, text))

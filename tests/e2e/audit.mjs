@@ -229,6 +229,9 @@ test('a changed byte and removed lines are found, also by the next start', { ski
     assert.equal(verify().code, 1, 'the gap stays');
     writeFileSync(trail, '');
     writeFileSync(`${trail}.head`, '');
+    const emptied = verify();
+    assert.equal(emptied.code, 1, emptied.out);
+    assert.match(emptied.err, /audit\S*: has no lines; .* emptied/);
     assert.equal(runProgram('plantcast', ['audit', 'verify']).code, 2);
 });
 

@@ -294,6 +294,8 @@ test('who may connect', { skip }, async () => {
         await assert.rejects(open({ host, origin: `http://${host}` }), /403/);
         assert.equal((await http(port, `GET /api/v1/tags HTTP/1.1\r\nHost: ${host}\r\n\r\n`)).status, 403);
     }
+    assert.equal((await http(port, 'GET /healthz HTTP/1.1\r\n\r\n')).status, 400, 'HTTP/1.1 without Host');
+    assert.equal((await http(port, 'GET /healthz HTTP/1.0\r\n\r\n')).status, 200, 'HTTP/1.0 without Host');
     for (const host of [`localhost:${port}`, '127.0.0.2', '[::1]:80'])
         (await open({ host, origin: `http://${host}` })).close();
     (await open({ origin: `http://127.0.0.1:${port}` })).close();

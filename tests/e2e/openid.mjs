@@ -132,6 +132,22 @@ test('a person signs in, acts under the name, and signs out', { skip }, async ()
     assert.ok(provider.asked.includes('/revoke'));
 });
 
+test('a person whom the provider calls as somebody else is called is told apart', { skip }, async () => {
+    for (const name of ['local', 'Local', 'break-glass']) {
+        provider.claims.preferred_username = name;
+        const browser = new Browser();
+        await browser.signIn('/');
+        assert.equal((await browser.me()).name, `${name} (signed in)`);
+        const client = await browser.stream();
+        await client.hello();
+        client.say({ type: 'alarm', seq: 1, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 60, reason: name });
+        await client.text('alarmed');
+        await recorded('the shelf', (line) => line.event === 'alarm' && line.who === `${name} (signed in)`);
+        await browser.at('/logout', { method: 'POST' });
+    }
+    provider.claims.preferred_username = 'kim';
+});
+
 test('answers that are not to be believed: each is refused by name, and nobody is in', { skip }, async () => {
     const now = () => Math.floor(Date.now() / 1000);
     const cases = [

@@ -49,14 +49,15 @@ async function serve(...args) {
     await plant.daemon?.stop();
     await plant.startDaemon(...args);
 }
-// { status, headers } of a request from this machine.
+// { status, headers, body } of a request from this machine.
 function ask(path, headers = {}, secure = false) {
     return new Promise((done, fail) => {
         const to = { port: plant.port, host: '127.0.0.1', path }, all = { Host: 'localhost', ...headers };
         const options = { ...to, headers: all, rejectUnauthorized: false };
         const asked = (secure ? https : http).request(options, (response) => {
-            response.resume();
-            done({ status: response.statusCode, headers: response.headers });
+            let body = '';
+            response.on('data', (chunk) => { body += chunk; });
+            response.on('end', () => done({ status: response.statusCode, headers: response.headers, body }));
         });
         asked.on('upgrade', (response, socket) => { socket.destroy(); done({ status: 101, headers: response.headers }); });
         asked.on('error', fail).end();
@@ -138,6 +139,36 @@ test('anyone who looks on is told of no reading, tag or person, and follows nobo
     assert.doesNotMatch(all, /TI-\d|PI-\d|Kim|engineer-1|8[12]\.\d|20\.5/);
     const picture = (headers = {}) => ask('/snapshot.png?width=320&height=200', { Host: 'plant.example', ...headers });
     assert.equal((await picture()).status, 200);
+    // A name of a tag is answered as a name that is none, wherever it can stand.
+    const hidden = (text, name) => text.replaceAll(name, 'NAME');
+    for (const [i, names] of [['TI-1', 'TI-9'], ['PI-1', 'PI-9']].entries()) {
+        const answers = [];
+        for (const name of names) {
+            const said = [];
+            const distance = { show: 'distance', sensor: name };
+            for (const [k, message] of [{ type: 'fit', id: name }, { type: 'params', ...distance },
+                { type: 'params', sensors: { [name]: { strength: 2 } } }, { type: 'params', split: distance }].entries()) {
+                stranger.say({ ...message, seq: 100 + 10 * i + k });
+                const { code, text } = await stranger.text('error');
+                said.push(`${code}: ${text}`);
+            }
+            const newcomer = await PlainClient.open(plant.port, { host: 'plant.example' });
+            newcomer.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'], params: { seq: 1, show: 'distance', sensor: name } });
+            said.push((await newcomer.text('error')).code);
+            newcomer.close();
+            for (const query of [`fit=${name}`, `show=distance&sensor=${name}`]) {
+                const { status, body } = await ask(`/snapshot.png?width=320&height=200&${query}`, { Host: 'plant.example' });
+                said.push(`${status} ${body}`);
+            }
+            answers.push(hidden(JSON.stringify(said), name));
+        }
+        assert.equal(answers[0], answers[1]);
+        assert.doesNotMatch(answers[0], /not_allowed|200 /);
+    }
+    const named = await as({ token: tokens.engineer, params: { seq: 1, show: 'distance', sensor: 'TI-1' } });
+    named.say({ type: 'params', seq: 2, isolines: 20 });
+    assert.equal((await named.text('params')).sensor, 'TI-1', 'a token in the hello says that tags may be named');
+    named.close();
     stranger.close();
     engineer.close();
 });
