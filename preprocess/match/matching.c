@@ -71,6 +71,8 @@ static void print_list(const struct run *run)
                list->differing > 5 ? ", ..." : "");
     if (list->renamed > 0)
         printf("%s: %zu tags have the name of a tag in another folder: called by their path\n", path, list->renamed);
+    for (const char *line = list->remarks.at; line && *line; line += strcspn(line, "\n") + 1)
+        printf("%s: %.*s\n", path, (int)strcspn(line, "\n"), line);
     if (list->nameless > 0)
         printf("%s: %zu rows have no name: left out\n", path, list->nameless);
     if (list->control > 0)

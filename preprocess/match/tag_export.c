@@ -438,5 +438,6 @@ void tag_export_finish(struct tag_export *list)
             mem_free(list->tags[i].fields[f]);
     mem_free(list->tags);
     mem_free(list->differing_lines);
+    text_finish(&list->remarks);
     *list = (struct tag_export){ 0 };
 }

@@ -7,6 +7,7 @@
 #include <stddef.h>
 
 #include "base/charset.h"
+#include "base/text.h"
 
 enum export_field { /* of a tag, as text; numbers have a decimal point */
                     EXPORT_NAME,
@@ -44,6 +45,7 @@ struct tag_export {                /* zero-initialise */
     size_t same, differing;            /* repeated rows that say the same as the first of their name, and that do not: left out */
     char *differing_lines;             /* the first of those: "TT-101 (lines 5 and 80), ..."; NULL: none */
     size_t nameless, control, damaged; /* rows without a name, left out; control characters; characters that could not be decoded */
+    struct text remarks;               /* other things that a person should know, a line each */
     size_t renamed;                    /* tags with one name in several folders, which now have their path in front */
 };
 

@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ignition's export: folders and UDT instances hold tags, tags hold properties. */
+/* Ignition's export: folders and UDT instances hold tags, tags hold properties. An instance has the members of its type,
+   of that type's parent and so on; each level may replace single properties. */
 #include <jansson.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "preprocess/match/tag_export.h"
+#include "preprocess/match/table.h"
 
-enum { MAX_DEPTH = 64 };
+enum { MAX_DEPTH = 64, MAX_LAYERS = 32, NAMED = 5, MOST_REFERENCES = 1000 };
 
 static const struct property {
     const char *name;
     enum export_field field;
 } properties[] = {
-    { "name", EXPORT_NAME },
     { "opcItemPath", EXPORT_ADDRESS },
     { "dataType", EXPORT_TYPE },
     { "scaleMode", EXPORT_SCALING },
@@ -29,75 +31,404 @@ static const struct property {
     { "opcServer", EXPORT_DEVICE },
 };
 
-/* Text without control characters; numbers as they are; a binding is an object whose "binding" is the text. */
-static void set_from_json(struct tag_export *list, struct export_tag *tag, enum export_field field, json_t *value)
+/* What is said of many tags: how many, and the first by their paths. */
+struct complaint {
+    size_t count;
+    struct text paths;
+};
+
+struct reader {
+    struct tag_export *list;
+    json_t *types; /* by path below the folder of types; borrowed nodes */
+    struct complaint unknown, circular, unresolved;
+    bool too_deep, too_many;
+    int references; /* of one property, so far: parameters may refer to parameters that refer to them */
+};
+
+/* A node as its levels have it: the instance's own first, then types. */
+struct node {
+    json_t *layers[MAX_LAYERS];
+    int count;
+};
+
+struct frame { /* a UDT instance around a tag */
+    const struct frame *outer;
+    const struct node *node;
+    int own; /* layers that are the instance's, not its type's: their parameters refer to those of the frame outside */
+    const char *name;
+};
+
+struct scope { /* where a reference to a parameter stands */
+    struct reader *reader;
+    const struct frame *frame;
+    const char *folder, *name; /* path around the tag, and the tag's name */
+};
+
+static const char *text_of(json_t *object, const char *key)
 {
-    char number[64];
-    if (json_is_object(value))
-        value = json_object_get(value, "binding");
-    if (json_is_number(value)) {
-        snprintf(number, sizeof(number), "%.12g", json_number_value(value));
-        export_tag_set(tag, field, number);
-    } else if (json_is_string(value)) {
-        char *copy = mem_strdup(json_string_value(value));
-        for (char *c = copy; *c; c++)
-            if ((unsigned char)*c < 32 || *c == 127) {
-                *c = ' ';
-                list->control++;
-            }
-        char *from = copy + strspn(copy, " "), *end = from + strlen(from);
-        while (end > from && end[-1] == ' ')
-            *--end = 0;
-        export_tag_set(tag, field, from);
-        mem_free(copy);
+    const char *text = json_string_value(json_object_get(object, key));
+    return text ? text : "";
+}
+
+static json_t *property_of(const struct node *node, const char *key)
+{
+    json_t *found = NULL;
+    for (int i = 0; i < node->count && (!found || json_is_null(found)); i++)
+        found = json_object_get(node->layers[i], key);
+    return found;
+}
+
+static const char *string_of(const struct node *node, const char *key)
+{
+    const char *text = json_string_value(property_of(node, key));
+    return text ? text : "";
+}
+
+static void complain(struct complaint *complaint, const char *folder, const char *name, const char *detail)
+{
+    if (complaint->count++ < NAMED)
+        text_add(&complaint->paths, "%s%s%s%.80s%s%.80s%s", complaint->count > 1 ? ", " : "", folder, *folder ? "/" : "", name,
+                 *detail ? " (" : "", detail, *detail ? ")" : "");
+}
+
+/* --- types ------------------------------------------------------------------------------------------------------------------ */
+
+static const char types_folder[] = "_types_";
+
+/* Finds types wherever they are. `path` is below the folder of types. */
+static void index_types(struct reader *reader, json_t *node, const char *path, int depth)
+{
+    json_t *inner = json_is_array(node) ? node : json_object_get(node, "tags"), *item;
+    const char *name = text_of(node, "name");
+    size_t index;
+    bool root = json_is_array(node) || !*name || !strcmp(text_of(node, "tagType"), "Provider");
+    char *below = !strcmp(name, types_folder) || root ? mem_strdup(root ? path : "") : mem_printf("%s%s%s", path, *path ? "/" : "", name);
+    if (!strcmp(text_of(node, "tagType"), "UdtType"))
+        json_object_set(reader->types, below, node);
+    else if (depth < MAX_DEPTH)
+        json_array_foreach(inner, index, item) index_types(reader, item, below, depth + 1);
+    mem_free(below);
+}
+
+/* By path; else the only type of that name, wherever it is. */
+static json_t *find_type(const struct reader *reader, const char *id)
+{
+    const char *wanted = !strncmp(id, "_types_/", 8) ? id + 8 : id, *slash = strrchr(wanted, '/'), *name = slash ? slash + 1 : wanted, *key;
+    json_t *type = json_object_get(reader->types, wanted), *other = NULL;
+    size_t same = 0;
+    if (type)
+        return type;
+    json_object_foreach(reader->types, key, type)
+    {
+        const char *last = strrchr(key, '/');
+        if (!strcmp(last ? last + 1 : key, name)) {
+            other = type;
+            same++;
+        }
+    }
+    return same == 1 ? other : NULL;
+}
+
+static bool is_around(const struct frame *frame, const json_t *type)
+{
+    for (; frame; frame = frame->outer)
+        for (int i = frame->own; i < frame->node->count; i++)
+            if (frame->node->layers[i] == type)
+                return true;
+    return false;
+}
+
+/* Appends the layers of a type and of its parents to an instance. */
+static void add_types(struct reader *reader, struct node *node, const struct frame *outer, const char *folder, const char *name)
+{
+    const char *id = string_of(node, "typeId");
+    for (int own = node->count; *id && node->count < MAX_LAYERS; id = text_of(node->layers[node->count - 1], "typeId")) {
+        json_t *type = find_type(reader, id);
+        bool circular = type && is_around(outer, type);
+        for (int i = own; i < node->count; i++)
+            circular |= node->layers[i] == type;
+        if (!type || circular) {
+            complain(type ? &reader->circular : &reader->unknown, folder, name, id);
+            return;
+        }
+        node->layers[node->count++] = type;
     }
 }
 
-static bool add_tags(struct tag_export *list, json_t *node, const char *path, int depth)
+/* --- parameters --------------------------------------------------------------------------------------------------------------- */
+
+static bool expand(const struct scope *scope, const char *text, struct text *out, int depth);
+
+static const char *builtin(const struct scope *scope, const char *name, char **made)
 {
-    json_t *inner = json_object_get(node, "tags"), *item;
-    const char *name = json_string_value(json_object_get(node, "name")), *type = json_string_value(json_object_get(node, "tagType"));
-    size_t index;
-    bool good = depth < MAX_DEPTH;
-    bool folder = json_is_array(inner) || (type && (!strcmp(type, "Folder") || !strcmp(type, "Provider")));
-    if (json_is_array(node)) {
-        json_array_foreach(node, index, item) good = good && add_tags(list, item, path, depth + 1);
-        return good;
+    const struct frame *frame = scope->frame, *root = frame;
+    while (root && root->outer)
+        root = root->outer;
+    if (!strcmp(name, "TagName"))
+        return scope->name;
+    if (!strcmp(name, "PathToParentFolder"))
+        return scope->folder;
+    if (!strcmp(name, "PathToTag"))
+        return *made = mem_printf("%s%s%s", scope->folder, *scope->folder ? "/" : "", scope->name);
+    if (!strcmp(name, "InstanceName"))
+        return frame ? frame->name : NULL;
+    if (!strcmp(name, "ParentInstanceName"))
+        return frame ? (frame->outer ? frame->outer->name : frame->name) : NULL;
+    return !strcmp(name, "RootInstanceName") && root ? root->name : NULL;
+}
+
+static json_t *value_of(json_t *parameter)
+{
+    return json_is_object(parameter) && json_object_get(parameter, "value") ? json_object_get(parameter, "value") : parameter;
+}
+
+/* Appends the text of a value: a number, a text, or a binding to parameters. Returns false where it cannot be told. */
+static bool add_value(const struct scope *scope, json_t *value, struct text *out, int depth)
+{
+    if (json_is_object(value)) {
+        const char *kind = text_of(value, "bindType");
+        if (*kind && strcmp(kind, "parameter") != 0 && strcmp(kind, "UDTParameter") != 0)
+            return false;
+        value = json_object_get(value, "binding");
     }
-    if (!json_is_object(node) || !good || (type && !strcmp(type, "UdtType")))
-        return good;
-    if (folder) {
-        char *below = name && *name ? mem_printf("%s%s%s", path, *path ? "/" : "", name) : mem_strdup(path);
-        json_array_foreach(inner, index, item) good = good && add_tags(list, item, below, depth + 1);
-        mem_free(below);
-        return good;
+    if (json_is_string(value))
+        return expand(scope, json_string_value(value), out, depth);
+    if (json_is_number(value))
+        text_add(out, "%.12g", json_number_value(value));
+    else if (json_is_boolean(value))
+        text_add(out, "%s", json_is_true(value) ? "true" : "false");
+    return json_is_number(value) || json_is_boolean(value);
+}
+
+/* Appends a parameter's value. Those that a nested instance is given may refer to parameters of the instance around it. */
+static bool add_parameter(const struct scope *scope, const char *name, struct text *out, int depth)
+{
+    size_t before = out->length;
+    if (scope->reader->references++ > MOST_REFERENCES)
+        return false;
+    for (const struct frame *frame = scope->frame; frame; frame = frame->outer)
+        for (int i = 0; i < frame->node->count; i++) {
+            json_t *value = value_of(json_object_get(json_object_get(frame->node->layers[i], "parameters"), name));
+            struct scope inner = *scope;
+            if (!value || json_is_null(value) || (json_is_object(value) && !json_object_get(value, "binding")))
+                continue;
+            inner.frame = i < frame->own && frame->outer ? frame->outer : frame;
+            bool good = add_value(&inner, value, out, depth + 1);
+            if (!good && out->at)
+                out->at[out->length = before] = 0;
+            return good;
+        }
+    char *made = NULL;
+    const char *text = builtin(scope, name, &made);
+    if (text)
+        text_add(out, "%s", text);
+    mem_free(made);
+    return text != NULL;
+}
+
+/* "{Base+10}" and "{Number|000}": an offset, and a number of digits. */
+static bool add_formatted(const struct scope *scope, const char *reference, struct text *out, int depth)
+{
+    char name[200], *end;
+    struct text value = { 0 };
+    size_t length = strcspn(reference, "|+-*");
+    if (length == strlen(reference) || length >= sizeof(name))
+        return false;
+    snprintf(name, sizeof(name), "%.*s", (int)length, reference);
+    while (length > 0 && name[length - 1] == ' ')
+        name[--length] = 0;
+    const char *rest = reference + strcspn(reference, "|+-*");
+    bool good = add_parameter(scope, name, &value, depth);
+    double number = good && value.at ? strtod(value.at, &end) : 0;
+    good = good && value.at && end != value.at && !*end;
+    for (char *after; good && strchr("+-*", *rest) && *rest; rest = after + strspn(after, " ")) {
+        double operand = strtod(rest + 1, &after);
+        good = after != rest + 1;
+        number = *rest == '+' ? number + operand : *rest == '-' ? number - operand : number * operand;
     }
+    if (good && *rest == '|') {
+        const char *dot = strchr(rest, '.');
+        size_t digits = dot ? strspn(dot + 1, "0#") : 0, width = strspn(rest + 1, "0#,") + (digits > 0 ? digits + 1 : 0);
+        text_add(out, "%0*.*f", (int)(width % 40), (int)(digits % 20), number);
+    } else if (good && !*rest) {
+        text_add(out, "%.12g", number);
+    } else {
+        good = false;
+    }
+    text_finish(&value);
+    return good;
+}
+
+/* Appends a text with its references replaced. Returns false if one of them could not be: it stays as it is. */
+static bool expand(const struct scope *scope, const char *text, struct text *out, int depth)
+{
+    bool good = true;
+    text_add_bytes(out, "", 0);
+    while (*text) {
+        const char *open = strchr(text, '{'), *close = open ? strchr(open, '}') : NULL;
+        if (!close || depth > 16) {
+            text_add(out, "%s", text);
+            return good && !close;
+        }
+        char *name = mem_printf("%.*s", (int)(close - open - 1), open + 1);
+        text_add_bytes(out, text, (size_t)(open - text));
+        if (!add_parameter(scope, name, out, depth) && !add_formatted(scope, name, out, depth)) {
+            text_add(out, "{%s}", name);
+            good = false;
+        }
+        mem_free(name);
+        text = close + 1;
+    }
+    return good;
+}
+
+/* --- tags --------------------------------------------------------------------------------------------------------------------- */
+
+/* Trimmed, without control characters. */
+static void set_text(struct tag_export *list, struct export_tag *tag, enum export_field field, char *text)
+{
+    for (char *c = text; *c; c++)
+        if ((unsigned char)*c < 32 || *c == 127) {
+            *c = ' ';
+            list->control++;
+        }
+    char *from = text + strspn(text, " "), *end = from + strlen(from);
+    while (end > from && end[-1] == ' ')
+        *--end = 0;
+    export_tag_set(tag, field, from);
+}
+
+static void set_field(const struct scope *scope, struct export_tag *tag, enum export_field field, json_t *value)
+{
+    struct text out = { 0 };
+    if (!value || json_is_null(value) || json_is_boolean(value))
+        return;
+    scope->reader->references = 0;
+    bool good = add_value(scope, value, &out, 0);
+    if (!good && json_is_object(value) && field == EXPORT_ADDRESS)
+        complain(&scope->reader->unresolved, scope->folder, scope->name, text_of(value, "binding"));
+    if (out.at && (good || field == EXPORT_ADDRESS || json_is_string(value)))
+        set_text(scope->reader->list, tag, field, out.at);
+    text_finish(&out);
+}
+
+/* Members of instances are called by their whole path: a member's own name says nothing of which instance it is in. */
+static void add_tag(const struct scope *scope, const struct node *node)
+{
+    struct tag_export *list = scope->reader->list;
     list->rows++;
-    if (!name || !*name) {
+    if (!*scope->name) {
         list->nameless++;
-        return true;
+        return;
     }
     struct export_tag *tag = tag_export_add(list, 0);
+    char *name = scope->frame ? mem_printf("%s%s%s", scope->folder, *scope->folder ? "/" : "", scope->name) : mem_strdup(scope->name);
+    set_text(list, tag, EXPORT_NAME, name);
+    mem_free(name);
     for (size_t i = 0; i < sizeof(properties) / sizeof(*properties); i++)
-        set_from_json(list, tag, properties[i].field, json_object_get(node, properties[i].name));
-    export_tag_set(tag, EXPORT_AREA, path);
+        set_field(scope, tag, properties[i].field, property_of(node, properties[i].name));
+    if (tag->fields[EXPORT_SCALED_HIGH]) /* an export leaves out what Ignition takes by default: 0 to 100 */
+        export_tag_set(tag, EXPORT_SCALED_LOW, "0");
+    if (tag->fields[EXPORT_SCALED_LOW])
+        export_tag_set(tag, EXPORT_SCALED_HIGH, "100");
+    export_tag_set(tag, EXPORT_AREA, scope->folder);
     if (!tag->fields[EXPORT_NAME]) /* blanks only */
         export_tag_set(tag, EXPORT_NAME, "unnamed");
-    return true;
+    scope->reader->too_many |= list->count > TABLE_MAX_ROWS;
+}
+
+static void add_node(struct reader *reader, struct node *node, const struct frame *frame, const char *folder, int depth);
+
+static json_t *child_of(json_t *layer, const char *name)
+{
+    json_t *item;
+    size_t index;
+    json_array_foreach(json_object_get(layer, "tags"), index, item) if (!strcmp(text_of(item, "name"), name)) return item;
+    return NULL;
+}
+
+/* Adds what a folder or an instance holds: each child once, as all layers together have it. */
+static void add_children(struct reader *reader, const struct node *node, const struct frame *frame, const char *folder, int depth)
+{
+    json_t *item;
+    size_t index;
+    for (int i = 0; i < node->count; i++)
+        json_array_foreach(json_object_get(node->layers[i], "tags"), index, item)
+        {
+            const char *name = text_of(item, "name");
+            struct node child = { { item }, 1 };
+            bool before = false;
+            for (int k = 0; k < i && *name && !before; k++)
+                before = child_of(node->layers[k], name) != NULL;
+            for (int k = i + 1; k < node->count && *name && !before; k++) {
+                json_t *below = child_of(node->layers[k], name);
+                if (below)
+                    child.layers[child.count++] = below;
+            }
+            if (!before && !reader->too_many)
+                add_node(reader, &child, frame, folder, depth + 1);
+        }
+}
+
+static bool has_children(const struct node *node)
+{
+    return json_is_array(property_of(node, "tags"));
+}
+
+static void add_node(struct reader *reader, struct node *node, const struct frame *frame, const char *folder, int depth)
+{
+    const char *name = string_of(node, "name"), *type = string_of(node, "tagType");
+    if (depth >= MAX_DEPTH) {
+        reader->too_deep = true;
+        return;
+    }
+    if (!json_is_object(node->layers[0]) || !strcmp(type, "UdtType") || (!frame && !strcmp(name, types_folder)))
+        return;
+    int own = node->count;
+    bool instance = !strcmp(type, "UdtInstance") || *string_of(node, "typeId");
+    if (instance)
+        add_types(reader, node, frame, folder, name);
+    if (!instance && !has_children(node) && strcmp(type, "Folder") != 0 && strcmp(type, "Provider") != 0) {
+        add_tag(&(struct scope){ reader, frame, folder, name }, node);
+        return;
+    }
+    char *below = *name ? mem_printf("%s%s%s", folder, *folder ? "/" : "", name) : mem_strdup(folder);
+    const struct frame inner = { frame, node, own, name };
+    add_children(reader, node, instance ? &inner : frame, below, depth);
+    mem_free(below);
+}
+
+static void say(struct tag_export *list, struct complaint *complaint, const char *what)
+{
+    if (complaint->count > 0)
+        text_add(&list->remarks, "%zu %s: %s%s\n", complaint->count, what, complaint->paths.at, complaint->count > NAMED ? ", ..." : "");
+    text_finish(&complaint->paths);
 }
 
 bool tag_export_read_json(struct tag_export *list, const char *text, size_t length, char *why, size_t why_bytes)
 {
     json_error_t error;
-    json_t *root = json_loadb(text, length, 0, &error);
+    json_t *root = json_loadb(text, length, 0, &error), *item;
+    struct reader reader = { .list = list };
+    size_t index;
     list->format = "Ignition (JSON)";
     if (!root) {
         snprintf(why, why_bytes, "line %d: not JSON: %.120s", error.line, error.text);
         return false;
     }
-    bool good = add_tags(list, root, "", 0);
-    if (!good)
-        snprintf(why, why_bytes, "folders deeper than %d", MAX_DEPTH);
+    reader.types = json_object();
+    index_types(&reader, root, "", 0);
+    if (json_is_array(root))
+        json_array_foreach(root, index, item) add_node(&reader, &(struct node){ { item }, 1 }, NULL, "", 1);
+    else
+        add_node(&reader, &(struct node){ { root }, 1 }, NULL, "", 0);
+    say(list, &reader.unknown, "instances are of a type that the export does not have; export the folder of types, too");
+    say(list, &reader.circular, "instances are of a type that contains itself: left out below there");
+    say(list, &reader.unresolved, "addresses refer to parameters that have no value");
+    if (reader.too_deep || reader.too_many)
+        snprintf(why, why_bytes, reader.too_deep ? "folders deeper than %d" : "more than %d tags",
+                 reader.too_deep ? MAX_DEPTH : TABLE_MAX_ROWS);
+    json_decref(reader.types);
     json_decref(root);
-    return good;
+    return !reader.too_deep && !reader.too_many;
 }

@@ -74,7 +74,7 @@ static void test_ignition(void **state)
         "{\"name\":\"PT-7\",\"tagType\":\"AtomicTag\",\"documentation\":\"feed\\u0007 pressure\"}]}]}"));
     assert_string_equal(list.format, "Ignition (JSON)");
     assert_int_equal(list.count, 3);
-    assert_int_equal(list.renamed, 2);
+    assert_int_equal(list.renamed, 0); /* members of instances have their path from the beginning */
     check(&list, 0, EXPORT_NAME, "Area1/E-101/TT");
     check(&list, 0, EXPORT_ADDRESS, "ns=1;s=[plc]HR1");
     check(&list, 0, EXPORT_SCALED_HIGH, "150.5");
@@ -94,6 +94,137 @@ static void test_ignition(void **state)
     tag_export_finish(&list);
     assert_false(read_text(&list, "{\"tags\": [1, }"));
     assert_non_null(strstr(why, "line 1: not JSON"));
+}
+
+/* A provider with these types and these tags. */
+#define PROVIDER(types, tags)                                                                                                              \
+    "{'name':'','tagType':'Provider','tags':[{'name':'_types_','tagType':'Folder','tags':[" types                                          \
+    "]},{'name':'A','tagType':'Folder','tags':[" tags "]}]}"
+#define TYPE(name, rest) "{'name':'" name "','tagType':'UdtType'," rest "}"
+#define INSTANCE(name, type, rest) "{'name':'" name "','tagType':'UdtInstance','typeId':'" type "'" rest "}"
+#define MEMBER(name, rest) "{'name':'" name "','tagType':'AtomicTag'" rest "}"
+#define BOUND(text) "{'bindType':'parameter','binding':'" text "'}"
+#define PUMP                                                                                                                               \
+    TYPE("Pump", "'parameters':{'Dev':{'dataType':'String','value':'PLC1'},'No':{'dataType':'Integer','value':0}},'tags':[" MEMBER(        \
+                     "T", ",'engUnit':'°C','engHigh':120,'opcItemPath':" BOUND("[{Dev}]HR{No}")) "]")
+
+/* What a member has that its instance says nothing of, or something else. */
+static void test_udt_kinds(void **state)
+{
+    static const struct {
+        const char *kind, *json;
+        const char *name, *unit, *high, *address; /* of the first tag */
+        size_t count;
+        const char *remark; /* NULL: none */
+    } cases[] = {
+        { "an instance without members", PROVIDER(PUMP, INSTANCE("P", "Pump", "")), "A/P/T", "°C", "120", "[PLC1]HR0", 1, NULL },
+        { "a parameter of the instance", PROVIDER(PUMP, INSTANCE("P", "Pump", ",'parameters':{'No':{'value':7}}")), "A/P/T", "°C", "120",
+          "[PLC1]HR7", 1, NULL },
+        { "a parameter without an object", PROVIDER(PUMP, INSTANCE("P", "Pump", ",'parameters':{'No':7}")), "A/P/T", "°C", "120",
+          "[PLC1]HR7", 1, NULL },
+        { "members that say nothing", PROVIDER(PUMP, INSTANCE("P", "Pump", ",'tags':[" MEMBER("T", "") "]")), "A/P/T", "°C", "120",
+          "[PLC1]HR0", 1, NULL },
+        { "a property of the instance", PROVIDER(PUMP, INSTANCE("P", "Pump", ",'tags':[" MEMBER("T", ",'engHigh':90,'engUnit':'K'") "]")),
+          "A/P/T", "K", "90", "[PLC1]HR0", 1, NULL },
+        { "a member of the instance's own", PROVIDER(PUMP, INSTANCE("P", "Pump", ",'tags':[" MEMBER("X", ",'engUnit':'bar'") "]")), "A/P/X",
+          "bar", "", "", 2, NULL },
+        { "a parent type", PROVIDER(PUMP "," TYPE("Big", "'typeId':'Pump','parameters':{'Dev':{'value':'PLC9'}}"), INSTANCE("P", "Big",
+          "")),
+          "A/P/T", "°C", "120", "[PLC9]HR0", 1, NULL },
+        { "a parent type's member, changed",
+          PROVIDER(PUMP "," TYPE("Big", "'typeId':'Pump','tags':[" MEMBER("T", ",'engHigh':400") "]"), INSTANCE("P", "Big", "")), "A/P/T",
+          "°C", "400", "[PLC1]HR0", 1, NULL },
+        { "a type within a type",
+          PROVIDER(PUMP "," TYPE("Skid", "'parameters':{'Plc':{'value':'S1'}},'tags':[" INSTANCE("M", "Pump",
+            ",'parameters':{'Dev':{'value':" BOUND(
+                                             "{Plc}") "},'No':{'value':3}}") "]"),
+                   INSTANCE("P", "Skid", ",'parameters':{'Plc':{'value':'S2'}}")),
+          "A/P/M/T", "°C", "120", "[S2]HR3", 1, NULL },
+        { "the same name within and around",
+          PROVIDER(PUMP "," TYPE("Skid", "'parameters':{'Dev':{'value':'S1'}},'tags':[" INSTANCE("M", "Pump",
+            ",'parameters':{'Dev':{'value':" BOUND(
+                                             "{Dev}-M") "}}") "]"),
+                   INSTANCE("P", "Skid", "")),
+          "A/P/M/T", "°C", "120", "[S1-M]HR0", 1, NULL },
+        { "a member of a type within, changed",
+          PROVIDER(PUMP "," TYPE("Skid", "'tags':[" INSTANCE("M", "Pump", "") "]"),
+                   INSTANCE("P", "Skid", ",'tags':[{'name':'M','tagType':'UdtInstance','tags':[" MEMBER("T", ",'engUnit':'°F'") "]}]")),
+          "A/P/M/T", "°F", "120", "[PLC1]HR0", 1, NULL },
+        { "types in folders", PROVIDER("{'name':'F','tagType':'Folder','tags':[" PUMP "]}", INSTANCE("P", "F/Pump", "")), "A/P/T", "°C",
+          "120",
+          "[PLC1]HR0", 1, NULL },
+        { "folders in types",
+          PROVIDER(TYPE("Pump", "'tags':[{'name':'F','tagType':'Folder','tags':[" MEMBER("T", ",'engUnit':'bar'") "]}]"),
+                   INSTANCE("P", "Pump", "")),
+          "A/P/F/T", "bar", "", "", 1, NULL },
+        { "built-in parameters",
+          PROVIDER(TYPE("Pump", "'tags':[" MEMBER("T", ",'opcItemPath':"
+            BOUND("{PathToParentFolder}|{InstanceName}|{TagName}|{PathToTag}")) "]"),
+                   INSTANCE("P", "Pump", "")),
+          "A/P/T", "", "", "A/P|P|T|A/P/T", 1, NULL },
+        { "names of instances around",
+          PROVIDER(TYPE("In", "'tags':[" MEMBER("T", ",'opcItemPath':" BOUND("{InstanceName}.{ParentInstanceName}.{RootInstanceName}"))
+            "]") "," TYPE(
+                       "Mid", "'tags':[" INSTANCE("I", "In", "") "]") "," TYPE("Out", "'tags':[" INSTANCE("M", "Mid", "") "]"),
+                   INSTANCE("P", "Out", "")),
+          "A/P/M/I/T", "", "", "I.M.P", 1, NULL },
+        { "offsets and digits",
+          PROVIDER(TYPE("Pump", "'parameters':{'B':{'value':40}},'tags':[" MEMBER("T", ",'opcItemPath':" BOUND("{B+2} {B - 1} {B|0000}"))
+            "]"),
+                   INSTANCE("P", "Pump", "")),
+          "A/P/T", "", "", "42 39 0040", 1, NULL },
+        { "a unit and a range by parameters",
+          PROVIDER(TYPE("Pump", "'parameters':{'U':{'value':'bar'},'M':{'value':16}},'tags':[" MEMBER(
+                                    "T", ",'engUnit':" BOUND("{U}") ",'engHigh':" BOUND("{M}")) "]"),
+                   INSTANCE("P", "Pump", "")),
+          "A/P/T", "bar", "16", "", 1, NULL },
+        { "a parameter made of another",
+          PROVIDER(TYPE("Pump", "'parameters':{'A':{'value':'x'},'B':{'value':" BOUND("{A}y") "}},'tags':[" MEMBER(
+                                    "T", ",'opcItemPath':" BOUND("{B}z")) "]"),
+                   INSTANCE("P", "Pump", "")),
+          "A/P/T", "", "", "xyz", 1, NULL },
+        { "a parameter without a value", PROVIDER(TYPE("Pump", "'tags':[" MEMBER("T", ",'opcItemPath':" BOUND("[{Dev}]1")) "]"),
+          INSTANCE("P", "Pump", "")),
+          "A/P/T", "", "", "[{Dev}]1", 1, "1 addresses refer to parameters that have no value: A/P/T ([{Dev}]1)" },
+        { "a parameter that is itself", PROVIDER(TYPE("Pump", "'parameters':{'D':{'value':" BOUND("{D}") "}},'tags':[" MEMBER("T",
+          ",'opcItemPath':" BOUND("{D}")) "]"), INSTANCE("P", "Pump", "")),
+          "A/P/T", "", "", "{D}", 1, "have no value: A/P/T" },
+        { "an unknown type", PROVIDER("", INSTANCE("P", "Pump", ",'tags':[" MEMBER("T", ",'engUnit':'bar'") "]")), "A/P/T", "bar", "",
+          "", 1,
+          "1 instances are of a type that the export does not have; export the folder of types, too: A/P (Pump)" },
+        { "a type within itself", PROVIDER(TYPE("L", "'tags':[" INSTANCE("I", "L", "") "," MEMBER("T", "") "]"), INSTANCE("P", "L", "")),
+          "A/P/T",
+          "", "", "", 1, "1 instances are of a type that contains itself: left out below there: A/P/I (L)" },
+        { "types that are each other's parents",
+          PROVIDER(TYPE("X", "'typeId':'Y','tags':[" MEMBER("T", ",'engUnit':'bar'") "]") "," TYPE("Y", "'typeId':'X'"), INSTANCE("P",
+            "X", "")),
+          "A/P/T", "bar", "", "", 1, "contains itself: left out below there: A/P (X)" },
+        { "types and instances in a list", "[" PUMP "," INSTANCE("P", "Pump", "") "]", "P/T", "°C", "120", "[PLC1]HR0", 1, NULL },
+        { "a tag outside of instances", PROVIDER(PUMP, MEMBER("L", ",'engUnit':'%','engLow':20")), "L", "%", "100", "", 1, NULL },
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        struct tag_export list;
+        char *json = mem_strdup(cases[i].json);
+        for (char *c = json; *c; c++)
+            *c = *c == '\'' ? '"' : *c;
+        if (!read_text(&list, json))
+            fail_msg("%s: %s", cases[i].kind, why);
+        size_t tag = 0;
+        while (tag < list.count && strcmp(list.tags[tag].fields[EXPORT_NAME], cases[i].name) != 0)
+            tag++;
+        if (tag == list.count)
+            fail_msg("%s: no tag '%s'", cases[i].kind, cases[i].name);
+        check(&list, tag, EXPORT_UNIT, cases[i].unit);
+        check(&list, tag, EXPORT_SCALED_HIGH, cases[i].high);
+        check(&list, tag, EXPORT_ADDRESS, cases[i].address);
+        assert_int_equal(list.count, cases[i].count);
+        if (!cases[i].remark != !list.remarks.at || (cases[i].remark && !strstr(list.remarks.at, cases[i].remark)))
+            fail_msg("%s: '%s'", cases[i].kind, list.remarks.at ? list.remarks.at : "");
+        tag_export_finish(&list);
+        mem_free(json);
+    }
+    print_message("# %zu of %zu kinds of UDT\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
 }
 
 static void test_aveva(void **state)
@@ -276,6 +407,7 @@ static int tear_down(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_kepware),     cmocka_unit_test(test_ignition),
+                                        cmocka_unit_test(test_udt_kinds),
                                         cmocka_unit_test(test_aveva),       cmocka_unit_test(test_lists),
                                         cmocka_unit_test(test_encodings),   cmocka_unit_test(test_repeated),
                                         cmocka_unit_test(test_spreadsheet), cmocka_unit_test(test_refused) };
