@@ -13,7 +13,7 @@ const TURNS = [ // degrees: about the vertical, up
 // long.
 export function approachDistance({ min, max }) {
     const [, middle] = subtract(max, min).sort((a, b) => a - b);
-    return Math.max(LEAST_M, Math.min(MOST_M, PART * middle));
+    return PART * middle < MOST_M ? Math.max(LEAST_M, PART * middle) : MOST_M;
 }
 
 // Returns the cameras that a first one becomes, turned about a point. clients/wall/approach.c does the same.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Places the labels of alarm rings: each by itself, or several that are close together in one call-out (protocol/LABELS.md).
-import { boxAt, CLEARANCE, meets, SLOTS } from './labels.js';
+import { boxAt, CLEARANCE, hasArea, meets, SLOTS } from './labels.js';
 
 const CLOSE = 26, STILL_CLOSE = 34;         // units between rings that share a call-out; between those that did in the picture before
 const MOST_GROUPS = 24, FARTHER = 1.25;     // so many labels of rings at most; distances grow by that until there are no more
 const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: where else a label may be, from the middle of its rings
 const FARTHEST = 170;                       // units, unless there is no other label to join
+const MOST_GROWTHS = 100;                   // times FARTHER: then the distances are larger than any picture
 
 const OFFSETS = []; // [x, y, squared distance], the nearest first
 for (let j = -STEPS; j <= STEPS; j++) {
@@ -53,16 +54,22 @@ function boxOf(one, slot, unit) {
     return { left, top, right: left + one.width, bottom: top + one.height };
 }
 
-// order: items with rings, the most important first; measure(members): { width, height } of their call-out; taken: of labels.js.
-// Returns [{ members, box, slot }, ...]; every item is a member of one of them.
-export function placeRings(order, { area, unit, taken, measure }) {
+const hasFiniteBox = ({ x, y, across, down, width, height }) => [x, y, across, down, width, height].every(Number.isFinite);
+const placeable = (items, area, unit) => (hasArea(area) && unit > 0 && unit < Infinity
+    ? items.filter(({ x, y, width, height }) => [x, y, width, height].every(Number.isFinite)) : []);
+
+// all: items with rings, the most important first; measure(members): { width, height } of their call-out; taken: of labels.js.
+// Returns [{ members, box, slot }, ...]; every item at a finite place is a member of one of them. An area of 0x0 has no labels.
+export function placeRings(all, { area, unit, taken, measure }) {
+    const order = placeable(all, area, unit);
     let lists, least = unit;
     const close = (i, k) => {
         const a = order[i], b = order[k], did = a.callout !== undefined && a.callout === b.callout;
         return (a.x - b.x) ** 2 + (a.y - b.y) ** 2 < ((did ? STILL_CLOSE : CLOSE) * least) ** 2;
     };
-    for (; (lists = components(order.length, close)).length > MOST_GROUPS; least *= FARTHER) {}
-    let groups = lists.map((list) => group(list.map((i) => order[i]), measure));
+    for (let n = 0; (lists = components(order.length, close)).length > MOST_GROUPS && n < MOST_GROWTHS; n++)
+        least *= FARTHER;
+    let groups = lists.map((list) => group(list.map((i) => order[i]), measure)).filter(hasFiniteBox);
     for (;;) {
         const out = [], lost = [], alone = groups.length === 1;
         for (const one of groups) {
@@ -75,8 +82,11 @@ export function placeRings(order, { area, unit, taken, measure }) {
         if (lost.length === 0)
             return out;
         const mates = new Map(lost.map((i) => [i, nearest(i)]));
-        groups = components(groups.length, (i, k) => mates.get(i) === k || mates.get(k) === i)
-            .map((list) => group(order.filter((item) => list.some((i) => groups[i].members.includes(item))), measure));
+        const joined = components(groups.length, (i, k) => mates.get(i) === k || mates.get(k) === i)
+            .map((list) => group(order.filter((item) => list.some((i) => groups[i].members.includes(item))), measure)).filter(hasFiniteBox);
+        if (joined.length >= groups.length)
+            return out; // no two could be joined: the others stay without a label
+        groups = joined;
     }
 
     // null: nowhere near; Infinity: nowhere at all, and there is nothing to join.

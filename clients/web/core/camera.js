@@ -23,6 +23,9 @@ export function valid(camera) {
     return length(view) > 1e-9 && length(camera.up) > 1e-9 && length(cross(unit(view), unit(camera.up))) > 1e-6;
 }
 
+// Returns a camera that was moved, or the one before the move if the server would not accept it, as after a move in a picture of 0x0.
+export const validOr = (moved, before) => (valid(moved) ? moved : before);
+
 // Returns whether two cameras are equal.
 export function same(a, b) {
     const sameLens = !!a && !!b && a.fov === b.fov && a.height_m === b.height_m;
@@ -53,7 +56,8 @@ export function cameraOfMessage({ eye, target, up, fov, height_m }) {
     return { eye, target, up, fov: fov ?? USUAL_FOV, ...(height_m === undefined ? {} : { height_m }) };
 }
 
-// Returns a function that projects a point of the plant to [x, y, depth in metres] in the picture; null: it is behind the eye.
+// Returns a function that projects a point of the plant to [x, y, depth in metres] in the picture; null: it is behind the eye, or nowhere,
+// as in a picture of 0x0.
 export function projector(camera, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);
     const perMetre = 1 / metresPerPixel(camera, heightPx, 1), parallel = isParallel(camera);
@@ -61,13 +65,15 @@ export function projector(camera, widthPx, heightPx) {
         const v = subtract(point, camera.eye);
         const depth = dot(v, forward);
         const step = parallel ? perMetre : perMetre / depth;
-        return parallel || depth > 1e-6 ? [widthPx / 2 + dot(v, right) * step, heightPx / 2 - dot(v, up) * step, depth] : null;
+        const place = [widthPx / 2 + dot(v, right) * step, heightPx / 2 - dot(v, up) * step, depth];
+        return (parallel || depth > 1e-6) && finite(place) ? place : null;
     };
 }
 
 // Returns the part of the picture that the legend leaves free, in coordinates from -1 to 1. title: size of its letters.
-export const besideLegend = (width, height, lies, title = 14) => (lies ? { top: 1 - 2 * Math.min(0.4, 130 / height) }
-    : { right: 1 - 2 * Math.min(0.4, (Math.max(128, 7.6 * title + 24) + (height <= 320 ? 110 : 28)) / width) });
+export const besideLegend = (width, height, lies, title = 14) => (lies ? { top: 1 - 2 * share(130, height) }
+    : { right: 1 - 2 * share(Math.max(128, 7.6 * title + 24) + (height <= 320 ? 110 : 28), width) });
+const share = (part, whole) => (whole > 0 && part / whole <= 0.4 ? part / whole : 0.4);
 
 const FIT = 1.08; // leaves a rim
 
@@ -98,5 +104,5 @@ export function home({ home: { given, ...view }, outline }, width, height, windo
         };
     };
     const held = given ? outline?.filter(sees(16 / 9, {})) : outline;
-    return !outline?.length || (given && held.every(sees(aspect, window))) ? view : fitPoints(view, held, aspect, window);
+    return !outline?.length || (given && held.every(sees(aspect, window))) ? view : validOr(fitPoints(view, held, aspect, window), view);
 }

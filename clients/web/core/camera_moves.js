@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Camera moves: orbit, pan, zoom, look around, fit. Every function that moves returns a new camera. Positions in the picture are pixels
-// from the top left.
-import { basis, heightAt, isParallel, MAX_DISTANCE_M, metresPerPixel, MIN_DISTANCE_M, RADIANS, USUAL_FOV } from './camera.js';
+// Camera moves: orbit, pan, zoom, look around, fit. Every function that moves returns a new camera, or the
+// one it was given if the move makes none that the server accepts. Positions in the picture are pixels from the top left.
+import { basis, heightAt, isParallel, MAX_DISTANCE_M, metresPerPixel, MIN_DISTANCE_M, RADIANS, USUAL_FOV, validOr } from './camera.js';
 import { add, along, cross, dot, length, middle, scale, subtract, unit } from './vector.js';
 
 export const MAX_ELEVATION_DEG = 89; // straight up or down the horizon has no direction, and the picture would spin
@@ -19,7 +19,7 @@ function fitParallel(camera, box, aspect, margin) {
     const half = scale(subtract(box.max, box.min), 0.5), centre = middle(box.min, box.max);
     const reach = (axis) => half.reduce((sum, m, i) => sum + Math.abs(m * axis[i]), 0);
     const height_m = Math.max(MIN_DISTANCE_M, 2 * margin * Math.max(reach(up), reach(right) / aspect));
-    return { ...camera, height_m, eye: along(centre, forward, -(2 * reach(forward) + height_m)), target: centre };
+    return validOr({ ...camera, height_m, eye: along(centre, forward, -(2 * reach(forward) + height_m)), target: centre }, camera);
 }
 
 // Fits a box into the picture with a margin, looking the same way at its centre.
@@ -34,7 +34,7 @@ export function fit(camera, box, aspect, margin = 1.08) {
         const c = subtract(corner, centre);
         far = Math.max(far, Math.abs(dot(c, right)) / wide - dot(c, forward), Math.abs(dot(c, up)) / tall - dot(c, forward));
     }
-    return { ...camera, eye: along(centre, forward, -Math.min(far, MAX_DISTANCE_M)), target: centre };
+    return validOr({ ...camera, eye: along(centre, forward, -Math.min(far, MAX_DISTANCE_M)), target: centre }, camera);
 }
 
 // Returns the distance from the eye to the target.
@@ -56,7 +56,7 @@ export function orbit(camera, azimuthDeg, elevationDeg, pivot = camera.target) {
         const tilted = turn(subtract(point, pivot), right, -tilt * RADIANS);
         return add(pivot, turn(tilted, vertical, azimuthDeg * RADIANS));
     };
-    return { ...camera, eye: move(camera.eye), target: move(camera.target) };
+    return validOr({ ...camera, eye: move(camera.eye), target: move(camera.target) }, camera);
 }
 
 // Turns the view around the eye, as the pointer drags it; an orthographic camera, which has no eye to turn around, orbits instead.
@@ -70,14 +70,14 @@ export const depthOf = (camera, point) => dot(subtract(point, camera.eye), basis
 
 // Return the camera with the other projection, showing the same at the depth of the target.
 export function toParallel(camera) {
-    return { ...camera, height_m: heightAt(camera, distance(camera)) };
+    return validOr({ ...camera, height_m: heightAt(camera, distance(camera)) }, camera);
 }
 
 export function toPerspective(camera) {
     const { height_m, ...rest } = camera;
     const fov = rest.fov >= 1 ? rest.fov : USUAL_FOV;
     const back = Math.max(MIN_DISTANCE_M, height_m / (2 * Math.tan((fov * RADIANS) / 2)));
-    return { ...rest, fov, eye: along(rest.target, basis(camera).forward, -back) };
+    return validOr({ ...rest, fov, eye: along(rest.target, basis(camera).forward, -back) }, camera);
 }
 
 // Pans so that what is at that depth follows the pointer exactly.
@@ -85,7 +85,7 @@ export function pan(camera, dxPx, dyPx, heightPx, depth = distance(camera)) {
     const { right, up } = basis(camera);
     const step = metresPerPixel(camera, heightPx, depth);
     const move = along(scale(right, -dxPx * step), up, dyPx * step);
-    return { ...camera, eye: add(camera.eye, move), target: add(camera.target, move) };
+    return validOr({ ...camera, eye: add(camera.eye, move), target: add(camera.target, move) }, camera);
 }
 
 // Returns the viewing ray through a pixel: { origin, direction }, the direction one metre deep along `forward`.
@@ -102,7 +102,7 @@ function zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx) {
     const height_m = Math.max(MIN_DISTANCE_M, Math.min(MAX_DISTANCE_M, camera.height_m * factor));
     const zoomed = { ...camera, height_m };
     const move = subtract(sight(camera, xPx, yPx, widthPx, heightPx).origin, sight(zoomed, xPx, yPx, widthPx, heightPx).origin);
-    return { ...zoomed, eye: add(camera.eye, move), target: add(camera.target, move) };
+    return validOr({ ...zoomed, eye: add(camera.eye, move), target: add(camera.target, move) }, camera);
 }
 
 // Zooms; factor < 1 goes nearer. What is under (xPx, yPx) stays there; the target moves to its depth, so that the next orbit is about what
@@ -112,7 +112,7 @@ export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distan
         return zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx);
     const wanted = Math.max(MIN_DISTANCE_M, Math.min(MAX_DISTANCE_M, depth * factor));
     const eye = along(camera.eye, sight(camera, xPx, yPx, widthPx, heightPx).direction, depth - wanted);
-    return { ...camera, eye, target: along(eye, basis(camera).forward, wanted) };
+    return validOr({ ...camera, eye, target: along(eye, basis(camera).forward, wanted) }, camera);
 }
 
 // Returns where a ray enters a box, in units of its direction; null if it misses or starts inside.
@@ -125,7 +125,7 @@ export function enterBox(origin, direction, box) {
         near = Math.max(near, Math.min(a, b));
         far = Math.min(far, Math.max(a, b));
     }
-    return near <= far && near > 0 ? near : null;
+    return near <= far && near > 0 && near < Infinity ? near : null;
 }
 
 // Returns the depth of the nearest box under a pixel; null if there is none.
@@ -147,5 +147,5 @@ export function face(camera, point, box, distanceM, elevationDeg = 20) {
     const tilt = elevationDeg * RADIANS;
     const towards = add(scale(direction, Math.cos(tilt)), scale(vertical, Math.sin(tilt)));
     const lens = isParallel(camera) ? { height_m: 0.8 * distanceM } : {};
-    return { ...camera, ...lens, target: point, eye: along(point, towards, distanceM) };
+    return validOr({ ...camera, ...lens, target: point, eye: along(point, towards, distanceM) }, camera);
 }

@@ -3,11 +3,16 @@
 // and where dragging takes them.
 import { basis, isParallel } from './camera.js';
 import { AXES } from './section.js';
-import { add, along, cross, dot, length, middle, mix, scale, subtract, unit } from './vector.js';
+import { add, along, cross, dot, finite, length, middle, mix, scale, subtract, unit } from './vector.js';
 
 const LEAST_BOX_M = 0.05, MARGIN = 1e-3; // a plane stays inside the plant by this part of it
 const NEAR_M = 0.02;                     // of the eye
 const STEEP = 0.03;                      // sine squared between sight and way: below, a hand cannot say how far
+
+const isSound = ({ direction, at, low, high, corners }) => [at, low, high].every(Number.isFinite) && [direction, ...corners].every(finite);
+// A clip that was moved, or the one before if the move is not finite.
+const soundOr = (moved, before) =>
+    ((moved.planes ?? [moved.box.min, moved.box.max]).flat().every(Number.isFinite) ? moved : before);
 
 const middleOf = (points) => scale(points.reduce(add), 1 / points.length);
 
@@ -59,11 +64,11 @@ function sideGrip(box, index, high, bounds) {
 }
 
 // Returns the grips of a clip: [{ id, axis (null: oblique), turned (the smaller side stays), direction (unit vector), at, low, high (metres
-// along it), corners }].
+// along it), corners }], without those that are not finite.
 export function gripsOf(clip, bounds) {
     if (clip?.planes)
-        return clip.planes.map((plane, index) => planeGrip(plane, index, bounds));
-    return clip?.box ? [0, 1, 2].flatMap((i) => [false, true].map((high) => sideGrip(clip.box, i, high, bounds))) : [];
+        return clip.planes.map((plane, index) => planeGrip(plane, index, bounds)).filter(isSound);
+    return clip?.box ? [0, 1, 2].flatMap((i) => [false, true].map((high) => sideGrip(clip.box, i, high, bounds))).filter(isSound) : [];
 }
 
 // Returns the clip with a grip moved, within its limits.
@@ -71,28 +76,32 @@ export function moveGrip(clip, { index, size, turned, direction, low, high }, to
     const at = Math.max(low, Math.min(high, to));
     if (clip.planes) {
         const towards = turned ? -size : size;
-        return { planes: clip.planes.map((plane, i) => (i === index ? [...scale(direction, towards), -at * towards] : plane)) };
+        const plane = [...scale(direction, towards), -at * towards];
+        return soundOr({ planes: clip.planes.map((other, i) => (i === index ? plane : other)) }, clip);
     }
     const box = { min: [...clip.box.min], max: [...clip.box.max] };
     (turned ? box.max : box.min)[index] = at;
-    return { box };
+    return soundOr({ box }, clip);
 }
 
-// Returns the grip of a whole box, at its centre; null if the clip is no box.
-export const wholeOf = (clip) => clip?.box
-    ? { id: 'whole', corners: [middle(clip.box.min, clip.box.max)], direction: [0, 0, 0], low: 0, high: 0 } : null;
+// Returns the grip of a whole box, at its centre; null if the clip is no box, or one that is not finite.
+export function wholeOf(clip) {
+    const centre = clip?.box ? middle(clip.box.min, clip.box.max) : null;
+    return finite(centre) ? { id: 'whole', corners: [centre], direction: [0, 0, 0], low: 0, high: 0 } : null;
+}
 
 // Returns the clip with the whole box moved; its centre stays inside the plant.
-export function moveBox({ box }, by, bounds) {
-    const at = middle(box.min, box.max);
+export function moveBox(clip, by, bounds) {
+    const { box } = clip, at = middle(box.min, box.max);
     const way = by.map((m, i) => Math.max(bounds.min[i] - at[i], Math.min(bounds.max[i] - at[i], m)));
-    return { box: { min: add(box.min, way), max: add(box.max, way) } };
+    return soundOr({ box: { min: add(box.min, way), max: add(box.max, way) } }, clip);
 }
 
-// Returns where a viewing ray meets the plane through a point that faces the camera.
+// Returns where a viewing ray meets the plane through a point that faces the camera; the point itself if it does not.
 export function facing(camera, point, { origin, direction }) {
     const { forward } = basis(camera);
-    return along(origin, direction, dot(subtract(point, origin), forward) / dot(direction, forward));
+    const met = along(origin, direction, dot(subtract(point, origin), forward) / dot(direction, forward));
+    return finite(met) ? met : point;
 }
 
 // Returns the positions on its plane where a grip may be drawn, the centre first.
@@ -101,7 +110,7 @@ export function spotsOf({ corners }) {
         return [];
     const middle = middleOf(corners);
     const around = corners.flatMap((p, i) => [p, mix(p, corners[(i + 1) % corners.length], 0.5)]);
-    return [middle, ...[0.3, 0.6, 0.9].flatMap((part) => around.map((p) => mix(middle, p, part)))];
+    return [middle, ...[0.3, 0.6, 0.9].flatMap((part) => around.map((p) => mix(middle, p, part)))].filter(finite);
 }
 
 // Returns how far along `direction` from `point` a viewing ray passes nearest, in metres; null if they are almost parallel.
@@ -110,7 +119,8 @@ export function alongSight(point, direction, { origin, direction: towards }) {
     if (sine2 < STEEP)
         return null;
     const ahead = (dot(w, towards) - b * dot(w, direction)) / (c * sine2); // in front of the eye
-    return ahead > 0 ? (b * dot(w, towards) - c * dot(w, direction)) / (c * sine2) : null;
+    const way = (b * dot(w, towards) - c * dot(w, direction)) / (c * sine2);
+    return ahead > 0 && Number.isFinite(way) ? way : null;
 }
 
 // Clips a line to what is in front of the eye; null if nothing is.
@@ -122,5 +132,6 @@ export function beforeEye(camera, a, b) {
     if (from <= 0 && to <= 0)
         return null;
     const meet = () => along(a, subtract(b, a), from / (from - to));
-    return [from > 0 ? a : meet(), to > 0 ? b : meet()];
+    const line = [from > 0 ? a : meet(), to > 0 ? b : meet()];
+    return line.every(finite) ? line : null;
 }

@@ -77,5 +77,5 @@ export class Gestures {
 export function wheelZoom({ deltaY, deltaMode = 0, ctrlKey = false }) {
     const px = deltaY * [1, LINE_PX, PAGE_PX][deltaMode];
     const power = px * (ctrlKey ? PINCH_PER_PX : WHEEL_PER_PX);
-    return Math.exp(Math.max(-MOST_PER_EVENT, Math.min(MOST_PER_EVENT, power)));
+    return Number.isNaN(power) ? 1 : Math.exp(Math.max(-MOST_PER_EVENT, Math.min(MOST_PER_EVENT, power)));
 }

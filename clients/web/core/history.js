@@ -67,7 +67,7 @@ export function gaps(series, fromUs, toUs) {
     const out = [];
     const add = (from, to, grade) => {
         const begin = Math.max(from, fromUs) / 1e6, end = Math.min(to, toUs) / 1e6, last = out.at(-1);
-        if (grade === 0 || end <= begin)
+        if (grade === 0 || !(end > begin) || end - begin === Infinity)
             return;
         if (last && last.severity === grade && begin - last.to < 1e-3)
             last.to = end;
@@ -150,11 +150,15 @@ export function clustered(marks, nearUs) {
 // Returns by how many seconds an arrow key moves a slider of that span: at most a minute.
 export const arrowS = (spanS) => Math.max(1, Math.min(60, Math.round(spanS / 900)));
 
-// Returns round times between two, at most `most`: [us].
+const MOST_TICKS = 1000;
+
+// Returns round times between two, at most `most`: [us]. None between two that are not finite or centuries apart.
 export function ticks(fromUs, toUs, most, offsetUs = 0) {
     const steps = [1, 5, 10, 30, 60, 300, 600, 1800, 3600, 7200, 14400, 28800, 43200, 86400, 172800, 604800].map((s) => s * 1e6);
     const step = steps.find((one) => (toUs - fromUs) / one <= most) ?? steps.at(-1);
     const out = [];
+    if (!((toUs - fromUs) / step <= MOST_TICKS && Math.abs(fromUs) + Math.abs(offsetUs) < Number.MAX_SAFE_INTEGER))
+        return out;
     for (let us = Math.ceil((fromUs + offsetUs) / step) * step - offsetUs; us <= toUs; us += step)
         out.push(us);
     return out;

@@ -5,6 +5,7 @@ const SPACINGS = [0.16, 0.08, 0], HELD = 0.8; // of the area's width; what is he
 const MARK = 5, RING = 13, NEAR_GAP = 8, FAR_GAP = 22; // units
 export const CLEARANCE = 3;
 const ROOM = 0.06;                            // of the area
+const MOST_CELLS = 1000;                      // of the grid, to each side
 export const FIRST_FAR = 8;                   // from this slot on with a leader line
 export const RANK_RING = 3;
 export const MOST_BAD = 12;
@@ -14,19 +15,24 @@ export const SLOTS = [ // side, upper edge in heights
     [1, -2], [-1, -2], [1, 1], [-1, 1], [1, -3.2], [-1, -3.2], [1, 2.2], [-1, 2.2],
 ];
 
+// Whether an area is finite and larger than 0x0: in any other nothing is placed.
+export const hasArea = ({ left, top, right, bottom }) => right > left && bottom > top && right - left < Infinity && bottom - top < Infinity;
+
 export const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
 // A grid, so that thousands of labels do not each look at all others.
 class Taken {
-    constructor(cell) {
-        this.cell = cell;
+    constructor(cell, area) {
+        Object.assign(this, { area, cell: Math.max(cell, (area.right - area.left) / MOST_CELLS, (area.bottom - area.top) / MOST_CELLS) });
         this.cells = new Map();
     }
 
+    // Cells of the part of a box that lies in the area or one cell around it: labels lie in the area.
     keys(box) {
-        const keys = [];
-        for (let i = Math.floor(box.left / this.cell); i <= Math.floor(box.right / this.cell); i++) {
-            for (let j = Math.floor(box.top / this.cell); j <= Math.floor(box.bottom / this.cell); j++)
+        const keys = [], { cell, area } = this, from = (m, least) => Math.floor(Math.max(m - least, -cell) / cell);
+        const to = (m, least, most) => Math.floor(Math.min(m - least, most - least + cell) / cell);
+        for (let i = from(box.left, area.left), right = to(box.right, area.left, area.right); i <= right; i++) {
+            for (let j = from(box.top, area.top), bottom = to(box.bottom, area.top, area.bottom); j <= bottom; j++)
                 keys.push(i * 65536 + j);
         }
         return keys;
@@ -54,12 +60,15 @@ export function boxAt({ x, y, width, height, ring, across = 0, down = 0 }, slot,
     return { left, top, right: left + width, bottom: top + height };
 }
 
-// items: { id, x, y (the marker), width, height, rank, depth, held (slot or undefined), ring (of alarm colours around it), callout (the
+// all: items { id, x, y (the marker), width, height, rank, depth, held (slot or undefined), ring (of alarm colours around it), callout (the
 // one that it was in) }; area: { left, top, right, bottom }; rings: placeRings of callouts.js; measure(items): the size of a call-out.
 // Returns Map id -> { left, top, slot }; of rings also width, height and callout (undefined: it has a label of its own).
-export function placeLabels(items, { area, unit = 1, blocked = [], rings = null, measure = null }) {
+export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, measure = null }) {
+    if (!hasArea(area) || !(unit > 0 && unit < Infinity))
+        return new Map();
+    const items = all.filter(({ x, y, width, height, depth }) => [x, y, width, height, depth].every(Number.isFinite));
     const wide = area.right - area.left, room = ROOM * wide * (area.bottom - area.top);
-    const taken = new Taken(96 * unit), placed = new Map(), centres = [];
+    const taken = new Taken(96 * unit, area), placed = new Map(), centres = [];
     const clearance = CLEARANCE * unit;
     let used = 0;
     for (const box of blocked)

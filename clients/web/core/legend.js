@@ -7,8 +7,13 @@ export function niceStep(range, most) {
     return power * [1, 2, 5, 10].find((m) => range / (m * power) <= most * (1 + 1e-9));
 }
 
+const MOST_MULTIPLES = 1000; // more are not on any scale
+
+// Returns the multiples of a step from min to max; none where they would be countless.
 export function multiples(min, max, step) {
     const slack = (max - min) * 1e-9, list = [];
+    if (!(step > 0 && (max - min) / step <= MOST_MULTIPLES && Math.abs(min / step) < Number.MAX_SAFE_INTEGER))
+        return list;
     for (let n = Math.ceil((min - slack) / step); n * step <= max + slack; n++)
         list.push(Number((n * step).toPrecision(12)));
     return list;
@@ -38,7 +43,8 @@ export function spread(places, gap) {
 export function rampChoices(min, max) {
     if (!(max > min))
         return [];
-    return [...new Set([25, 16, 10, 8, 5, 4].map((n) => Number(niceStep(max - min, n).toPrecision(12))))].sort((a, b) => a - b);
+    const steps = [25, 16, 10, 8, 5, 4].map((n) => Number(niceStep(max - min, n).toPrecision(12)));
+    return [...new Set(steps)].filter(Number.isFinite).sort((a, b) => a - b);
 }
 
 // --- the server's rule (server/field/scale.h). scale: { map, min, max, log, interval, breaks };
@@ -60,7 +66,7 @@ export function edges(scale) {
     if (scale.breaks?.length > 0)
         return inside(scale);
     const count = interval > 0 ? Math.max(1, Math.ceil((max - min) / interval - 0.001)) : 1;
-    return count > 64 ? [] : Array.from({ length: count - 1 }, (_, i) => min + (i + 1) * interval);
+    return count <= 64 && Number.isFinite(min) ? Array.from({ length: count - 1 }, (_, i) => min + (i + 1) * interval) : [];
 }
 
 // The place whose colour the band of a value has. The last one ends at MAX, and MAX belongs to it.
@@ -75,6 +81,8 @@ function bandPlace(scale, value) {
     return (placeOf(scale, begin) + placeOf(scale, Math.min(begin + interval, max))) / 2;
 }
 
+const NOWHERE = [128, 128, 128]; // of what is no number
+
 // Returns the colour of a value: [r, g, b].
 export function colourOf(scale, value) {
     const { map, min, max } = scale;
@@ -83,7 +91,10 @@ export function colourOf(scale, value) {
     if (value > max)
         return map.above;
     const banded = scale.breaks?.length > 0 || scale.interval > 0;
-    const i = 3 * Math.max(0, Math.min(255, Math.floor((banded ? bandPlace(scale, value) : placeOf(scale, value)) * 256)));
+    const place = banded ? bandPlace(scale, value) : placeOf(scale, value);
+    if (Number.isNaN(place))
+        return NOWHERE;
+    const i = 3 * Math.max(0, Math.min(255, Math.floor(place * 256)));
     return [map.rgb[i], map.rgb[i + 1], map.rgb[i + 2]];
 }
 
@@ -95,6 +106,8 @@ export function scaleTicks(scale, lines, most = 9) {
         return [min, ...within, max];
     if (!scale.log)
         return ticks(min, max, Math.max(1, Math.min(6, most - 1)));
+    if (!(min > 0 && max > min && max < Infinity))
+        return [];
     const decades = [];
     for (let power = 10 ** Math.floor(Math.log10(min)); power <= max; power *= 10)
         decades.push(...[1, 2, 5].map((lead) => Number((lead * power).toPrecision(3))));

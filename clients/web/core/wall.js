@@ -20,7 +20,8 @@ export function readWall(search) {
 // How much larger than on a desk: screen in CSS pixels, which its diagonal holds.
 export function wallScale({ inches, metres }, screen) {
     const needed = metres * 1000 * Math.tan((MINUTES / 60) * (Math.PI / 180));
-    return Math.max(1, needed / (CAPITAL * SMALLEST_PX * millimetresPerPx(inches, screen)));
+    const larger = needed / (CAPITAL * SMALLEST_PX * millimetresPerPx(inches, screen));
+    return larger > 1 && larger < Infinity ? larger : 1;
 }
 
 export const millimetresPerPx = (inches, { width, height }) => (inches * 25.4) / Math.hypot(width, height);
@@ -30,7 +31,8 @@ export const LEAST = { width: 440, height: 250 };
 
 // { scale, metres }: as large as is needed, or as all of it fits into the window; read from so far.
 export function wallFit(wall, screen, { width, height }, least = LEAST) {
-    const needed = wallScale(wall, screen), scale = Math.max(0.5, Math.min(needed, width / least.width, height / least.height));
+    const needed = wallScale(wall, screen), fits = Math.min(needed, width / least.width, height / least.height);
+    const scale = fits > 0.5 ? fits : 0.5;
     return { scale, metres: scale < needed ? (wall.metres * scale) / needed : wall.metres };
 }
 
@@ -46,7 +48,7 @@ export function brightness(dim, minute, calls) {
 
 // By how much all that a wall shows is moved now, so that nothing burns in: [to the right, down] in pixels, at a time of the plant's clock.
 const SHIFT_US = 180e6, SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]];
-export const burnShift = (us) => SHIFTS[Math.floor(us / SHIFT_US) % SHIFTS.length];
+export const burnShift = (us) => SHIFTS[Math.floor(us / SHIFT_US) % SHIFTS.length] ?? SHIFTS[0];
 
 // Whether legends lie below the picture or stand beside it, on a wall so many units wide and high.
 export const legendsLie = (width, height, split) => width < height || (split && width < 800);

@@ -106,6 +106,6 @@ export function decodeBase64(text) {
 // The size to ask for: device pixels, within what the server draws, the shape of the window kept.
 export function pictureSize(widthPx, heightPx) {
     const shrink = Math.min(1, MAX_SIDE_PX / widthPx, MAX_SIDE_PX / heightPx, Math.sqrt(MAX_PIXELS / (widthPx * heightPx)));
-    const side = (px) => Math.max(MIN_SIDE_PX, Math.floor(px * shrink));
+    const side = (px) => (px > 0 && px * shrink > MIN_SIDE_PX ? Math.floor(px * shrink) : MIN_SIDE_PX);
     return { width: side(widthPx), height: side(heightPx) };
 }

@@ -119,6 +119,8 @@ export class Overlay {
         this.dirty = false;
         const { wide: width, high: height, unit } = this, ratio = window.devicePixelRatio * unit;
         const c = this.context;
+        if (!(width > 0 && height > 0))
+            return; // a viewport without area, as beside the trends of a wall
         const pixels = [Math.round(width * ratio), Math.round(height * ratio)];
         if (this.canvas.width !== pixels[0] || this.canvas.height !== pixels[1])
             [this.canvas.width, this.canvas.height] = pixels;

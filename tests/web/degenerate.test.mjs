@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page's pure functions with numbers that are not finite, sizes of 0x0 and lists that are empty: each returns, and none of those that
+// make geometry makes a number that is not finite. A wall once hung on a marker at NaN.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { readdirSync } from 'node:fs';
+import { test } from 'node:test';
+import { CASES, forgotten, modules } from './degenerate_cases.mjs';
+
+const PATIENCE_MS = 120000; // all of it takes seconds: longer is a loop without end
+const MB = 512;
+// Modules without a function that takes numbers.
+const TEXTS = ['alarm_actions', 'alarm_call', 'alarms', 'asset_tree', 'connection', 'decode_queue', 'decoder_fallback', 'decoding', 'h264',
+    'handover', 'health', 'keys', 'links', 'loop_check', 'matches', 'model', 'named_views', 'notes', 'quality', 'references', 'refusals',
+    'requests', 'search', 'session', 'wake', 'words'];
+
+// Runs the cases from `first` on until one does not return; adds causes to `wrong`. Returns the index of the next case.
+function runFrom(first, seed, wrong) {
+    const args = [`--max-old-space-size=${MB}`, new URL('degenerate.mjs', import.meta.url).pathname, String(first), String(seed)];
+    const options = { timeout: PATIENCE_MS, killSignal: 'SIGKILL', encoding: 'utf8' };
+    const { status, stdout, stderr } = spawnSync(process.execPath, args, options);
+    const lines = stdout.trim().split('\n'), at = Number(lines.findLast((line) => line.startsWith('case ')).slice(5));
+    wrong.push(...lines.filter((line) => !line.startsWith('case ')));
+    if (status !== 0)
+        wrong.push(`${CASES[at].name} does not return: ${/heap/.test(stderr) ? 'the memory is full' : stderr || 'time is up'}`);
+    return at + 1;
+}
+
+test('every function returns, and no geometry is made that is not finite', () => {
+    const seed = Number(process.env.SEED ?? Math.floor(Math.random() * 2 ** 31)), wrong = [];
+    console.log(`# seed ${seed}`);
+    for (let next = 0; next < CASES.length;)
+        next = runFrom(next, seed, wrong);
+    assert.equal(wrong.length, 0, wrong.join('\n'));
+});
+
+test('no module and no function is forgotten', () => {
+    const all = readdirSync(new URL('../../clients/web/core/', import.meta.url)).filter((file) => file.endsWith('.js'))
+        .map((file) => file.slice(0, -3));
+    assert.deepEqual(all.filter((name) => !modules.includes(name) && !TEXTS.includes(name)), []);
+    assert.deepEqual(forgotten, []);
+});

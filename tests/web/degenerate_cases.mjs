@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sound arguments of the page's pure functions, which degenerate.mjs spoils. ends: a function that only has to return, since it formats,
+// compares or calculates what its callers have checked; of all others every number in the result is finite.
+import * as address from '../../clients/web/core/address.js';
+import * as approach from '../../clients/web/core/approach.js';
+import * as callouts from '../../clients/web/core/callouts.js';
+import * as camera from '../../clients/web/core/camera.js';
+import * as cameraFlight from '../../clients/web/core/camera_flight.js';
+import * as cameraMoves from '../../clients/web/core/camera_moves.js';
+import * as clipGizmo from '../../clients/web/core/clip_gizmo.js';
+import * as declutter from '../../clients/web/core/declutter.js';
+import * as format from '../../clients/web/core/format.js';
+import * as gestures from '../../clients/web/core/gestures.js';
+import * as history from '../../clients/web/core/history.js';
+import * as instant from '../../clients/web/core/instant.js';
+import * as labels from '../../clients/web/core/labels.js';
+import * as legend from '../../clients/web/core/legend.js';
+import * as listWindow from '../../clients/web/core/list_window.js';
+import * as measure from '../../clients/web/core/measure.js';
+import * as meters from '../../clients/web/core/meters.js';
+import * as nearest from '../../clients/web/core/nearest.js';
+import * as patterns from '../../clients/web/core/patterns.js';
+import * as query from '../../clients/web/core/query.js';
+import * as scroll from '../../clients/web/core/scroll.js';
+import * as section from '../../clients/web/core/section.js';
+import * as splitView from '../../clients/web/core/split_view.js';
+import * as sun from '../../clients/web/core/sun.js';
+import * as timings from '../../clients/web/core/timings.js';
+import * as vector from '../../clients/web/core/vector.js';
+import * as wall from '../../clients/web/core/wall.js';
+import * as wire from '../../clients/web/core/wire.js';
+
+const MODULES = { address, approach, callouts, camera, camera_flight: cameraFlight, camera_moves: cameraMoves, clip_gizmo: clipGizmo,
+    declutter, format, gestures, history, instant, labels, legend, list_window: listWindow, measure, meters, nearest, patterns, query, scroll,
+    section, split_view: splitView, sun, timings, vector, wall, wire };
+export const CASES = [];
+const called = new Set();
+
+// call: what is called with args; by default the function itself.
+function add(module, name, args, { ends = false, call = MODULES[module][name] } = {}) {
+    called.add(`${module}.${name}`);
+    CASES.push({ name: `${module}.js: ${name}`, call, args, ends });
+}
+
+const ENDS = { ends: true };
+const eye = { eye: [4, 3, 2], target: [0.5, 0, 1], up: [0, 0, 1], fov: 45 }, flat = { ...eye, height_m: 3 };
+const box = { min: [-1, -1, 0], max: [1, 2, 3] }, point = [0.5, 0.2, 1], origin = [3, 3, 3], direction = [-1, -0.9, -0.8];
+const area = { left: 0, top: 0, right: 300, bottom: 200 };
+const rings = [[20, 30], [24, 36], [150, 90], [155, 95], [290, 190], [80, 150]].map(([x, y], id) => ({ id, x, y, width: 60, height: 20,
+    rank: id < 4 ? 3 : 1, depth: 4 + id, held: id === 2 ? 3 : undefined, ring: id < 4, callout: id < 2 ? 0 : undefined }));
+const placed = (items, where, unit, blocked, size) => {
+    const all = labels.placeLabels(items, { area: where, unit, blocked, rings: callouts.placeRings, measure: () => size });
+    return [...all.values()].map(({ left, top, slot, width = 1, height = 1 }) => [left, top, slot, width, height]);
+};
+const free = { meets: () => false };
+const map = { rgb: new Uint8Array(768), below: [1, 2, 3], above: [4, 5, 6] };
+const scale = { min: 10, max: 90, log: false, interval: 10, breaks: [20, 40] };
+const { breaks, ...ramp } = scale, log = { ...ramp, log: true, interval: 0 };
+const series = { step: false, bucket_us: 0, points: [[1e6, 3, 0], [2e6, 4, 0], [9e6, 5, 2 ** 31]] };
+const buckets = { step: false, bucket_us: 1e6, points: [[1e6, 1, 5, 3, 2, 4, 0, 0], [2e6, 1, 5, 3, 2, 4, 10, 0]] };
+const clip = { planes: [[1, 0, 0, -0.2], [0, 0.7, 0.7, -0.1]] }, boxed = { box: { min: [-0.5, -0.5, 0.5], max: [0.5, 1, 2] } };
+const picture = { data: true, sentTimeUs: 5e6, waitUs: 1, fieldUs: 2, renderUs: 3, encodeUs: 4, at: 90, bytes: 5000 };
+const HD = { width: 1920, height: 1080 };
+const sight = { origin, direction }, shown = { carried: { range: [1, 2], clip }, camera: eye, size: HD, time: { atUs: 1e15 } };
+const recent = [{ picture, decodeMs: 2, hereUs: 6e6 }, { picture, decodeMs: 3, hereUs: 7e6 }];
+const marks = [{ us: 1e6, priority: 2 }, { us: 2e6, priority: 1 }];
+
+// What an overlay draws: labels, call-outs, markers.
+add('callouts', 'placeRings', [rings, area, 1, { width: 90, height: 36 }], { call: (order, where, unit, size) =>
+    callouts.placeRings(order, { area: where, unit, taken: free, measure: () => size }).map(({ box: at, slot }) => ({ at, slot })) });
+add('labels', 'placeLabels', [rings, area, 1, [{ left: 0, top: 0, right: 40, bottom: 20 }], { width: 90, height: 36 }], { call: placed });
+add('labels', 'boxAt', [rings[0], 3, 1], ENDS);
+add('labels', 'leaderLine', [rings[0], { left: 60, top: 40 }, 5], ENDS);
+add('labels', 'meets', [area, area], ENDS);
+add('labels', 'hasArea', [area], ENDS);
+add('declutter', 'thinOut', [rings.map(({ x, y, depth }) => ({ x, y, depth, occluded: false, kept: false, held: true })), 1],
+    { call: (items, unit) => declutter.thinOut(items, unit).length });
+add('nearest', 'halfAt', [{ split: {} }, 640, 100], ENDS);
+add('nearest', 'nearestMarker', [rings, 30, 30, 12], ENDS);
+add('split_view', 'halves', [{ split: {} }, 641], ENDS);
+
+// Cameras. A move that makes no camera that the server accepts leaves the camera as it was.
+for (const one of [eye, flat]) {
+    add('camera', 'projector', [one, 640, 360, point], { call: (c, w, h, p) => camera.projector(c, w, h)(p) });
+    add('camera_moves', 'fit', [one, box, 1.5, 1.08]);
+    add('camera_moves', 'orbit', [one, 20, 10, point]);
+    add('camera_moves', 'lookAround', [one, 5, 8, 360]);
+    add('camera_moves', 'pan', [one, 5, 8, 360, 4]);
+    add('camera_moves', 'zoom', [one, 0.8, 100, 90, 640, 360, 4]);
+    add('camera_moves', 'face', [one, point, box, 4, 20]);
+    add('camera_moves', 'depthAt', [one, 100, 90, 640, 360, [box, box]]);
+    add('camera_flight', 'flight', [eye, one, 700, 350], { call: (from, to, ms, at) => cameraFlight.flight(from, to, ms)(at) });
+    for (const name of ['valid', 'validOr', 'basis', 'isParallel', 'cameraMessage', 'cameraOfMessage'])
+        add('camera', name, [one], ENDS);
+    add('camera', 'heightAt', [one, 4], ENDS);
+    add('camera', 'metresPerPixel', [one, 360, 4], ENDS);
+    add('camera_moves', 'distance', [one], ENDS);
+    add('camera_moves', 'elevation', [one], ENDS);
+    add('camera_moves', 'depthOf', [one, point], ENDS);
+    add('camera_moves', 'sight', [one, 100, 90, 640, 360], ENDS);
+}
+add('camera', 'same', [eye, flat], ENDS);
+add('camera', 'besideLegend', [640, 360, false, 14]);
+add('camera', 'home', [{ home: eye, outline: [[0, 0, 0], [1, 2, 3], [-1, 0, 2]] }, 640, 360, { right: 0.7 }],
+    { call: (plant, w, h, window) => { const at = camera.home(plant, w, h, window); return at === plant.home ? null : at; } });
+add('camera_moves', 'toParallel', [eye]);
+add('camera_moves', 'toPerspective', [flat]);
+add('camera_moves', 'enterBox', [origin, direction, box]);
+add('approach', 'approachDistance', [box]);
+add('approach', 'sidesOf', [eye, point], { call: (...given) => approach.sidesOf(...given).filter((one) => one !== given[0]) });
+add('approach', 'approaches', [eye, point, box], { call: (...given) => approach.approaches(...given).filter((one) => one !== given[0]) });
+for (const name of ['add', 'subtract', 'dot', 'cross', 'middle'])
+    add('vector', name, [point, origin], ENDS);
+add('vector', 'scale', [point, 2], ENDS);
+add('vector', 'along', [point, direction, 2], ENDS);
+add('vector', 'mix', [point, origin, 0.5], ENDS);
+for (const name of ['length', 'unit', 'finite'])
+    add('vector', name, [point], ENDS);
+
+// Sections and measuring.
+for (const one of [clip, boxed]) {
+    add('clip_gizmo', 'gripsOf', [one, box]);
+    add('clip_gizmo', 'wholeOf', [one]);
+    add('clip_gizmo', 'moveGrip', [one, clipGizmo.gripsOf(one, box)[0], 0.4]);
+    add('section', 'readCut', [one], ENDS);
+    add('section', 'readBox', [one, box]);
+}
+add('clip_gizmo', 'moveBox', [boxed, [0.1, 0.2, 0.3], box]);
+add('clip_gizmo', 'facing', [eye, point, sight]);
+add('clip_gizmo', 'spotsOf', [clipGizmo.gripsOf(clip, box)[0]]);
+add('clip_gizmo', 'alongSight', [point, [1, 0, 0], sight]);
+add('clip_gizmo', 'beforeEye', [eye, point, origin]);
+add('section', 'cut', ['y', 0.3, true], ENDS);
+add('section', 'boxAround', [box, 0.5], ENDS);
+add('section', 'showAsset', [{ hidden: [] }, 'hide', 'A'], ENDS);
+add('section', 'showAll', [{ hidden: ['A'] }], ENDS);
+add('measure', 'measure', [point, origin, [0, 0, 1]], ENDS);
+add('measure', 'metresText', [12], ENDS);
+add('sun', 'towardsSun', [{ turn: 45, height: 30 }, false], ENDS);
+add('sun', 'sunOf', [[0.5, 0.5, 0.7], false], ENDS);
+
+// Legends, patterns, charts and lists.
+add('legend', 'niceStep', [80, 6], ENDS);
+add('legend', 'multiples', [10, 90, 10]);
+add('legend', 'ticks', [10, 90, 6], { ends: true });
+add('legend', 'spread', [[0.1, 0.12, 0.5], 0.05], ENDS);
+add('legend', 'rampChoices', [10, 90]);
+for (const one of [scale, ramp, log]) {
+    add('legend', 'placeOf', [one, 30], ENDS);
+    add('legend', 'valueAt', [one, 0.3], ENDS);
+    add('legend', 'edges', [one]);
+    add('legend', 'colourOf', [one, 30], { call: (given, value) => legend.colourOf({ ...given, map }, value) });
+    add('legend', 'scaleTicks', [one, [30, 50], 9], ENDS);
+}
+add('patterns', 'patternPeriodPx', [360], ENDS);
+add('patterns', 'hatchAt', [3, 4, 360, 8], ENDS);
+add('patterns', 'ruleAt', [4, 360, 8], ENDS);
+add('patterns', 'stippleAt', [3, 4, 360, 8, [9, 9, 9]], ENDS);
+for (const one of [series, buckets]) {
+    add('history', 'line', [one, 0, 10e6], ENDS);
+    add('history', 'gaps', [one, 0, 10e6]);
+    add('history', 'lost', [[one, one], 0, 10e6]);
+}
+add('history', 'limitLines', [[{ limits: { H: 80, L: 20 } }]], { call: (tags) => history.limitLines(tags, () => 0) });
+add('history', 'nextTo', [marks, 1.5e6, false], ENDS);
+add('history', 'clustered', [marks, 2e6], ENDS);
+add('history', 'arrowS', [3600], ENDS);
+add('history', 'ticks', [0, 600e6, 6, 3600e6]);
+add('list_window', 'stack', [[20, 30, 20]], { ends: true });
+add('list_window', 'rowAt', [[0, 20, 50, 70], 30]);
+add('list_window', 'rowsInSight', [[0, 20, 50, 70], 10, 30, 2], ENDS);
+add('scroll', 'scrollTo', [[0, 20, 50, 70], 2, 10, 30], ENDS);
+add('meters', 'RateMeter', [1000, [1, 2, 3], 5], { ends: true, call: (keep, times, now) => {
+    const meter = new meters.RateMeter(keep);
+    times.forEach((at) => meter.count(at));
+    return meter.perSecond(now);
+} });
+add('meters', 'LatencyMeter', [3000, [1, 2, 3], 5], { ends: true, call: (keep, times, now) => {
+    const meter = new meters.LatencyMeter(keep);
+    times.forEach((at, seq) => { meter.sent(seq, at); meter.drawn(seq, at); });
+    return meter.median(now);
+} });
+add('timings', 'timingOf', [recent, 'network'], ENDS);
+add('timings', 'kbitPerS', [recent, 100, 5000], ENDS);
+
+// Words, addresses and sizes.
+for (const name of ['decimalsFor', 'ageText'])
+    add('format', name, [12], ENDS);
+for (const name of ['numberText', 'shortNumberText', 'changeText'])
+    add('format', name, [12, 2], ENDS);
+add('format', 'zoneClock', ['Europe/Berlin', 1e12], { ends: true, call: (zone, ms) => format.zoneClock(zone)(ms) });
+add('instant', 'fieldText', [1e15, 'Europe/Berlin'], ENDS);
+add('query', 'numbersText', [[1, 2, 3]], ENDS);
+add('query', 'clipText', [clip], ENDS);
+add('query', 'sensorsText', [{ A: { strength: 1, decay: 2 } }], ENDS);
+add('query', 'snapshotQuery', [shown], ENDS);
+add('address', 'writeAddress', [{ camera: eye, params: { range: [1, 2], power: 3 }, time: { atUs: 1e15 } }], ENDS);
+add('gestures', 'wheelZoom', [{ deltaY: 12, deltaMode: 0 }]);
+add('gestures', 'Gestures', [[10, 20], [15, 28], [40, 50], [45, 52]], { ends: true, call: (...points) => {
+    const hand = new gestures.Gestures();
+    points.forEach(([x, y], id) => hand.down({ id: id % 2, x, y }));
+    return points.flatMap(([x, y], id) => hand.move({ id: id % 2, x: x + 9, y }));
+} });
+add('wall', 'wallScale', [{ inches: 55, metres: 3 }, { width: 1920, height: 1080 }]);
+add('wall', 'millimetresPerPx', [55, { width: 1920, height: 1080 }], ENDS);
+add('wall', 'wallFit', [{ inches: 55, metres: 3 }, HD, { width: 1900, height: 1000 }, { width: 440, height: 250 }],
+    { call: (...given) => wall.wallFit(...given).scale });
+add('wall', 'brightness', [{ from_min: 60, to_min: 300, percent: 40 }, 100, false], ENDS);
+add('wall', 'burnShift', [1e15], ENDS);
+add('wall', 'legendsLie', [640, 360, true], ENDS);
+add('wire', 'pictureSize', [640, 360]);
+
+// Functions that are given texts, messages or objects of the page, and classes that stand for a session.
+const OTHERS = ['address.addressOf', 'address.readAddress', 'format.unitText', 'format.zoneOf', 'format.qualityText', 'format.title',
+    'format.quantityText', 'format.worst', 'history.ask', 'history.witnesses', 'history.raised', 'instant.fieldInstant',
+    'query.readNumbers', 'query.readSensors', 'sun.sunText', 'wall.readWall', 'wire.WireError', 'wire.decodeFrame', 'wire.isGivenUp',
+    'wire.isWhole', 'wire.decodeMessage', 'wire.decodeBase64'];
+
+// Exported functions of the modules above that neither are called nor are named as those that take no numbers.
+export const forgotten = Object.entries(MODULES).flatMap(([module, all]) => Object.entries(all)
+    .filter(([name, value]) => typeof value === 'function' && !called.has(`${module}.${name}`) && !OTHERS.includes(`${module}.${name}`))
+    .map(([name]) => `${module}.js: ${name}`));
+export const modules = Object.keys(MODULES);
