@@ -14,7 +14,8 @@
 #include "net/connection.h"
 #include "session/session_tiles.h"
 
-enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2, BACK_MAX_S = 60 };
+enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2, BACK_MAX_S = 60, SILENT_S = 6 };
+static const int64_t SILENT_NS = SILENT_S * NS_PER_S;
 static const int64_t HEARD_OF_NS = 2 * NS_PER_S; /* so long load balancers take to hear that sessions are sent elsewhere */
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* after an input somebody is taken to be moving */
@@ -194,12 +195,31 @@ void streams_check_tokens(struct server_context *server, int64_t now_utc_ns)
         session_check_token(stream->session, clock_mono_ns(), now_utc_ns);
 }
 
-/* Who takes nothing gets nothing, and keeps nothing of the server's but its view; then it is closed. */
+/* Logs once that a client acknowledges no picture: after a few seconds, before the page's own watchdog reloads it (watchdog.js). */
+static void log_silence(struct server_context *server, struct stream *stream, int64_t now_ns)
+{
+    const struct session *session = stream->session;
+    char display[96] = "";
+    if (!stream->silent_ns)
+        stream->silent_ns = now_ns;
+    if (now_ns - stream->silent_ns < SILENT_NS)
+        return;
+    stream->silent_ns = INT64_MAX;
+    if (session->display.display > 0)
+        snprintf(display, sizeof(display), ", display %d of wall %s", session->display.display, session->display.wall);
+    log_warn(server->params.log, "session %llu (%s%s): no picture acknowledged for %d s: its page hangs, or its network stalls",
+             (unsigned long long)session->id, connection_of(stream->wsi)->address, display, SILENT_S + PACER_STALL_S);
+}
+
+/* A client that takes nothing is sent nothing; its session keeps only its view, and is closed in the end. */
 static void watch_stall(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     enum pacer_state state = session_state(stream->session, now_ns);
+    if (state == PACER_FLOWS)
+        stream->silent_ns = 0;
     if (state == PACER_FLOWS || stream->close_code)
         return;
+    log_silence(server, stream, now_ns);
     stream_give_up(server, stream, now_ns);
     if (state != PACER_DEAD)
         return;

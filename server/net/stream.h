@@ -31,6 +31,7 @@ struct stream {
     struct known_markers known;
     char *carried;  /* while the plant is loaded anew: the parameters of its view */
     bool throttled; /* nothing is read */
+    int64_t silent_ns;  /* since when the client acknowledges no picture, 0: it does; INT64_MAX once that was logged */
     int close_code; /* 0: stays open */
     const char *close_text;
     int64_t messages, errors, dropped; /* of the session, as counted already */

@@ -8,7 +8,7 @@
 #include "base/clock.h"
 
 static const int64_t AHEAD_NS = 33 * NS_PER_MS;                        /* of bandwidth beside the round trip */
-static const int64_t STALL_NS = 2 * NS_PER_S, DEAD_NS = 15 * NS_PER_S; /* as in PROTOCOL.md */
+static const int64_t STALL_NS = PACER_STALL_S * NS_PER_S, DEAD_NS = 15 * NS_PER_S; /* as in PROTOCOL.md */
 
 void pacer_init(struct pacer *pacer)
 {

@@ -35,6 +35,7 @@ struct pacer {                              /* pacer_init */
     struct quality_ladder ladder;
 };
 
+enum { PACER_STALL_S = 2 }; /* without an acknowledgement, as in PROTOCOL.md */
 enum pacer_state { PACER_FLOWS, PACER_STALLS, PACER_DEAD };
 enum pacer_ack { PACER_ACK_NEW, PACER_ACK_OLD, PACER_ACK_NEVER_SENT };
 

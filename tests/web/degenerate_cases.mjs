@@ -31,8 +31,8 @@ import * as wall from '../../clients/web/core/wall.js';
 import * as wire from '../../clients/web/core/wire.js';
 
 const MODULES = { address, approach, callouts, camera, camera_flight: cameraFlight, camera_moves: cameraMoves, clip_gizmo: clipGizmo,
-    declutter, format, gestures, history, instant, labels, legend, list_window: listWindow, measure, meters, nearest, patterns, query, scroll,
-    section, split_view: splitView, sun, timings, vector, wall, wire };
+    declutter, format, gestures, history, instant, labels, legend, list_window: listWindow, measure, meters, nearest, patterns, query,
+    scroll, section, split_view: splitView, sun, timings, vector, wall, wire };
 export const CASES = [];
 const called = new Set();
 

@@ -9,7 +9,7 @@ import { filesIn, graph } from './modules.mjs';
 const WEB = new URL('../../clients/web/', import.meta.url);
 const read = (...names) => names.map((name) => readFileSync(new URL(name, WEB), 'utf8')).join('\n');
 // Said at once; by parts that are loaded later; by one that only engineers of a new plant see.
-const filesOf = (language) => ['', 'lazy.', 'import.'].map((part) => `words/${part}${language}.js`);
+const filesOf = (language) => ['', 'lazy.', 'import.', 'watchdog.'].map((part) => `words/${part}${language}.js`);
 const tableOf = async (file) => readWords((await import(`../../clients/web/${file}`)).default);
 const tables = Object.fromEntries(await Promise.all(LANGUAGES.map(async (language) =>
     [language, Object.assign({}, ...await Promise.all(filesOf(language).map(tableOf)))])));

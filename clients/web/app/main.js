@@ -14,6 +14,7 @@ import { Tools } from './toolbar/tools.js';
 import { Toolbar } from './toolbar/toolbar.js';
 
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
+const WATCH_AFTER_MS = 5000; // the first picture comes before
 const MANY_PICTURES = 30; // a codec for pictures that change pays from here on
 const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 'showTrend', 'addTrend', 'showAsset']; // of parts, too
 
@@ -229,6 +230,12 @@ watchSleep(() => {
     status.show();
 });
 serveInstalled();
+async function watch() {
+    const { watchMainThread } = await import('./common/watchdog.js');
+    watchMainThread({ scale: () => page.unit, reloads: document.body.classList.contains('wall') && parent === window });
+}
+if (!new URLSearchParams(location.search).has('pane')) // a pane hangs with its wall, which is watched
+    setTimeout(() => watch().catch(console.warn), WATCH_AFTER_MS);
 // The list of equipment is there from the beginning where there is room for it.
 const showAssets = () => !narrow.matches && !document.body.classList.contains('wall') && modules.get('assets');
 narrow.addEventListener('change', showAssets);

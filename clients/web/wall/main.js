@@ -12,6 +12,7 @@ import { clock, keepScreenOn, watchSleep } from '../app/common/clock.js';
 import { byId, make, setText, setVariable } from '../app/common/dom.js';
 import { store, stored } from '../app/common/storage.js';
 import { chooseTheme } from '../app/common/theme.js';
+import { watchMainThread } from '../app/common/watchdog.js';
 import { renewIfOld, serveInstalled } from '../app/install.js';
 import { areaOf, paneOf } from './panes.js';
 import { Pairing } from './pairing.js';
@@ -41,7 +42,7 @@ session.token = token;
 session.size = { width: 16, height: 16 }; // it is there for the words
 session.on('frame', (frame) => session.drawn(frame, 0));
 
-let wall = null, shape = '', panes = [];
+let wall = null, shape = '', panes = [], scale = 1;
 const call = new AlarmCall();
 
 // --- the grid
@@ -62,7 +63,7 @@ function fit() {
     if (!wall)
         return;
     const { innerWidth: width, innerHeight: height } = window, { inches, distance_m: metres } = wall;
-    const { scale } = wallFit({ inches, metres }, window.screen, { width, height }, LEAST);
+    ({ scale } = wallFit({ inches, metres }, window.screen, { width, height }, LEAST));
     setVariable(document.body, '--unit', `${scale}px`);
     setVariable(document.body, '--scale', scale);
     setVariable(document.body, '--letters', `${Math.min(LETTERS_MM / millimetresPerPx(inches, window.screen), width / 12)}px`);
@@ -164,5 +165,6 @@ watchSleep(() => {
 window.addEventListener('online', () => connection.retryNow());
 keepScreenOn();
 serveInstalled();
+watchMainThread({ scale: () => scale, reloads: parent === window }).catch(console.warn);
 connection.start();
 globalThis.wall = { session, call, get panes() { return panes; } }; // for the console and for tests

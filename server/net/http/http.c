@@ -36,6 +36,7 @@ static int file(struct server_context *server, struct request *request, const ch
 {
     const struct site_file *found = site_find(server->site, path);
     char seen[64] = "";
+    request->sandboxed = !strncmp(path, "/keeper/", 8);
     if (!found)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "not found\n");
     if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0 && !strcmp(seen, found->etag))

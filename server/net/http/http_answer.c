@@ -13,7 +13,6 @@ enum { HEAD_BYTES = 8192 };       /* with as many origins as may be named, of 25
 static const char *const security[][2] = {
     { "x-content-type-options:", "nosniff" },
     { "referrer-policy:", "no-referrer" },
-    { "cross-origin-resource-policy:", "same-origin" },
     { "cache-control:", "no-cache" },
 };
 
@@ -33,6 +32,17 @@ static bool add_first(struct request *request, int status, const char *type, uns
     return lws_add_http_common_headers(wsi, (unsigned)status, type, status == HTTP_STATUS_NOT_MODIFIED ? 0 : count, p, end) == 0;
 }
 
+/* A sandboxed document has an opaque origin, so that even its own script comes from another one. */
+static bool add_policies(struct request *request, const char *content_policy, unsigned char **p, unsigned char *end)
+{
+    const char *resource_policy = request->sandboxed ? "cross-origin" : "same-origin";
+    char *sandbox = request->sandboxed ? mem_printf("%s; sandbox allow-scripts allow-top-navigation", content_policy) : NULL;
+    bool added = add_header(request->wsi, "cross-origin-resource-policy:", resource_policy, p, end) &&
+                 add_header(request->wsi, "content-security-policy:", sandbox ? sandbox : content_policy, p, end);
+    mem_free(sandbox);
+    return added;
+}
+
 bool request_write_head(struct request *request, int status, const char *type, const char *extra_name, const char *extra)
 {
     unsigned char buffer[LWS_PRE + HEAD_BYTES], *start = buffer + LWS_PRE, *p = start, *end = buffer + sizeof(buffer) - 1;
@@ -43,7 +53,7 @@ bool request_write_head(struct request *request, int status, const char *type, c
     for (size_t i = 0; i < sizeof(security) / sizeof(security[0]); i++)
         if (!add_header(wsi, security[i][0], security[i][1], &p, end))
             return false;
-    if (!add_header(wsi, "content-security-policy:", server->content_policy, &p, end))
+    if (!add_policies(request, server->content_policy, &p, end))
         return false;
     if (server->tls && !add_header(wsi, "strict-transport-security:", "max-age=31536000", &p, end))
         return false;

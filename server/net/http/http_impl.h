@@ -19,6 +19,7 @@ struct request {
     struct address_usage *usage; /* of its address, while it waits; the connection holds the reference */
     bool head;                   /* no body is wanted */
     bool close;                  /* after the answer */
+    bool sandboxed;              /* the answer belongs to a document with an origin and, in Chromium, a process of its own */
     char *set_cookie;            /* sent with the next head; NULL: none */
     char *body;
     size_t count, sent;

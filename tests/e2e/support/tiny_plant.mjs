@@ -281,6 +281,7 @@ export async function startTiny(more = '', flags = []) {
             return answer.slice(2).trim();
         },
         stopDaemon: (signal) => plant.daemon.stop(signal),
+        logged: (pattern) => plant.daemon.line(pattern),
         stop: () => plant.destroy(),
     };
 }

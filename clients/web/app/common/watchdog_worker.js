@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Worker of watchdog.js: says over the page that it does not answer, also while its main thread hangs, and has a wall reloaded.
+// Messages: { veil, band (canvases), words, keeper } once; { width, height, scale } of the band; 'beat'; 'rest' (the page is hidden, where
+// timers are slow).
+'use strict';
+
+const TICK_MS = 1000, SILENT_TICKS = 10; // ticks, not a clock: while the machine sleeps, neither this worker nor the page runs
+let veil = null, band = null, words = null, keeper = null, scale = 1;
+let silent = 0, rests = false, isSaid = false;
+
+onmessage = ({ data }) => {
+    if (data.band)
+        ({ veil, band, words, keeper } = data);
+    if (data.width) {
+        ({ scale } = data);
+        [band.width, band.height] = [data.width, data.height];
+    }
+    rests = data === 'rest';
+    silent = 0;
+    // Wipes it; and in the beginning: the first picture of a canvas, its size and its font take the main thread.
+    if (isSaid || data.width)
+        draw();
+};
+
+setInterval(() => {
+    silent++;
+    if (rests || silent < SILENT_TICKS)
+        return;
+    if (silent === SILENT_TICKS)
+        keeper?.postMessage('reload');
+    draw();
+}, TICK_MS);
+
+// A veil over the whole page, so that what stands still does not look live, and a band with the words.
+function draw() {
+    const { width, height } = band, shade = veil.getContext('2d'), c = band.getContext('2d');
+    isSaid = silent >= SILENT_TICKS;
+    for (const [context, colour] of [[shade, 'rgb(60 66 72 / 0.6)'], [c, '#8f1320']]) {
+        context.clearRect(0, 0, width, height);
+        context.fillStyle = isSaid ? colour : 'transparent';
+        context.fillRect(0, 0, width, height);
+    }
+    c.fillStyle = isSaid ? '#fff' : 'transparent';
+    c.textAlign = 'center';
+    for (const [text, weight, px, y] of [[words.title, 700, 28, 40], [words.more.replace('{n}', silent), 400, 17, 72]]) {
+        c.font = `${weight} ${px * scale}px sans-serif`;
+        c.font = `${weight} ${px * scale * Math.min(1, 0.95 * width / c.measureText(text).width)}px sans-serif`;
+        c.fillText(text, width / 2, y * scale);
+    }
+}

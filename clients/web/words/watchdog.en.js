@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words over a page whose main thread hangs, in English.
+export default `
+hangs: This page does not answer
+hangs.reload: What it shows stopped {n} s ago. Reload it.
+hangs.reloads: What it shows stopped {n} s ago. It is being reloaded.
+`;

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A page whose main thread hangs, on an X display as people see it: a wall says so and is reloaded, a desk says so, the daemon logs it.
+// And what once made pages hang: rings of alarms in a viewport without area.
+import assert from 'node:assert/strict';
+import { existsSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { browserOn, openPage, SCREENSHOTS, shoot, waitForPicture } from './support/browser.mjs';
+import { missing, startTiny } from './support/tiny_plant.mjs';
+import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
+
+const absent = missing();
+const why = absent.length > 0 ? `not built: ${absent.join(', ')}`
+    : missingDisplay() ?? (existsSync('/usr/bin/chromium') ? false : 'no chromium');
+const options = { skip: why, timeout: 300000 };
+const [WIDTH, HEIGHT] = [960, 540], PATIENCE_MS = 120000;
+const VEIL = [0x8f, 0x13, 0x20]; // the band in which the words stand
+const WALLS = `
+views: [{ id: whole, title: Whole unit, view: "group=temperature" }]
+walls:
+- id: room
+  displays:
+  - grid: [main alarms, trend alarms]
+    panes:
+    - { area: main, views: [whole], on_alarm: yes }
+    - { area: alarms, alarms: yes }
+    - { area: trend, trend: [TI-1, TI-2], hours: 1 }
+`;
+let plant, display;
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startTiny(WALLS);
+    display = await startDisplay(WIDTH, HEIGHT);
+});
+after(async () => {
+    await display?.stop();
+    await plant?.stop();
+});
+
+// Waits until the band of the watchdog's words is seen on the display, or is gone.
+async function seesVeil(wanted) {
+    const end = performance.now() + PATIENCE_MS;
+    for (;;) {
+        const picture = display.grab(), seen = picture.at(WIDTH / 2, HEIGHT / 2 - 40).every((value, i) => Math.abs(value - VEIL[i]) < 8);
+        if (seen === wanted)
+            return picture;
+        assert.ok(performance.now() < end, `the veil is ${wanted ? 'not seen' : 'still there'}`);
+        await new Promise((done) => setTimeout(done, 100));
+    }
+}
+
+// A main thread that never comes back.
+const hang = (page) => page.evaluate(() => { setTimeout(() => { for (;;); }); });
+
+// As browserOn, but closed however the page hangs.
+async function withPage(url, f) {
+    const { page, close } = await browserOn(display.name, url, WIDTH, HEIGHT);
+    try {
+        await f(page);
+    } finally {
+        await close();
+    }
+}
+
+test('a wall whose main thread hangs says so, and shows the plant again by itself', options, () =>
+    withPage(`${plant.url}?wall=room&lang=en`, async (page) => {
+        await page.waitForURL(/wall\.html/);
+        await page.waitForFunction(() => globalThis.wall?.session.model && document.querySelector('canvas.watchdog'));
+        await page.waitForFunction(() => document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session.picture);
+        await page.evaluate(() => { globalThis.wall.before = true; });
+        const again = page.waitForEvent('load', { predicate: (one) => /wall\.html/.test(one.url()), timeout: PATIENCE_MS });
+        await hang(page);
+        savePng(await seesVeil(true), join(SCREENSHOTS, 'hang-wall.png'));
+        await again;
+        await seesVeil(false);
+        await page.waitForFunction(() => globalThis.wall?.session.model && !globalThis.wall.before);
+        await page.waitForFunction(() => document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session.picture);
+        savePng(display.grab(), join(SCREENSHOTS, 'hang-wall-again.png'));
+        assert.match(page.url(), /wall\.html\?wall=room&lang=en$/);
+    }));
+
+test('a desk that hangs says so until it answers again; the daemon logs that it acknowledges nothing', options, () =>
+    withPage(`${plant.url}?lang=de`, async (page) => {
+        await waitForPicture(page);
+        await page.waitForFunction(() => document.querySelector('canvas.watchdog'));
+        await page.evaluate(() => { setTimeout(() => { for (const end = performance.now() + 16000; performance.now() < end;); }); });
+        const moving = setInterval(() => plant.ask(`set TI-1 ${20 + 30 * Math.random()}`).catch(() => {}), 500);
+        savePng(await seesVeil(true), join(SCREENSHOTS, 'hang-desk.png'));
+        await plant.logged(/session \d+ \(127\.0\.0\.1\): no picture acknowledged for 8 s/);
+        clearInterval(moving);
+        await seesVeil(false);
+        savePng(display.grab(), join(SCREENSHOTS, 'hang-desk-again.png'));
+    }));
+
+// Draws call-outs as soon as they are there, in a page or in the panes of a wall. A page that hangs does not return.
+const drawCallouts = (page, selector) => page.evaluate(async (which) => {
+    const windows = which ? [...document.querySelectorAll(which)].map((frame) => frame.contentWindow) : [globalThis];
+    for (const { plantcast } of windows) {
+        await plantcast.modules.get('callouts');
+        for (let n = 0; n < 3; n++) {
+            plantcast.refresh();
+            await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+        }
+    }
+}, selector);
+
+test('a display with a trend and alarms, and a desk with hardly any height, go on', options, async () => {
+    for (const [tag, value] of [['TI-1', 95], ['TI-2', 96], ['PI-1', 95]])
+        await plant.ask(`set ${tag} ${value}`);
+    const wall = await openPage(`${plant.url}?wall=room`, { viewport: { width: WIDTH, height: HEIGHT } });
+    await wall.page.waitForFunction(() => globalThis.wall?.session.model?.alarms.list().length >= 3);
+    await wall.page.waitForFunction(() => document.querySelectorAll('.pane iframe').length === 2 &&
+        [...document.querySelectorAll('.pane iframe')].every(({ contentWindow: { plantcast } }) =>
+            plantcast?.modules && plantcast.session.picture && plantcast.session.model.alarms.list().length >= 3));
+    await drawCallouts(wall.page, '.pane iframe');
+    await shoot(wall.page, 'hang-wall-alarms');
+    await wall.close();
+    const desk = await openPage(plant.url, { viewport: { width: 844, height: 150 } }), { page } = desk;
+    await waitForPicture(page);
+    for (const height of [150, 100, 40]) { // the last ones leave a viewport of 0
+        await page.setViewportSize({ width: 844, height });
+        await drawCallouts(page, null);
+        await shoot(page, `hang-desk-844x${height}`);
+    }
+    assert.deepEqual(desk.errors, []);
+    await desk.close();
+});
