@@ -78,6 +78,8 @@ static int read_most(struct modbus_link *link, int unit, const struct modbus_add
     for (int count = bits ? 1 : MOST; count > 0; count /= 2) {
         *status = at->index + count > 65536 ? MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS
                                             : modbus_link_read(link, unit, at->table, at->index, count, words);
+        if (*status < 0 && modbus_link_answers(link) > 0 && modbus_link_open(link) == 0) /* the device ends a connection after an answer */
+            *status = modbus_link_read(link, unit, at->table, at->index, count, words);
         if (*status == 0)
             return count;
         if (*status < 0)
@@ -93,6 +95,7 @@ static int probe(struct log *log, const struct plant_source *source, const struc
     struct modbus_link *link = modbus_link_create(log, source, stop_fd);
     if (!link)
         return 1;
+    modbus_link_allow_any_unit(link, true);
     int status = modbus_link_open(link), count = status ? 0 : read_most(link, unit, at, words, &status);
     if (status < 0)
         fprintf(stderr, "plantcast: %s: %s\n", modbus_link_name(link), strerror(-status));

@@ -178,6 +178,8 @@ struct plant_source {
     int baud, parity, stop_bits;       /* parity: 'N', 'E' or 'O' */
     int port, unit;                    /* unit: Modbus unit identifier */
     int poll_ms, timeout_ms, pause_ms; /* pause: between two requests */
+    int connect_delay_ms;              /* between connecting and the first request */
+    bool close_between_polls;          /* one request per connection */
     int max_registers, max_bits;       /* of one request */
     int max_gap;                       /* registers or bits that nobody wants and that may be asked for none the less */
     enum byte_order byte_order;

@@ -86,6 +86,8 @@ static const struct key source_keys[] = {
     { "poll_ms", KEY_INT, false, offsetof(struct plant_source, poll_ms), 10, 86400000, NULL, NULL },
     { "timeout_ms", KEY_INT, false, offsetof(struct plant_source, timeout_ms), 10, 60000, NULL, NULL },
     { "pause_ms", KEY_INT, false, offsetof(struct plant_source, pause_ms), 0, 10000, NULL, NULL },
+    { "connect_delay_ms", KEY_INT, false, offsetof(struct plant_source, connect_delay_ms), 0, 60000, NULL, NULL },
+    { "close_between_polls", KEY_FLAG, false, offsetof(struct plant_source, close_between_polls), 0, 0, yes_choices, NULL },
     { "max_registers", KEY_INT, false, offsetof(struct plant_source, max_registers), 4, 125, NULL, NULL },
     { "max_bits", KEY_INT, false, offsetof(struct plant_source, max_bits), 1, 2000, NULL, NULL },
     { "max_gap", KEY_INT, false, offsetof(struct plant_source, max_gap), 0, 2000, NULL, NULL },
@@ -138,7 +140,8 @@ static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, c
     } belongs[] = {
         { "transport", MODBUS }, { "host", BY_HOST }, { "hosts", BY_HOST }, { "port", BY_HOST }, { "device", BY_LINE },
         { "baud", BY_LINE }, { "parity", BY_LINE }, { "stop_bits", BY_LINE }, { "unit", MODBUS }, { "timeout_ms", MODBUS },
-        { "pause_ms", MODBUS }, { "max_registers", MODBUS }, { "max_bits", MODBUS }, { "max_gap", MODBUS }, { "byte_order", MODBUS },
+        { "pause_ms", MODBUS }, { "connect_delay_ms", MODBUS }, { "close_between_polls", MODBUS },
+        { "max_registers", MODBUS }, { "max_bits", MODBUS }, { "max_gap", MODBUS }, { "byte_order", MODBUS },
         { "address_base", MODBUS }, { "file", REPLAY }, { "speed", REPLAY }, { "loop", REPLAY },
         { "protocol", MQTT }, { "client_id", MQTT }, { "session", MQTT }, { "qos", MQTT }, { "keepalive_s", MQTT }, { "payload", MQTT },
         { "topic", MQTT }, { "value", MQTT }, { "time", MQTT }, { "quality", MQTT }, { "rebirth", MQTT }, { "login", MQTT | OPCUA },

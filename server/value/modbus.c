@@ -19,6 +19,8 @@ static void read_block(struct modbus_source *modbus, size_t index)
 {
     struct read_plan_block *block = &modbus->plan.blocks[index];
     uint16_t words[READ_PLAN_MAX_BITS];
+    struct unit *unit = modbus_unit_of(modbus, block);
+    modbus_manners_before(modbus);
     if (!modbus_link_is_open(modbus->link) && !modbus_connect_link(modbus))
         return;
     if (modbus->base.config->pause_ms > 0 &&
@@ -27,16 +29,26 @@ static void read_block(struct modbus_source *modbus, size_t index)
     int status = modbus_link_read(modbus->link, block->unit, block->table, block->first, block->count, words);
     if (status < 0 && stopping(modbus))
         return;
+    const struct read_plan_block asked = *block;
     int64_t now_ns = clock_mono_ns(), next_ns = block->due_ns + block->scan_ms * NS_PER_MS;
     modbus->asked_ns = now_ns;
+    if (status < 0 && modbus_manners_excuse_read(modbus, status, unit->state == UNIT_UP))
+        return; /* the block stays due, so that the next connection begins with it */
     block->due_ns = next_ns > now_ns ? next_ns : now_ns + block->scan_ms * NS_PER_MS; /* late: no bursts to catch up */
     counter_inc(status == 0 ? modbus->reads_ok : modbus->reads_failed, 1);
+    if (status < 0) {
+        if (!modbus_unit_doubt(modbus, unit, index))
+            modbus_unit_is_down(modbus, unit, strerror(-status));
+        return;
+    }
+    modbus->answered_ns = now_ns;
+    modbus_manners_answered(modbus, block);
     if (status == 0)
         modbus_take_values(modbus, block, words);
-    else if (status > 0)
-        modbus_take_exception(modbus, index, status, now_ns);
     else
-        modbus_unit_is_down(modbus, modbus_unit_of(modbus, block), strerror(-status));
+        modbus_take_exception(modbus, index, status, now_ns);
+    modbus_unit_settle(modbus, unit, &asked);
+    modbus_manners_after(modbus);
 }
 
 /* When this block may be asked: when it is due, and its unit and the connection are not being left alone. */
@@ -119,6 +131,7 @@ static void add_plan(struct modbus_source *modbus)
     modbus->lost = mem_array(modbus->plan.tag_count, sizeof(*modbus->lost));
     log_info(modbus->base.log, "source %s: %s: %zu tags in %zu requests", modbus->base.config->id, modbus_link_name(modbus->link),
              modbus->plan.tag_count, modbus->plan.block_count);
+    modbus_manners_init(modbus);
 }
 
 static struct source *modbus_create(const struct source *base, struct counters *counters)

@@ -12,8 +12,7 @@ static const int64_t REFUSED_NS = 2 * NS_PER_S, REFUSED_MOST_NS = 60 * NS_PER_S;
 static const int64_t BUSY_NS = 50 * NS_PER_MS;
 enum { BUSY_TRIES = 4 };
 
-/* True: some tag changed. */
-static bool note_refused(struct modbus_source *modbus, const struct read_plan_block *block, bool refused, const char *why)
+bool modbus_note_refused(struct modbus_source *modbus, const struct read_plan_block *block, bool refused, const char *why)
 {
     size_t changed = 0;
     const char *first = "";
@@ -37,10 +36,10 @@ void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *bl
         modbus->samples[i].tag = index;
         decode_sample(tag, words + (tag->register_index - block->first), &modbus->samples[i]);
     }
-    block->busy_count = block->refused_count = 0;
+    block->busy_count = block->refused_count = block->silent_count = 0;
     block->answered = true;
     store_write(modbus->base.store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
-    bool repaired = note_refused(modbus, block, false, "read again");
+    bool repaired = modbus_note_refused(modbus, block, false, "read again");
     modbus_unit_is_up(modbus, modbus_unit_of(modbus, block)); /* may make the plan anew: block is of the old one then */
     if (repaired)
         modbus_replan(modbus);
@@ -51,7 +50,7 @@ static void take_refusal(struct modbus_source *modbus, const struct read_plan_bl
     for (size_t i = 0; i < block->tag_count; i++)
         modbus->samples[i] = (struct sample){ .tag = modbus->plan.tags[block->first_tag + i], .quality = quality };
     store_write(modbus->base.store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
-    note_refused(modbus, block, true, why);
+    modbus_note_refused(modbus, block, true, why);
 }
 
 static uint32_t quality_of_exception(int code)
@@ -66,7 +65,7 @@ static uint32_t quality_of_exception(int code)
     }
 }
 
-static int64_t refused_pause_ns(int before)
+int64_t modbus_refused_pause_ns(int before)
 {
     return before < 5 ? REFUSED_NS << before : REFUSED_MOST_NS;
 }
@@ -100,7 +99,7 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
         return;
     }
     if (quality == QUALITY_BAD_CONFIGURATION)
-        block->due_ns = now_ns + refused_pause_ns(block->refused_count++);
+        block->due_ns = now_ns + modbus_refused_pause_ns(block->refused_count++);
     take_refusal(modbus, block, quality, why);
 }
 

@@ -34,6 +34,11 @@ struct modbus_link {
     bool open;
     bool suspect; /* a serial line on which a reply may still come that was given up */
     int host;     /* index in source->hosts: the one in use */
+    int answers;  /* of this connection */
+    bool any_unit;
+    struct modbus_answered answered; /* by the last answer in TCP frames */
+    int64_t patience_ns;
+    int64_t opened_ns, sent_ns, first_answered_ns; /* sent_ns: the request that was answered first */
     struct lookup *lookup;
     char name[300];
 };
@@ -126,6 +131,37 @@ static void close_link(struct modbus_link *link)
     link->open = false;
 }
 
+void modbus_link_close(struct modbus_link *link)
+{
+    close_link(link);
+}
+
+void modbus_link_allow_any_unit(struct modbus_link *link, bool any)
+{
+    link->any_unit = any;
+}
+
+int modbus_link_answered_unit(const struct modbus_link *link)
+{
+    return link->answered.unit;
+}
+
+void modbus_link_set_patience(struct modbus_link *link, int64_t patience_ns)
+{
+    link->patience_ns = patience_ns;
+}
+
+int modbus_link_answers(const struct modbus_link *link)
+{
+    return link->answers;
+}
+
+int64_t modbus_link_first_ns(const struct modbus_link *link, int64_t *answered_ns)
+{
+    *answered_ns = link->first_answered_ns - link->opened_ns;
+    return link->sent_ns - link->opened_ns;
+}
+
 bool modbus_link_next_host(struct modbus_link *link)
 {
     int count = link->source->transport == TRANSPORT_RTU ? 1 : link->source->host_count;
@@ -209,6 +245,8 @@ int modbus_link_open(struct modbus_link *link)
         status = -errno;
     close(fd);
     link->open = status == 0;
+    link->answers = 0;
+    link->opened_ns = clock_mono_ns();
     if (link->open && wait_for(-1, 0, link->stop_fd, 0) == -ECANCELED) { /* interrupted before it was in its slot */
         close_link(link);
         status = -ECANCELED;
@@ -218,15 +256,17 @@ int modbus_link_open(struct modbus_link *link)
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
 
-/* A reply sent twice, or noise. modbus_flush knows a TCP context's socket and a line, but not RTU frames in a socket. */
-static void flush(struct modbus_link *link)
+/* Drops a reply that was sent twice, and noise. modbus_flush knows a TCP context's socket and a line, but not RTU frames in a socket.
+   Returns false if the device has closed the connection meanwhile. */
+static bool flush(struct modbus_link *link)
 {
     uint8_t bytes[512];
+    ssize_t got = 1;
     if (link->source->transport == TRANSPORT_RTU)
-        tcflush(link->slot_fd, TCIOFLUSH);
-    bool more = link->source->transport != TRANSPORT_RTU;
-    for (int i = 0; more && i < 64; i++)
-        more = recv(link->slot_fd, bytes, sizeof(bytes), MSG_DONTWAIT) > 0;
+        return tcflush(link->slot_fd, TCIOFLUSH), true;
+    for (int i = 0; got > 0 && i < 64; i++)
+        got = recv(link->slot_fd, bytes, sizeof(bytes), MSG_DONTWAIT);
+    return got > 0 || (got < 0 && (errno == EAGAIN || errno == EINTR));
 }
 
 static int read_bits(modbus_t *modbus, enum register_table table, int first, int count, uint16_t *words)
@@ -255,16 +295,32 @@ static int status_of(int got, int count)
     return got < 0 && cause > 0 && cause < MODBUS_ENOBASE ? -cause : -EPROTO;
 }
 
-/* 0, an exception code, or -errno. */
+/* The first request of a connection is repeated while patience lasts: some devices drop what comes soon after connecting, others take
+   long for their first answer. The answer to any of these equal requests is taken. */
+static int ask_framed(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
+{
+    struct modbus_question numbered = *question;
+    int status;
+    numbered.any_unit = link->any_unit;
+    numbered.oldest = (uint16_t)(link->number + 1);
+    int64_t begin_ns = clock_mono_ns(), timeout_ns = link->source->timeout_ms * NS_PER_MS;
+    do {
+        numbered.number = ++link->number;
+        status = modbus_tcp_ask(link->slot_fd, link->stop_fd, clock_mono_ns() + timeout_ns, &numbered, words, &link->answered);
+    } while (status == -ETIMEDOUT && link->answers == 0 && !link->answered.began && clock_mono_ns() < begin_ns + link->patience_ns);
+    if (link->answers == 0) /* each was sent a timeout after the one before */
+        link->sent_ns = begin_ns + (uint16_t)(link->answered.number - numbered.oldest) * timeout_ns;
+    return status;
+}
+
+/* Returns 0, an exception code, or -errno. */
 static int ask(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     enum register_table table = question->table;
-    flush(link);
-    if (!link->modbus) {
-        struct modbus_question numbered = *question;
-        numbered.number = ++link->number;
-        return modbus_tcp_ask(link->slot_fd, link->stop_fd, clock_mono_ns() + link->source->timeout_ms * NS_PER_MS, &numbered, words);
-    }
+    if (!flush(link))
+        return -ECONNRESET;
+    if (!link->modbus)
+        return ask_framed(link, question, words);
     bool bits = table == TABLE_COIL || table == TABLE_DISCRETE;
     int got = bits ? read_bits(link->modbus, table, question->first, question->count, words)
                    : read_words(link->modbus, table, question->first, question->count, words);
@@ -306,6 +362,8 @@ int modbus_link_read(struct modbus_link *link, int unit, enum register_table tab
         status = ask(link, &question, words);
     if (status == -EBADMSG)
         status = ask_anew(link, &question, words);
+    if (status >= 0 && link->answers++ == 0)
+        link->first_answered_ns = clock_mono_ns();
     if (status < 0)
         close_link(link);
     return status == -EBADMSG ? -EPROTO : status;

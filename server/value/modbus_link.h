@@ -29,6 +29,18 @@ bool modbus_link_next_host(struct modbus_link *link);
    Modbus exception code (> 0; the link stays open); or -errno, with the link closed, so that a late or foreign response is never taken
    for the next one. */
 int modbus_link_read(struct modbus_link *link, int unit, enum register_table table, int first, int count, uint16_t *words);
+/* Closes the connection; modbus_link_open() makes a new one. */
+void modbus_link_close(struct modbus_link *link);
+/* Has answers taken that name unit 0 or 255 in place of the unit that was asked: the device is known to be the only one there. */
+void modbus_link_allow_any_unit(struct modbus_link *link, bool any);
+/* Returns the unit that the last answer named. */
+int modbus_link_answered_unit(const struct modbus_link *link);
+/* Modbus TCP: the first request of each connection is repeated every timeout_ms until patience_ns have passed without an answer. 0: not. */
+void modbus_link_set_patience(struct modbus_link *link, int64_t patience_ns);
+/* Returns how many requests the present connection has answered, or the last one had, if there is none. */
+int modbus_link_answers(const struct modbus_link *link);
+/* Returns how long after connecting the request was sent that was answered first; *answered_ns: when its answer came. */
+int64_t modbus_link_first_ns(const struct modbus_link *link, int64_t *answered_ns);
 /* Called from another thread once stop_fd is readable: ends a read in progress. A read on a serial line ends by its deadline. */
 void modbus_link_interrupt(struct modbus_link *link);
 

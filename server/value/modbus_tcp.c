@@ -4,7 +4,6 @@
 
 #include <errno.h>
 #include <poll.h>
-#include <stdbool.h>
 #include <sys/socket.h>
 
 #include "value/lookup.h"
@@ -56,7 +55,7 @@ static int send_all(int fd, int stop_fd, int64_t deadline_ns, const uint8_t *byt
     return 0;
 }
 
-static int receive_all(int fd, int stop_fd, int64_t deadline_ns, uint8_t *bytes, size_t count)
+static int receive_all(int fd, int stop_fd, int64_t deadline_ns, uint8_t *bytes, size_t count, bool *began)
 {
     while (count > 0) {
         int status = wait_for(fd, POLLIN, stop_fd, deadline_ns);
@@ -67,6 +66,7 @@ static int receive_all(int fd, int stop_fd, int64_t deadline_ns, uint8_t *bytes,
             return -ECONNRESET;
         if (got < 0 && errno != EINTR && errno != EAGAIN)
             return -errno;
+        *began |= got > 0;
         bytes += got > 0 ? got : 0;
         count -= got > 0 ? (size_t)got : 0;
     }
@@ -79,15 +79,23 @@ static int value_bytes(const struct modbus_question *question)
     return is_bits(question->table) ? (question->count + 7) / 8 : 2 * question->count;
 }
 
+/* Unit identifiers 0 and 255 stand for the device at the address itself (MODBUS Messaging on TCP/IP V1.0b, 4.4.1.2). Many devices that
+   are no gateways name one of them whatever unit was asked. */
+static bool fits_unit(const struct modbus_question *question, uint8_t unit)
+{
+    bool itself = unit == 0 || unit == 255 || question->unit == 0 || question->unit == 255;
+    return unit == question->unit || (question->any_unit && itself);
+}
+
 static int check_header(const struct modbus_question *question, const uint8_t *header)
 {
     int length = get_word(header + 4);
     if (get_word(header + 2) != 0 || length < 3 || length > 3 + MOST_VALUE_BYTES)
         return -EPROTO;
-    if (get_word(header) != question->number)
+    if ((uint16_t)(question->number - get_word(header)) > (uint16_t)(question->number - question->oldest))
         return -EBADMSG;
     bool sized = length == 3 || length == 3 + value_bytes(question);
-    return sized && header[6] == question->unit ? 0 : -EPROTO;
+    return sized && fits_unit(question, header[6]) ? 0 : -EPROTO;
 }
 
 /* length: of function code and what follows. */
@@ -103,9 +111,11 @@ static int take_answer(const struct modbus_question *question, const uint8_t *an
     return 0;
 }
 
-int modbus_tcp_ask(int fd, int stop_fd, int64_t deadline_mono_ns, const struct modbus_question *question, uint16_t *words)
+int modbus_tcp_ask(int fd, int stop_fd, int64_t deadline_mono_ns, const struct modbus_question *question, uint16_t *words,
+                   struct modbus_answered *answered)
 {
     uint8_t asked[HEADER_BYTES + 5] = { 0 }, header[HEADER_BYTES], answer[2 + MOST_VALUE_BYTES];
+    *answered = (struct modbus_answered){ 0 };
     put_word(asked, question->number);
     put_word(asked + 4, 6);
     asked[6] = question->unit;
@@ -114,12 +124,14 @@ int modbus_tcp_ask(int fd, int stop_fd, int64_t deadline_mono_ns, const struct m
     put_word(asked + 10, question->count);
     int status = send_all(fd, stop_fd, deadline_mono_ns, asked, sizeof(asked));
     if (!status)
-        status = receive_all(fd, stop_fd, deadline_mono_ns, header, sizeof(header));
+        status = receive_all(fd, stop_fd, deadline_mono_ns, header, sizeof(header), &answered->began);
     if (!status)
         status = check_header(question, header);
     if (status)
         return status;
+    answered->number = (uint16_t)get_word(header);
+    answered->unit = header[6];
     int length = get_word(header + 4) - 1;
-    status = receive_all(fd, stop_fd, deadline_mono_ns, answer, (size_t)length);
+    status = receive_all(fd, stop_fd, deadline_mono_ns, answer, (size_t)length, &answered->began);
     return status ? status : take_answer(question, answer, length, words);
 }

@@ -4,7 +4,10 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "value/lookup.h"
 #include "value/modbus_impl.h"
+
+static const int64_t SPLIT_PAUSE_NS = 500 * NS_PER_MS; /* for the other blocks, while addresses that are not answered are searched */
 
 struct unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block)
 {
@@ -17,10 +20,12 @@ struct unit *modbus_unit_of(const struct modbus_source *modbus, const struct rea
 static void link_lost(struct modbus_source *modbus, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
-    log_at(modbus->base.log, modbus->link_up || !modbus->link_known ? LOG_WARN : LOG_DEBUG, "source %s: %s: no readings (%s)",
-           modbus->base.config->id, modbus_link_name(modbus->link), why);
+    char more[LOG_PACE_BYTES];
+    if (log_pace_take(&modbus->pace, now_ns, more)) {
+        log_warn(modbus->base.log, "source %s: %s: no readings (%s)%s", modbus->base.config->id, modbus_link_name(modbus->link), why, more);
+        modbus->loss_said = true;
+    }
     modbus->link_up = false;
-    modbus->link_known = true;
     counter_set(modbus->up, 0);
     counter_set(modbus->host, 0);
     store_link_lost(modbus->base.store, modbus->base.index, now_ns);
@@ -30,17 +35,20 @@ void modbus_unit_is_up(struct modbus_source *modbus, struct unit *unit)
 {
     if (unit->state == UNIT_DOWN && modbus->plan_cut)
         modbus_replan(modbus); /* it may have come back another */
-    if (unit->state == UNIT_DOWN && modbus->link_up)
+    if (unit->loss_said)
         log_info(modbus->base.log, "source %s: unit %d answers again", modbus->base.config->id, unit->id);
+    unit->loss_said = false;
     unit->state = UNIT_UP;
     unit->backoff = modbus->backoff = (struct backoff){ 0 };
     if (modbus->link_up)
         return;
-    modbus->link_up = modbus->link_known = true;
+    modbus->link_up = true;
     counter_set(modbus->up, 1);
     counter_set(modbus->host, 1 + modbus_link_host(modbus->link));
     store_link_up(modbus->base.store, modbus->base.index, clock_mono_ns());
-    log_info(modbus->base.log, "source %s: %s: reading", modbus->base.config->id, modbus_link_name(modbus->link));
+    if (modbus->loss_said || !modbus->pace.next_ns)
+        log_info(modbus->base.log, "source %s: %s: reading", modbus->base.config->id, modbus_link_name(modbus->link));
+    modbus->loss_said = false;
 }
 
 static bool any_unit_up(const struct modbus_source *modbus)
@@ -74,8 +82,9 @@ static void try_elsewhere(struct modbus_source *modbus)
 
 void modbus_unit_is_down(struct modbus_source *modbus, struct unit *unit, const char *why)
 {
-    bool was_up = unit->state == UNIT_UP;
+    char more[LOG_PACE_BYTES];
     unit->state = UNIT_DOWN;
+    unit->doubted = false;
     unit->retry_ns = clock_mono_ns() + backoff_next_ns(&unit->backoff, (uint64_t)clock_mono_ns());
     if (!any_unit_up(modbus)) {
         link_lost(modbus, why);
@@ -83,9 +92,71 @@ void modbus_unit_is_down(struct modbus_source *modbus, struct unit *unit, const 
             try_elsewhere(modbus);
         return;
     }
-    log_at(modbus->base.log, was_up ? LOG_WARN : LOG_DEBUG, "source %s: unit %d does not answer (%s)", modbus->base.config->id,
-           unit->id, why);
+    if (log_pace_take(&unit->pace, clock_mono_ns(), more)) {
+        log_warn(modbus->base.log, "source %s: unit %d does not answer (%s)%s", modbus->base.config->id, unit->id, why, more);
+        unit->loss_said = true;
+    }
     lose_tags_of(modbus, unit);
+}
+
+/* --- one block, or the whole unit ------------------------------------------------------------------------------------------- */
+
+/* Of the unit's other blocks, the one that is due next; NULL if there is none. */
+static struct read_plan_block *other_block(struct modbus_source *modbus, const struct read_plan_block *block)
+{
+    struct read_plan_block *other = NULL;
+    for (size_t i = 0; i < modbus->plan.block_count; i++) {
+        struct read_plan_block *b = &modbus->plan.blocks[i];
+        if (b != block && b->unit == block->unit && b->silent_count == 0 && (!other || b->due_ns < other->due_ns))
+            other = b;
+    }
+    return other;
+}
+
+bool modbus_unit_doubt(struct modbus_source *modbus, struct unit *unit, size_t block)
+{
+    struct read_plan_block *failed = &modbus->plan.blocks[block], *other = other_block(modbus, failed);
+    if (unit->state != UNIT_UP || unit->doubted || !other)
+        return false;
+    unit->doubted = true;
+    unit->doubted_table = failed->table;
+    unit->doubted_first = failed->first;
+    other->due_ns = failed->due_ns - failed->scan_ms * NS_PER_MS; /* before all others */
+    return true;
+}
+
+/* Splits a block that is not answered, down to the addresses to blame; these are asked again after growing pauses. */
+static void blame(struct modbus_source *modbus, size_t index)
+{
+    struct read_plan_block *block = &modbus->plan.blocks[index];
+    int64_t now_ns = clock_mono_ns();
+    for (size_t t = 0; t < block->tag_count; t++)
+        modbus->lost[t] = modbus->plan.tags[block->first_tag + t];
+    store_tags_lost(modbus->base.store, modbus->lost, block->tag_count, now_ns);
+    modbus->plan_cut = true;
+    if (block->tag_count > 1) {
+        block->silent_count = 1;
+        block->due_ns = now_ns + SPLIT_PAUSE_NS;
+        read_plan_split(&modbus->plan, modbus->base.plant, index);
+        return;
+    }
+    modbus_note_refused(modbus, block, true, "not answered, while other addresses are");
+    block->due_ns = now_ns + modbus_refused_pause_ns(block->silent_count++);
+}
+
+void modbus_unit_settle(struct modbus_source *modbus, struct unit *unit, const struct read_plan_block *answered)
+{
+    bool doubted = unit->doubted;
+    unit->doubted = false;
+    if (!doubted || (answered->table == unit->doubted_table && answered->first == unit->doubted_first))
+        return;
+    for (size_t i = 0; i < modbus->plan.block_count; i++) {
+        const struct read_plan_block *block = &modbus->plan.blocks[i];
+        if (block->unit == unit->id && block->table == unit->doubted_table && block->first == unit->doubted_first) {
+            blame(modbus, i);
+            return;
+        }
+    }
 }
 
 bool modbus_connect_link(struct modbus_source *modbus)
@@ -93,9 +164,9 @@ bool modbus_connect_link(struct modbus_source *modbus)
     int status = modbus_link_open(modbus->link);
     if (status == 0) {
         counter_inc(modbus->connects, 1);
-        return true;
+        return wait_for(-1, 0, modbus->base.stop_fd, clock_mono_ns() + modbus->manners.connect_delay_ns) != -ECANCELED;
     }
-    if (status == -ECANCELED)
+    if (status == -ECANCELED || modbus_manners_excuse_connect(modbus, status))
         return false;
     for (size_t i = 0; i < modbus->plan.unit_count; i++)
         modbus->units[i].state = UNIT_DOWN;

@@ -18,6 +18,7 @@ struct read_plan_block { /* one request; each tag is in one block, gaps between 
     int64_t due_ns;            /* for the reader; 0 in a new plan, copied by read_plan_split() */
     int busy_count;            /* likewise: answers in a row that said "busy" */
     int refused_count;         /* likewise: how often in a row a block of one tag was refused */
+    int silent_count;          /* likewise: how often in a row it was not answered while other blocks of the unit were */
     bool answered;             /* likewise: the last request was answered */
 };
 

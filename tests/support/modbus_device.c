@@ -28,10 +28,15 @@ struct device_thread {
     modbus_t *modbus;
     modbus_mapping_t *mapping, *wrong;
     int listen_fd, stop_fd;
-    int line_fd;   /* the terminal's own end, so that it lives on while nobody has it open */
-    int header;    /* bytes before the function code; the last of them is the unit */
+    int line_fd; /* the terminal's own end, so that it lives on while nobody has it open */
+    int header;  /* bytes before the function code; the last of them is the unit */
     int clients[MAX_CLIENTS];
+    struct {
+        int64_t since_ns, heard_ns;
+        int answers;
+    } of[MAX_CLIENTS]; /* by client */
     size_t client_count;
+    int64_t away_until_ns;
 };
 
 static void must(bool condition, const char *what)
@@ -56,7 +61,13 @@ static void drop_client(struct device_thread *t, size_t index, bool reset)
     if (reset)
         setsockopt(t->clients[index], SOL_SOCKET, SO_LINGER, &linger, sizeof(linger));
     close(t->clients[index]);
-    t->clients[index] = t->clients[--t->client_count];
+    t->of[index] = t->of[--t->client_count];
+    t->clients[index] = t->clients[t->client_count];
+    if (t->device->away_ms) { /* nobody listens: connections are refused */
+        t->away_until_ns = clock_mono_ns() + t->device->away_ms * NS_PER_MS;
+        close(t->listen_fd);
+        t->listen_fd = -1;
+    }
 }
 
 static bool stopped_within(struct device_thread *t, int ms)
@@ -123,6 +134,8 @@ static void reply_spoilt(struct device_thread *t, int fd, const uint8_t *request
         count--;
     if (manner == DEVICE_LONG)
         reply[t->header + 1] = (uint8_t)(reply[t->header + 1] + 2);
+    if (manner == DEVICE_RENAMED)
+        reply[t->header - 1] = (uint8_t)t->device->said_unit;
     if (manner == DEVICE_MEASURED) {
         reply[4] = (uint8_t)(t->device->said_length >> 8);
         reply[5] = (uint8_t)t->device->said_length;
@@ -148,8 +161,7 @@ static void note_request(struct device_thread *t, const uint8_t *request)
 
 static bool asks_for(const uint8_t *request, int header, int wanted)
 {
-    int first = request[header + 1] << 8 | request[header + 2],
-        count = request[header + 3] << 8 | request[header + 4];
+    int first = request[header + 1] << 8 | request[header + 2], count = request[header + 3] << 8 | request[header + 4];
     return wanted >= first && wanted < first + count;
 }
 
@@ -157,6 +169,18 @@ static void refuse(struct device_thread *t, const uint8_t *request, int code)
 {
     atomic_fetch_add(&t->device->refused, 1);
     modbus_reply_exception(t->modbus, request, (unsigned)code);
+}
+
+/* What a device does because of how old its connection is. Returns whether it answers. */
+static bool is_in_the_mood(struct device_thread *t, size_t index)
+{
+    struct device *device = t->device;
+    int64_t now_ns = clock_mono_ns();
+    if (now_ns - t->of[index].since_ns < device->deaf_ms * NS_PER_MS)
+        return false;
+    if (device->hushes && device->answers_per_connection && t->of[index].answers >= device->answers_per_connection)
+        return false;
+    return t->of[index].answers++ > 0 || !device->first_late_ms || !stopped_within(t, device->first_late_ms);
 }
 
 /* False: the connection is to be reset. */
@@ -167,6 +191,8 @@ static bool answer(struct device_thread *t, int fd, const uint8_t *request, int 
     note_request(t, request);
     if (manner == DEVICE_RESETTING)
         return false;
+    if (device->mute_register && asks_for(request, t->header, device->mute_register))
+        return true;
     if (manner == DEVICE_SILENT || (device->silent_unit && unit == device->silent_unit))
         return true;
     if (device->dead_unit && unit == device->dead_unit) {
@@ -209,28 +235,15 @@ static void serve(struct device_thread *t, size_t index)
         tcflush(t->clients[index], TCIOFLUSH);
     else if (bytes < 0)
         drop_client(t, index, false);
-    else if (bytes > 0 && !answer(t, t->clients[index], request, bytes))
-        drop_client(t, index, true);
-}
-
-static void *device_main(void *arg)
-{
-    struct device_thread *t = arg;
-    for (;;) {
-        struct pollfd fds[2 + MAX_CLIENTS] = { { .fd = t->stop_fd, .events = POLLIN }, { .fd = t->listen_fd, .events = POLLIN } };
-        size_t count = t->client_count;
-        for (size_t i = 0; i < count; i++)
-            fds[2 + i] = (struct pollfd){ .fd = t->clients[i], .events = POLLIN };
-        poll(fds, (nfds_t)(2 + count), -1);
-        if (fds[0].revents)
-            return NULL;
-        for (size_t i = count; i-- > 0;)
-            if (fds[2 + i].revents)
-                serve(t, i);
-        if (fds[1].revents && t->client_count < MAX_CLIENTS) {
-            t->clients[t->client_count++] = accept4(t->listen_fd, NULL, NULL, SOCK_CLOEXEC);
-            atomic_fetch_add(&t->device->connections, 1);
-        }
+    else if (bytes > 0) {
+        t->of[index].heard_ns = clock_mono_ns();
+        bool answers = is_in_the_mood(t, index), last = t->of[index].answers == t->device->answers_per_connection;
+        if (!answers)
+            note_request(t, request);
+        else if (!answer(t, t->clients[index], request, bytes))
+            drop_client(t, index, true);
+        else if (last && t->device->answers_per_connection && !t->device->hushes)
+            drop_client(t, index, t->device->resets);
     }
 }
 
@@ -241,6 +254,41 @@ static void open_socket(struct device_thread *t)
     must(t->listen_fd >= 0, "modbus_tcp_listen");
     t->device->port = bound_port(t->listen_fd);
     modbus_free(listener);
+}
+
+/* Closes what is idle, and listens again. */
+static void tend(struct device_thread *t)
+{
+    int64_t now_ns = clock_mono_ns();
+    for (size_t i = t->client_count; t->device->idle_ms && i-- > 0;)
+        if (now_ns - t->of[i].heard_ns > t->device->idle_ms * NS_PER_MS)
+            drop_client(t, i, false);
+    if (t->listen_fd < 0 && now_ns >= t->away_until_ns)
+        open_socket(t);
+}
+
+static void *device_main(void *arg)
+{
+    struct device_thread *t = arg;
+    for (;;) {
+        tend(t);
+        struct pollfd fds[2 + MAX_CLIENTS] = { { .fd = t->stop_fd, .events = POLLIN }, { .fd = t->listen_fd, .events = POLLIN } };
+        size_t count = t->client_count;
+        for (size_t i = 0; i < count; i++)
+            fds[2 + i] = (struct pollfd){ .fd = t->clients[i], .events = POLLIN };
+        poll(fds, (nfds_t)(2 + count), t->listen_fd < 0 || t->device->idle_ms ? 10 : -1);
+        if (fds[0].revents)
+            return NULL;
+        for (size_t i = count; i-- > 0;)
+            if (fds[2 + i].revents)
+                serve(t, i);
+        if (fds[1].revents && t->client_count < MAX_CLIENTS) {
+            t->of[t->client_count].since_ns = t->of[t->client_count].heard_ns = clock_mono_ns();
+            t->of[t->client_count].answers = 0;
+            t->clients[t->client_count++] = accept4(t->listen_fd, NULL, NULL, SOCK_CLOEXEC);
+            atomic_fetch_add(&t->device->connections, 1);
+        }
+    }
 }
 
 /* The terminal is the one client. */
@@ -286,7 +334,8 @@ void device_stop(struct device *device)
     pthread_join(t->thread, NULL);
     while (t->client_count)
         drop_client(t, 0, true); /* reset: no TIME_WAIT, so that the port is free at once */
-    close(t->listen_fd);
+    if (t->listen_fd >= 0)
+        close(t->listen_fd);
     if (t->line_fd >= 0)
         close(t->line_fd);
     close(t->stop_fd);

@@ -4,6 +4,7 @@
 #ifndef TESTS_MODBUS_DEVICE_H
 #define TESTS_MODBUS_DEVICE_H
 #include <stdatomic.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 enum device_manner {
@@ -19,6 +20,7 @@ enum device_manner {
     DEVICE_GARBAGE,     /* random bytes */
     DEVICE_FOREIGN,     /* the answer of another unit, with its values */
     DEVICE_MEASURED,    /* wrong values in an answer whose header says that it is said_length long */
+    DEVICE_RENAMED,     /* the right answer, but it names said_unit */
 };
 enum device_wire { DEVICE_TCP, DEVICE_RTU_TCP, DEVICE_LINE };
 #define DEVICE_WRONG_VALUE 0x7777
@@ -28,6 +30,14 @@ struct device { /* set what you like before or while it runs */
     _Atomic int bad_register, bad_code;  /* a request for this register is refused with this exception; code 0: none */
     _Atomic int bad_times;               /* so often, then no more; 0: always */
     _Atomic int said_length;             /* of DEVICE_MEASURED */
+    _Atomic int said_unit;               /* of DEVICE_RENAMED */
+    _Atomic int answers_per_connection;  /* then closes, or with `hushes` falls silent; 0: any number */
+    _Atomic bool hushes, resets;         /* resets: in place of closing */
+    _Atomic int deaf_ms;                 /* drops what comes sooner after connecting */
+    _Atomic int first_late_ms;           /* so long for the first answer of a connection */
+    _Atomic int away_ms;                 /* refuses connections for so long after one has ended */
+    _Atomic int idle_ms;                 /* closes a connection without a request for so long; 0: never */
+    _Atomic int mute_register;           /* a request for it is never answered; 0: none */
     _Atomic int dead_unit;               /* refused with exception 11; 0: none */
     _Atomic int silent_unit;             /* not answered; 0: none */
     _Atomic int requests, refused, connections;

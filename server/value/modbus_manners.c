@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A Modbus source: finds out how the device wants its connections, adapts, and logs once which key would say so from the start. */
+#include <errno.h>
+#include <stdio.h>
+
+#include "base/clock.h"
+#include "value/modbus_impl.h"
+
+enum { SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
+static const int64_t PAUSE_NS = 50 * NS_PER_MS;      /* before connecting again, doubled each time: some devices free a connection late */
+static const int64_t TOLERANCE_NS = 2 * NS_PER_S;    /* since the last answer: then the device is lost */
+static const int64_t PATIENCE_NS = 3 * NS_PER_S;     /* for the first answer of the second connection without one; twice as long later */
+static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS; /* first delay that is tried where requests have no numbers */
+static const int64_t MOST_DELAY_NS = 8 * NS_PER_S;
+
+void modbus_manners_init(struct modbus_source *modbus)
+{
+    const struct plant_source *config = modbus->base.config;
+    modbus->manners = (struct modbus_manners){ .one_per_connection = config->close_between_polls,
+                                               .connect_delay_ns = config->connect_delay_ms * NS_PER_MS };
+    modbus->pace = (struct log_pace){ .first_ns = 10 * NS_PER_S, .longest_ns = 3600 * NS_PER_S };
+    modbus->unit_pace = (struct log_pace){ .first_ns = 60 * NS_PER_S, .longest_ns = 3600 * NS_PER_S };
+    for (size_t i = 0; i < modbus->plan.unit_count; i++)
+        modbus->units[i].pace = modbus->pace;
+    modbus_link_allow_any_unit(modbus->link, modbus->plan.unit_count == 1);
+}
+
+static bool is_network(const struct modbus_source *modbus)
+{
+    return modbus->base.config->transport != TRANSPORT_RTU;
+}
+
+void modbus_manners_before(struct modbus_source *modbus)
+{
+    const struct modbus_manners *manners = &modbus->manners;
+    int64_t patience_ns = manners->first_wait_ns;
+    if (!modbus->link_up && manners->silent_connections > 0 && patience_ns < PATIENCE_NS)
+        patience_ns = manners->silent_connections == 1 ? PATIENCE_NS : 2 * PATIENCE_NS;
+    modbus_link_set_patience(modbus->link, patience_ns);
+}
+
+void modbus_manners_after(struct modbus_source *modbus)
+{
+    if (modbus->manners.one_per_connection && is_network(modbus))
+        modbus_link_close(modbus->link);
+}
+
+/* --- learning --------------------------------------------------------------------------------------------------------------- */
+
+static void log_found(struct modbus_source *modbus, const char *found)
+{
+    log_info(modbus->base.log, "source %s: device %s %s", modbus->base.config->id, modbus_link_name(modbus->link), found);
+}
+
+/* The first answer of a connection came late: long after its request, or to one that was repeated. */
+static void learn_start(struct modbus_source *modbus)
+{
+    struct modbus_manners *manners = &modbus->manners;
+    int64_t answered_ns, sent_ns = modbus_link_first_ns(modbus->link, &answered_ns),
+                         timeout_ns = modbus->base.config->timeout_ms * NS_PER_MS;
+    bool known = manners->first_wait_ns > 0, repeated = answered_ns - sent_ns < timeout_ns / 2;
+    char found[200];
+    if (answered_ns - manners->connect_delay_ns < timeout_ns) {
+        manners->first_wait_ns = 0; /* it was slow for another reason */
+        return;
+    }
+    if (answered_ns > manners->first_wait_ns / 2)
+        manners->first_wait_ns = 2 * answered_ns;
+    if (known)
+        return;
+    long long sent_ms = (sent_ns / NS_PER_MS + 99) / 100 * 100, answered_ms = answered_ns / NS_PER_MS;
+    if (repeated)
+        snprintf(found, sizeof(found),
+                 "answers no request that comes sooner than %lld ms after connecting: repeating the first one; "
+                 "`connect_delay_ms: %lld` says so from the start",
+                 sent_ms, sent_ms);
+    else
+        snprintf(found, sizeof(found), "takes %lld ms for the first answer after connecting: waiting for it", answered_ms);
+    log_found(modbus, found);
+}
+
+/* A device without numbers in its answers must not be asked twice: a longer delay is tried with each connection. */
+static void learn_rtu_delay(struct modbus_source *modbus)
+{
+    struct modbus_manners *manners = &modbus->manners;
+    bool found = manners->silent_connections > 0 && manners->connect_delay_ns > modbus->base.config->connect_delay_ms * NS_PER_MS;
+    if (found && modbus->base.config->transport == TRANSPORT_RTU_TCP)
+        log_info(modbus->base.log,
+                 "source %s: device %s answers once there are %lld ms between connecting and the first request: `connect_delay_ms` says so "
+                 "from the start",
+                 modbus->base.config->id, modbus_link_name(modbus->link), (long long)(manners->connect_delay_ns / NS_PER_MS));
+}
+
+static void note_unit(struct modbus_source *modbus, int asked)
+{
+    int answered = modbus_link_answered_unit(modbus->link);
+    char more[LOG_PACE_BYTES];
+    if (modbus->base.config->transport == TRANSPORT_TCP && answered != asked && log_pace_take(&modbus->unit_pace, clock_mono_ns(), more))
+        log_info(modbus->base.log, "source %s: device %s answers as unit %d to requests for unit %d: taken, since only one unit is read%s",
+                 modbus->base.config->id, modbus_link_name(modbus->link), answered, asked, more);
+}
+
+void modbus_manners_answered(struct modbus_source *modbus, const struct read_plan_block *block)
+{
+    struct modbus_manners *manners = &modbus->manners;
+    int answers = modbus_link_answers(modbus->link);
+    if (answers == 1 && modbus->base.config->transport == TRANSPORT_TCP)
+        learn_start(modbus);
+    learn_rtu_delay(modbus);
+    if (answers > 1)
+        manners->short_connections = 0;
+    manners->silent_connections = manners->failed_connections = 0;
+    note_unit(modbus, block->unit);
+}
+
+/* --- failures --------------------------------------------------------------------------------------------------------------- */
+
+static bool is_closed(int status)
+{
+    return status == -ECONNRESET || status == -EPIPE || status == -ECONNREFUSED || status == -ECONNABORTED;
+}
+
+/* The device ended a connection on which it had answered. */
+static void learn_end(struct modbus_source *modbus, int answers)
+{
+    struct modbus_manners *manners = &modbus->manners;
+    manners->short_connections = answers == 1 ? manners->short_connections + 1 : 0;
+    if (manners->short_connections == SHORT_CONNECTIONS && !manners->one_per_connection) {
+        manners->one_per_connection = true;
+        log_found(modbus, "closes the connection after each answer: reading one block per connection; "
+                          "`close_between_polls: yes` says so from the start");
+    } else if (answers > 1 && !manners->ends_said) {
+        manners->ends_said = true;
+        log_info(modbus->base.log, "source %s: device %s closes connections that it has answered on: connecting again when that happens",
+                 modbus->base.config->id, modbus_link_name(modbus->link));
+    }
+}
+
+/* Right after a connection that answered, the next one may be refused for a moment. */
+static bool may_be_early(struct modbus_source *modbus, int status, int most)
+{
+    struct modbus_manners *manners = &modbus->manners;
+    bool ends = manners->one_per_connection || manners->short_connections > 1;
+    int64_t now_ns = clock_mono_ns();
+    if (!modbus->link_up || !ends || !is_closed(status) || now_ns - modbus->answered_ns > TOLERANCE_NS ||
+        manners->failed_connections >= most || modbus->base.config->host_count > 1)
+        return false;
+    modbus->connect_ns = now_ns + (PAUSE_NS << manners->failed_connections++);
+    return true;
+}
+
+bool modbus_manners_excuse_connect(struct modbus_source *modbus, int status)
+{
+    return is_network(modbus) && may_be_early(modbus, status, REFUSED_CONNECTIONS);
+}
+
+static void try_longer_start(struct modbus_source *modbus)
+{
+    struct modbus_manners *manners = &modbus->manners;
+    const struct plant_source *config = modbus->base.config;
+    manners->silent_connections++;
+    if (config->transport != TRANSPORT_RTU_TCP)
+        return;
+    manners->connect_delay_ns = 2 * manners->connect_delay_ns + RTU_DELAY_NS;
+    if (manners->connect_delay_ns > MOST_DELAY_NS)
+        manners->connect_delay_ns = config->connect_delay_ms * NS_PER_MS;
+}
+
+bool modbus_manners_excuse_read(struct modbus_source *modbus, int status, bool unit_up)
+{
+    int answers = modbus_link_answers(modbus->link);
+    bool silent_after_one = unit_up && answers == 1 && status == -ETIMEDOUT && modbus->base.config->transport == TRANSPORT_TCP;
+    if (!is_network(modbus))
+        return false;
+    if (silent_after_one || (modbus->link_up && answers > 0 && is_closed(status))) {
+        learn_end(modbus, answers);
+        return true;
+    }
+    if (!modbus->link_up && answers == 0 && status == -ETIMEDOUT)
+        try_longer_start(modbus);
+    return unit_up && may_be_early(modbus, status, CLOSED_CONNECTIONS);
+}

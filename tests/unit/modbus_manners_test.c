@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Modbus devices that want their connections in a way of their own: the source finds out and reads all of them, without a key. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "tests/support/modbus_case.h"
+#include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
+#include "value/quality.h"
+
+enum { POLL_MS = 100, BLOCKS = 3 };
+
+/* --- what the log says ------------------------------------------------------------------------------------------------------- */
+
+static FILE *said;
+static int kept_stderr;
+
+static int set_up(void **state)
+{
+    int status = modbus_case_set_up(state);
+    struct modbus_case *s = *state;
+    log_destroy(&s->log);
+    s->log = log_create(LOG_INFO);
+    said = tmpfile();
+    fflush(stderr);
+    kept_stderr = dup(2);
+    dup2(fileno(said), 2);
+    return status;
+}
+
+static int tear_down(void **state)
+{
+    int status = modbus_case_tear_down(state);
+    dup2(kept_stderr, 2);
+    close(kept_stderr);
+    fclose(said);
+    return status;
+}
+
+static int lines_with(const char *words)
+{
+    char line[1000];
+    int count = 0;
+    rewind(said);
+    while (fgets(line, sizeof(line), said))
+        count += strstr(line, words) != NULL;
+    return count;
+}
+
+static void await_line(const char *words, double timeout_s)
+{
+    for (int64_t end_ns = clock_mono_ns() + (int64_t)(timeout_s * 1e9); lines_with(words) == 0 && clock_mono_ns() < end_ns;)
+        sleep_ns(20 * NS_PER_MS);
+    if (lines_with(words) != 1)
+        fail_msg("%d lines with: %s", lines_with(words), words);
+}
+
+/* --- three blocks, at 0, 500 and 1000 ---------------------------------------------------------------------------------------- */
+
+static void add_blocks(struct modbus_case *s)
+{
+    for (int i = 0; i < BLOCKS; i++) {
+        char name[20];
+        snprintf(name, sizeof(name), "B%d", i);
+        plant_by_hand_tag(s->plant, name, TABLE_HOLDING, 500 * i, DATA_INT16);
+        s->plant->tags[i].stale_s = 30;
+    }
+    s->plant->sources[0].poll_ms = POLL_MS;
+    modbus_case_be_impatient(s);
+}
+
+static void start(struct modbus_case *s)
+{
+    add_blocks(s);
+    device_start(&s->device);
+    modbus_case_start(s);
+}
+
+static bool all_good(struct modbus_case *s)
+{
+    bool good = true;
+    for (int i = 0; i < BLOCKS; i++) {
+        const struct reading *reading = modbus_case_look(s, i);
+        good &= reading->quality == QUALITY_GOOD;
+        if (reading->quality == QUALITY_GOOD)
+            assert_true(reading->value == 500 * i);
+    }
+    return good;
+}
+
+/* All blocks are Good, and from then on at each look while the device answers so many more requests. */
+static void expect_steady(struct modbus_case *s, double within_s, int requests)
+{
+    for (int i = 0; i < BLOCKS; i++)
+        modbus_case_expect(s, i, QUALITY_GOOD, within_s);
+    for (int end = s->device.requests + requests; s->device.requests < end; sleep_ns(5 * NS_PER_MS))
+        assert_true(all_good(s));
+    for (int i = 0; i < BLOCKS; i++)
+        assert_true(modbus_case_look(s, i)->age_ns < 5 * NS_PER_S);
+}
+
+/* --- connections that end ---------------------------------------------------------------------------------------------------- */
+
+static void a_device_that_closes_after_each_answer(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.answers_per_connection = 1;
+    start(s);
+    expect_steady(s, 5, 30);
+    await_line(
+        "closes the connection after each answer: reading one block per connection; `close_between_polls: yes` says so from the start", 5);
+    assert_int_equal(lines_with("no readings"), 0);
+    assert_int_equal(lines_with("reading"), 2); /* this one, and that it reads */
+}
+
+static void a_device_that_resets_after_each_answer(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.answers_per_connection = 1;
+    s->device.resets = true;
+    start(s);
+    expect_steady(s, 5, 30);
+}
+
+static void a_device_that_closes_after_two_answers(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.answers_per_connection = 2;
+    start(s);
+    expect_steady(s, 5, 30);
+    assert_int_equal(lines_with("closes connections that it has answered on"), 1);
+}
+
+static void a_device_that_is_silent_after_one_answer(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.answers_per_connection = 1;
+    s->device.hushes = true;
+    start(s);
+    await_line("closes the connection after each answer", 20);
+    expect_steady(s, 5, 30);
+}
+
+static void a_device_that_closes_in_rtu_over_tcp(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.answers_per_connection = 1;
+    s->device.wire = DEVICE_RTU_TCP;
+    s->plant->sources[0].transport = TRANSPORT_RTU_TCP;
+    start(s);
+    expect_steady(s, 5, 30);
+}
+
+static void a_device_that_frees_its_connection_late(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.answers_per_connection = 1;
+    s->device.away_ms = 120;
+    start(s);
+    await_line("closes the connection after each answer", 20);
+    expect_steady(s, 20, 20);
+}
+
+static void a_device_that_closes_idle_connections(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.idle_ms = 40;
+    start(s);
+    expect_steady(s, 5, 30);
+    assert_int_equal(lines_with("no readings"), 0);
+}
+
+static void one_request_per_connection_by_key(void **state)
+{
+    struct modbus_case *s = *state;
+    add_blocks(s);
+    s->plant->sources[0].close_between_polls = true;
+    device_start(&s->device);
+    modbus_case_start(s);
+    expect_steady(s, 5, 10);
+    source_stop(&s->source);
+    assert_int_equal(s->device.connections, s->device.requests);
+    assert_int_equal(lines_with("says so from the start"), 0);
+}
+
+/* --- slow starts ------------------------------------------------------------------------------------------------------------- */
+
+static void a_device_that_drops_what_comes_at_once(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.deaf_ms = 1000;
+    start(s);
+    expect_steady(s, 15, 15);
+    await_line("`connect_delay_ms: ", 5);
+}
+
+static void a_delay_by_key(void **state)
+{
+    struct modbus_case *s = *state;
+    add_blocks(s);
+    s->device.deaf_ms = 400;
+    s->plant->sources[0].connect_delay_ms = 500;
+    device_start(&s->device);
+    modbus_case_start(s);
+    expect_steady(s, 5, 15);
+    assert_int_equal(lines_with("says so from the start"), 0);
+    assert_int_equal(s->device.connections, 1);
+}
+
+static void a_device_in_rtu_over_tcp_that_drops_what_comes_at_once(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.deaf_ms = 400;
+    s->device.wire = DEVICE_RTU_TCP;
+    s->plant->sources[0].transport = TRANSPORT_RTU_TCP;
+    start(s);
+    expect_steady(s, 15, 15);
+}
+
+static void a_slow_first_answer(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.first_late_ms = 1000;
+    start(s);
+    expect_steady(s, 20, 15);
+    await_line("for the first answer after connecting: waiting for it", 5);
+}
+
+/* --- units and addresses ----------------------------------------------------------------------------------------------------- */
+
+static void an_answer_that_names_unit_0(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.manner = DEVICE_RENAMED;
+    start(s);
+    expect_steady(s, 5, 60);
+    assert_int_equal(lines_with("answers as unit 0 to requests for unit 1"), 1); /* of more than 60 */
+}
+
+static void unit_0_is_nobody_s_where_several_units_are_read(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.manner = DEVICE_RENAMED;
+    add_blocks(s);
+    s->plant->tags[2].modbus_unit = 7;
+    device_start(&s->device);
+    modbus_case_start(s);
+    while (s->device.requests < 8)
+        sleep_ns(10 * NS_PER_MS);
+    for (int i = 0; i < BLOCKS; i++)
+        assert_true(quality_is_bad(modbus_case_look(s, i)->quality));
+    assert_int_equal(lines_with("no readings"), 1); /* one line, however often it is tried */
+}
+
+static void an_address_that_is_never_answered_leaves_the_others_alone(void **state)
+{
+    struct modbus_case *s = *state;
+    add_blocks(s);
+    plant_by_hand_tag(s->plant, "mute neighbour", TABLE_HOLDING, 501, DATA_INT16);
+    s->device.mute_register = 501;
+    device_start(&s->device);
+    modbus_case_start(s);
+    await_line("mute neighbour (1 from 501): not answered, while other addresses are", 30);
+    expect_steady(s, 10, 40);
+    assert_true(quality_is_bad(modbus_case_look(s, BLOCKS)->quality));
+    s->device.mute_register = 0;
+    modbus_case_expect(s, BLOCKS, QUALITY_GOOD, 15);
+}
+
+/* A gateway with one connection at a time, a unit that is silent, and answers that end it: the others are read. */
+static void a_dead_unit_at_a_closing_gateway(void **state)
+{
+    struct modbus_case *s = *state;
+    s->device.answers_per_connection = 1;
+    s->device.silent_unit = 7;
+    add_blocks(s);
+    s->plant->tags[2].modbus_unit = 7;
+    device_start(&s->device);
+    modbus_case_start(s);
+    await_line("unit 7 does not answer", 10);
+    for (int end = s->device.requests + 40; s->device.requests < end; sleep_ns(5 * NS_PER_MS)) {
+        assert_true(modbus_case_look(s, 0)->quality == QUALITY_GOOD && modbus_case_look(s, 1)->quality == QUALITY_GOOD);
+        assert_true(modbus_case_look(s, 0)->age_ns < 3 * NS_PER_S);
+    }
+    assert_true(quality_is_bad(modbus_case_look(s, 2)->quality));
+    assert_int_equal(lines_with("unit 7 does not answer"), 1);
+}
+
+#define manners_test(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        manners_test(a_device_that_closes_after_each_answer),
+        manners_test(a_device_that_resets_after_each_answer),
+        manners_test(a_device_that_closes_after_two_answers),
+        manners_test(a_device_that_is_silent_after_one_answer),
+        manners_test(a_device_that_closes_in_rtu_over_tcp),
+        manners_test(a_device_that_frees_its_connection_late),
+        manners_test(a_device_that_closes_idle_connections),
+        manners_test(one_request_per_connection_by_key),
+        manners_test(a_device_that_drops_what_comes_at_once),
+        manners_test(a_delay_by_key),
+        manners_test(a_device_in_rtu_over_tcp_that_drops_what_comes_at_once),
+        manners_test(a_slow_first_answer),
+        manners_test(an_answer_that_names_unit_0),
+        manners_test(unit_0_is_nobody_s_where_several_units_are_read),
+        manners_test(an_address_that_is_never_answered_leaves_the_others_alone),
+        manners_test(a_dead_unit_at_a_closing_gateway),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
