@@ -31,6 +31,7 @@ struct supervision {
     int64_t looked_ns;
     bool ready, stuck, said_refused;
     size_t said_sessions;
+    bool said_lacks;
 };
 
 struct supervision *supervision_create(struct log *log, struct counters *counters)
@@ -77,15 +78,18 @@ static void say_ready(struct supervision *supervision)
     supervision->ready = true;
 }
 
-static void say_status(struct supervision *supervision, size_t sessions)
+static void say_status(struct supervision *supervision, size_t sessions, bool lacks_standby)
 {
     bool refused = atomic_load(&supervision->refused);
-    if (!atomic_exchange(&supervision->reloaded, false) && refused == supervision->said_refused && sessions == supervision->said_sessions)
+    if (!atomic_exchange(&supervision->reloaded, false) && refused == supervision->said_refused && sessions == supervision->said_sessions &&
+        lacks_standby == supervision->said_lacks)
         return;
     supervision->said_refused = refused;
     supervision->said_sessions = sessions;
-    service_notify("STATUS=%zu session%s%s", sessions, sessions == 1 ? "" : "s",
-                   refused ? "; the last reload was refused, an older configuration is in force" : "");
+    supervision->said_lacks = lacks_standby;
+    service_notify("STATUS=%zu session%s%s%s", sessions, sessions == 1 ? "" : "s",
+                   refused ? "; the last reload was refused, an older configuration is in force" : "",
+                   lacks_standby ? "; no standby follows this core: the log says why" : "");
 }
 
 /* The loop feeds it, and only while the render thread is alive too: whichever hangs, the manager starts the daemon again. */
@@ -108,7 +112,7 @@ void supervision_tick(struct supervision *supervision, const struct net_status *
     if (!supervision->ready || now_ns - supervision->looked_ns < (every_ns < LOOK_NS ? every_ns : LOOK_NS))
         return;
     supervision->looked_ns = now_ns;
-    say_status(supervision, status->sessions);
+    say_status(supervision, status->sessions, status->lacks_standby);
     look(supervision, status->render_service, now_ns);
     if (status->certificate_ends_s)
         counter_set(counters_add(supervision->all, "plantcast_certificate_expiry_timestamp_seconds", "gauge",

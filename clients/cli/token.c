@@ -22,11 +22,12 @@ enum { MAX_FILE_BYTES = 1024 * 1024 };
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcast token add FILE --role viewer|operator|engineer|renderer --name NAME [--until YYYY-MM-DD]\n"
+    fputs("usage: plantcast token add FILE --role ROLE --name NAME [--until YYYY-MM-DD]\n"
           "                           [--plant PLANT] [--unattended] [--views ID,... | --display WALL:NUMBER]\n"
           "       plantcast token list FILE\n"
           "       plantcast token revoke FILE NAME\n"
           "\n"
+          "ROLE: viewer, operator or engineer, of a person or program; renderer or standby, of a daemon that connects to a core.\n"
           "add makes a token and prints it, once: the file, which it makes if need be, holds only its SHA-256. plantcastd --tokens FILE\n"
           "sees within 3 seconds what was added or revoked, and closes the sessions of what was revoked.\n"
           "--until: the last day on which it is good. --plant: it is good only for the plant of that name, where plants share the file.\n"
@@ -223,7 +224,7 @@ static bool take_option(int option, struct token_holder *holder)
     case 'r':
         role = name_find(names_role, optarg);
         holder->role = (enum role)role;
-        return role >= ROLE_VIEWER || role == ROLE_RENDERER;
+        return role >= ROLE_VIEWER || role_is_node((enum role)role);
     case 'n': snprintf(holder->name, sizeof(holder->name), "%s", optarg); return tokens_name_valid(optarg);
     case 'w': holder->unattended = true; return true;
     case 'p': snprintf(holder->plant, sizeof(holder->plant), "%s", optarg); return tokens_plant_valid(optarg);

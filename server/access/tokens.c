@@ -165,8 +165,8 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
     if (count == 0)
         return 0;
     int role = name_find(names_role, words[0]);
-    if (role < ROLE_VIEWER && role != ROLE_RENDERER)
-        *why = "the role is viewer, operator, engineer or renderer";
+    if (role < ROLE_VIEWER && !role_is_node((enum role)role))
+        *why = "the role is viewer, operator, engineer, renderer or standby";
     else if (count != 3 && count != WORDS)
         *why = "ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,... | display WALL:NUMBER] [plant PLANT] is expected";
     else if (!views_good)

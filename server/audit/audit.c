@@ -40,14 +40,16 @@ struct audit {
 
 static struct waiting *copy_entry(const struct audit_entry *entry)
 {
-    const char *const texts[] = { entry->event, entry->result, entry->who, entry->role, entry->from, entry->how, entry->what, entry->why };
+    const char *const texts[] = { entry->event, entry->result,  entry->who,  entry->role, entry->from,
+                                  entry->how,   entry->through, entry->what, entry->why };
     enum { COUNT = sizeof(texts) / sizeof(*texts) };
     size_t bytes = 0, lengths[COUNT];
     for (size_t i = 0; i < COUNT; i++)
         bytes += lengths[i] = texts[i] ? strlen(texts[i]) + 1 : 0;
     struct waiting *waiting = mem_new(sizeof(*waiting) + bytes);
-    const char **members[COUNT] = { &waiting->entry.event, &waiting->entry.result, &waiting->entry.who,  &waiting->entry.role,
-                                    &waiting->entry.from,  &waiting->entry.how,    &waiting->entry.what, &waiting->entry.why };
+    const char **members[COUNT] = { &waiting->entry.event, &waiting->entry.result,  &waiting->entry.who,  &waiting->entry.role,
+                                    &waiting->entry.from,  &waiting->entry.how,     &waiting->entry.through, &waiting->entry.what,
+                                    &waiting->entry.why };
     char *at = (char *)(waiting + 1);
     for (size_t i = 0; i < COUNT; at += lengths[i++])
         if (texts[i])
@@ -84,9 +86,10 @@ static bool is_good(const struct audit_entry *entry)
 static void log_entry(struct audit *audit, const struct audit_entry *entry, const char *head, const char *tail)
 {
     const char *what = entry->what ? entry->what : "", *why = entry->why ? entry->why : "";
-    log_event(audit->params.log, LOG_INFO, EVENT_AUDIT, "%s: %s %s: %s%s%s from %s%s%s%s%s%s%s%s%s", head, entry->event, entry->result,
+    log_event(audit->params.log, LOG_INFO, EVENT_AUDIT, "%s: %s %s: %s%s%s from %s%s%s%s%s%s%s%s%s%s%s", head, entry->event, entry->result,
               entry->who ? entry->who : "(nobody)", entry->role ? ", " : "", entry->role ? entry->role : "",
-              entry->from ? entry->from : "this daemon", entry->how ? " by " : "", entry->how ? entry->how : "", *what ? ": " : "", what,
+              entry->from ? entry->from : "this daemon", entry->how ? " by " : "", entry->how ? entry->how : "",
+              entry->through ? " through " : "", entry->through ? entry->through : "", *what ? ": " : "", what,
               *why ? ": " : "", why, *tail ? "; " : "", tail);
 }
 

@@ -62,6 +62,7 @@ void audit_chain_add(struct audit_chain *chain, const struct audit_entry *entry,
     set_field(object, "role", entry->role);
     set_field(object, "from", entry->from);
     set_field(object, "how", entry->how);
+    set_field(object, "through", entry->through);
     set_field(object, "what", entry->what);
     set_field(object, "why", entry->why);
     json_object_set_new(object, "prev", json_string(chain->hash));

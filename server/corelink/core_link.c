@@ -121,8 +121,8 @@ static char *pack_act(const struct core_act *act, uint64_t id)
     json_t *message = json_loads(act->text, 0, NULL);
     if (!message)
         return NULL;
-    json_t *all = json_pack("{s:s,s:I,s:s,s:s,s:s,s:b,s:o}", "type", "act", "id", (json_int_t)id, "who", act->who, "from", act->from,
-                            "role", act->role, "signed_in", act->signed_in, "message", message);
+    json_t *all = json_pack("{s:s,s:I,s:s,s:s*,s:s*,s:o}", "type", "act", "id", (json_int_t)id, "from", act->from, "token", act->token,
+                            "id_token", act->id_token, "message", message);
     char *text = json_text(all, 0);
     json_t *again = text && strlen(text) <= CORE_ACT_BYTES ? json_loads(text, 0, NULL) : NULL;
     if (!again)

@@ -29,7 +29,7 @@ struct lease_keeper {
     timer_t timer; /* ends the process when the lease does */
     bool has_timer;
     struct {
-        counter *active, *epoch, *age, *database, *standby;
+        counter *active, *epoch, *age, *database, *standby, *differs;
     } counters;
     /* --- below: of the thread */
     struct postgres_link *link; /* NULL: there is none */
@@ -42,6 +42,7 @@ struct lease_keeper {
     struct lease lease;
     char standby[LEASE_NODE_BYTES]; /* that is connected, or was until gone_ns */
     int64_t gone_ns;                /* 0: it is connected */
+    bool follows;                   /* it has our version and configuration */
     uint64_t asked;
     struct {
         uint64_t number;
@@ -263,7 +264,7 @@ static void renew(struct lease_keeper *keeper)
     if (keeper->gone_ns && now_of_lease() - keeper->gone_ns >= GONE_NS)
         keeper->standby[0] = 0;
     memcpy(standby, keeper->standby, sizeof(standby));
-    bool follows = standby[0] && !keeper->gone_ns;
+    bool is_there = standby[0] && !keeper->gone_ns, follows = is_there && keeper->follows;
     lease_renew(&keeper->lease, standby);
     struct lease_row seen = keeper->lease.row;
     pthread_mutex_unlock(&keeper->thread.lock);
@@ -275,6 +276,7 @@ static void renew(struct lease_keeper *keeper)
         set_timer(keeper);
         pthread_mutex_unlock(&keeper->thread.lock);
         counter_set(keeper->counters.standby, follows);
+        counter_set(keeper->counters.differs, is_there && !follows);
     } else if (changed == 0) {
         look(keeper);
     }
@@ -357,9 +359,10 @@ bool lease_keeper_leads(struct lease_keeper *keeper)
     return acts;
 }
 
-void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node)
+void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node, bool follows)
 {
     pthread_mutex_lock(&keeper->thread.lock);
+    keeper->follows = follows;
     keeper->gone_ns = *node ? 0 : now_of_lease();
     if (*node)
         snprintf(keeper->standby, sizeof(keeper->standby), "%s", node);
@@ -410,6 +413,8 @@ static void add_counters(struct lease_keeper *keeper)
         counters_add_seconds(c, "plantcast_core_lease_age_seconds", "gauge", "Since what confirmed this core's lease was sent.");
     keeper->counters.database = counters_add(c, "plantcast_core_lease_database_up", "gauge", "1 while PostgreSQL answers about the lease.");
     keeper->counters.standby = counters_add(c, "plantcast_core_standby", "gauge", "1 while a standby follows this core, and is named.");
+    keeper->counters.differs = counters_add(c, "plantcast_core_standby_differs", "gauge",
+                                            "1 while the other core has another version or configuration, and is no standby.");
 }
 
 static bool make_timer(struct lease_keeper *keeper)

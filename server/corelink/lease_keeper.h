@@ -31,8 +31,9 @@ bool lease_keeper_leads(struct lease_keeper *keeper); /* returns whether this no
 
 /* --- for a leader: the standby that is connected --- */
 /* Names it; "": its connection has ended. Its promises count once the row names it, which it does for 10 s after its connection has ended:
-   where the database is lost in the moment of a reload, its promises are all there is. */
-void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node);
+   where the database is lost in the moment of a reload, its promises are all there is. follows: it has this core's version and
+   configuration; else it is a witness that it does not lead, and no standby in the metrics. */
+void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node, bool follows);
 /* Returns the number of a question that is sent to the standby now. */
 uint64_t lease_keeper_ask(struct lease_keeper *keeper);
 /* The standby has answered that question with a promise. */

@@ -5,8 +5,8 @@
 #include "message/names.h"
 
 const struct name names_role[] = {
-    { "nobody", ROLE_NOBODY },     { "renderer", ROLE_RENDERER }, { "open", ROLE_OPEN }, { "viewer", ROLE_VIEWER },
-    { "operator", ROLE_OPERATOR }, { "engineer", ROLE_ENGINEER }, { NULL, 0 },
+    { "nobody", ROLE_NOBODY },     { "renderer", ROLE_RENDERER }, { "standby", ROLE_STANDBY }, { "open", ROLE_OPEN },
+    { "viewer", ROLE_VIEWER }, { "operator", ROLE_OPERATOR }, { "engineer", ROLE_ENGINEER }, { NULL, 0 },
 };
 
 /* How the field is computed: each set of these costs the server a field of its own, and takes somebody who knows. */
@@ -46,8 +46,8 @@ bool role_may_send(enum role role, const struct message *message, struct message
         message_fail(error, "token_needed", "a token is needed: in hello, as `token`");
         return false;
     }
-    if (role == ROLE_RENDERER) {
-        message_fail(error, "not_allowed", "this token is that of a renderer, which opens /core and nothing else");
+    if (role_is_node(role)) {
+        message_fail(error, "not_allowed", "this token is that of a %s, which opens /core and nothing else", name_of(names_role, role));
         return false;
     }
     if (message->type == MESSAGE_ALARM)

@@ -8,11 +8,18 @@
 enum role {
     ROLE_NOBODY, /* has yet to say who it is */
     ROLE_RENDERER, /* no person: another daemon, which may open /core and ask for history, and nothing else */
+    ROLE_STANDBY,  /* the same, of the core that takes this one's place */
     ROLE_OPEN,   /* anyone, under --open-viewers */
     ROLE_VIEWER,
     ROLE_OPERATOR,
     ROLE_ENGINEER, /* also whoever is on the daemon's own machine */
 };
+
+/* Returns whether tokens of that role are for daemons, not for people. */
+static inline bool role_is_node(enum role role)
+{
+    return role == ROLE_RENDERER || role == ROLE_STANDBY;
+}
 
 extern const struct name names_role[]; /* ends with a NULL text */
 

@@ -266,9 +266,8 @@ static const struct refusal *judge_token(struct server_context *server, struct l
     return login_is_good(login) ? NULL : login == LOGIN_HELD ? &HELD : &BAD_TOKEN;
 }
 
-/* Journals and the audit trail name people by the provider, and others by their token or as LOCAL. A person whose name is one of theirs
-   gets a suffix, which has characters that no token's name has. */
-static void tell_apart(const struct server_context *server, struct token_holder *person)
+/* The suffix has characters that no token's name has. */
+void connection_tell_apart(const struct server_context *server, struct token_holder *person)
 {
     size_t length = strlen(person->name), most = sizeof(person->name) - sizeof(SIGNED_IN);
     if (!strcasecmp(person->name, LOCAL) || (server->tokens && tokens_has_name(server->tokens, person->name)))
@@ -282,7 +281,7 @@ static void find_person(struct server_context *server, struct lws *wsi, struct c
     size_t size = sizeof(cookie);
     if (server->openid && lws_http_cookie_get(wsi, openid_config_of(server->openid)->cookie, cookie, &size) == 0 &&
         openid_find(server->openid, cookie, &connection->holder))
-        tell_apart(server, &connection->holder);
+        connection_tell_apart(server, &connection->holder);
 }
 
 /* Somebody on this machine, who asks for it by a local name, and whom no token is wanted from. */
@@ -304,7 +303,7 @@ bool connection_identify(struct server_context *server, struct lws *wsi, struct 
 {
     const struct access_params *params = &server->params.access;
     struct connection *connection = connection_of(wsi);
-    char host[256], name[256] = "", token[TOKEN_MAX_CHARS + 1];
+    char host[256], name[256] = "", *token = connection->token;
     bool has_host = lws_hdr_total_length(wsi, WSI_TOKEN_HOST) > 0;
     const struct refusal *bad_token;
     *refusal = (struct refusal){ 0 };

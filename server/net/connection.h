@@ -10,6 +10,7 @@ struct connection {               /* lives as long as the connection */
     char address[64];             /* the client's, for the log */
     enum role role;               /* by the last request's headers */
     struct token_holder holder;
+    char token[TOKEN_MAX_CHARS + 1]; /* of the last request; "": none */
     bool answered; /* nothing that it asked waits for an answer */
 };
 
@@ -29,6 +30,9 @@ struct refusal {
 };
 /* Reads the headers of a request and sets role, client and holder by them. Returns false with *refusal holding the answer. */
 bool connection_identify(struct server_context *server, struct lws *wsi, struct refusal *refusal);
+/* Journals and the audit trail name people by the identity provider, and others by their token or as `local`: gives a person whose name is
+   one of theirs a suffix. */
+void connection_tell_apart(const struct server_context *server, struct token_holder *person);
 /* Returns the name of whoever made the last request, for journals and lists; "local" without one. */
 const char *connection_who(const struct connection *connection);
 /* Records what a request of somebody who is known was about. result: as in struct audit_entry; why: of a refusal, or NULL. */

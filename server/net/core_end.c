@@ -13,12 +13,14 @@ static bool hand_on(void *arg, const struct session *session, const char *text)
 {
     const struct server_context *server = arg;
     const struct session_identity *identity = &session->identity;
-    return core_link_act(server->params.plant.core_link, &(struct core_act){ .client = session->id,
-                                                                             .who = identity->holder.name,
-                                                                             .from = identity->from,
-                                                                             .role = name_of(names_role, (int)identity->role),
-                                                                             .signed_in = identity->holder.signed_in,
-                                                                             .text = text });
+    char *id_token = identity->holder.signed_in && server->openid ? openid_id_token(server->openid, &identity->holder) : NULL;
+    bool sent = core_link_act(server->params.plant.core_link, &(struct core_act){ .client = session->id,
+                                                                                  .from = identity->from,
+                                                                                  .token = identity->token[0] ? identity->token : NULL,
+                                                                                  .id_token = id_token,
+                                                                                  .text = text });
+    mem_free(id_token);
+    return sent;
 }
 
 void core_end_bind(struct server_context *server)

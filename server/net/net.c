@@ -115,6 +115,8 @@ static void say_status(const struct server_context *server)
                                                            .sessions = (size_t)server->stream_count,
                                                            .busy_percent = admission_busy_percent(&server->admission),
                                                            .has_core = !server->params.plant.core_link || server->session_context.core_up,
+                                                           .lacks_standby = server->params.keeper && core_end_leads(server) &&
+                                                                            !renderers_have_standby(server),
                                                            .drains = server->drain_ns != 0,
                                                            .certificate_ends_s = server->tls ? tls_ends_s(server->tls) : 0,
                                                        });

@@ -46,6 +46,7 @@ struct net_status { /* what the loop says of itself with each tick */
     size_t sessions;
     int busy_percent;            /* of the render thread's time, for moving pictures */
     bool has_core;               /* readings come; true without --role render */
+    bool lacks_standby;          /* this core leads one of two, and the other does not follow */
     bool drains;                 /* sessions are being sent elsewhere */
     int64_t certificate_ends_s; /* seconds of UTC since 1970; 0: there is none */
 };

@@ -55,13 +55,18 @@ struct renderer {
     const char *close_text;  /* NULL: it stays */
 };
 
+/* Of this machine, where no token is wanted: whoever is here is an engineer. */
+static bool is_local(const struct connection *connection)
+{
+    return connection->role == ROLE_ENGINEER && !connection->holder.name[0];
+}
+
 const char *renderers_refusal(const struct server_context *server, struct lws *wsi)
 {
     const struct connection *connection = connection_of(wsi);
-    bool local = connection->role == ROLE_ENGINEER && !connection->holder.name[0];
     if (!server->params.is_core)
         return "this daemon is no core: it has no --role core\n";
-    return connection->role == ROLE_RENDERER || local ? NULL : "this takes a token of the role renderer\n";
+    return role_is_node(connection->role) || is_local(connection) ? NULL : "this takes a token of the role renderer or standby\n";
 }
 
 void renderers_make_key(struct server_context *server)
@@ -80,21 +85,35 @@ static struct core_identity own_identity(const struct server_context *server)
     return (struct core_identity){ server->params.version, plant->name, plant->hash };
 }
 
-/* One with other files is as good a witness that it does not lead. */
-static bool is_standby(const struct renderer *renderer)
+/* Returns whether promises of the other core count: with other files it is no standby, and as good a witness that it does not lead. */
+static bool is_witness(const struct renderer *renderer)
 {
     return renderer->stands_by && (renderer->state == RENDERER_TAKEN || renderer->state == RENDERER_VOTES);
 }
 
-/* The one whose promises count. */
+/* Returns whether a core holds the standby's seat: it has this core's version, plant and configuration. */
+static bool is_standby(const struct renderer *renderer)
+{
+    return renderer->stands_by && renderer->state == RENDERER_TAKEN;
+}
+
+/* Names the core whose promises count, of which there is one at most. */
 static void name_standby(struct server_context *server)
 {
-    const char *name = "";
+    const struct renderer *witness = NULL;
     for (const struct renderer *renderer = server->renderers; renderer; renderer = renderer->next)
-        if (is_standby(renderer))
-            name = renderer->lease;
+        if (is_witness(renderer))
+            witness = renderer;
     if (server->params.keeper)
-        lease_keeper_set_standby(server->params.keeper, name);
+        lease_keeper_set_standby(server->params.keeper, witness ? witness->lease : "", witness && is_standby(witness));
+}
+
+bool renderers_have_standby(const struct server_context *server)
+{
+    const struct renderer *renderer = server->renderers;
+    while (renderer && !is_standby(renderer))
+        renderer = renderer->next;
+    return renderer;
 }
 
 static void count(struct server_context *server)
@@ -371,15 +390,28 @@ static bool send_next(struct server_context *server, struct renderer *renderer)
 
 /* --- what comes --------------------------------------------------------------------------------------------------------------- */
 
-/* Two of one name, or two that follow, and nobody would know whose promise it is. */
-static char *standby_refusal(const struct server_context *server, struct renderer *one, const char *id)
+/* A renderer's token opens no standby's seat: whoever holds that is the core that takes over. */
+static char *role_refusal(const struct renderer *one)
+{
+    const struct connection *connection = connection_of(one->wsi);
+    enum role role = one->stands_by ? ROLE_STANDBY : ROLE_RENDERER;
+    if (connection->role == role || is_local(connection))
+        return NULL;
+    return mem_printf("its token %s has the role %s, and a %s takes one of the role %s (plantcast token add FILE --role %s --name NAME)",
+                      connection->holder.name, name_of(names_role, (int)connection->role), name_of(names_role, (int)role),
+                      name_of(names_role, (int)role), name_of(names_role, (int)role));
+}
+
+/* Two of one name, or two that follow, and nobody would know whose promise it is. matches: it has this core's version and files, so that it
+   takes the place of one that only votes. */
+static char *standby_refusal(const struct server_context *server, struct renderer *one, const char *id, bool matches)
 {
     if (!server->params.keeper)
         return mem_strdup("this core has no standby: it was started without --core");
     if (!strcmp(one->name, server->params.node_name))
         return mem_printf("both cores have the name %.63s: --node names them", one->name);
     for (const struct renderer *other = server->renderers; other; other = other->next)
-        if (other != one && is_standby(other))
+        if (other != one && (matches ? is_standby(other) : is_witness(other)))
             return mem_printf("%.63s stands by already", other->name);
     if (!id || !lease_name(one->lease, one->name, id))
         return mem_printf("the standby %.63s does not tell its id, or it is too long", one->name);
@@ -390,11 +422,25 @@ static char *standby_refusal(const struct server_context *server, struct rendere
 static void say_refusal(struct server_context *server, const struct renderer *renderer)
 {
     char said[sizeof(server->renderer_refused)];
-    snprintf(said, sizeof(said), "renderer %s: refused: %s%s", renderer->name, renderer->refusal,
-             renderer->state == RENDERER_VOTES ? "; its promises count" : "");
+    bool votes = renderer->state == RENDERER_VOTES;
+    snprintf(said, sizeof(said), "%s %s: refused: %s%s", renderer->stands_by ? "standby" : "renderer", renderer->name, renderer->refusal,
+             votes                 ? "; it is no standby, but its promises count"
+             : renderer->stands_by ? "; it is no standby"
+                                   : "");
     if (strcmp(said, server->renderer_refused) != 0)
         log_err(server->params.log, "%s", said);
     memcpy(server->renderer_refused, said, sizeof(said));
+}
+
+/* A standby that matches is there: a core that only votes is ended. */
+static void end_voters(struct server_context *server)
+{
+    for (struct renderer *one = server->renderers; one; one = one->next)
+        if (one->state == RENDERER_VOTES) {
+            one->state = RENDERER_REFUSED;
+            one->close_text = "another core stands by";
+            lws_callback_on_writable(one->wsi);
+        }
 }
 
 /* Of a standby of this plant that has other files, or another version, for it is loaded anew or replaced before or after this core, the
@@ -403,12 +449,15 @@ static void judge(struct server_context *server, struct renderer *renderer, cons
 {
     const char *plant = json_string_value(json_object_get(message, "plant")), *id = json_string_value(json_object_get(message, "id"));
     char *cannot_follow = core_identity_difference(message, "renderer", own);
-    char *cannot_stand_by = renderer->stands_by ? standby_refusal(server, renderer, id) : NULL;
+    char *cannot_stand_by = role_refusal(renderer);
+    if (!cannot_stand_by && renderer->stands_by)
+        cannot_stand_by = standby_refusal(server, renderer, id, !cannot_follow);
     bool votes = cannot_follow && renderer->stands_by && !cannot_stand_by && plant && !strcmp(plant, own->plant);
-    renderer->refusal = cannot_follow ? cannot_follow : cannot_stand_by;
+    renderer->refusal = cannot_follow && (votes || !cannot_stand_by) ? cannot_follow : cannot_stand_by;
     renderer->state = !renderer->refusal ? RENDERER_TAKEN : votes ? RENDERER_VOTES : RENDERER_REFUSED;
-    if (renderer->refusal != cannot_stand_by)
-        mem_free(cannot_stand_by);
+    mem_free(renderer->refusal == cannot_stand_by ? cannot_follow : cannot_stand_by);
+    if (is_standby(renderer))
+        end_voters(server);
 }
 
 static void introduce(struct server_context *server, struct renderer *renderer, const json_t *message)
@@ -442,18 +491,42 @@ static void introduce(struct server_context *server, struct renderer *renderer, 
     count(server);
 }
 
+/* Verifies whose message it is: the renderer's own token lets nobody do anything. Returns NULL and the person in *out, or why not
+   (static). */
+static const char *verify_person(const struct server_context *server, const struct renderer *renderer, const json_t *message,
+                                 struct token_holder *out)
+{
+    const char *token = json_string_value(json_object_get(message, "token"));
+    const char *id_token = json_string_value(json_object_get(message, "id_token"));
+    *out = (struct token_holder){ .role = ROLE_NOBODY };
+    if (token && server->tokens)
+        return !tokens_find(server->tokens, token, clock_utc_ns(), out) ? "the core does not let this token in (its --tokens file)"
+               : role_is_node(out->role)                                ? "a daemon's token lets nobody act"
+                                                                        : NULL;
+    if (id_token && server->openid) {
+        const char *why = openid_vouch(server->openid, id_token, out);
+        connection_tell_apart(server, out);
+        return why;
+    }
+    if (is_local(connection_of(renderer->wsi))) {
+        out->role = ROLE_ENGINEER;
+        return NULL;
+    }
+    return id_token ? "the core cannot tell who is signed in: it has no --openid"
+                    : "the core cannot tell who this is: it takes a token, or somebody who is signed in";
+}
+
 static void act(struct server_context *server, struct renderer *renderer, const json_t *message)
 {
-    const char *who = json_string_value(json_object_get(message, "who")), *from = json_string_value(json_object_get(message, "from"));
-    const char *role = json_string_value(json_object_get(message, "role"));
-    const struct session_person person = { .name = who ? who : "",
-                                           .from = from ? from : "",
-                                           .role = role ? (enum role)name_find(names_role, role) : ROLE_NOBODY,
-                                           .signed_in = json_is_true(json_object_get(message, "signed_in")) };
+    const char *from = json_string_value(json_object_get(message, "from"));
+    const char *node_token = connection_of(renderer->wsi)->holder.name;
+    struct token_holder holder;
+    char through[sizeof((struct session_identity){ 0 }.through)];
+    snprintf(through, sizeof(through), "node %s, %s%s", renderer->name, node_token[0] ? "token " : "without a token", node_token);
+    struct session_person person = { .holder = &holder, .from = from ? from : "", .through = through };
+    person.refusal = verify_person(server, renderer, message, &holder);
     char *text = json_dumps(json_object_get(message, "message"), JSON_COMPACT);
-    json_t *texts = text && (int)person.role >= 0
-                        ? session_do_for(&server->session_context, &person, text, clock_mono_ns(), clock_utc_ns())
-                        : json_array();
+    json_t *texts = text ? session_do_for(&server->session_context, &person, text, clock_mono_ns(), clock_utc_ns()) : json_array();
     json_array_append_new(renderer->answers,
                           json_pack("{s:s,s:O,s:o}", "type", "answer", "id", json_object_get(message, "id"), "texts", texts));
     free(text);
@@ -469,7 +542,7 @@ static const char *on_message(struct server_context *server, struct renderer *re
         why = "what it says is no JSON";
     else if (!strcmp(type, "renderer") && renderer->state == RENDERER_NEW)
         introduce(server, renderer, message);
-    else if (!strcmp(type, "promise") && is_standby(renderer) && server->params.keeper)
+    else if (!strcmp(type, "promise") && is_witness(renderer) && server->params.keeper)
         lease_keeper_promised(server->params.keeper, renderer->lease, (uint64_t)json_integer_value(json_object_get(message, "number")));
     else if (renderer->state != RENDERER_TAKEN)
         why = "it did not say who it is";
@@ -506,12 +579,13 @@ static int on_beat(struct server_context *server, struct renderer *renderer)
 {
     int64_t now_ns = clock_mono_ns();
     const struct token_holder *holder = &connection_of(renderer->wsi)->holder;
-    if (server->tokens && holder->name[0] && tokens_role(server->tokens, holder, clock_utc_ns()) != ROLE_RENDERER) {
-        log_warn(server->params.log, "renderer %s: ended: its token is no longer one of a renderer", renderer->name);
+    if (server->tokens && holder->name[0] && tokens_role(server->tokens, holder, clock_utc_ns()) != holder->role) {
+        log_warn(server->params.log, "renderer %s: ended: its token is no longer one of a %s", renderer->name,
+                 name_of(names_role, (int)holder->role));
         return -1;
     }
     net_refresh_readings(server);
-    renderer->asks = is_standby(renderer);
+    renderer->asks = is_witness(renderer);
     renderer->since_ns = renderer->since_ns ? renderer->since_ns : now_ns;
     lws_callback_on_writable(renderer->wsi);
     lws_set_timer_usecs(renderer->wsi, BEAT_US);

@@ -9,6 +9,8 @@
 int renderer_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 /* Checks who wants to become a renderer. Returns NULL, or why not (static). */
 const char *renderers_refusal(const struct server_context *server, struct lws *wsi);
+/* Returns whether a core of this version and configuration follows this one. */
+bool renderers_have_standby(const struct server_context *server);
 /* Makes the key by which its renderers sign views. */
 void renderers_make_key(struct server_context *server);
 /* Have all renderers sent what changed. */

@@ -64,6 +64,7 @@ static void on_open(struct server_context *server, struct lws *wsi, struct strea
                                                                  .from = connection->address,
                                                                  .role = connection->role,
                                                                  .holder = &connection->holder,
+                                                                 .token = connection->token,
                                                                  .share = &stream->usage->share });
     *slot = stream;
     stream_table_add(server, stream);

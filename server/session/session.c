@@ -31,6 +31,12 @@ struct session *session_create(const struct session_context *context, uint64_t i
     return session;
 }
 
+void session_keep_token(struct session *session, const char *token)
+{
+    if (session->context->hand_on)
+        snprintf(session->identity.token, sizeof(session->identity.token), "%s", token ? token : "");
+}
+
 void session_introduce(struct session *session, const struct session_client *client)
 {
     session->identity.number = client->number;
@@ -39,6 +45,7 @@ void session_introduce(struct session *session, const struct session_client *cli
         snprintf(session->identity.from, sizeof(session->identity.from), "%s", client->from);
     session->identity.role = client->role;
     session->identity.holder = *client->holder;
+    session_keep_token(session, client->token);
     session->room.share = client->share;
     session->demand.starting = true;
 }
@@ -76,7 +83,7 @@ static enum role role_now(const struct session *session, int64_t now_utc_ns)
     if (holder->signed_in)
         return context->openid ? openid_role(context->openid, holder) : ROLE_NOBODY;
     enum role role = context->tokens ? tokens_role(context->tokens, holder, now_utc_ns) : ROLE_NOBODY;
-    return role == ROLE_RENDERER ? ROLE_NOBODY : role; /* nobody looks by such a token */
+    return role_is_node(role) ? ROLE_NOBODY : role;
 }
 
 static void on_ping(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns)

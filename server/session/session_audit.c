@@ -14,10 +14,11 @@ static void record(const struct session *session, const char *event, const char 
     const struct session_identity *identity = &session->identity;
     audit_say(session->context->audit, &(struct audit_entry){ .event = event,
                                                               .result = result,
-                                                              .who = session_who(session),
+                                                              .who = identity->role == ROLE_NOBODY ? NULL : session_who(session),
                                                               .role = name_of(names_role, (int)identity->role),
                                                               .from = identity->from,
                                                               .how = "stream",
+                                                              .through = identity->through[0] ? identity->through : NULL,
                                                               .what = what,
                                                               .why = why });
 }
@@ -109,7 +110,7 @@ void session_record_pair(const struct session *session, const struct message *me
 
 static bool has_name(const struct session *session)
 {
-    return session->identity.role > ROLE_OPEN || session->identity.holder.name[0];
+    return session->identity.role > ROLE_OPEN || session->identity.holder.name[0] || session->identity.through[0];
 }
 
 void session_record_leave(const struct session *session, const char *why)

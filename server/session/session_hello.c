@@ -29,6 +29,7 @@ static bool judge_token(struct session *session, const char *token, int64_t now_
         return false;
     }
     session->identity.role = tokens_role_of(&holder);
+    session_keep_token(session, token);
     return true;
 }
 
@@ -42,8 +43,8 @@ static bool identify(struct session *session, const struct message *message, int
         return true;
     if (session->identity.role == ROLE_NOBODY)
         session_close(session, 1008, "a token is needed");
-    else if (session->identity.role == ROLE_RENDERER)
-        session_close(session, 1008, "a renderer's token opens no stream");
+    else if (role_is_node(session->identity.role))
+        session_close(session, 1008, "a daemon's token opens no stream");
     return false;
 }
 

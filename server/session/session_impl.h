@@ -58,6 +58,9 @@ char *session_scope_text(const struct session *session, char *text);
 
 /* --- session.c --------------------------------------------------------------------------------------------------------- */
 
+/* Keeps the client's token where what people do is handed on: the core verifies it. */
+void session_keep_token(struct session *session, const char *token);
+
 /* Returns whether the session may be that display: a device that was paired is the display that it was paired as. Else *error is set and
    the session closes. */
 bool session_may_be(struct session *session, const struct wall_place *place, struct message_error *error);

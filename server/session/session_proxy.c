@@ -14,15 +14,19 @@ static void act_as(struct session *session, const struct session_person *person,
     struct message message;
     struct message_error error;
     session->hello = true;
-    session->identity.role = session->identity.holder.role = person->role;
+    session->identity.holder = *person->holder;
+    session->identity.role = tokens_role_of(person->holder);
     session->identity.login = LOGIN_GOOD;
-    session->identity.holder.signed_in = person->signed_in;
-    snprintf(session->identity.holder.name, sizeof(session->identity.holder.name), "%s", person->name);
+    snprintf(session->identity.through, sizeof(session->identity.through), "%s", person->through);
     snprintf(session->identity.from, sizeof(session->identity.from), "%s", person->from);
     if (!message_parse(session->context->plant, text, strlen(text), &message, &error)) {
         session_reply_error(session, &error);
     } else if (!message_is_handed_on(&message)) {
         message_fail(&error, "not_allowed", "this is not done for a renderer");
+        session_reply_error(session, &error);
+    } else if (person->refusal) {
+        message_fail(&error, "not_allowed", "this was not done: %s", person->refusal);
+        session_record_refusal(session, &error);
         session_reply_error(session, &error);
     } else {
         session_on_message(session, text, strlen(text), now_ns, now_utc_ns);

@@ -4,13 +4,14 @@
 #define SESSION_SESSION_PROXY_H
 #include "session/session.h"
 
-struct session_person { /* whose message it is, as the other daemon says */
-    const char *name, *from; /* "": the other daemon's own machine; the address */
-    enum role role;
-    bool signed_in;
+struct session_person {                /* whose message it is */
+    const struct token_holder *holder; /* as this daemon verified */
+    const char *refusal;               /* why nobody could be verified; NULL: somebody was */
+    const char *from;                  /* the address, as the other daemon says */
+    const char *through;               /* the other daemon and its token, for the audit trail */
 };
 /* Does what the message says, as that person, and returns the answers, JSON texts, the caller's; with an error where it is no message
-   that is handed on, or that role may not send. */
+   that is handed on, or that person may not send. */
 json_t *session_do_for(const struct session_context *context, const struct session_person *person, const char *text, int64_t now_ns,
                        int64_t now_utc_ns);
 

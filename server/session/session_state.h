@@ -24,6 +24,8 @@ struct session_identity {
     char from[64];                        /* likewise, as text; "": not known */
     enum login login;                     /* the verdict on the token in hello */
     struct token_holder holder;           /* of that token; role ROLE_NOBODY: no token was given, or none was accepted */
+    char token[TOKEN_MAX_CHARS + 1];      /* of a client of a renderer, for its core; "": none, or it is not handed on */
+    char through[192];                    /* at a core: the node and the token that handed the message on; "": nobody did */
     char resume_secret[RESUME_CHARS + 1]; /* lets the client take its view up again over another connection */
     int64_t active_ns;                    /* monotonic: when somebody was last at the page; 0: not since it came */
     bool tokens;                          /* the client takes its view as a token whenever it changed */
@@ -40,6 +42,7 @@ struct session_client {
     const char *from; /* the same as text */
     enum role role;
     const struct token_holder *holder;
+    const char *token; /* that the holder gave; "": none */
     struct address_share *share;
 };
 

@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { linkSync, renameSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
+import { PlainClient } from './support/plain_client.mjs';
 import { PostgresServer } from './support/postgres_server.mjs';
 import { HookServer } from './support/receivers.mjs';
 import { runProgram } from './support/tiny_plant.mjs';
@@ -246,4 +247,27 @@ test('two of one name, and a core without a database, are refused by name', opti
     await started.program.line(new RegExp(`both cores have the name ${core.name}`));
     assert.ok(await two.ready(core));
     await started.program.stop();
+});
+
+test('a core of another configuration keeps no seat from one that matches, and a renderer\'s token takes none', options, async () => {
+    const core = await two.leader(), other = two.other(core);
+    const stranger = async (token, configuration) => {
+        const client = await PlainClient.open(core.port, { path: '/core', protocol: 'plantcast.core.v1',
+            headers: [`Authorization: Bearer ${two.nodes.tokens[token]}`] });
+        const [, version] = /plantcastd (\S+)/.exec(runProgram('plantcastd', ['--version']).out);
+        client.say({ type: 'renderer', version, plant: 'Two boxes', configuration, node: 'three', standby: true, id: '12345678',
+            journal: 0 });
+        return client;
+    };
+    const voter = await stranger('standby', '0123456789abcdef');
+    assert.equal((await voter.text('refused')).votes, true);
+    await until('that it is no standby', async () => await core.node.metric('plantcast_core_standby_differs') === 1);
+    const thief = await stranger('renderer', '0123456789abcdef');
+    assert.equal((await thief.text('refused')).votes, false);
+    thief.close();
+    await two.start(other.name);
+    await two.followed(core);
+    assert.equal(await core.node.metric('plantcast_core_standby_differs'), 0);
+    assert.equal(await (await core.node.fetch('/readyz')).text(), 'ok; a standby follows\n');
+    await voter.until('its end', ({ closed }) => closed);
 });

@@ -95,7 +95,7 @@ test('a leader that was loaded anew goes on by the promise of a standby that was
     await core.program.line(/reload: configuration/);
     await other.program.line(/configuration: the renderer has .*votes only/);
     await two.goesOn(t, core, 5);
-    assert.match(core.program.said, /refused: configuration: .*; its promises count/);
+    assert.match(core.program.said, /standby .*: refused: configuration: .*; it is no standby, but its promises count/);
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);
     for (const one of [core, other])
@@ -173,9 +173,12 @@ test('a standby of another version is named, shows nothing, votes, and takes ove
     await other.program.stop('SIGKILL');
     await begin(other);
     await other.program.line(new RegExp(`version: the renderer has ${newer.other}, this node ${newer.version}.*votes only`));
-    assert.match(core.program.said, new RegExp(`refused: version: the renderer has ${newer.other}, .*; its promises count`));
+    const noStandby = `refused: version: the renderer has ${newer.other}, .*; it is no standby, but its promises count`;
+    assert.match(core.program.said, new RegExp(noStandby));
     assert.ok(Object.values(await other.node.tags()).every(({ value }) => value === null));
-    await until('its promise', async () => await core.node.metric('plantcast_core_standby') === 1);
+    await until('its promise', async () => await core.node.metric('plantcast_core_standby_differs') === 1);
+    assert.equal(await core.node.metric('plantcast_core_standby'), 0, 'of another version it is no standby');
+    assert.equal(await (await core.node.fetch('/readyz')).text(), 'ok, but no standby follows: the log says why\n');
     await core.toDatabase.cut(); // by its promise alone
     await two.goesOn(t, core, 4);
     await core.toDatabase.mend();

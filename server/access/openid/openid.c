@@ -5,6 +5,7 @@
 #include <curl/curl.h>
 #include <string.h>
 
+#include "access/openid/id_token.h"
 #include "access/openid/openid_http.h"
 #include "access/openid/openid_impl.h"
 #include "base/clock.h"
@@ -156,6 +157,54 @@ enum role openid_role(struct openid *openid, const struct token_holder *holder)
     enum role role = person && clock_utc_ns() < person->holder.until_utc_ns ? person->holder.role : ROLE_NOBODY;
     pthread_mutex_unlock(&openid->lock);
     return role;
+}
+
+char *openid_id_token(struct openid *openid, const struct token_holder *holder)
+{
+    pthread_mutex_lock(&openid->lock);
+    const struct person *person = sign_ins_find_hash(openid->table, holder->hash);
+    char *token = person && person->id_token ? mem_strdup(person->id_token) : NULL;
+    pthread_mutex_unlock(&openid->lock);
+    return token;
+}
+
+static const char *take_claims(const struct openid_config *config, const json_t *claims, struct token_holder *out)
+{
+    int64_t made_s = (int64_t)json_number_value(json_object_get(claims, "iat"));
+    *out = (struct token_holder){ .signed_in = true, .until_utc_ns = made_s * NS_PER_S + (int64_t)(config->hours * 3600e9) };
+    out->role = id_token_role(config, claims);
+    if (!id_token_name(config, claims, out->name, sizeof(out->name)))
+        return "the ID token gives no name that can be shown";
+    if (clock_utc_ns() >= out->until_utc_ns)
+        return "the ID token is older than a log-in lasts; sign in again";
+    return out->role == ROLE_NOBODY ? "the ID token names no group that has a role at the core" : NULL;
+}
+
+const char *openid_vouch(struct openid *openid, const char *id_token, struct token_holder *out)
+{
+    const char *why = "the core does not know the identity provider's keys yet";
+    json_t *claims = NULL;
+    *out = (struct token_holder){ .role = ROLE_NOBODY };
+    pthread_mutex_lock(&openid->lock);
+    json_t *keys = json_incref(openid->jwks);
+    pthread_mutex_unlock(&openid->lock);
+    const struct id_token_expected expected = { .config = openid->config,
+                                                .jwks = keys,
+                                                .now_s = clock_utc_ns() / NS_PER_S,
+                                                .patience_s = (int64_t)(openid->config->hours * 3600) };
+    enum id_token_fault fault = keys ? id_token_verify(id_token, &expected, &claims, &why) : ID_TOKEN_NO_KEY;
+    json_decref(keys);
+    if (fault == ID_TOKEN_NO_KEY) { /* the provider may have a new one: its keys are looked at now */
+        pthread_mutex_lock(&openid->lock);
+        openid->discover_ns = clock_mono_ns();
+        pthread_cond_broadcast(&openid->wake);
+        pthread_mutex_unlock(&openid->lock);
+    }
+    why = claims ? take_claims(openid->config, claims, out) : why;
+    json_decref(claims);
+    if (why)
+        out->role = ROLE_NOBODY;
+    return why;
 }
 
 void openid_touch(struct openid *openid, const struct token_holder *holder, int64_t now_ns)

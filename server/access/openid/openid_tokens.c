@@ -52,6 +52,7 @@ static void keep_tokens(struct person *person, const json_t *json)
     json_int_t seconds = json_integer_value(json_object_get(json, "expires_in"));
     replace(&person->refresh_token, text_of(json, "refresh_token"));
     replace(&person->access_token, text_of(json, "access_token"));
+    replace(&person->id_token, text_of(json, "id_token"));
     person->access_until_s = seconds > 0 ? clock_utc_ns() / NS_PER_S + seconds : 0;
 }
 

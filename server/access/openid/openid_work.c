@@ -182,6 +182,7 @@ static void copy_person(struct person *out, const struct person *person)
     out->sub = mem_strdup(person->sub);
     out->refresh_token = person->refresh_token ? mem_strdup(person->refresh_token) : NULL;
     out->access_token = person->access_token ? mem_strdup(person->access_token) : NULL;
+    out->id_token = NULL;
 }
 
 static void swap_texts(char **a, char **b)
@@ -217,6 +218,8 @@ static void settle(struct openid *openid, struct task *task, enum openid_rights 
         person->holder.role = copy->holder.role;
     swap_texts(&person->refresh_token, &copy->refresh_token);
     swap_texts(&person->access_token, &copy->access_token);
+    if (copy->id_token && rights == RIGHTS_SAME)
+        swap_texts(&person->id_token, &copy->id_token);
     person->access_until_s = copy->access_until_s;
     person->check_ns = task->began_ns + (int64_t)(openid->config->check_s * 1e9);
     person->checking = false;
@@ -250,6 +253,7 @@ static void do_check(struct task *task)
     mem_free(copy->sub);
     free_secret(copy->refresh_token);
     free_secret(copy->access_token);
+    free_secret(copy->id_token);
 }
 
 static void do_discover(struct task *task)

@@ -66,7 +66,7 @@ struct sign_ins *sign_ins_create(void)
 
 static void free_person(struct person *person)
 {
-    char *const texts[] = { person->sub, person->refresh_token, person->access_token };
+    char *const texts[] = { person->sub, person->refresh_token, person->access_token, person->id_token };
     for (size_t i = 0; i < sizeof(texts) / sizeof(*texts); i++) {
         if (texts[i])
             OPENSSL_cleanse(texts[i], strlen(texts[i]));

@@ -17,6 +17,7 @@ struct sign_in { /* a log-in that was sent to the provider */
 struct person {                 /* who is signed in; members that are texts are owned */
     struct token_holder holder; /* its hash is that of the session's cookie */
     char *sub, *refresh_token, *access_token;
+    char *id_token; /* the newest */
     int64_t access_until_s; /* UTC; 0: not said */
     int64_t active_ns;      /* monotonic: when the person was last at the page */
     int64_t check_ns;       /* monotonic: when rights are to be checked next */

@@ -9,6 +9,7 @@
 #include "net/tls.h"
 #include "net/connection.h"
 #include "net/core_end.h"
+#include "net/renderers.h"
 
 static int alive(struct server_context *server, struct request *request)
 {
@@ -21,7 +22,10 @@ static int ready(struct server_context *server, struct request *request)
     if (server->params.keeper && !core_end_leads(server))
         return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "it stands by: another core leads, or none yet\n");
     if (render_service_ready(server->params.plant.render_service))
-        return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
+        return request_answer_text(request, HTTP_STATUS_OK,
+                                   !server->params.keeper            ? "ok\n"
+                                   : renderers_have_standby(server) ? "ok; a standby follows\n"
+                                                                     : "ok, but no standby follows: the log says why\n");
     return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the GL context was lost; a new one is being made\n");
 }
 
@@ -120,7 +124,7 @@ static int serve_route(struct server_context *server, struct request *request, s
             connection_record(server, request->wsi, "access", "refused", routes[i].path, "its token is good for less");
             return refuse(request, scope == VIEWS ? &NOT_IN_VIEWS : &NOT_ON_DISPLAY);
         }
-    } else if (role < routes[i].least && !(role == ROLE_RENDERER && (routes[i].narrowed & NODE))) {
+    } else if (role < routes[i].least && !(role_is_node(role) && (routes[i].narrowed & NODE))) {
         bool engineer = routes[i].least == ROLE_ENGINEER;
         connection_record(server, request->wsi, "access", "refused", routes[i].path,
                           engineer ? "it takes the role engineer" : "pictures only");

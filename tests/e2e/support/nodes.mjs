@@ -68,8 +68,8 @@ export class Node {
 }
 
 export class Nodes {
-    // With alarms at 90, and a token for each of a viewer, an operator and a renderer. slowDevice: it may take its time, as on a machine
-    // that has much else to do.
+    // With alarms at 90, and a token for each of a viewer, an operator, a renderer and a standby. slowDevice: it may take its time, as on
+    // a machine that has much else to do.
     static async create({ slowDevice = false } = {}) {
         const nodes = new Nodes();
         nodes.plant = await TinyPlant.create();
@@ -81,7 +81,7 @@ export class Nodes {
             throw new Error(prepared.err);
         nodes.tokenFile = join(nodes.plant.folder, 'tokens');
         nodes.tokens = {};
-        for (const [role, name] of [['viewer', 'wall'], ['operator', 'anna'], ['renderer', 'r']]) {
+        for (const [role, name] of [['viewer', 'wall'], ['operator', 'anna'], ['renderer', 'r'], ['standby', 's']]) {
             const made = runProgram('plantcast', ['token', 'add', nodes.tokenFile, '--role', role, '--name', name]);
             nodes.tokens[role] = made.out.trim();
             nodes[`${role}File`] = join(nodes.plant.folder, `${role}.token`);

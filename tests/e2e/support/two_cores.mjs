@@ -70,9 +70,9 @@ ${more}`);
     // It follows the other or leads, as it comes. as: the name that it has. Its member before: the program that starts it.
     start(name, as = name) { return this.startCore(this.cores[name], as); }
     async startCore(core, as = core.name) {
-        const { plant, rendererFile, tokenFile } = this.nodes;
+        const { plant, standbyFile, tokenFile } = this.nodes;
         core.node = new Node(plant, ['--role', 'core', '--port', String(core.port), '--node', as, ...this.access, '--tokens', tokenFile,
-            '--core', `ws://127.0.0.1:${core.toOther.port}`, '--core-token-file', rendererFile,
+            '--core', `ws://127.0.0.1:${core.toOther.port}`, '--core-token-file', standbyFile,
             '--history', join(plant.folder, core.name, 'history')], core.file,
         ['unshare', '--mount', 'sh', '-c', `mount --bind ${core.hosts} /etc/hosts && exec "$@"`, 'sh',
             ...(core.before ?? [])]);
