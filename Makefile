@@ -100,7 +100,8 @@ modules  := $(bin)/plantcast-images.so $(if $(filter h264,$(CODECS)),$(bin)/plan
 occt     := $(dir $(wildcard /usr/include/opencascade/STEPCAFControl_Reader.hxx))
 # From 7.8 on (Debian 13) its readers have libraries of other names.
 occt_libs := $(if $(wildcard /usr/lib/*/libTKDESTEP.so),DESTEP DEIGES,XDESTEP XDEIGES STEP IGES)
-occt_libs := $(patsubst %,-lTK%,$(occt_libs) XSBase RWMesh XCAF LCAF CAF CDF Mesh ShHealing Prim TopAlgo BRep G3d Math ernel)
+occt_libs := $(patsubst %,-lTK%,$(occt_libs) XSBase RWMesh XCAF LCAF CAF CDF Mesh Offset Fillet Bool BO ShHealing Prim TopAlgo GeomAlgo \
+    GeomBase BRep G3d G2d Math ernel)
 assimp   := $(wildcard /usr/include/assimp/Importer.hpp)
 readers  := $(if $(occt),$(bin)/plantcast-import-occt) $(if $(assimp),$(bin)/plantcast-import-assimp)
 # The player of a wall's displays, likewise.
@@ -123,7 +124,7 @@ all: $(programs) $(or $(player),no-player) $(or $(video),no-video) $(bin)/plantc
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
 	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm && touch $@
 # The reader of IFC, likewise.
-ifc := $(addprefix preprocess/import/readers/,package-lock.json glb_writer.mjs ifc.mjs)
+ifc := preprocess/import/readers/package-lock.json $(wildcard preprocess/import/readers/*.mjs)
 $(bin)/plantcast-import-ifc/ifc.mjs: $(ifc)
 	@echo "  NPM  $(@D)"; deploy/vendor_ifc $(build)/npm-ifc $(@D); [ ! -f $@ ] || touch $@
 # Icons of the page, numbers that it shares with the shaders, and its version.
@@ -150,7 +151,7 @@ $(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(arc
 # Reads what strangers' programs wrote: neither the daemon nor plantcast-prep links it.
 $(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(out)/lib/match.a $(out)/lib/prep.a $(archives)
 	$(link) -lGLU
-by_occt := $(call objects,$(addprefix preprocess/import/readers/,occt iges_tree))
+by_occt := $(call objects,preprocess/import/readers/occt $(basename $(wildcard preprocess/import/readers/i*.cc)))
 by_reader := $(call objects,preprocess/import/encoding)
 $(by_occt): CXXFLAGS += -isystem $(occt)
 $(bin)/plantcast-import-occt: $(by_occt) $(by_reader) $(out)/lib/prep.a $(out)/lib/base.a

@@ -227,6 +227,27 @@ static bool ask_encoding(const struct reading *reading, char encoding[CHARSET_NA
     return good;
 }
 
+/* Open CASCADE builds the solids of an IFC file that web-ifc does not, for ifc.mjs, which finds them beside its output. */
+static void build_curved_solids(const struct reading *reading, struct text *said)
+{
+    char why[CONVERSION_WHY_BYTES], *program = import_format_program(import_format_of("x.step"));
+    if (!program) {
+        text_add(said, "this Plantcast was built without Open CASCADE: pipes and curved solids are as web-ifc draws them\n");
+        return;
+    }
+    struct child_paths paths = { 0 };
+    char *output = mem_printf("%s/solids.glb", reading->folder), *chord = mem_printf("%g", reading->params->chord_m * 1000);
+    const char *const argv[] = { program, reading->path, output, chord, "-", "-", "-", NULL };
+    child_paths_add(&paths, reading->path, CONFINE_READ);
+    child_paths_add(&paths, reading->folder, CONFINE_WRITE);
+    child_paths_add(&paths, program, CONFINE_EXECUTE);
+    if (!run(reading, &(struct child_params){ .argv = argv }, &paths, said, why))
+        text_add(said, "pipes and curved solids are as web-ifc draws them: Open CASCADE failed: %s\n", why);
+    mem_free(output);
+    mem_free(chord);
+    mem_free(program);
+}
+
 static bool run_program(const struct reading *reading, struct child_paths *paths, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     const struct import_format *format = reading->format;
@@ -243,6 +264,8 @@ static bool run_program(const struct reading *reading, struct child_paths *paths
         mem_free(runtime);
         return false;
     }
+    if (!strcmp(format->name, "IFC"))
+        build_curved_solids(reading, said);
     char *chord = mem_printf("%g", params->chord_m * 1000), *memory = mem_printf("--max-old-space-size=%zu", params->memory_bytes >> 20);
     const char *argv[11];
     int count = 0;

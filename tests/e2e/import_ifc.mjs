@@ -6,7 +6,9 @@ import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSy
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { ifcOf, KINDS } from './support/ifc_kinds.mjs';
 import { ifc } from './support/ifc_sample.mjs';
+import { volumeOf } from './support/glb_volume.mjs';
 import { BIN, missing } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -31,7 +33,7 @@ for (const schema of ['IFC2X3', 'IFC4', 'IFC4X3_ADD2'])
         writeFileSync(join(folder, 'house.ifc'), ifc(schema));
         const said = plantcast(['import', join(folder, 'house.ifc'), '-o', join(folder, 'plant')]);
         assert.equal(said.status, 0, said.stderr);
-        assert.match(said.stdout, new RegExp(`${schema}: 3 elements with a shape, 1 storeys, 1 openings cut`));
+        assert.match(said.stdout, new RegExp(`${schema}: 3 elements with a shape, 0 lost, 1 storeys, 1 openings cut`));
         const glb = join(folder, 'plant/house.glb'), { list } = JSON.parse(plantcast(['nodes', glb, '--json']).stdout);
         assert.equal(list[6].path, 'house/Sample/Site/Pump house/Ground floor/P-101A');
         assert.equal(list[7].name, '펌프/P-101 B');
@@ -49,6 +51,63 @@ for (const schema of ['IFC2X3', 'IFC4', 'IFC4X3_ADD2'])
         const check = spawnSync(join(BIN, 'plantcastd'), ['--check', join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
         assert.equal(check.status, 0, check.stderr);
     }));
+
+const hasOcct = existsSync(join(BIN, 'plantcast-import-occt'));
+
+// Round shapes are drawn with 24 corners to a circle or more: up to 2.4 % less than the true volume.
+test('every kind of shape has the volume and the size that geometry gives', { skip }, () => inFolder((folder) => {
+    const wrong = [];
+    let right = 0;
+    for (const [name, schemas, lines, { volume, size }, type] of KINDS)
+        for (const schema of schemas) {
+            const path = join(folder, 'kind.ifc'), plant = join(folder, 'plant');
+            writeFileSync(path, ifcOf(schema, lines, type));
+            const said = plantcast(['import', path, '-o', plant]), all = `${said.stdout}${said.stderr}`;
+            const found = said.status === 0 ? volumeOf(join(plant, 'kind.glb')) : { volume: 0, size: [0, 0, 0] };
+            const good = said.status === 0 && Math.abs(found.volume / volume - 1) < 0.025 &&
+                size.every((v, axis) => Math.abs(found.size[axis] - v) < 0.012 * v + 0.0005) && /, 0 lost,/.test(all);
+            console.log(`# ${good ? 'right' : 'WRONG'}  ${schema}  ${name}: ${(found.volume / volume * 100).toFixed(1)} % of its volume, ` +
+                `${found.size.map((v) => v.toFixed(3)).join(' x ')} m`);
+            right += good;
+            if (!good)
+                wrong.push(`${schema} ${name}: ${all}`);
+            rmSync(plant, { recursive: true, force: true });
+        }
+    console.log(`# ${right} of ${right + wrong.length} cases of ${KINDS.length} kinds are right`);
+    assert.ok(!hasOcct || wrong.length === 0, wrong.join('\n'));
+}));
+
+const found = join(import.meta.dirname, '../../../shared/data/found');
+const notThere = skip || (existsSync(join(found, 'ifc_swept')) ? false : 'no ../shared/data/found');
+test('a pipe along a curve with parameters, and a basin with round edges', { skip: notThere }, () => inFolder((folder) => {
+    for (const name of ['comp_noparams_ifc4', 'comp_params_ifc4', 'comp_params_ifc2x3', 'poly_params_ifc2x3']) {
+        const { status, stdout, stderr } = plantcast(['import', join(found, `ifc_swept/${name}.ifc`), '-o', join(folder, name)]);
+        assert.equal(status, 0, stderr);
+        assert.match(stdout, /: 2 elements with a shape, 0 lost,/, stdout);
+        const { volume, size } = volumeOf(join(folder, `${name}/${name}.glb`));
+        assert.ok(near([volume], [0.2 + Math.PI * 0.025 ** 2 * 3.25]) && near(size, [2.275, 1.75, 0.8]), `${name}: ${volume} m3, ${size}`);
+    }
+    const { status, stderr } = plantcast(['import', join(found, 'basin_brep/basin_brep.ifc'), '-o', join(folder, 'basin')]);
+    assert.equal(status, 0, stderr);
+    const { volume, size } = volumeOf(join(folder, 'basin/basin_brep.glb'));
+    assert.ok(near(size, [0.61, 0.4223, 0.094]) && volume > 0.00203 && volume < 0.00206, `${volume} m3, ${size}`); // closed: 2.04 l
+}));
+
+test('an element whose shape is not built is named, with its class and the reason', { skip }, () => inFolder((folder) => {
+    const [, , lines, , type] = KINDS.find(([name]) => name === 'extrusion');
+    const good = ifcOf('IFC4', lines, type), [, shape] = /(#\d+)=IFCPRODUCTDEFINITIONSHAPE/.exec(good);
+    const missing = good.replace('ENDSEC;\nEND-ISO', () => "#900=IFCSECTIONEDSOLIDHORIZONTAL($,$,$);\n" +
+        "#901=IFCSHAPEREPRESENTATION($,'Body','AdvancedSweptSolid',(#900));\n#902=IFCPRODUCTDEFINITIONSHAPE($,$,(#901));\n" +
+        "#903=IFCPIPESEGMENT('0$PlantcastKinds0000009',$,'LINE-1001',$,$,$,#902,$,$);\n" +
+        "#904=IFCPIPESEGMENT('0$PlantcastKinds000000A',$,'LINE-1002',$,$,$,#999,$,$);\nENDSEC;\nEND-ISO");
+    assert.ok(shape);
+    writeFileSync(join(folder, 'a.ifc'), missing);
+    const { status, stdout, stderr } = plantcast(['import', join(folder, 'a.ifc'), '-o', join(folder, 'plant')]);
+    assert.equal(status, 0, stderr);
+    assert.match(stdout, /IFC4: 1 elements with a shape, 2 lost,/);
+    assert.match(stdout, /lost: #903 LINE-1001 \(IfcPipeSegment, 0\$PlantcastKinds0000009\): IfcSectionedSolidHorizontal/);
+    assert.match(stdout, /lost: #904 LINE-1002 \(IfcPipeSegment, 0\$PlantcastKinds000000A\): its representation is empty/);
+}));
 
 test('broken files are read or refused in one line, and leave nothing behind', { skip }, () => inFolder((folder) => {
     const good = ifc(), wall = /#(\d+)=IFCWALL/.exec(good)[1], building = /#(\d+)=IFCBUILDING\(/.exec(good)[1];

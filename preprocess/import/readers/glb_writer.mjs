@@ -3,7 +3,7 @@
 const FLOAT = 5126, UINT = 5125, VERTICES = 34962, INDICES = 34963, TRIANGLES = 4; // as glTF numbers them
 const GLB_HEAD = 12, CHUNK_HEAD = 8, MAX_BYTES = 0xffffffff;
 
-function multiplied(a, b) {
+export function multiplied(a, b) {
     const out = new Array(16).fill(0);
     for (let column = 0; column < 4; column++)
         for (let row = 0; row < 4; row++)

@@ -4,9 +4,11 @@
 // line on stderr says why it failed.
 import { createRequire } from 'node:module';
 import { readFileSync, writeFileSync } from 'node:fs';
-import { basename, dirname, extname } from 'node:path';
+import { basename, dirname, extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { GlbWriter, relativeTo } from './glb_writer.mjs';
+import { collectErrors, findLosses } from './ifc_losses.mjs';
+import { readSolids, takeSolids } from './ifc_solids.mjs';
 
 const CORNERS = 24; // of a circle
 const MAX_DEPTH = 400; // plantcast-prep reads 512 levels
@@ -147,12 +149,13 @@ function readGeometry(api, id, model) {
         if (parts.length > 0)
             shown.set(mesh.expressID, parts);
     });
-    return { shown, geometries: { of: (geometryId) => known.get(geometryId), made: new Map() } };
+    return { shown, known, geometries: { of: (geometryId) => known.get(geometryId), made: new Map() } };
 }
 
 function addTree(glb, model, { shown, geometries }, root) {
     const seen = new Set();
-    let elements = 0, storeys = 0;
+    const drawn = new Set();
+    let storeys = 0;
     const add = (id, parent, storey, depth) => {
         if (depth > MAX_DEPTH)
             throw new Error(`its elements are nested deeper than ${MAX_DEPTH} levels`);
@@ -168,7 +171,8 @@ function addTree(glb, model, { shown, geometries }, root) {
             const { mesh, matrix } = meshOf(glb, geometries, parts, name);
             if (mesh >= 0)
                 glb.place(below.length > 0 ? glb.addNode(node, '', null) : node, mesh, matrix);
-            elements += mesh >= 0;
+            if (mesh >= 0)
+                drawn.add(id);
         }
         for (const child of below)
             add(child, node, within, depth + 1);
@@ -177,7 +181,7 @@ function addTree(glb, model, { shown, geometries }, root) {
         add(id, root, '', 0);
     for (const id of shown.keys())
         add(id, root, '', 0); // what the tree does not hold
-    return { elements, storeys };
+    return { drawn, storeys };
 }
 
 // IFC is ASCII with escapes by its standard; many programs write names as their system has them.
@@ -199,10 +203,11 @@ async function main([input, output, , , , encoding]) {
         throw new Error('it is no IFC file: it does not begin with ISO-10303-21');
     if (!bytes.subarray(-4096).toString('latin1').includes('END-ISO-10303-21'))
         throw new Error('it is cut off: it does not end with END-ISO-10303-21');
+    const errors = collectErrors(); // before web-ifc takes hold of the console
     const api = new webIfc.IfcAPI();
     api.SetWasmPath(`${folder}/`, true);
     await api.Init();
-    api.SetLogLevel(webIfc.LogLevel.LOG_LEVEL_OFF);
+    api.SetLogLevel(webIfc.LogLevel.LOG_LEVEL_ERROR);
     const id = api.OpenModel(bytes, { COORDINATE_TO_ORIGIN: false, CIRCLE_SEGMENTS: CORNERS });
     if (id < 0 || !api.IsModelOpen(id))
         throw new Error('it is no IFC file of a known schema, or is cut off');
@@ -211,13 +216,18 @@ async function main([input, output, , , , encoding]) {
     model.readRelations();
     const glb = new GlbWriter('plantcast-import, web-ifc');
     const root = glb.addNode(-1, basename(input, extname(input)), null);
-    const { elements, storeys } = addTree(glb, model, readGeometry(api, id, model), root);
-    if (elements === 0)
-        throw new Error('there is no surface in it');
+    const geometry = readGeometry(api, id, model), solids = readSolids(join(dirname(output), 'solids.glb'));
+    takeSolids(model, solids, geometry, { styledItem: webIfc.IFCSTYLEDITEM, voids: webIfc.IFCRELVOIDSELEMENT });
+    const { drawn, storeys } = addTree(glb, model, geometry, root), said = errors(model, solids);
+    const isShown = (element) => drawn.has(element) || NOT_SHOWN.has(model.classOf(element));
+    const { lost, lines } = findLosses(model, webIfc.IFCPRODUCT, isShown, solids.failed);
+    if (drawn.size === 0)
+        throw new Error(`there is no surface in it${lost.length > 0 ? `; ${lost[0]}` : ''}`);
     writeFileSync(output, glb.finished());
     const openings = [...model.ofType(webIfc.IFCRELVOIDSELEMENT)].length;
-    process.stdout.write(`${schema}: ${elements} elements with a shape, ${storeys} storeys, ${openings} openings cut; circles have ` +
-        `${CORNERS} corners (--chord does not apply)\n`);
+    process.stdout.write([`${schema}: ${drawn.size} elements with a shape, ${lost.length} lost, ${storeys} storeys, ${openings} openings ` +
+        `cut; ${solids.elements.size} elements by Open CASCADE; of the others circles have ${CORNERS} corners (--chord does not apply)`,
+    ...lines > 0 ? [`not shown: ${lines} elements that are only lines or points`] : [], ...lost, ...said, ''].join('\n'));
 }
 
 main(process.argv.slice(2)).catch((error) => {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: STEP and IGES by Open CASCADE, in a process of its own. The
- * assembly tree becomes nodes; a part is tessellated once and shared by all its places. Prints what it noticed; its last line on stderr
- * says why it failed. */
+ * assembly tree becomes nodes; a part is tessellated once and shared by all its places. Of IFC files it builds some solids
+ * (ifc_shapes.hh). Prints what it noticed; its last line on stderr says why it failed. */
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Interface_InterfaceModel.hxx>
@@ -33,6 +33,7 @@
 #include <vector>
 
 #include "preprocess/glb/glb_scene.h"
+#include "preprocess/import/readers/ifc_shapes.hh"
 #include "preprocess/import/readers/iges_tree.hh"
 #include "preprocess/import/readers/reader.hh"
 
@@ -423,8 +424,14 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
 /* OCCT throws what is no std::exception. */
 void convert_or_refuse(char **arguments)
 {
+    double chord_mm = strtod(arguments[2], nullptr);
     try {
-        convert(arguments[0], arguments[1], strtod(arguments[2], nullptr), !strcmp(arguments[4], "y"), arguments[5]);
+        if (has_ending(arguments[0], ".ifc")) {
+            Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
+            ifc_shapes_write(arguments[0], arguments[1], chord_mm);
+        } else {
+            convert(arguments[0], arguments[1], chord_mm, !strcmp(arguments[4], "y"), arguments[5]);
+        }
     } catch (const Standard_Failure &e) {
         refuse("its shapes could not be read: %s", e.GetMessageString());
     } catch (const std::exception &) {

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What of an IFC file is not shown: elements with a shape that became no triangles, and the errors that web-ifc logs.
+const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|GeometricSet|BoundingBox|Vertex|Edge|Alignment/;
+const REFERENCE = 5; // as web-ifc numbers kinds of values
+const MOST_IDS = 20; // of one kind of error that are named
+
+// Returns the numbers of all statements that these refer to, themselves among them.
+function reached(model, ids) {
+    const found = new Set(), walk = (value) => {
+        if (Array.isArray(value))
+            value.forEach(walk);
+        else if (value?.type === REFERENCE && !found.has(value.value)) {
+            found.add(value.value);
+            Object.values(model.line(value.value) ?? {}).forEach(walk);
+        }
+    };
+    ids.forEach((value) => walk({ type: REFERENCE, value }));
+    return found;
+}
+
+// Collects what web-ifc prints; it has no other way to say what it left out. Returns a function that ends it and returns lines to print,
+// without errors in what Open CASCADE built instead.
+export function collectErrors() {
+    const { log, error } = console, found = new Map();
+    console.log = console.error = (...words) => {
+        for (const line of words.join(' ').split('\n')) {
+            const [, text, id] = /\[error\]\s*(.*?)\s*(\d*)\s*$/.exec(line) ?? [];
+            if (text)
+                found.set(text, [...found.get(text) ?? [], ...id ? [`#${id}`] : []]);
+        }
+    };
+    return (model, solids) => {
+        Object.assign(console, { log, error });
+        const built = found.size > 0 ? [...solids.elements.values()].flatMap(({ parts }) => parts.map(({ item }) => item)) : [];
+        const instead = reached(model, built), left = [...found].map(([text, ids]) =>
+            [text, ids.filter((id) => !instead.has(Number(id.slice(1)))), ids.length > 0]);
+        return left.filter(([, ids, numbered]) => ids.length > 0 || !numbered).map(([text, ids]) =>
+            `web-ifc error: ${text}${ids.length > 0 ? `, ${ids.length} times: ` : ''}` +
+            [...ids.slice(0, MOST_IDS), ...ids.length > MOST_IDS ? ['...'] : []].join(' '));
+    };
+}
+
+// Returns the items of a shape, also of what it maps.
+function itemsOf(model, shape) {
+    const items = [];
+    const walk = (representation, depth) => {
+        for (const { value } of [model.line(representation)?.Items ?? []].flat().filter(Boolean)) {
+            const source = depth < 50 ? model.line(value)?.MappingSource?.value : null;
+            if (source)
+                walk(model.line(source)?.MappedRepresentation?.value, depth + 1);
+            else
+                items.push(value);
+        }
+    };
+    [model.line(shape)?.Representations ?? []].flat().filter(Boolean).forEach(({ value }) => walk(value, 0));
+    return items;
+}
+
+// Returns { lost, lines }: elements with a shape that is not shown, each as a line to print; how many are only lines and points.
+export function findLosses(model, product, isShown, failed) {
+    const lost = [];
+    let lines = 0;
+    for (const id of model.ofType(product)) {
+        const line = model.line(id), shape = line?.Representation?.value;
+        if (!shape || isShown(id))
+            continue;
+        const items = itemsOf(model, shape), kinds = [...new Set(items.map((item) => model.classOf(item) || 'a missing statement'))];
+        if (items.length > 0 && kinds.every((kind) => LINES.test(kind))) {
+            lines++;
+            continue;
+        }
+        const reason = [id, ...items].map((item) => failed.get(item)).find(Boolean);
+        const why = items.length === 0 ? 'its representation is empty' : kinds.join(', ') + (reason ? `: ${reason}` : '');
+        const name = [model.nameOf(id), `(${model.classOf(id)}, ${line.GlobalId?.value ?? 'no GUID'})`].filter(Boolean).join(' ');
+        lost.push(`lost: #${id} ${name}: ${why}`);
+    }
+    return { lost, lines };
+}

@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Profiles: outlines of lines and arcs, or curves of the file. Slopes of flanges are left out. */
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
+#include <BRepBuilderAPI_GTransform.hxx>
+#include <ShapeFix_Face.hxx>
+#include <TopoDS.hxx>
+#include <gp_Circ.hxx>
+#include <gp_Elips.hxx>
+#include <gp_Pln.hxx>
+
+#include "preprocess/import/readers/ifc_shape.hh"
+
+namespace ifc
+{
+
+namespace
+{
+
+/* A corner of an outline, rounded by `radius`. */
+struct corner {
+    double x, y, radius;
+};
+
+TopoDS_Wire outline(const std::vector<corner> &corners)
+{
+    std::vector<gp_Pnt> points;
+    std::vector<double> radii;
+    for (const corner &at : corners) {
+        points.emplace_back(at.x, at.y, 0);
+        radii.push_back(at.radius);
+    }
+    return wire_of(rounded(points, radii, true));
+}
+
+TopoDS_Wire rectangle(double width, double height, double radius)
+{
+    double x = width / 2, y = height / 2;
+    return outline({ { -x, -y, radius }, { x, -y, radius }, { x, y, radius }, { -x, y, radius } });
+}
+
+TopoDS_Wire circle(double radius)
+{
+    return BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(gp_Circ(gp::XOY(), radius)).Edge());
+}
+
+TopoDS_Wire ellipse(double a, double b)
+{
+    gp_Ax2 axes = a >= b ? gp::XOY() : gp_Ax2(gp::Origin(), gp::DZ(), gp::DY());
+    return BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(gp_Elips(axes, std::max(a, b), std::min(a, b))).Edge());
+}
+
+std::vector<TopoDS_Face> faces_of(const TopoDS_Wire &outer, const std::vector<TopoDS_Wire> &holes)
+{
+    BRepBuilderAPI_MakeFace face(gp_Pln(gp::XOY()), outer, Standard_True);
+    if (!face.IsDone())
+        throw unsupported("a profile whose outline is not closed, or crosses itself");
+    for (const TopoDS_Wire &hole : holes)
+        face.Add(hole);
+    ShapeFix_Face fix(face.Face());
+    fix.FixOrientation();
+    return { fix.Face() };
+}
+
+using lengths = std::vector<double>; /* from the third value on; 0: absent */
+
+/* I with flanges of two widths; radii where the web meets each flange. */
+TopoDS_Wire i_shape(double depth, double web, double bottom, double bottom_thick, double bottom_fillet, double top, double top_thick,
+                    double top_fillet)
+{
+    double y = depth / 2, b = bottom / 2, t = top / 2, w = web / 2, low = -y + bottom_thick, high = y - top_thick;
+    return outline({ { -b, -y, 0 }, { b, -y, 0 }, { b, low, 0 }, { w, low, bottom_fillet }, { w, high, top_fillet }, { t, high, 0 },
+                     { t, y, 0 }, { -t, y, 0 }, { -t, high, 0 }, { -w, high, top_fillet }, { -w, low, bottom_fillet }, { -b, low, 0 } });
+}
+
+TopoDS_Wire l_shape(const lengths &d)
+{
+    double y = d[0] / 2, x = (d[1] > 0 ? d[1] : d[0]) / 2, t = d[2];
+    return outline({ { -x, -y, 0 }, { x, -y, 0 }, { x, -y + t, d[4] }, { -x + t, -y + t, d[3] }, { -x + t, y, d[4] }, { -x, y, 0 } });
+}
+
+TopoDS_Wire u_shape(const lengths &d)
+{
+    double y = d[0] / 2, x = d[1] / 2, web = d[2], flange = d[3];
+    return outline({ { -x, -y, 0 }, { x, -y, 0 }, { x, -y + flange, d[5] }, { -x + web, -y + flange, d[4] }, { -x + web, y - flange, d[4] },
+                     { x, y - flange, d[5] }, { x, y, 0 }, { -x, y, 0 } });
+}
+
+TopoDS_Wire t_shape(const lengths &d)
+{
+    double y = d[0] / 2, x = d[1] / 2, web = d[2] / 2, flange = d[3];
+    return outline({ { -web, -y, d[6] }, { web, -y, d[6] }, { web, y - flange, d[4] }, { x, y - flange, d[5] }, { x, y, 0 }, { -x, y, 0 },
+                     { -x, y - flange, d[5] }, { -web, y - flange, d[4] } });
+}
+
+TopoDS_Wire c_shape(const lengths &d)
+{
+    double y = d[0] / 2, x = d[1] / 2, t = d[2], girth = d[3], inner = d[4], outer = inner > 0 ? inner + t : 0;
+    return outline({ { -x, -y, outer }, { x, -y, outer }, { x, -y + girth, 0 }, { x - t, -y + girth, 0 }, { x - t, -y + t, inner },
+                     { -x + t, -y + t, inner }, { -x + t, y - t, inner }, { x - t, y - t, inner }, { x - t, y - girth, 0 },
+                     { x, y - girth, 0 }, { x, y, outer }, { -x, y, outer } });
+}
+
+TopoDS_Wire z_shape(const lengths &d)
+{
+    double y = d[0] / 2, x = d[1], web = d[2] / 2, flange = d[3];
+    return outline({ { -web, -y, 0 }, { x - web, -y, 0 }, { x - web, -y + flange, d[5] }, { web, -y + flange, d[4] }, { web, y, 0 },
+                     { web - x, y, 0 }, { web - x, y - flange, d[5] }, { -web, y - flange, d[4] } });
+}
+
+std::vector<TopoDS_Face> parametric(const std::string &type, const lengths &d)
+{
+    if (type == "IFCRECTANGLEPROFILEDEF")
+        return faces_of(rectangle(d[0], d[1], 0), {});
+    if (type == "IFCROUNDEDRECTANGLEPROFILEDEF")
+        return faces_of(rectangle(d[0], d[1], d[2]), {});
+    if (type == "IFCRECTANGLEHOLLOWPROFILEDEF")
+        return faces_of(rectangle(d[0], d[1], d[4]), { rectangle(d[0] - 2 * d[2], d[1] - 2 * d[2], d[3]) });
+    if (type == "IFCCIRCLEPROFILEDEF")
+        return faces_of(circle(d[0]), {});
+    if (type == "IFCCIRCLEHOLLOWPROFILEDEF")
+        return faces_of(circle(d[0]), { circle(d[0] - d[1]) });
+    if (type == "IFCELLIPSEPROFILEDEF")
+        return faces_of(ellipse(d[0], d[1]), {});
+    if (type == "IFCISHAPEPROFILEDEF")
+        return faces_of(i_shape(d[1], d[2], d[0], d[3], d[4], d[0], d[3], d[4]), {});
+    if (type == "IFCASYMMETRICISHAPEPROFILEDEF")
+        return faces_of(i_shape(d[1], d[2], d[0], d[3], d[4], d[5], d[6] > 0 ? d[6] : d[3], d[7]), {});
+    if (type == "IFCLSHAPEPROFILEDEF")
+        return faces_of(l_shape(d), {});
+    if (type == "IFCUSHAPEPROFILEDEF")
+        return faces_of(u_shape(d), {});
+    if (type == "IFCTSHAPEPROFILEDEF")
+        return faces_of(t_shape(d), {});
+    if (type == "IFCCSHAPEPROFILEDEF")
+        return faces_of(c_shape(d), {});
+    if (type == "IFCZSHAPEPROFILEDEF")
+        return faces_of(z_shape(d), {});
+    if (type == "IFCTRAPEZIUMPROFILEDEF") {
+        double left = -d[0] / 2, low = -d[2] / 2;
+        return faces_of(outline({ { left, low, 0 }, { -left, low, 0 }, { left + d[3] + d[1], -low, 0 }, { left + d[3], -low, 0 } }), {});
+    }
+    throw unsupported(type);
+}
+
+std::vector<TopoDS_Face> profile_within(const model &in, const entity &profile, int depth);
+
+/* Of parts that are moved, or of several profiles. */
+std::vector<TopoDS_Face> assembled(const model &in, const entity &profile, int depth)
+{
+    std::vector<TopoDS_Face> out;
+    if (profile.is("IFCCOMPOSITEPROFILEDEF")) {
+        for (const value &reference : profile[2].list)
+            for (const TopoDS_Face &face : profile_within(in, in.statements.get(reference), depth + 1))
+                out.push_back(face);
+        return out;
+    }
+    gp_GTrsf place;
+    if (profile.is("IFCMIRROREDPROFILEDEF"))
+        place.SetValue(1, 1, -1);
+    else
+        place = operator_of(in, in.statements.get(profile[3]));
+    for (const TopoDS_Face &face : profile_within(in, in.statements.get(profile[2]), depth + 1)) {
+        TopoDS_Face moved = TopoDS::Face(BRepBuilderAPI_GTransform(face, place, Standard_True).Shape());
+        out.push_back(moved);
+    }
+    return out;
+}
+
+std::vector<TopoDS_Face> profile_within(const model &in, const entity &profile, int depth)
+{
+    if (depth > MAX_CHAIN)
+        throw unsupported("its profiles refer to each other in a circle");
+    if (profile.is("IFCARBITRARYCLOSEDPROFILEDEF") || profile.is("IFCARBITRARYPROFILEDEFWITHVOIDS")) {
+        std::vector<TopoDS_Wire> holes;
+        for (const value &reference : profile[3].list)
+            holes.push_back(wire_of(pieces_of(in, in.statements.get(reference))));
+        return faces_of(wire_of(pieces_of(in, in.statements.get(profile[2]))), holes);
+    }
+    if (profile.is("IFCCOMPOSITEPROFILEDEF") || profile.is("IFCDERIVEDPROFILEDEF") || profile.is("IFCMIRROREDPROFILEDEF"))
+        return assembled(in, profile, depth);
+    lengths d(10);
+    for (size_t i = 0; i < d.size(); i++)
+        d[i] = profile[3 + i].kind == value::NUMBER ? in.length * profile[3 + i].number : 0;
+    std::vector<TopoDS_Face> out = parametric(profile.type, d);
+    TopLoc_Location place(placement_of(in, profile[2]));
+    for (TopoDS_Face &face : out)
+        face = TopoDS::Face(face.Moved(place));
+    return out;
+}
+
+} // namespace
+
+std::vector<TopoDS_Face> profile_of(const model &in, const entity &profile)
+{
+    return profile_within(in, profile, 0);
+}
+
+} // namespace ifc

@@ -1,0 +1,270 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finds the items to build, from products through their representations, and tessellates each once. */
+#include "preprocess/import/readers/ifc_shapes.hh"
+
+#include <Standard_Failure.hxx>
+#include <cmath>
+
+#include "preprocess/import/readers/ifc_shape.hh"
+#include "preprocess/import/readers/reader.hh"
+
+namespace ifc
+{
+
+namespace
+{
+
+constexpr size_t REPRESENTATION = 6, PLACEMENT = 5; /* among the values of a product */
+
+/* --- units */
+
+double si_prefix(const value &name)
+{
+    static const struct {
+        const char *name;
+        double factor;
+    } prefixes[] = { { ".KILO.", 1e3 }, { ".HECTO.", 1e2 }, { ".DECI.", 1e-1 }, { ".CENTI.", 1e-2 }, { ".MILLI.", 1e-3 },
+                     { ".MICRO.", 1e-6 } };
+    for (const auto &prefix : prefixes)
+        if (name.is(prefix.name))
+            return prefix.factor;
+    return 1;
+}
+
+double unit_of(const file &in, const entity &unit, int depth)
+{
+    if (unit.is("IFCSIUNIT"))
+        return si_prefix(unit[2]);
+    entity factor = in.get(unit[3]); /* of a conversion-based unit */
+    if (depth > MAX_CHAIN)
+        throw unsupported("its units refer to each other in a circle");
+    return file::number(factor[0]) * unit_of(in, in.get(factor[1]), depth + 1);
+}
+
+model model_of(const file &in, double chord_mm)
+{
+    model out = { in, 1e3, 1, chord_mm };
+    in.each([&](int id, const std::string &type) {
+        if (type != "IFCPROJECT")
+            return;
+        entity units = in.get(in.get(id)[8]);
+        for (const value &reference : units[0].list) {
+            entity unit = in.get(reference);
+            if (unit[1].is(".LENGTHUNIT."))
+                out.length = 1e3 * unit_of(in, unit, 0);
+            else if (unit[1].is(".PLANEANGLEUNIT."))
+                out.angle = unit_of(in, unit, 0);
+        }
+    });
+    if (!(out.length > 0) || !(out.angle > 0))
+        throw unsupported("its units are none");
+    return out;
+}
+
+/* --- meshes */
+
+struct part {
+    int mesh;
+    double origin[3]; /* of its vertices, in mm, so that an item far from its element's origin keeps its precision */
+};
+
+struct writer {
+    const model &in;
+    struct glb_scene *scene;
+    std::map<int, part> parts;      /* by item */
+    std::map<int, std::string> failed; /* items and elements that are left to web-ifc, and why */
+    size_t elements = 0;
+};
+
+part add_mesh(writer *w, const TopoDS_Shape &shape, int id)
+{
+    triangles all = triangles_of(w->in, shape);
+    if (volume_of(all) < 0) { /* turned inside out */
+        for (size_t i = 0; i < all.corners.size(); i += 3)
+            std::swap(all.corners[i], all.corners[i + 1]);
+        for (gp_Vec &normal : all.normals)
+            normal.Reverse();
+    }
+    part out = { -1, { 0, 0, 0 } };
+    for (int axis = 0; axis < 3; axis++)
+        out.origin[axis] = std::round(all.points[0].Coord(axis + 1));
+    std::vector<float> positions, normals;
+    for (size_t i = 0; i < all.points.size(); i++)
+        for (int axis = 0; axis < 3; axis++) {
+            positions.push_back(static_cast<float>(all.points[i].Coord(axis + 1) - out.origin[axis]));
+            normals.push_back(static_cast<float>(all.normals[i].Coord(axis + 1)));
+        }
+    const double grey[4] = { 1, 1, 1, 1 };
+    const struct glb_scene_triangles written = { reinterpret_cast<const float(*)[3]>(positions.data()),
+                                                 reinterpret_cast<const float(*)[3]>(normals.data()),
+                                                 all.points.size(),
+                                                 all.corners.data(),
+                                                 all.corners.size(),
+                                                 glb_scene_material(w->scene, grey) };
+    out.mesh = glb_scene_add_mesh(w->scene, ("#" + std::to_string(id)).c_str());
+    glb_scene_add_triangles(w->scene, out.mesh, &written);
+    return out;
+}
+
+/* Tessellates an item once. Returns false if it could not be built, which is said once. */
+bool build(writer *w, const entity &item)
+{
+    std::string why;
+    if (w->parts.count(item.id) > 0 || w->failed.count(item.id) > 0)
+        return w->parts.count(item.id) > 0;
+    try {
+        w->parts[item.id] = add_mesh(w, solid_of(w->in, item, 0), item.id);
+        return true;
+    } catch (const Standard_Failure &e) {
+        why = e.GetMessageString()[0] ? e.GetMessageString() : e.DynamicType()->Name();
+    } catch (const unsupported &e) {
+        why = e.what();
+    } catch (const std::out_of_range &) {
+        why = "it is incomplete";
+    }
+    w->failed[item.id] = why;
+    return false;
+}
+
+/* --- elements */
+
+/* Whether an item, or a solid that a boolean operation takes, is one of those to build. */
+bool wanted(const model &in, const entity &item, int depth)
+{
+    if (depth > MAX_CHAIN)
+        return false;
+    if (item.is("IFCBOOLEANRESULT") || item.is("IFCBOOLEANCLIPPINGRESULT"))
+        return wanted(in, in.statements.get(item[1]), depth + 1) || wanted(in, in.statements.get(item[2]), depth + 1);
+    return is_built(item.type);
+}
+
+struct placed_item {
+    int id;
+    gp_GTrsf place;
+};
+
+/* Collects the items of a representation, and of those that it maps. Clears *whole if one of them is left to web-ifc. */
+void collect(writer *w, const entity &representation, const gp_GTrsf &above, int depth, std::vector<placed_item> *out, bool *whole)
+{
+    const model &in = w->in;
+    if (depth > MAX_CHAIN)
+        throw unsupported("its representations map each other in a circle");
+    for (const value &reference : representation[3].list) {
+        entity item = in.statements.get(reference);
+        if (item.is("IFCMAPPEDITEM")) {
+            entity map = in.statements.get(item[0]);
+            gp_GTrsf place = above * operator_of(in, in.statements.get(item[1])) * gp_GTrsf(placement_of(in, map[0]));
+            collect(w, in.statements.get(map[1]), place, depth + 1, out, whole);
+        } else if (wanted(in, item, 0) && build(w, item)) {
+            out->push_back({ item.id, above });
+        } else {
+            *whole = false;
+        }
+    }
+}
+
+gp_Trsf object_placement(const model &in, const value &reference, int depth)
+{
+    if (reference.absent())
+        return gp_Trsf();
+    entity from = in.statements.get(reference);
+    if (depth > MAX_CHAIN)
+        throw unsupported("its placements refer to each other in a circle");
+    if (!from.is("IFCLOCALPLACEMENT"))
+        throw unsupported(from.type);
+    return object_placement(in, from[0], depth + 1) * placement_of(in, from[1]);
+}
+
+/* From millimetres and Z up to metres and Y up, at a place. */
+void matrix_of(const gp_GTrsf &place, double scale, bool turn, const double shift[3], double out[16])
+{
+    static const int rows[3] = { 0, 2, 1 };
+    for (int column = 0; column < 4; column++)
+        for (int row = 0; row < 3; row++) {
+            int from = turn ? rows[row] : row;
+            double at = place.Value(from + 1, column + 1);
+            for (int k = 0; column == 3 && k < 3; k++)
+                at += place.Value(from + 1, k + 1) * shift[k];
+            out[4 * column + row] = scale * (turn && row == 2 ? -at : at);
+        }
+    for (int column = 0; column < 4; column++)
+        out[4 * column + 3] = column == 3;
+}
+
+/* A representation of what a body looks like, and not of its axis, its plan or the room that it needs. */
+bool is_body(const entity &representation)
+{
+    static const char *const others[] = { "Axis", "FootPrint", "Box", "Annotation", "Profile", "Clearance", "Lighting",
+                                         "CoG", "Reference" };
+    for (const char *other : others)
+        if (representation[1].text == other)
+            return false;
+    return representation.is("IFCSHAPEREPRESENTATION");
+}
+
+void add_element(writer *w, const entity &product)
+{
+    static const double zero[3] = { 0, 0, 0 };
+    std::vector<placed_item> items;
+    bool whole = true;
+    entity shape = w->in.statements.get(product[REPRESENTATION]);
+    for (const value &reference : shape[2].list) {
+        entity representation = w->in.statements.get(reference);
+        if (is_body(representation))
+            collect(w, representation, gp_GTrsf(), 0, &items, &whole);
+    }
+    if (items.empty())
+        return;
+    double matrix[16];
+    matrix_of(gp_GTrsf(object_placement(w->in, product[PLACEMENT], 0)), 1e-3, true, zero, matrix);
+    int node = glb_scene_add_node(w->scene, -1, ("#" + std::to_string(product.id)).c_str(), -1, matrix);
+    if (whole)
+        glb_scene_set_property(w->scene, node, "whole", "yes");
+    for (const placed_item &item : items) {
+        const part &from = w->parts[item.id];
+        matrix_of(item.place, 1, false, from.origin, matrix);
+        glb_scene_add_node(w->scene, node, ("#" + std::to_string(item.id)).c_str(), from.mesh, matrix);
+    }
+    w->elements++;
+}
+
+bool has_any(const file &in)
+{
+    bool any = false;
+    in.each([&](int, const std::string &type) { any |= is_built(type); });
+    return any;
+}
+
+} // namespace
+
+} // namespace ifc
+
+void ifc_shapes_write(const char *input, const char *output, double chord_mm)
+{
+    ifc::file statements(input);
+    if (!ifc::has_any(statements))
+        return;
+    ifc::model in = ifc::model_of(statements, chord_mm);
+    ifc::writer w = { in, glb_scene_create("plantcast-import, Open CASCADE"), {}, {} };
+    statements.each([&](int id, const std::string &) {
+        try {
+            if (!statements.is_rooted(id))
+                return;
+            ifc::entity product = statements.get(id);
+            const ifc::value &shape = product[ifc::REPRESENTATION];
+            if (shape.kind == ifc::value::REFERENCE && statements.get(shape).is("IFCPRODUCTDEFINITIONSHAPE"))
+                ifc::add_element(&w, product);
+        } catch (const ifc::unsupported &e) {
+            w.failed[id] = e.what();
+        } catch (const Standard_Failure &e) {
+            w.failed[id] = e.GetMessageString();
+        }
+    });
+    int failed = glb_scene_add_node(w.scene, -1, "failed", -1, nullptr);
+    for (const auto &entry : w.failed)
+        glb_scene_set_property(w.scene, failed, ("#" + std::to_string(entry.first)).c_str(), entry.second.c_str());
+    if (w.elements > 0 || !w.failed.empty())
+        write_scene(&w.scene, output, ": a larger --chord makes it smaller");
+    else
+        glb_scene_destroy(&w.scene);
+}

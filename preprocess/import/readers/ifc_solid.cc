@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Solid items of other kinds, and what is cut from them. */
+#include <BRepAlgoAPI_Common.hxx>
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepAlgoAPI_Fuse.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakePolygon.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
+#include <BRepOffsetAPI_ThruSections.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeHalfSpace.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
+#include <BRepPrimAPI_MakeRevol.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <gp_Pln.hxx>
+
+#include <cmath>
+
+#include "preprocess/import/readers/ifc_shape.hh"
+
+namespace ifc
+{
+
+namespace
+{
+
+constexpr double FAR_MM = 1e6; /* how far a half space reaches where it has a boundary */
+
+/* Calls build(face) for each face and puts what comes together. */
+template <typename builder> TopoDS_Shape each(const std::vector<TopoDS_Face> &faces, const builder &build)
+{
+    TopoDS_Compound out;
+    BRep_Builder into;
+    if (faces.size() == 1)
+        return build(faces[0]);
+    into.MakeCompound(out);
+    for (const TopoDS_Face &face : faces)
+        into.Add(out, build(face));
+    return out;
+}
+
+TopoDS_Shape placed(const model &in, const value &at, const TopoDS_Shape &shape)
+{
+    return shape.Moved(TopLoc_Location(placement_of(in, at)));
+}
+
+TopoDS_Shape through(const std::vector<TopoDS_Wire> &sections)
+{
+    BRepOffsetAPI_ThruSections loft(Standard_True, Standard_True);
+    for (const TopoDS_Wire &section : sections)
+        loft.AddWire(section);
+    loft.Build();
+    if (!loft.IsDone())
+        throw unsupported("sections that cannot be joined");
+    return loft.Shape();
+}
+
+/* Outlines of a face, its outer one first. */
+std::vector<TopoDS_Wire> wires_of(const TopoDS_Face &face)
+{
+    std::vector<TopoDS_Wire> out = { BRepTools::OuterWire(face) };
+    for (TopExp_Explorer at(face, TopAbs_WIRE); at.More(); at.Next())
+        if (!at.Current().IsSame(out[0]))
+            out.push_back(TopoDS::Wire(at.Current()));
+    return out;
+}
+
+/* Joins faces that follow each other, holes to holes. */
+TopoDS_Shape through_faces(const std::vector<TopoDS_Face> &faces)
+{
+    TopoDS_Shape out;
+    std::vector<std::vector<TopoDS_Wire>> outlines;
+    for (const TopoDS_Face &face : faces) {
+        outlines.push_back(wires_of(face));
+        if (outlines.back().size() != outlines[0].size())
+            throw unsupported("sections with different holes");
+    }
+    for (size_t i = 0; i < outlines[0].size(); i++) {
+        std::vector<TopoDS_Wire> sections;
+        for (const std::vector<TopoDS_Wire> &wires : outlines)
+            sections.push_back(wires[i]);
+        out = i == 0 ? through(sections) : BRepAlgoAPI_Cut(out, through(sections)).Shape();
+    }
+    return out;
+}
+
+TopoDS_Face moved(const TopoDS_Face &face, const gp_Trsf &place)
+{
+    return TopoDS::Face(BRepBuilderAPI_Transform(face, place, Standard_True).Shape());
+}
+
+TopoDS_Shape extruded(const model &in, const entity &item)
+{
+    std::vector<TopoDS_Face> faces = profile_of(in, in.statements.get(item[0]));
+    gp_Vec along = gp_Vec(direction_of(in, item[2], gp::DZ())) * (in.length * file::number(item[3]));
+    TopoDS_Shape out;
+    if (item.is("IFCEXTRUDEDAREASOLIDTAPERED")) {
+        gp_Trsf end;
+        end.SetTranslation(along);
+        out = through_faces({ faces.at(0), moved(profile_of(in, in.statements.get(item[4])).at(0), end) });
+    } else {
+        out = each(faces, [&](const TopoDS_Face &face) { return BRepPrimAPI_MakePrism(face, along).Shape(); });
+    }
+    return placed(in, item[1], out);
+}
+
+TopoDS_Shape revolved(const model &in, const entity &item)
+{
+    std::vector<TopoDS_Face> faces = profile_of(in, in.statements.get(item[0]));
+    entity axis = in.statements.get(item[2]);
+    gp_Ax1 around(point_of(in, axis[0]), direction_of(in, axis[1], gp::DZ()));
+    double angle = std::fmin(in.angle * std::fabs(file::number(item[3])), 2 * M_PI);
+    if (file::number(item[3]) < 0)
+        around.Reverse();
+    TopoDS_Shape out = each(faces, [&](const TopoDS_Face &face) {
+        return angle > 2 * M_PI - 1e-9 ? BRepPrimAPI_MakeRevol(face, around).Shape() : BRepPrimAPI_MakeRevol(face, around, angle).Shape();
+    });
+    return placed(in, item[1], out);
+}
+
+/* Along a curve, with the profile's X towards a fixed direction, or square to a plane. */
+TopoDS_Shape along_curve(const model &in, const entity &item)
+{
+    gp_Dir up = gp::DX();
+    bool whole = false;
+    if (item.is("IFCFIXEDREFERENCESWEPTAREASOLID")) {
+        up = direction_of(in, item[5], gp::DX());
+    } else {
+        entity surface = in.statements.get(item[5]);
+        if (!surface.is("IFCPLANE"))
+            throw unsupported("a profile that follows " + surface.type);
+        up = gp::DZ().Transformed(placement_of(in, surface[0]));
+    }
+    std::vector<piece> pieces = trimmed(pieces_of(in, in.statements.get(item[2])), item[3], item[4], &whole);
+    if (whole)
+        printf("#%d: its parameters are outside of its curve: the whole curve is taken\n", item.id);
+    return placed(in, item[1], swept(profile_of(in, in.statements.get(item[0])), pieces, up));
+}
+
+TopoDS_Shape spine_of(const model &in, const entity &item)
+{
+    const std::vector<value> &sections = item[1].list, &places = item[2].list;
+    std::vector<TopoDS_Face> faces;
+    if (sections.size() < 2 || sections.size() != places.size())
+        throw unsupported("a spine without sections");
+    for (size_t i = 0; i < sections.size(); i++)
+        faces.push_back(moved(profile_of(in, in.statements.get(sections[i])).at(0), placement_of(in, places[i])));
+    return through_faces(faces);
+}
+
+TopoDS_Shape pyramid(double x, double y, double height)
+{
+    const gp_Pnt base[4] = { { 0, 0, 0 }, { x, 0, 0 }, { x, y, 0 }, { 0, y, 0 } };
+    TopoDS_Wire low = BRepBuilderAPI_MakePolygon(base[0], base[1], base[2], base[3], Standard_True).Wire();
+    BRepOffsetAPI_ThruSections loft(Standard_True, Standard_True);
+    loft.AddWire(low);
+    loft.AddVertex(BRepBuilderAPI_MakeVertex(gp_Pnt(x / 2, y / 2, height)));
+    loft.Build();
+    return loft.Shape();
+}
+
+/* A primitive, or a null shape for another type. */
+TopoDS_Shape primitive(const model &in, const entity &item)
+{
+    TopoDS_Shape out;
+    auto length = [&](size_t at) { return in.length * file::number(item[at]); };
+    if (item.is("IFCBLOCK"))
+        out = BRepPrimAPI_MakeBox(length(1), length(2), length(3)).Shape();
+    else if (item.is("IFCRECTANGULARPYRAMID"))
+        out = pyramid(length(1), length(2), length(3));
+    else if (item.is("IFCRIGHTCIRCULARCONE"))
+        out = BRepPrimAPI_MakeCone(length(2), 0, length(1)).Shape();
+    else if (item.is("IFCRIGHTCIRCULARCYLINDER"))
+        out = BRepPrimAPI_MakeCylinder(length(2), length(1)).Shape();
+    else if (item.is("IFCSPHERE"))
+        out = BRepPrimAPI_MakeSphere(length(1)).Shape();
+    else
+        return out;
+    return placed(in, item[0], out);
+}
+
+TopoDS_Shape half_space(const model &in, const entity &item)
+{
+    entity surface = in.statements.get(item[0]);
+    if (!surface.is("IFCPLANE"))
+        throw unsupported("a half space of " + surface.type);
+    gp_Trsf place = placement_of(in, surface[0]);
+    gp_Dir away = gp::DZ().Transformed(place);
+    gp_Pnt at = gp::Origin().Transformed(place), inside = at.Translated(gp_Vec(away) * (item[1].is_true() ? -1 : 1));
+    TopoDS_Shape out = BRepPrimAPI_MakeHalfSpace(BRepBuilderAPI_MakeFace(gp_Pln(at, away)).Face(), inside).Solid();
+    if (!item.is("IFCPOLYGONALBOUNDEDHALFSPACE"))
+        return out;
+    TopoDS_Wire boundary = wire_of(pieces_of(in, in.statements.get(item[3])));
+    TopoDS_Face low = BRepBuilderAPI_MakeFace(gp_Pln(gp::XOY()), boundary, Standard_True).Face();
+    gp_Trsf down;
+    down.SetTranslation(gp_Vec(0, 0, -FAR_MM));
+    TopoDS_Shape prism = BRepPrimAPI_MakePrism(BRepBuilderAPI_Transform(low, down).Shape(), gp_Vec(0, 0, 2 * FAR_MM)).Shape();
+    return BRepAlgoAPI_Common(placed(in, item[2], prism), out).Shape();
+}
+
+TopoDS_Shape boolean(const model &in, const entity &item, int depth)
+{
+    TopoDS_Shape first = solid_of(in, in.statements.get(item[1]), depth + 1), second = solid_of(in, in.statements.get(item[2]), depth + 1);
+    TopoDS_Shape out;
+    if (item[0].is(".DIFFERENCE."))
+        out = BRepAlgoAPI_Cut(first, second).Shape();
+    else if (item[0].is(".UNION."))
+        out = BRepAlgoAPI_Fuse(first, second).Shape();
+    else
+        out = BRepAlgoAPI_Common(first, second).Shape();
+    if (out.IsNull())
+        throw unsupported("a boolean operation that fails");
+    return out;
+}
+
+} // namespace
+
+bool is_built(const std::string &type)
+{
+    static const char *const types[] = { "IFCSWEPTDISKSOLID",
+                                         "IFCSWEPTDISKSOLIDPOLYGONAL",
+                                         "IFCADVANCEDBREP",
+                                         "IFCADVANCEDBREPWITHVOIDS",
+                                         "IFCREVOLVEDAREASOLID",
+                                         "IFCFIXEDREFERENCESWEPTAREASOLID",
+                                         "IFCSURFACECURVESWEPTAREASOLID",
+                                         "IFCSECTIONEDSPINE",
+                                         "IFCEXTRUDEDAREASOLIDTAPERED",
+                                         "IFCCSGSOLID",
+                                         "IFCBLOCK",
+                                         "IFCRECTANGULARPYRAMID",
+                                         "IFCRIGHTCIRCULARCONE",
+                                         "IFCRIGHTCIRCULARCYLINDER",
+                                         "IFCSPHERE" };
+    for (const char *known : types)
+        if (type == known)
+            return true;
+    return false;
+}
+
+TopoDS_Shape solid_of(const model &in, const entity &item, int depth)
+{
+    if (depth > MAX_CHAIN)
+        throw unsupported("its solids refer to each other in a circle");
+    if (item.is("IFCSWEPTDISKSOLID") || item.is("IFCSWEPTDISKSOLIDPOLYGONAL"))
+        return disk_of(in, item);
+    if (item.is("IFCADVANCEDBREP") || item.is("IFCADVANCEDBREPWITHVOIDS"))
+        return brep_of(in, item);
+    if (item.is("IFCEXTRUDEDAREASOLID") || item.is("IFCEXTRUDEDAREASOLIDTAPERED"))
+        return extruded(in, item);
+    if (item.is("IFCREVOLVEDAREASOLID"))
+        return revolved(in, item);
+    if (item.is("IFCFIXEDREFERENCESWEPTAREASOLID") || item.is("IFCSURFACECURVESWEPTAREASOLID"))
+        return along_curve(in, item);
+    if (item.is("IFCSECTIONEDSPINE"))
+        return spine_of(in, item);
+    if (item.is("IFCCSGSOLID"))
+        return solid_of(in, in.statements.get(item[0]), depth + 1);
+    if (item.is("IFCBOOLEANRESULT") || item.is("IFCBOOLEANCLIPPINGRESULT"))
+        return boolean(in, item, depth);
+    if (item.type.find("HALFSPACE") != std::string::npos)
+        return half_space(in, item);
+    TopoDS_Shape out = primitive(in, item);
+    if (out.IsNull())
+        throw unsupported(item.type);
+    return out;
+}
+
+} // namespace ifc

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Solids of an IFC file that Open CASCADE built (ifc_shapes.hh), and what web-ifc draws of the others.
+import { existsSync, readFileSync } from 'node:fs';
+import { multiplied } from './glb_writer.mjs';
+
+const HEAD = 20, CHUNK_HEAD = 8, GREY = { x: 0.6, y: 0.6, z: 0.6, w: 1 };
+
+function parseGlb(path) {
+    const file = readFileSync(path), length = file.readUInt32LE(12), json = JSON.parse(file.subarray(HEAD, HEAD + length));
+    const binary = file.subarray(HEAD + length + CHUNK_HEAD);
+    const read = (number, Type, width) => {
+        const { bufferView, byteOffset = 0, count } = json.accessors[number];
+        const from = (json.bufferViews[bufferView].byteOffset ?? 0) + byteOffset;
+        return new Type(Uint8Array.from(binary.subarray(from, from + count * width * Type.BYTES_PER_ELEMENT)).buffer);
+    };
+    return { json, read };
+}
+
+// Returns { elements, failed }: of each element its parts and whether they are all that it shows; the reasons of items that were not built.
+export function readSolids(path) {
+    const elements = new Map(), failed = new Map();
+    if (!existsSync(path))
+        return { elements, failed };
+    const { json, read } = parseGlb(path), number = (name) => Number(name.slice(1));
+    const geometries = json.meshes.map(({ primitives: [{ attributes: { POSITION, NORMAL }, indices }] }) => {
+        const points = read(POSITION, Float32Array, 3), normals = read(NORMAL, Float32Array, 3);
+        const vertices = new Float32Array(2 * points.length);
+        for (let i = 0; i < points.length; i += 3)
+            vertices.set([...points.subarray(i, i + 3), ...normals.subarray(i, i + 3)], 2 * i);
+        return { vertices, corners: read(indices, Uint32Array, 1) };
+    });
+    for (const root of json.scenes[0].nodes) {
+        const { name, extras = {}, matrix, children = [] } = json.nodes[root];
+        if (name === 'failed')
+            Object.entries(extras).forEach(([item, reason]) => failed.set(number(item), reason));
+        else
+            elements.set(number(name), { whole: extras.whole === 'yes', parts: children.map((child) => {
+                const part = json.nodes[child];
+                return { item: number(part.name), geometry: geometries[part.mesh], place: multiplied(matrix, part.matrix) };
+            }) });
+    }
+    return { elements, failed };
+}
+
+// Returns the colour of an item: of its style, if it has one.
+function styles(model, type) {
+    const found = new Map();
+    const colorOf = (id, depth) => {
+        const line = depth < 8 ? model.line(id) : null, rgb = model.line(line?.SurfaceColour?.value);
+        if (rgb)
+            return { x: rgb.Red.value, y: rgb.Green.value, z: rgb.Blue.value, w: 1 - (line.Transparency?.value ?? 0) };
+        return [line?.Styles ?? []].flat().map((style) => colorOf(style?.value, depth + 1)).find(Boolean) ?? null;
+    };
+    for (const id of model.ofType(type)) {
+        const item = model.line(id)?.Item?.value, color = item ? colorOf(id, 0) : null;
+        if (color && Object.values(color).every(Number.isFinite))
+            found.set(item, color);
+    }
+    return (item) => found.get(item);
+}
+
+// Puts solids in the place of what web-ifc draws of the same items. An element with openings stays as web-ifc cut it.
+export function takeSolids(model, solids, { shown, known }, { styledItem, voids }) {
+    const colorOf = styles(model, styledItem), cut = new Set();
+    model.relate(voids, 'RelatingBuildingElement', 'RelatedOpeningElement', (element) => cut.add(element));
+    for (const [element, { whole, parts }] of solids.elements) {
+        const drawn = shown.get(element) ?? [], built = new Set(parts.map(({ item }) => item));
+        if (drawn.length > 0 && cut.has(element))
+            continue;
+        const others = whole ? [] : drawn.filter(({ geometryExpressID }) => !built.has(geometryExpressID));
+        shown.set(element, [...others, ...parts.map(({ item, geometry, place }) => {
+            const same = drawn.find(({ geometryExpressID }) => geometryExpressID === item);
+            const color = same?.color ?? colorOf(item) ?? drawn[0]?.color ?? GREY;
+            known.set(`solid ${item}`, geometry);
+            return { color, geometryExpressID: `solid ${item}`, flatTransformation: place };
+        })]);
+    }
+}

@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Profiles swept along curves, pipes among them. */
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
+#include <BRepOffsetAPI_MakePipe.hxx>
+#include <BRepOffsetAPI_MakePipeShell.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
+#include <BRepPrimAPI_MakeRevol.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <Geom_Circle.hxx>
+#include <Geom_Line.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
+#include <gp_Circ.hxx>
+#include <gp_Pln.hxx>
+
+#include <cmath>
+
+#include "preprocess/import/readers/ifc_shape.hh"
+
+namespace ifc
+{
+
+namespace
+{
+
+constexpr double VOLUME_SLACK = 0.04; /* 24 corners leave out 1.1 % of a circle */
+
+TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, const gp_Dir *up)
+{
+    BRepOffsetAPI_MakePipeShell pipe(spine);
+    if (up)
+        pipe.SetMode(*up);
+    pipe.SetTransitionMode(BRepBuilderAPI_RightCorner);
+    pipe.Add(outline);
+    if (!pipe.IsReady())
+        throw unsupported("a profile that cannot be swept along its curve");
+    pipe.Build();
+    if (!pipe.IsDone())
+        throw unsupported("a profile that cannot be swept along its curve");
+    pipe.MakeSolid(); /* fails for a closed curve, whose tube has no ends */
+    return pipe.Shape();
+}
+
+/* Returns the placement of the XY plane square to the first piece. */
+gp_Trsf start_of(const std::vector<piece> &pieces, const gp_Dir *up)
+{
+    gp_Dir along(pieces.front().tangent(false));
+    gp_Trsf out;
+    gp_Ax3 frame = up && !along.IsParallel(*up, 1e-6) ? gp_Ax3(pieces.front().start(), along, *up) : gp_Ax3(pieces.front().start(), along);
+    out.SetTransformation(frame, gp_Ax3(gp::XOY()));
+    return out;
+}
+
+TopoDS_Shape along(const TopoDS_Face &face, const std::vector<piece> &pieces, const gp_Dir *up)
+{
+    TopoDS_Face placed = TopoDS::Face(BRepBuilderAPI_Transform(face, start_of(pieces, up), Standard_True).Shape());
+    TopoDS_Wire spine = wire_of(pieces), outer = BRepTools::OuterWire(placed);
+    TopoDS_Shape out = wire_swept(outer, spine, up);
+    for (TopExp_Explorer wires(placed, TopAbs_WIRE); wires.More(); wires.Next())
+        if (!wires.Current().IsSame(outer)) {
+            BRepAlgoAPI_Cut cut(out, wire_swept(TopoDS::Wire(wires.Current()), spine, up));
+            if (!cut.IsDone())
+                throw unsupported("a hollow profile that cannot be swept along its curve");
+            out = cut.Shape();
+        }
+    return out;
+}
+
+/* Sweeps a disk along one piece: exactly, where it is a line or an arc. */
+TopoDS_Shape along_piece(const TopoDS_Face &face, const piece &part)
+{
+    TopoDS_Face placed = TopoDS::Face(BRepBuilderAPI_Transform(face, start_of({ part }, nullptr), Standard_True).Shape());
+    Handle(Geom_Circle) circle = Handle(Geom_Circle)::DownCast(part.curve);
+    if (part.curve->IsKind(STANDARD_TYPE(Geom_Line)))
+        return BRepPrimAPI_MakePrism(placed, gp_Vec(part.start(), part.end())).Shape();
+    if (circle.IsNull())
+        return BRepOffsetAPI_MakePipe(wire_of({ part }), placed).Shape();
+    gp_Ax1 axis = part.first > part.last ? circle->Axis().Reversed() : circle->Axis();
+    double angle = std::fabs(part.last - part.first);
+    return angle > 2 * M_PI - 1e-9 ? BRepPrimAPI_MakeRevol(placed, axis).Shape() : BRepPrimAPI_MakeRevol(placed, axis, angle).Shape();
+}
+
+TopoDS_Shape disks_along(const TopoDS_Face &face, const std::vector<piece> &pieces)
+{
+    TopoDS_Compound out;
+    BRep_Builder builder;
+    builder.MakeCompound(out);
+    for (const piece &part : pieces)
+        builder.Add(out, along_piece(face, part));
+    return out;
+}
+
+TopoDS_Shape pipe(const TopoDS_Face &face, const std::vector<piece> &pieces)
+{
+    TopoDS_Face placed = TopoDS::Face(BRepBuilderAPI_Transform(face, start_of(pieces, nullptr), Standard_True).Shape());
+    return BRepOffsetAPI_MakePipe(wire_of(pieces), placed).Shape();
+}
+
+TopoDS_Shape mitred(const TopoDS_Face &face, const std::vector<piece> &pieces)
+{
+    return along(face, pieces, nullptr);
+}
+
+/* Sweeps a disk along all pieces. What the volume must be is known: area times length. Where a way of sweeping leaves another one, corners
+ * or whole stretches of its triangles are wrong, and the next way is tried. The last one sweeps each piece by itself, with closed ends and
+ * corners that are not mitred. */
+TopoDS_Shape disk_along(const model &in, const TopoDS_Face &face, double area, const std::vector<piece> &pieces)
+{
+    using way = TopoDS_Shape (*)(const TopoDS_Face &, const std::vector<piece> &);
+    double expected = 0;
+    for (const piece &part : pieces)
+        expected += area * length_of(part);
+    for (way sweep : { way(pipe), way(mitred), way(disks_along) })
+        try {
+            TopoDS_Shape out = sweep(face, pieces);
+            double volume = volume_of(triangles_of(in, out));
+            if (std::fabs(volume - expected) < VOLUME_SLACK * expected)
+                return out;
+            if (std::fabs(volume + expected) < VOLUME_SLACK * expected)
+                return out.Reversed();
+        } catch (const Standard_Failure &) { /* the next one is tried */
+        } catch (const unsupported &) {
+        }
+    throw unsupported("a pipe that cannot be swept along its curve");
+}
+
+TopoDS_Face disk(double radius, double hole)
+{
+    auto circle = [](double r) {
+        return TopoDS_Wire(BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(gp_Circ(gp::XOY(), r)).Edge()));
+    };
+    BRepBuilderAPI_MakeFace face(gp_Pln(gp::XOY()), circle(radius));
+    if (hole > 0)
+        face.Add(TopoDS::Wire(circle(hole).Reversed()));
+    return face.Face();
+}
+
+} // namespace
+
+TopoDS_Shape swept(const std::vector<TopoDS_Face> &faces, const std::vector<piece> &pieces, const gp_Dir &up)
+{
+    if (faces.size() == 1)
+        return along(faces[0], pieces, &up);
+    TopoDS_Compound out;
+    BRep_Builder builder;
+    builder.MakeCompound(out);
+    for (const TopoDS_Face &face : faces)
+        builder.Add(out, along(face, pieces, &up));
+    return out;
+}
+
+TopoDS_Shape disk_of(const model &in, const entity &item)
+{
+    double radius = in.length * file::number(item[1]), hole = in.length * file::number(item[2], 0);
+    double fillet = item.is("IFCSWEPTDISKSOLIDPOLYGONAL") ? in.length * file::number(item[5], 0) : 0;
+    bool whole = false;
+    if (radius <= 0 || hole >= radius)
+        throw unsupported("a pipe without a wall");
+    std::vector<piece> pieces = trimmed(pieces_of(in, in.statements.get(item[0])), item[3], item[4], &whole);
+    if (whole)
+        printf("#%d: its parameters are outside of its curve: the whole curve is taken\n", item.id);
+    if (fillet > 0) {
+        std::vector<gp_Pnt> points = { pieces.front().start() };
+        for (const piece &part : pieces)
+            points.push_back(part.end());
+        pieces = rounded(points, { fillet }, false);
+    }
+    return disk_along(in, disk(radius, hole), M_PI * (radius * radius - hole * hole), pieces);
+}
+
+} // namespace ifc

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small IFC files, one for each kind of shape, with the volume (m3) and the size (m) that geometry gives.
+const R = 25, PIPE = Math.PI * R * R * 1e-9, HALF_TURN = Math.PI * 500;
+
+// Statements are given without numbers, as {$name} = text; #{name} refers to one.
+function statements(lines, first) {
+    const numbers = new Map(lines.map(([name], i) => [name, first + i]));
+    return lines.map(([name, text]) => `#${numbers.get(name)}=${text.replace(/#\{(\w+)\}/g, (_, to) => `#${numbers.get(to)}`)};`);
+}
+
+// An IFC file in millimetres with one element, "K-1", of these statements; "item" is its shape.
+export function ifcOf(schema, lines, type = 'SweptSolid') {
+    const head = [['o', 'IFCCARTESIANPOINT((0.,0.,0.))'], ['frame', 'IFCAXIS2PLACEMENT3D(#{o},$,$)'],
+        ['z', 'IFCDIRECTION((0.,0.,1.))'], ['y', 'IFCDIRECTION((0.,1.,0.))'], ['x', 'IFCDIRECTION((1.,0.,0.))'],
+        ['mm', 'IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.)'], ['rad', 'IFCSIUNIT(*,.PLANEANGLEUNIT.,$,.RADIAN.)'],
+        ['units', 'IFCUNITASSIGNMENT((#{mm},#{rad}))'],
+        ['context', "IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-5,#{frame},$)"],
+        ['project', "IFCPROJECT('0$PlantcastKinds0000001',$,'P',$,$,$,$,(#{context}),#{units})"],
+        ['place', 'IFCLOCALPLACEMENT($,#{frame})'],
+        ['site', "IFCSITE('0$PlantcastKinds0000002',$,'S',$,$,#{place},$,$,.ELEMENT.,$,$,$,$,$)"],
+        ['in', "IFCRELAGGREGATES('0$PlantcastKinds0000003',$,$,$,#{project},(#{site}))"]];
+    const tail = [['body', `IFCSHAPEREPRESENTATION(#{context},'Body','${type}',(#{item}))`],
+        ['shape', 'IFCPRODUCTDEFINITIONSHAPE($,$,(#{body}))'],
+        ['element', "IFCBUILDINGELEMENTPROXY('0$PlantcastKinds0000004',$,'K-1',$,$,#{place},#{shape},$,$)"],
+        ['on', "IFCRELCONTAINEDINSPATIALSTRUCTURE('0$PlantcastKinds0000005',$,$,$,(#{element}),#{site})"]];
+    return ['ISO-10303-21;', 'HEADER;', "FILE_DESCRIPTION((''),'2;1');", "FILE_NAME('','',(''),(''),'','','');",
+        `FILE_SCHEMA(('${schema}'));`, 'ENDSEC;', 'DATA;', ...statements([...head, ...lines, ...tail], 1), 'ENDSEC;', 'END-ISO-10303-21;',
+        ''].join('\n');
+}
+
+const point = (name, ...at) => [name, `IFCCARTESIANPOINT((${at.map((v) => v.toFixed(6)).join(',')}))`];
+const rectangle = ['profile', 'IFCRECTANGLEPROFILEDEF(.AREA.,$,$,200.,100.)'];
+const corner = [point('a', 0, 0, 0), point('b', 1750, 0, 0), point('c', 1750, 1500, 0)];
+const twoLines = [...corner, ['first', 'IFCPOLYLINE((#{a},#{b}))'], ['second', 'IFCPOLYLINE((#{b},#{c}))'],
+    ['s1', 'IFCCOMPOSITECURVESEGMENT(.CONTINUOUS.,.T.,#{first})'], ['s2', 'IFCCOMPOSITECURVESEGMENT(.CONTINUOUS.,.T.,#{second})'],
+    ['curve', 'IFCCOMPOSITECURVE((#{s1},#{s2}),.F.)']];
+const mitred = { volume: PIPE * 3250, size: [1.775, 1.525, 0.05] };
+const bend = [point('m', 0, 500, 0), ['v', 'IFCDIRECTION((0.,-1.,0.))'], ['at', 'IFCAXIS2PLACEMENT3D(#{m},#{z},#{v})'],
+    ['circle', 'IFCCIRCLE(#{at},500.)'],
+    ['arc', 'IFCTRIMMEDCURVE(#{circle},(IFCPARAMETERVALUE(0.)),(IFCPARAMETERVALUE(3.14159265358979)),.T.,.PARAMETER.)']];
+const disk = (curve, rest = '$,$,$') => ['item', `IFCSWEPTDISKSOLID(#{${curve}},${R}.,${rest})`];
+
+// A cylinder of 100 mm radius and 300 mm height as an advanced B-rep; its edges are circles, or B-splines that are exactly these.
+function cylinder(splines) {
+    const ring = (name, z) => splines
+        ? [...Array.from({ length: 9 }, (_, i) => {
+            const angle = i * Math.PI / 4, radius = i % 2 ? 100 * Math.SQRT2 : 100;
+            return point(`${name}${i}`, radius * Math.cos(angle), radius * Math.sin(angle), z);
+        }), [name, `IFCRATIONALBSPLINECURVEWITHKNOTS(2,(${Array.from({ length: 9 }, (_, i) => `#{${name}${i}}`)}),.CIRCULAR_ARC.,.T.,.F.,` +
+            `(3,2,2,2,3),(0.,1.,2.,3.,4.),.UNSPECIFIED.,(${Array.from({ length: 9 }, (_, i) => i % 2 ? Math.SQRT1_2 : '1.')}))`]]
+        : [point(`${name}o`, 0, 0, z), [`${name}at`, `IFCAXIS2PLACEMENT3D(#{${name}o},#{z},#{x})`], [name, `IFCCIRCLE(#{${name}at},100.)`]];
+    const oriented = (name, edge, same) => [name, `IFCORIENTEDEDGE(*,*,#{${edge}},.${same}.)`];
+    return [point('p0', 100, 0, 0), point('p1', 100, 0, 300), ['v0', 'IFCVERTEXPOINT(#{p0})'], ['v1', 'IFCVERTEXPOINT(#{p1})'],
+        ...ring('low', 0), ...ring('high', 300), ['up', 'IFCVECTOR(#{z},300.)'], ['seam', 'IFCLINE(#{p0},#{up})'],
+        ['e0', 'IFCEDGECURVE(#{v0},#{v0},#{low},.T.)'], ['e1', 'IFCEDGECURVE(#{v1},#{v1},#{high},.T.)'],
+        ['e2', 'IFCEDGECURVE(#{v0},#{v1},#{seam},.T.)'],
+        oriented('l0', 'e0', 'T'), oriented('l1', 'e2', 'T'), oriented('l2', 'e1', 'F'), oriented('l3', 'e2', 'F'),
+        ['loop', 'IFCEDGELOOP((#{l0},#{l1},#{l2},#{l3}))'], ['bound', 'IFCFACEOUTERBOUND(#{loop},.T.)'],
+        ['round', 'IFCCYLINDRICALSURFACE(#{frame},100.)'], ['f0', 'IFCADVANCEDFACE((#{bound}),#{round},.T.)'],
+        oriented('d0', 'e0', 'F'), ['dl', 'IFCEDGELOOP((#{d0}))'], ['db', 'IFCFACEOUTERBOUND(#{dl},.T.)'], ['dp', 'IFCPLANE(#{frame})'],
+        ['f1', 'IFCADVANCEDFACE((#{db}),#{dp},.F.)'],
+        oriented('u0', 'e1', 'T'), ['ul', 'IFCEDGELOOP((#{u0}))'], ['ub', 'IFCFACEOUTERBOUND(#{ul},.T.)'], point('top', 0, 0, 300),
+        ['uat', 'IFCAXIS2PLACEMENT3D(#{top},$,$)'], ['upl', 'IFCPLANE(#{uat})'], ['f2', 'IFCADVANCEDFACE((#{ub}),#{upl},.T.)'],
+        ['shell', 'IFCCLOSEDSHELL((#{f0},#{f1},#{f2}))'], ['item', 'IFCADVANCEDBREP(#{shell})']];
+}
+
+const box = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => point(`b${i}`, i & 1 ? 200 : 0, i & 2 ? 100 : 0, i & 4 ? 50 : 0));
+const sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+const facets = sides.flatMap((side, i) => [[`l${i}`, `IFCPOLYLOOP((${side.map((k) => `#{b${k}}`)}))`],
+    [`fb${i}`, `IFCFACEOUTERBOUND(#{l${i}},.T.)`], [`f${i}`, `IFCFACE((#{fb${i}}))`]]);
+const extruded = [rectangle, ['solid', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame},#{z},50.)']];
+const ofBox = { volume: 200 * 100 * 50 * 1e-9, size: [0.2, 0.1, 0.05] };
+const turned = [point('far', 0, 500, 0), ['axis', 'IFCAXIS1PLACEMENT(#{far},#{x})']];
+
+// [name, schemas, statements, what is right, representation type]
+export const KINDS = [
+    ['extrusion', ['IFC2X3', 'IFC4'], [rectangle, ['item', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame},#{z},50.)']], ofBox],
+    ['hollow circle extruded', ['IFC4'], [['profile', 'IFCCIRCLEHOLLOWPROFILEDEF(.AREA.,$,$,100.,20.)'],
+        ['item', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame},#{z},500.)']], { volume: Math.PI * 3600 * 500e-9, size: [0.2, 0.2, 0.5] }],
+    ['tapered extrusion', ['IFC4'], [rectangle, ['end', 'IFCRECTANGLEPROFILEDEF(.AREA.,$,$,100.,50.)'],
+        ['item', 'IFCEXTRUDEDAREASOLIDTAPERED(#{profile},#{frame},#{z},60.,#{end})']],
+    { volume: 20 * (20000 + 5000 + 10000) * 1e-9, size: [0.2, 0.1, 0.06] }],
+    ['revolved rectangle', ['IFC2X3', 'IFC4'], [rectangle, ...turned,
+        ['item', 'IFCREVOLVEDAREASOLID(#{profile},#{frame},#{axis},3.14159265358979)']],
+    { volume: 20000 * HALF_TURN * 1e-9, size: [0.2, 1.1, 0.55] }],
+    ['revolved hollow circle (elbow)', ['IFC2X3', 'IFC4'], [['profile', 'IFCCIRCLEHOLLOWPROFILEDEF(.AREA.,$,$,100.,10.)'], ...turned,
+        ['item', 'IFCREVOLVEDAREASOLID(#{profile},#{frame},#{axis},1.5707963267949)']],
+    { volume: Math.PI * 1900 * HALF_TURN / 2 * 1e-9, size: [0.2, 0.6, 0.6] }],
+    ['pipe on a polyline', ['IFC2X3', 'IFC4'], [...corner, ['curve', 'IFCPOLYLINE((#{a},#{b},#{c}))'], disk('curve')], mitred],
+    ['pipe on a polyline with parameters', ['IFC2X3', 'IFC4'], [...corner, ['curve', 'IFCPOLYLINE((#{a},#{b},#{c}))'],
+        disk('curve', '$,0.,2.')], mitred],
+    ['pipe on half of a polyline', ['IFC2X3', 'IFC4'], [...corner, ['curve', 'IFCPOLYLINE((#{a},#{b},#{c}))'], disk('curve', '$,0.5,1.')],
+        { volume: PIPE * 875, size: [0.875, 0.05, 0.05] }],
+    ['pipe on a composite curve', ['IFC2X3', 'IFC4'], [...twoLines, disk('curve')], mitred],
+    ['pipe on a composite curve with parameters', ['IFC2X3', 'IFC4'], [...twoLines, disk('curve', '$,0.,2.')], mitred],
+    ['hollow pipe on a composite curve with parameters', ['IFC2X3', 'IFC4'], [...twoLines, disk('curve', '20.,0.,2.')],
+        { volume: PIPE * (1 - 400 / 625) * 3250, size: [1.775, 1.525, 0.05] }],
+    ['pipe on an arc', ['IFC2X3', 'IFC4'], [...bend, disk('arc')], { volume: PIPE * HALF_TURN, size: [0.525, 1.05, 0.05] }],
+    ['pipe on half of an arc', ['IFC2X3', 'IFC4'], [...bend, disk('arc', '$,0.,1.5707963267949')],
+        { volume: PIPE * HALF_TURN / 2, size: [0.525, 0.525, 0.05] }],
+    ['pipe on a line and an arc', ['IFC2X3', 'IFC4'], [...bend, point('start', -1000, 0, 0), ['line', 'IFCPOLYLINE((#{start},#{o}))'],
+        ['s1', 'IFCCOMPOSITECURVESEGMENT(.CONTINUOUS.,.T.,#{line})'], ['s2', 'IFCCOMPOSITECURVESEGMENT(.CONTINUOUS.,.T.,#{arc})'],
+        ['curve', 'IFCCOMPOSITECURVE((#{s1},#{s2}),.F.)'], disk('curve', '$,0.,4.14159265358979')],
+    { volume: PIPE * (1000 + HALF_TURN), size: [1.525, 1.05, 0.05] }],
+    ['pipe on an indexed curve', ['IFC4'], [
+        ['points', 'IFCCARTESIANPOINTLIST3D(((0.,0.,0.),(1000.,0.,0.),(1500.,500.,0.),(1000.,1000.,0.)))'],
+        ['curve', 'IFCINDEXEDPOLYCURVE(#{points},(IFCLINEINDEX((1,2)),IFCARCINDEX((2,3,4))),.F.)'], disk('curve')],
+    { volume: PIPE * (1000 + HALF_TURN), size: [1.525, 1.05, 0.05] }],
+    ['pipe with rounded corners', ['IFC4'], [...corner, ['curve', 'IFCPOLYLINE((#{a},#{b},#{c}))'],
+        ['item', 'IFCSWEPTDISKSOLIDPOLYGONAL(#{curve},25.,$,$,$,200.)']],
+    { volume: PIPE * (1550 + 1300 + Math.PI * 100), size: [1.775, 1.525, 0.05] }],
+    ['profile along a curve', ['IFC4'], [...bend, rectangle,
+        ['item', 'IFCFIXEDREFERENCESWEPTAREASOLID(#{profile},#{frame},#{arc},$,$,#{z})']],
+        { volume: 20000 * HALF_TURN * 1e-9, size: [0.55, 1.1, 0.2] }],
+    ['sectioned spine', ['IFC2X3', 'IFC4'], [rectangle, point('end', 0, 0, 400), ['spine', 'IFCPOLYLINE((#{o},#{end}))'],
+        ['there', 'IFCAXIS2PLACEMENT3D(#{end},$,$)'], ['item', 'IFCSECTIONEDSPINE(#{spine},(#{profile},#{profile}),(#{frame},#{there}))']],
+    { volume: 20000 * 400e-9, size: [0.2, 0.1, 0.4] }],
+    ['mapped item', ['IFC2X3', 'IFC4'], [...extruded, ['source', "IFCSHAPEREPRESENTATION(#{context},'Body','SweptSolid',(#{solid}))"],
+        ['map', 'IFCREPRESENTATIONMAP(#{frame},#{source})'], ['onto', 'IFCCARTESIANTRANSFORMATIONOPERATOR3D($,$,#{o},2.,$)'],
+        ['item', 'IFCMAPPEDITEM(#{map},#{onto})']], { volume: 8e-3, size: [0.4, 0.2, 0.1] }, 'MappedRepresentation'],
+    ['mapped pipe', ['IFC2X3', 'IFC4'], [...twoLines, ['pipe', 'IFCSWEPTDISKSOLID(#{curve},25.,$,0.,2.)'],
+        ['source', "IFCSHAPEREPRESENTATION(#{context},'Body','AdvancedSweptSolid',(#{pipe}))"],
+        ['map', 'IFCREPRESENTATIONMAP(#{frame},#{source})'], ['onto', 'IFCCARTESIANTRANSFORMATIONOPERATOR3D($,$,#{b},2.,$)'],
+        ['item', 'IFCMAPPEDITEM(#{map},#{onto})']],
+    { volume: 8 * mitred.volume, size: mitred.size.map((v) => 2 * v) }, 'MappedRepresentation'],
+    ['clipped extrusion', ['IFC2X3', 'IFC4'], [...extruded, point('half', 0, 0, 25), ['cut', 'IFCAXIS2PLACEMENT3D(#{half},#{z},#{x})'],
+        ['plane', 'IFCPLANE(#{cut})'], ['space', 'IFCHALFSPACESOLID(#{plane},.F.)'],
+        ['item', 'IFCBOOLEANCLIPPINGRESULT(.DIFFERENCE.,#{solid},#{space})']], { volume: 0.5e-3, size: [0.2, 0.1, 0.025] }, 'Clipping'],
+    ['clipped pipe', ['IFC4'], [...twoLines, ['pipe', 'IFCSWEPTDISKSOLID(#{curve},25.,$,0.,2.)'], point('half', 1000, 0, 0),
+        ['cut', 'IFCAXIS2PLACEMENT3D(#{half},#{x},#{y})'], ['plane', 'IFCPLANE(#{cut})'], ['space', 'IFCHALFSPACESOLID(#{plane},.F.)'],
+        ['item', 'IFCBOOLEANRESULT(.DIFFERENCE.,#{pipe},#{space})']], { volume: PIPE * 1000, size: [1, 0.05, 0.05] }, 'CSG'],
+    ['sphere, as CSG', ['IFC2X3', 'IFC4'], [['ball', 'IFCSPHERE(#{frame},100.)'], ['item', 'IFCCSGSOLID(#{ball})']],
+        { volume: 4 / 3 * Math.PI * 1e-3, size: [0.2, 0.2, 0.2] }, 'CSG'],
+    ['advanced B-rep with circles', ['IFC4'], cylinder(false), { volume: Math.PI * 3e-3, size: [0.2, 0.2, 0.3] }, 'AdvancedBrep'],
+    ['advanced B-rep with B-splines', ['IFC4'], cylinder(true), { volume: Math.PI * 3e-3, size: [0.2, 0.2, 0.3] }, 'AdvancedBrep'],
+    ['faceted B-rep', ['IFC2X3', 'IFC4'], [...box, ...facets, ['shell', `IFCCLOSEDSHELL((${sides.map((_, i) => `#{f${i}}`)}))`],
+        ['item', 'IFCFACETEDBREP(#{shell})']], ofBox, 'Brep'],
+    ['tessellated face set', ['IFC4'], [['points', `IFCCARTESIANPOINTLIST3D((${[0, 1, 2, 3, 4, 5, 6, 7].map((i) =>
+        `(${i & 1 ? 200 : 0}.,${i & 2 ? 100 : 0}.,${i & 4 ? 50 : 0}.)`)}))`], ['item', `IFCTRIANGULATEDFACESET(#{points},$,.T.,(${
+        sides.flatMap(([a, b, c, d]) => [[a, b, c], [a, c, d]]).map((t) => `(${t.map((k) => k + 1)})`)}),$)`]], ofBox, 'Tessellation'],
+    ['extrusion with an opening', ['IFC2X3', 'IFC4'], [rectangle, ['item', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame},#{z},50.)'],
+        ['hole', 'IFCRECTANGLEPROFILEDEF(.AREA.,$,$,50.,50.)'], point('under', 0, 0, -10), ['from', 'IFCAXIS2PLACEMENT3D(#{under},$,$)'],
+        ['cutter', 'IFCEXTRUDEDAREASOLID(#{hole},#{from},#{z},70.)'],
+        ['ob', "IFCSHAPEREPRESENTATION(#{context},'Body','SweptSolid',(#{cutter}))"], ['os', 'IFCPRODUCTDEFINITIONSHAPE($,$,(#{ob}))'],
+        ['opening', "IFCOPENINGELEMENT('0$PlantcastKinds0000006',$,'O',$,$,#{place},#{os},$)"],
+        ['voids', "IFCRELVOIDSELEMENT('0$PlantcastKinds0000007',$,$,$,#{element},#{opening})"]],
+    { volume: (20000 - 2500) * 50e-9, size: [0.2, 0.1, 0.05] }],
+];
