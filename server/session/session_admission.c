@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The part that a session's view has of all pixels: taken with its size, given back while nobody looks. */
+/* Pixels that a session's view holds of the admission budget: reserved with its size, returned while its page is hidden. */
 #include <string.h>
 
 #include "base/clock.h"
 #include "session/session_impl.h"
 
-static const int64_t HIDDEN_NS = 15 * NS_PER_S; /* a page that is hidden for longer may find its place taken */
+/* A page that is hidden for longer, or again within that time of being shown, gives up its pixels. It is admitted again as a new session is. */
+static const int64_t HIDDEN_NS = 15 * NS_PER_S;
 
 static void hold(struct session *session, int64_t pixels)
 {
@@ -55,20 +56,22 @@ bool session_has_pixels(const struct session *session)
 static bool take_again(struct session *session, const char **why)
 {
     int64_t pixels = pixels_of(session);
-    *why = admission_refuses_pixels(session->context->admission, session->room.share, 0, pixels);
+    *why = admission_refuses(session->context->admission, session->room.share, pixels);
     if (!*why)
         hold(session, pixels);
     return !*why;
 }
 
-/* Who finds no room is told so, and shown something once there is. */
+/* A session that is not admitted is told so, and gets pictures once there is capacity. */
 void session_on_visible(struct session *session, bool visible, int64_t now_ns)
 {
     struct message_error error = { 0 };
     const char *why;
     session->demand.any |= visible && session->hidden;
+    if (session->hidden && visible && session->room.shown_ns && now_ns - session->room.shown_ns < HIDDEN_NS)
+        hold(session, 0);
     if (session->hidden != !visible)
-        session->room.hidden_ns = now_ns;
+        *(visible ? &session->room.shown_ns : &session->room.hidden_ns) = now_ns;
     session->hidden = !visible;
     if (session->hidden || session_has_pixels(session) || take_again(session, &why))
         return;

@@ -56,7 +56,7 @@ struct session_close {
 struct session_room {
     struct address_share *share; /* of the client's address; NULL: none */
     int64_t pixels;              /* counted in the admission's totals; 0: given back while the page was hidden */
-    int64_t hidden_ns;           /* when the page was last hidden or shown */
+    int64_t hidden_ns, shown_ns; /* when the page was last hidden; when it was last shown again, 0: never */
 };
 
 /* Which codec frames are encoded with. */

@@ -13,6 +13,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "session/reply.h"
+#include "session/session_impl.h"
 #include "tests/support/session_case.h"
 #include "value/quality.h"
 
@@ -750,6 +751,30 @@ static void hidden_pages_get_nothing(void **state)
     assert_true(request.always && request.view.camera_seq == 1);
 }
 
+/* A view that is hidden and shown in turns costs a new picture each time, as a new session does. */
+static void views_shown_again_and_again_are_admitted_as_new_ones(void **state)
+{
+    static const char HIDE[] = "{\"type\":\"visible\",\"visible\":false}", SHOW[] = "{\"type\":\"visible\",\"visible\":true}";
+    struct session_case *f = *state;
+    struct frame_request request;
+    greet(f);
+    show(f);
+    for (int i = 0; i < 3; i++) /* drawing takes all of the time, and readings come late */
+        f->admission.windows[i] = (struct admission_window){ .drawing_ns = NS_PER_S, .data_wait_ns = 2 * NS_PER_S };
+    f->now_ns += NS_PER_S;
+    say(f, HIDE);
+    say(f, SHOW);
+    assert_true(ask(f, &request)); /* a look at another window keeps the place */
+    assert_true(session_has_pixels(f->session));
+    say(f, HIDE);
+    say(f, SHOW);
+    expect_error(f, "limit");
+    assert_false(session_has_pixels(f->session) || ask(f, &request));
+    memset(f->admission.windows, 0, sizeof(f->admission.windows));
+    session_keep_pixels(f->session, f->now_ns);
+    assert_true(session_has_pixels(f->session) && ask(f, &request));
+}
+
 static void tags_come_whole_then_by_change_then_nothing(void **state)
 {
     struct session_case *f = *state;
@@ -1080,6 +1105,7 @@ int main(void)
         TEST(a_refined_picture_that_is_out_of_date_is_not_sent_on),
         TEST(who_takes_nothing_is_paused_and_costs_nothing),
         TEST(hidden_pages_get_nothing),
+        TEST(views_shown_again_and_again_are_admitted_as_new_ones),
         TEST(tags_come_whole_then_by_change_then_nothing),
         TEST(params_are_confirmed_and_bad_ones_change_nothing),
         TEST(what_is_shown_is_confirmed),
