@@ -66,8 +66,10 @@ static void drop_attributes(struct isa_name *name)
             i++;
         if (i == count)
             return;
-        if (first || attributes[i].role != ISA_MEASURED)
+        if (first || attributes[i].role != ISA_MEASURED) {
             name->role = attributes[i].role;
+            name->attribute = attributes[i].word;
+        }
         first = false;
         name->tokens.count--;
     }
@@ -92,7 +94,7 @@ static enum isa_role role_of(const char *letters)
 
 void isa_read(struct isa_name *name, const char *text)
 {
-    *name = (struct isa_name){ .letters = -1, .number = -1, .suffix = "", .role = ISA_MEASURED };
+    *name = (struct isa_name){ .letters = -1, .number = -1, .suffix = "", .role = ISA_MEASURED, .attribute = "" };
     name_tokens_read(&name->tokens, text);
     drop_attributes(name);
     bool measured = name->role == ISA_MEASURED;

@@ -17,6 +17,7 @@ struct isa_name {
     const char *suffix;        /* a single letter behind the number, or "" */
     char variable;             /* the first letter, 'd' for a difference of pressures; 0: none */
     enum isa_role role;
+    const char *attribute; /* the word behind the name that says the role, such as SP; "": none */
 };
 
 /* Takes a tag's name apart. The suffix points into name->tokens. */

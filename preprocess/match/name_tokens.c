@@ -1,17 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs of letters and digits. Bytes of other alphabets count as letters. */
+/* Runs of letters and digits. Bytes of other alphabets count as letters, after full-width letters, dashes and blanks were folded. */
 #include "preprocess/match/name_tokens.h"
 
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "base/mem.h"
+#include "preprocess/match/fold.h"
+
 static bool is_word(unsigned char c)
 {
     return isalnum(c) || c >= 0x80;
 }
 
-void name_tokens_read(struct name_tokens *tokens, const char *text)
+static void read_folded(struct name_tokens *tokens, const char *text)
 {
     bool apart = true;
     tokens->count = 0;
@@ -41,6 +44,13 @@ void name_tokens_read(struct name_tokens *tokens, const char *text)
         token->text[length] = 0;
         apart = false;
     }
+}
+
+void name_tokens_read(struct name_tokens *tokens, const char *text)
+{
+    char *folded = fold_text(text);
+    read_folded(tokens, folded);
+    mem_free(folded);
 }
 
 static void add(char key[NAME_KEY_BYTES], size_t *length, const char *text)

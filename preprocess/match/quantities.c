@@ -12,6 +12,7 @@
 #include "plant/number.h"
 #include "plant/units.h"
 #include "preprocess/match/isa.h"
+#include "preprocess/match/quantity_words.h"
 
 enum { NAME_BYTES = 48 };
 
@@ -31,32 +32,85 @@ static bool is_number(const char *type)
     return !has_any(type, others, sizeof(others) / sizeof(*others));
 }
 
-/* What a unit is of, where that serves one variable only; else "". */
-static const char *word_of_unit(const char *unit)
+/* Quantities whose values are in units of a kind, the first of which the unit alone says; none: the unit says nothing of the quantity. */
+static const struct {
+    const char *kind;
+    bool alone; /* the unit decides by itself */
+    const char *quantities;
+} kinds[] = {
+    { "temperature", true, "|Temperature|" },
+    { "pressure", true, "|Pressure|Differential pressure|" }, /* of any reference */
+    { "flow", true, "|Flow|" },
+    { "density", true, "|Density|" },
+    { "conductivity", true, "|Conductivity|" },
+    { "power", true, "|Power|" },
+    { "energy", true, "|Energy|" },
+    { "force", true, "|Force|Weight|" },
+    { "speed of rotation", true, "|Speed|" },
+    { "voltage", true, "|Voltage|" },
+    { "current", true, "|Current|" },
+    { "velocity", false, "|Velocity|Vibration|Speed|Flow|" },
+    { "acceleration", false, "|Vibration|Acceleration|" },
+    { "frequency", false, "|Frequency|Speed|Vibration|" },
+    { "length", false, "|Level|Position|Vibration|Length|" },
+    { "mass", false, "|Weight|Quantity|Level|" },
+    { "volume", false, "|Level|Quantity|Volume|" },
+    { "angle", false, "|Position|Angle|" },
+    { "resistance", false, "|Resistance|Conductivity|Temperature|" },
+};
+
+/* Returns the entry of a unit's kind, or -1. */
+static int kind_of(const char *unit)
 {
-    static const char *const plain[] = { "temperature", "density", "conductivity", "power", "energy", "force" };
     const char *kind = *unit ? unit_kind(unit) : NULL;
-    if (!kind)
-        return "";
-    return strstr(kind, "pressure")                               ? "Pressure"
-           : strstr(kind, "flow")                                 ? "Flow"
-           : has_any(kind, plain, sizeof(plain) / sizeof(*plain)) ? kind
-                                                                  : "";
+    int found = -1;
+    for (size_t i = 0; i < sizeof(kinds) / sizeof(*kinds) && kind && found < 0; i++)
+        if (!strncmp(kind, kinds[i].kind, strlen(kinds[i].kind)) || (i < 3 && strstr(kind, kinds[i].kind)))
+            found = (int)i;
+    return found;
 }
 
-/* What it measures: "" for states and settings, and where neither unit nor letters tell. */
+static bool is_possible(int kind, const char *quantity)
+{
+    char *wanted = mem_printf("|%s|", quantity);
+    bool possible = kind < 0 || strstr(kinds[kind].quantities, wanted) != NULL;
+    mem_free(wanted);
+    return possible;
+}
+
+/* A tuning parameter, TI in seconds; with a unit or a description of something else these are letters: a temperature indicator. */
+static bool is_tuning(const struct export_tag *tag, const struct isa_name *isa, int kind, const char *described)
+{
+    if (strcmp(isa->attribute, "TI") != 0)
+        return isa->role != ISA_MEASURED;
+    const char *unit = *tag->fields[EXPORT_UNIT] ? unit_kind(tag->fields[EXPORT_UNIT]) : NULL;
+    return (unit && !strcmp(unit, "time")) || (kind < 0 && !described);
+}
+
+/* What it measures: "" for states and settings, and where nothing tells. The unit decides, then the description, then words of the name,
+   then its letters; none of them against the unit. */
 static void name_of(const struct export_tag *tag, char name[NAME_BYTES])
 {
     struct isa_name isa;
     isa_read(&isa, tag->fields[EXPORT_NAME]);
-    const char *unit = tag->fields[EXPORT_UNIT], *word = word_of_unit(unit), *quantity = isa.variable ? isa_quantity(isa.variable) : NULL;
-    const char *kind = *unit ? unit_kind(unit) : NULL;
+    const char *unit = tag->fields[EXPORT_UNIT], *full = tag->fields[EXPORT_NAME], *slash = strrchr(full, '/');
+    int kind = kind_of(unit);
+    const char *described = quantity_words_find(tag->fields[EXPORT_DESCRIPTION]);
+    const char *const said[] = { described, quantity_words_find(slash ? slash + 1 : full),
+                                 isa.variable ? isa_quantity(isa.variable) : NULL };
+    const char *found = NULL, *spoken = *unit ? unit_kind(unit) : NULL;
     name[0] = 0;
-    if (isa.role != ISA_MEASURED || !is_number(tag->fields[EXPORT_TYPE]))
+    if (is_tuning(tag, &isa, kind, described) || !is_number(tag->fields[EXPORT_TYPE]))
         return;
-    if (isa.variable == 'd' && (!*word || !strcmp(word, "Pressure")))
-        word = quantity;
-    snprintf(name, NAME_BYTES, "%s", *word ? word : quantity ? quantity : kind ? kind : unit);
+    for (size_t i = 0; i < sizeof(said) / sizeof(*said) && !found; i++)
+        if (said[i] && is_possible(kind, said[i]))
+            found = said[i];
+    if (found)
+        snprintf(name, NAME_BYTES, "%s", found);
+    else if (kind >= 0 && kinds[kind].alone)
+        snprintf(name, NAME_BYTES, "%.*s", (int)strcspn(kinds[kind].quantities + 1, "|"), kinds[kind].quantities + 1);
+    else
+        snprintf(name, NAME_BYTES, "%s", spoken ? spoken : unit);
     name[0] = (char)toupper((unsigned char)name[0]);
 }
 

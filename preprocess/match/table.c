@@ -72,6 +72,13 @@ static size_t rate(const char *text, char separator)
     size_t counts[SAMPLE_LINES] = { 0 }, lines = 0, best = 0;
     bool quoted = false, any = false;
     for (; *text && lines < SAMPLE_LINES; text++) {
+        if (!any && !quoted && (*text == ';' || *text == '#')) { /* a comment, which may hold any sign */
+            text += strcspn(text, "\n");
+            counts[lines] = 0;
+            if (!*text)
+                break;
+            continue;
+        }
         quoted ^= *text == '"';
         any |= *text != '\n' && *text != '\r';
         counts[lines] += *text == separator && !quoted;

@@ -25,8 +25,11 @@ enum { TABLE_MAX_CELLS = 1000 };
 char table_separator(const char *text);
 /* Appends the rows of a CSV text. Returns false with the reason in `why`: too many rows, or a quote that does not end. */
 bool table_read_csv(struct table *table, const char *text, char separator, char *why, size_t why_bytes);
-/* Appends the rows of the first sheet of a spreadsheet (Office Open XML, .xlsx) that is not empty. Returns false with the reason. */
-bool table_read_xlsx(struct table *table, const char *path, char *why, size_t why_bytes);
+/* Takes the rows of a sheet and its name: the sheet is the callee's to finish. */
+typedef void table_take_sheet(void *data, struct table *sheet, const char *name);
+/* Reads the sheets of a spreadsheet (Office Open XML, .xlsx) that are not empty, in the order of the workbook, hidden ones too. Returns
+   false with the reason. */
+bool table_read_xlsx(const char *path, table_take_sheet *take, void *data, char *why, size_t why_bytes);
 /* Appends a cell to the row, trimmed and without control characters. */
 void table_add_cell(struct table *table, struct table_row *row, const char *text, size_t length);
 /* Appends a row, unless it is blank, and takes its cells. */

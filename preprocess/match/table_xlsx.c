@@ -27,6 +27,13 @@ struct sheet {
     XML_Parser parser;
 };
 
+/* A name without its namespace's prefix, which some programs write before every element. */
+static const char *local(const char *name)
+{
+    const char *colon = strchr(name, ':');
+    return colon ? colon + 1 : name;
+}
+
 static const char *attribute(const char **attributes, const char *name)
 {
     for (; *attributes; attributes += 2)
@@ -47,6 +54,7 @@ static void on_text(void *data, const char *text, int length)
 static void string_begins(void *data, const char *name, const char **attributes)
 {
     struct sheet *sheet = data;
+    name = local(name);
     (void)attributes;
     if (!strcmp(name, "si"))
         sheet->text.length = 0;
@@ -57,6 +65,7 @@ static void string_begins(void *data, const char *name, const char **attributes)
 static void string_ends(void *data, const char *name)
 {
     struct sheet *sheet = data;
+    name = local(name);
     if (!strcmp(name, "t"))
         sheet->in_value = false;
     else if (!strcmp(name, "rPh"))
@@ -81,6 +90,7 @@ static int column_of(const char *reference)
 static void cell_begins(void *data, const char *name, const char **attributes)
 {
     struct sheet *sheet = data;
+    name = local(name);
     if (!strcmp(name, "row")) {
         int row = atoi(attribute(attributes, "r"));
         sheet->last_row = row > 0 ? row : sheet->last_row + 1;
@@ -118,6 +128,7 @@ static void finish_cell(struct sheet *sheet)
 static void cell_ends(void *data, const char *name)
 {
     struct sheet *sheet = data;
+    name = local(name);
     if (!strcmp(name, "v") || !strcmp(name, "t"))
         sheet->in_value = false;
     else if (!strcmp(name, "rPh"))
@@ -181,33 +192,92 @@ static int read_part(struct sheet *sheet, unzFile zip, const char *part, XML_Sta
     return good;
 }
 
-bool table_read_xlsx(struct table *table, const char *path, char *why, size_t why_bytes)
+/* --- the workbook ----------------------------------------------------------------------------------------------------------- */
+
+struct book_sheet {
+    char name[200], id[64], part[300];
+};
+
+struct book {
+    struct sheet sheet; /* first: handlers of any part are given it */
+    struct book_sheet sheets[MAX_SHEETS];
+    int count;
+};
+
+static void sheet_begins(void *data, const char *name, const char **attributes)
 {
-    struct sheet sheet = { .table = table };
+    struct book *book = data;
+    if (strcmp(local(name), "sheet") != 0 || book->count == MAX_SHEETS)
+        return;
+    struct book_sheet *at = &book->sheets[book->count++];
+    snprintf(at->name, sizeof(at->name), "%s", attribute(attributes, "name"));
+    for (; *attributes; attributes += 2)
+        if (strchr(attributes[0], ':') && !strcmp(local(attributes[0]), "id"))
+            snprintf(at->id, sizeof(at->id), "%s", attributes[1]);
+}
+
+static void relation_begins(void *data, const char *name, const char **attributes)
+{
+    struct book *book = data;
+    const char *target = attribute(attributes, "Target");
+    for (int i = 0; i < book->count && !strcmp(local(name), "Relationship"); i++)
+        if (!strcmp(book->sheets[i].id, attribute(attributes, "Id")))
+            snprintf(book->sheets[i].part, sizeof(book->sheets[i].part), "%s%s", *target == '/' ? "" : "xl/", target + (*target == '/'));
+}
+
+static void nothing_ends(void *data, const char *name)
+{
+    (void)data, (void)name;
+}
+
+/* Sheets by the workbook; without one, by their usual names. Returns false with the reason. */
+static bool find_sheets(struct book *book, unzFile zip, char *why, size_t why_bytes)
+{
+    if (read_part(&book->sheet, zip, "xl/workbook.xml", sheet_begins, nothing_ends, why, why_bytes) < 0 ||
+        read_part(&book->sheet, zip, "xl/_rels/workbook.xml.rels", relation_begins, nothing_ends, why, why_bytes) < 0)
+        return false;
+    for (int i = 0; i < MAX_SHEETS && book->count == i; i++) {
+        char part[64];
+        snprintf(part, sizeof(part), "xl/worksheets/sheet%d.xml", i + 1);
+        if (unzLocateFile(zip, part, 2) == UNZ_OK)
+            snprintf(book->sheets[book->count++].part, sizeof(part), "%s", part);
+    }
+    return true;
+}
+
+bool table_read_xlsx(const char *path, table_take_sheet *take, void *data, char *why, size_t why_bytes)
+{
     unzFile zip = unzOpen(path);
     if (!zip) {
         snprintf(why, why_bytes, "not a spreadsheet: its ZIP archive cannot be opened");
         return false;
     }
-    int good = read_part(&sheet, zip, "xl/sharedStrings.xml", string_begins, string_ends, why, why_bytes);
-    size_t sheets = 0;
-    for (int i = 1; good >= 0 && i <= MAX_SHEETS && table->count == 0; i++) {
-        char part[64];
-        snprintf(part, sizeof(part), "xl/worksheets/sheet%d.xml", i);
-        sheet.in_value = sheet.in_phonetic = false;
-        sheet.last_row = 0;
-        good = read_part(&sheet, zip, part, cell_begins, cell_ends, why, why_bytes);
+    struct book *book = mem_new(sizeof(*book));
+    struct sheet *sheet = &book->sheet;
+    int good = find_sheets(book, zip, why, why_bytes) ? 1 : -1, sheets = 0;
+    if (good > 0)
+        good = read_part(sheet, zip, "xl/sharedStrings.xml", string_begins, string_ends, why, why_bytes);
+    for (int i = 0; good >= 0 && i < book->count; i++) {
+        struct table table = { 0 };
+        sheet->table = &table;
+        sheet->in_value = sheet->in_phonetic = false;
+        sheet->last_row = 0;
+        good = read_part(sheet, zip, book->sheets[i].part, cell_begins, cell_ends, why, why_bytes);
         sheets += good > 0;
+        if (good > 0 && table.count > 0)
+            take(data, &table, book->sheets[i].name);
+        table_finish(&table);
+        table_row_finish(&sheet->row);
     }
     if (good >= 0 && sheets == 0) {
         snprintf(why, why_bytes, "not a spreadsheet: it has no sheet");
         good = -1;
     }
     unzClose(zip);
-    for (size_t i = 0; i < sheet.string_count; i++)
-        mem_free(sheet.strings[i]);
-    mem_free(sheet.strings);
-    table_row_finish(&sheet.row);
-    text_finish(&sheet.text);
+    for (size_t i = 0; i < sheet->string_count; i++)
+        mem_free(sheet->strings[i]);
+    mem_free(sheet->strings);
+    text_finish(&sheet->text);
+    mem_free(book);
     return good >= 0;
 }

@@ -2,7 +2,6 @@
 /* Which format a file has, and which column is what. */
 #include "preprocess/match/tag_export.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,158 +12,10 @@
 #include "base/text.h"
 #include "plant/number.h"
 #include "preprocess/match/table.h"
+#include "preprocess/match/tag_header.h"
 
 static const size_t max_bytes = (size_t)256 << 20;
-enum { HEADER_ROWS = 40, KEY_BYTES = 64 };
-
-/* What exports call their columns, without blanks and signs, in lower case; of two in one file the one further up counts. */
-static const struct column_word {
-    const char *word;
-    enum export_field field;
-} column_words[] = {
-    { "tagname", EXPORT_NAME },
-    { "pointname", EXPORT_NAME },
-    { "pntname", EXPORT_NAME },
-    { "pointid", EXPORT_NAME },
-    { "tag", EXPORT_NAME },
-    { "tagno", EXPORT_NAME },
-    { "tagnumber", EXPORT_NAME },
-    { "tagid", EXPORT_NAME },
-    { "instrumenttag", EXPORT_NAME },
-    { "태그명", EXPORT_NAME },
-    { "태그이름", EXPORT_NAME },
-    { "태그", EXPORT_NAME },
-    { "module", EXPORT_NAME },
-    { "modulename", EXPORT_NAME },
-    { "point", EXPORT_NAME },
-    { "objectname", EXPORT_NAME },
-    { "name", EXPORT_NAME },
-    { "itemname", EXPORT_NAME },
-    { "address", EXPORT_ADDRESS },
-    { "opcitempath", EXPORT_ADDRESS },
-    { "pvsourceaddress", EXPORT_ADDRESS },
-    { "sourceaddress", EXPORT_ADDRESS },
-    { "pvinputinputsource", EXPORT_ADDRESS },
-    { "ioaddress", EXPORT_ADDRESS },
-    { "plcaddress", EXPORT_ADDRESS },
-    { "modbusaddress", EXPORT_ADDRESS },
-    { "register", EXPORT_ADDRESS },
-    { "ioin", EXPORT_ADDRESS },
-    { "주소", EXPORT_ADDRESS },
-    { "datatype", EXPORT_TYPE },
-    { "pointtype", EXPORT_TYPE },
-    { "type", EXPORT_TYPE },
-    { "scanrate", EXPORT_SCAN },
-    { "scaling", EXPORT_SCALING },
-    { "scalemode", EXPORT_SCALING },
-    { "conversion", EXPORT_SCALING },
-    { "rawlow", EXPORT_RAW_LOW },
-    { "minraw", EXPORT_RAW_LOW },
-    { "rawmin", EXPORT_RAW_LOW },
-    { "rawhigh", EXPORT_RAW_HIGH },
-    { "maxraw", EXPORT_RAW_HIGH },
-    { "rawmax", EXPORT_RAW_HIGH },
-    { "scaledlow", EXPORT_SCALED_LOW },
-    { "mineu", EXPORT_SCALED_LOW },
-    { "pveulo", EXPORT_SCALED_LOW },
-    { "englow", EXPORT_SCALED_LOW },
-    { "pvengunitsmin", EXPORT_SCALED_LOW },
-    { "0rangevalue", EXPORT_SCALED_LOW },
-    { "eu0", EXPORT_SCALED_LOW },
-    { "rangelow", EXPORT_SCALED_LOW },
-    { "rangemin", EXPORT_SCALED_LOW },
-    { "lowrange", EXPORT_SCALED_LOW },
-    { "lrv", EXPORT_SCALED_LOW },
-    { "lowerrange", EXPORT_SCALED_LOW },
-    { "lowscale", EXPORT_SCALED_LOW },
-    { "최소", EXPORT_SCALED_LOW },
-    { "minimum", EXPORT_SCALED_LOW },
-    { "min", EXPORT_SCALED_LOW },
-    { "scaledhigh", EXPORT_SCALED_HIGH },
-    { "maxeu", EXPORT_SCALED_HIGH },
-    { "pveuhi", EXPORT_SCALED_HIGH },
-    { "enghigh", EXPORT_SCALED_HIGH },
-    { "pvengunitsmax", EXPORT_SCALED_HIGH },
-    { "100rangevalue", EXPORT_SCALED_HIGH },
-    { "eu100", EXPORT_SCALED_HIGH },
-    { "rangehigh", EXPORT_SCALED_HIGH },
-    { "rangemax", EXPORT_SCALED_HIGH },
-    { "highrange", EXPORT_SCALED_HIGH },
-    { "urv", EXPORT_SCALED_HIGH },
-    { "upperrange", EXPORT_SCALED_HIGH },
-    { "highscale", EXPORT_SCALED_HIGH },
-    { "최대", EXPORT_SCALED_HIGH },
-    { "maximum", EXPORT_SCALED_HIGH },
-    { "max", EXPORT_SCALED_HIGH },
-    { "engunits", EXPORT_UNIT },
-    { "engunit", EXPORT_UNIT },
-    { "engineeringunits", EXPORT_UNIT },
-    { "engineeringunit", EXPORT_UNIT },
-    { "pvengunits", EXPORT_UNIT },
-    { "eudesc", EXPORT_UNIT },
-    { "eunits", EXPORT_UNIT },
-    { "eu", EXPORT_UNIT },
-    { "uom", EXPORT_UNIT },
-    { "단위", EXPORT_UNIT },
-    { "units", EXPORT_UNIT },
-    { "unit", EXPORT_UNIT },
-    { "description", EXPORT_DESCRIPTION },
-    { "tagdescription", EXPORT_DESCRIPTION },
-    { "ptdesc", EXPORT_DESCRIPTION },
-    { "desc", EXPORT_DESCRIPTION },
-    { "shortdesc", EXPORT_DESCRIPTION },
-    { "comment", EXPORT_DESCRIPTION },
-    { "documentation", EXPORT_DESCRIPTION },
-    { "tooltip", EXPORT_DESCRIPTION },
-    { "service", EXPORT_DESCRIPTION },
-    { "descriptor", EXPORT_DESCRIPTION },
-    { "설명", EXPORT_DESCRIPTION },
-    { "path", EXPORT_AREA },
-    { "area", EXPORT_AREA },
-    { "plantarea", EXPORT_AREA },
-    { "asset", EXPORT_AREA },
-    { "folder", EXPORT_AREA },
-    { "alarmgroup", EXPORT_AREA },
-    { "group", EXPORT_AREA },
-    { "구역", EXPORT_AREA },
-    { "accessname", EXPORT_DEVICE },
-    { "device", EXPORT_DEVICE },
-    { "devicename", EXPORT_DEVICE },
-    { "opcserver", EXPORT_DEVICE },
-    { "controller", EXPORT_DEVICE },
-    { "source", EXPORT_DEVICE },
-    { "ll", EXPORT_LL },
-    { "lolo", EXPORT_LL },
-    { "loloalarmvalue", EXPORT_LL },
-    { "lololimit", EXPORT_LL },
-    { "lololim", EXPORT_LL },
-    { "pvlltp", EXPORT_LL },
-    { "l", EXPORT_L },
-    { "lo", EXPORT_L },
-    { "loalarmvalue", EXPORT_L },
-    { "lolimit", EXPORT_L },
-    { "lolim", EXPORT_L },
-    { "pvlotp", EXPORT_L },
-    { "h", EXPORT_H },
-    { "hi", EXPORT_H },
-    { "hialarmvalue", EXPORT_H },
-    { "hilimit", EXPORT_H },
-    { "hilim", EXPORT_H },
-    { "pvhitp", EXPORT_H },
-    { "hh", EXPORT_HH },
-    { "hihi", EXPORT_HH },
-    { "hihialarmvalue", EXPORT_HH },
-    { "hihilimit", EXPORT_HH },
-    { "hihilim", EXPORT_HH },
-    { "pvhhtp", EXPORT_HH },
-};
-enum { COLUMN_WORDS = sizeof(column_words) / sizeof(*column_words) };
-
-struct header {
-    int columns[EXPORT_FIELDS]; /* -1: none */
-    int tag_type;               /* Ignition's, which tells folders */
-    const char *data_type;      /* of all rows below, or NULL */
-};
+enum { HEADER_ROWS = 40 };
 
 struct export_tag *tag_export_add(struct tag_export *list, int line)
 {
@@ -180,61 +31,22 @@ void export_tag_set(struct export_tag *tag, enum export_field field, const char 
         tag->fields[field] = mem_strdup(text);
 }
 
-/* --- the header ------------------------------------------------------------------------------------------------------------- */
-
-static void find_key(const char *cell, char key[KEY_BYTES])
-{
-    size_t length = 0;
-    for (; *cell && length < KEY_BYTES - 1; cell++)
-        if (isalnum((unsigned char)*cell) || (unsigned char)*cell >= 0x80)
-            key[length++] = (char)tolower((unsigned char)*cell);
-    key[length] = 0;
-}
-
-/* Returns the number of columns that are known. */
-static int read_header(const struct table_row *row, struct header *header)
-{
-    int ranks[EXPORT_FIELDS], known = 0;
-    for (int f = 0; f < EXPORT_FIELDS; f++) {
-        header->columns[f] = -1;
-        ranks[f] = COLUMN_WORDS;
-    }
-    header->tag_type = -1;
-    for (size_t c = 0; c < row->count; c++) {
-        char key[KEY_BYTES];
-        find_key(row->cells[c], key);
-        if (!strcmp(key, "tagtype"))
-            header->tag_type = (int)c;
-        for (int w = 0; w < COLUMN_WORDS; w++)
-            if (!strcmp(column_words[w].word, key) && w < ranks[column_words[w].field]) {
-                known += header->columns[column_words[w].field] < 0;
-                header->columns[column_words[w].field] = (int)c;
-                ranks[column_words[w].field] = w;
-            }
-    }
-    return known;
-}
-
-static bool has_column(const struct table_row *row, const char *word)
-{
-    char key[KEY_BYTES];
-    for (size_t c = 0; c < row->count; c++) {
-        find_key(row->cells[c], key);
-        if (!strcmp(key, word))
-            return true;
-    }
-    return false;
-}
-
 static const char *format_of(const struct table_row *row)
 {
-    if (has_column(row, "respectdatatype") || has_column(row, "clientaccess"))
+    if (tag_header_has(row, "respectdatatype") || tag_header_has(row, "clientaccess"))
         return "Kepware";
-    if (has_column(row, "opcitempath"))
+    if (tag_header_has(row, "specifier") && tag_header_has(row, "scope"))
+        return "Studio 5000";
+    if (tag_header_has(row, "instrumenttag") && tag_header_has(row, "pointsource"))
+        return "PI";
+    if (tag_header_has(row, "logicaladdress") || tag_header_has(row, "logischeadresse"))
+        return "TIA Portal";
+    if (tag_header_has(row, "opcitempath"))
         return "Ignition (CSV)";
-    if (has_column(row, "pveuhi") || has_column(row, "pntname") || has_column(row, "pvsourceaddress") || has_column(row, "100rangevalue"))
+    if (tag_header_has(row, "pveuhi") || tag_header_has(row, "pntname") || tag_header_has(row, "pvsourceaddress") ||
+        tag_header_has(row, "100rangevalue"))
         return "Honeywell";
-    if (has_column(row, "module") || has_column(row, "modulename"))
+    if (tag_header_has(row, "module") || tag_header_has(row, "modulename"))
         return "Emerson";
     return "a list with a header";
 }
@@ -264,7 +76,23 @@ static void set_number(struct export_tag *tag, enum export_field field, const ch
         export_tag_set(tag, field, copy);
 }
 
-static void read_row(struct tag_export *list, const struct header *header, const struct table_row *row)
+/* A range by its low end and its length, as PI has it. */
+static void set_span(struct export_tag *tag, const char *text)
+{
+    struct export_tag of_text = { 0 };
+    double low, span;
+    set_number(&of_text, EXPORT_SCALED_HIGH, text);
+    if (of_text.fields[EXPORT_SCALED_HIGH] && tag->fields[EXPORT_SCALED_LOW] &&
+        number_parse(of_text.fields[EXPORT_SCALED_HIGH], &span) == NUMBER_GOOD &&
+        number_parse(tag->fields[EXPORT_SCALED_LOW], &low) == NUMBER_GOOD) {
+        char high[40];
+        snprintf(high, sizeof(high), "%.12g", low + span);
+        export_tag_set(tag, EXPORT_SCALED_HIGH, high);
+    }
+    mem_free(of_text.fields[EXPORT_SCALED_HIGH]);
+}
+
+static void read_row(struct tag_export *list, const struct tag_header *header, const struct table_row *row)
 {
     const char *name = table_cell(row, header->columns[EXPORT_NAME]), *type = table_cell(row, header->tag_type);
     if (!strcasecmp(type, "Folder") || !strcasecmp(type, "UDT_INST") || !strcasecmp(type, "UDT_DEF"))
@@ -282,25 +110,124 @@ static void read_row(struct tag_export *list, const struct header *header, const
         else
             export_tag_set(tag, (enum export_field)f, text);
     }
+    set_span(tag, table_cell(row, header->span));
     if (header->data_type)
         export_tag_set(tag, EXPORT_TYPE, header->data_type);
 }
 
+/* --- Studio 5000: rows of several kinds ------------------------------------------------------------------------------------- */
+
+/* Descriptions have $N for a new line, $Q and $' for quotes and $$ for a dollar. */
+static char *without_escapes(const char *text)
+{
+    static const char signs[] = "NnLlRrTtPp'Qq$", meant[] = "          '\"\"$";
+    char *out = mem_strdup(text), *to = out;
+    for (; *text; text++) {
+        const char *found = *text == '$' && text[1] ? strchr(signs, text[1]) : NULL;
+        char c = found ? meant[found - signs] : *text;
+        text += found != NULL;
+        if (c != ' ' || (to > out && to[-1] != ' '))
+            *to++ = c;
+    }
+    while (to > out && to[-1] == ' ')
+        to--;
+    *to = 0;
+    return out;
+}
+
+static bool is_of_kind(const struct table_row *row, const struct tag_header *header, const char *kind)
+{
+    return !strcasecmp(table_cell(row, header->kind), kind);
+}
+
+/* A comment is about an element of a tag: it describes the tags that are that element, such as aliases. */
+static void describe(struct tag_export *list, const char *element, const char *text)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        struct export_tag *tag = &list->tags[i];
+        const char *address = tag->fields[EXPORT_ADDRESS];
+        if (!strcasecmp(tag->fields[EXPORT_NAME], element) || (address && !strcasecmp(address, element)))
+            export_tag_set(tag, EXPORT_DESCRIPTION, text);
+    }
+}
+
+static void read_studio(struct tag_export *list, const struct table *table, size_t first, const struct tag_header *header)
+{
+    size_t comments = 0;
+    for (size_t i = first; i < table->count; i++) {
+        const struct table_row *row = &table->rows[i];
+        bool alias = is_of_kind(row, header, "ALIAS");
+        if (!alias && !is_of_kind(row, header, "TAG"))
+            continue;
+        read_row(list, header, row);
+        if (alias && list->count > 0)
+            export_tag_set(&list->tags[list->count - 1], EXPORT_ADDRESS, table_cell(row, header->specifier));
+    }
+    for (size_t i = first; i < table->count; i++)
+        if (is_of_kind(&table->rows[i], header, "COMMENT")) {
+            describe(list, table_cell(&table->rows[i], header->specifier),
+                     table_cell(&table->rows[i], header->columns[EXPORT_DESCRIPTION]));
+            comments++;
+        }
+    for (size_t i = 0; i < list->count; i++) {
+        char **text = &list->tags[i].fields[EXPORT_DESCRIPTION], *with = *text;
+        *text = with ? without_escapes(with) : NULL;
+        mem_free(with);
+    }
+    if (comments > 0)
+        text_add(&list->remarks, "%zu comments describe elements of tags: they are no tags\n", comments);
+}
+
+/* --- lists with a header -------------------------------------------------------------------------------------------------------- */
+
+/* Finds the row that most columns are known in. Returns how many, 0: none names tags. */
+static int find_header(const struct table *table, struct tag_header *header, size_t *row)
+{
+    bool one_column = table->count > 0;
+    int most = 0;
+    for (size_t i = 0; i < table->count; i++)
+        one_column &= table->rows[i].count == 1;
+    for (size_t i = 0; i < table->count && i < HEADER_ROWS; i++) {
+        struct tag_header found;
+        int known = tag_header_read(&table->rows[i], &found);
+        if (known >= (one_column ? 1 : 2) && known > most && found.columns[EXPORT_NAME] >= 0) {
+            most = known;
+            *header = found;
+            *row = i;
+        }
+    }
+    return most;
+}
+
+/* A second row of a header says what the columns of a range are: "from", "to". Returns whether there is one. */
+static bool read_second(const struct table_row *row, struct tag_header *header)
+{
+    struct tag_header second;
+    bool any = false;
+    if (*table_cell(row, header->columns[EXPORT_NAME]) || tag_header_read(row, &second) == 0)
+        return false;
+    for (int f = EXPORT_ADDRESS; f < EXPORT_FIELDS; f++)
+        if (header->columns[f] < 0 && second.columns[f] >= 0) {
+            header->columns[f] = second.columns[f];
+            any = true;
+        }
+    return any;
+}
+
 static bool read_rows(struct tag_export *list, const struct table *table, char *why, size_t why_bytes)
 {
-    struct header header = { 0 };
+    struct tag_header header = { 0 };
     size_t first = 0;
     bool one_column = table->count > 0;
     for (size_t i = 0; i < table->count; i++)
         one_column &= table->rows[i].count == 1;
-    while (first < table->count && first < HEADER_ROWS &&
-           !(read_header(&table->rows[first], &header) >= (one_column ? 1 : 2) && header.columns[EXPORT_NAME] >= 0))
-        first++;
-    if (first < table->count && first < HEADER_ROWS) {
+    if (find_header(table, &header, &first) > 0) {
         list->format = format_of(&table->rows[first]);
         first++;
+        if (first < table->count && read_second(&table->rows[first], &header))
+            first++;
     } else if (one_column) {
-        read_header(&table->rows[0], &header);
+        tag_header_read(&table->rows[0], &header);
         header.columns[EXPORT_NAME] = 0;
         list->format = "one name a line";
         first = 0;
@@ -309,8 +236,12 @@ static bool read_rows(struct tag_export *list, const struct table *table, char *
                  HEADER_ROWS);
         return false;
     }
+    if (header.kind >= 0 && header.specifier >= 0) {
+        read_studio(list, table, first, &header);
+        return true;
+    }
     for (size_t i = first; i < table->count; i++)
-        if (table->rows[i].cells[0][0] != ';' || table->rows[i].count > 1)
+        if (table->rows[i].cells[0][0] != ';' || (table->rows[i].count > 1 && list->separator == ';'))
             read_row(list, &header, &table->rows[i]);
     return true;
 }
@@ -329,7 +260,7 @@ static bool is_dump(const struct table *table)
 }
 
 /* Returns whether tags stand below: not in sections of access names, alarm groups or trends. */
-static bool begin_section(struct tag_export *list, const struct table_row *row, struct header *header)
+static bool begin_section(struct tag_export *list, const struct table_row *row, struct tag_header *header)
 {
     static const struct {
         const char *section, *type;
@@ -337,7 +268,7 @@ static bool begin_section(struct tag_export *list, const struct table_row *row, 
                   { ":MemoryInt", "Long" }, { ":IOReal", "Float" },       { ":MemoryReal", "Float" },     { ":IndirectAnalog", "Float" },
                   { ":IOMsg", "String" },   { ":MemoryMsg", "String" },   { ":IndirectMsg", "String" } };
     const char *cell = row->cells[0];
-    read_header(row, header);
+    tag_header_read(row, header);
     header->data_type = NULL;
     if (!strcasecmp(cell, ":Tagname")) {
         header->columns[EXPORT_NAME] = 0;
@@ -359,7 +290,7 @@ static bool begin_section(struct tag_export *list, const struct table_row *row, 
 
 static void read_dump(struct tag_export *list, const struct table *table)
 {
-    struct header header = { 0 };
+    struct tag_header header = { 0 };
     bool within = false;
     list->format = "AVEVA dump";
     for (size_t i = 0; i < table->count; i++) {
@@ -402,6 +333,57 @@ static bool read_text(struct tag_export *list, const char *bytes, size_t count, 
     return good;
 }
 
+struct workbook {
+    struct table best; /* the sheet whose header has most known columns; of equal ones the one with most rows */
+    struct text others; /* names of other sheets with a header */
+    char *name;
+    int known;
+    size_t sheets;
+};
+
+static bool is_better(const struct workbook *book, int known, const struct table *sheet)
+{
+    return known > book->known || (known == book->known && sheet->count > book->best.count);
+}
+
+static void take_sheet(void *data, struct table *sheet, const char *name)
+{
+    struct workbook *book = data;
+    struct tag_header header;
+    size_t row;
+    int known = find_header(sheet, &header, &row);
+    bool better = is_better(book, known, sheet);
+    const char *other = better ? book->name : name;
+    if ((better ? book->known : known) > 0)
+        text_add(&book->others, "%s'%.60s'", book->others.length > 0 ? ", " : "", other);
+    book->sheets++;
+    if (better) {
+        struct table before = book->best;
+        book->best = *sheet;
+        *sheet = before;
+        mem_free(book->name);
+        book->name = mem_strdup(name);
+        book->known = known;
+    }
+    table_finish(sheet);
+}
+
+/* Cover sheets, notes and hidden sheets may stand before the list. */
+static bool read_workbook(struct tag_export *list, const char *path, char *why, size_t why_bytes)
+{
+    struct workbook book = { .known = -1 };
+    bool good = table_read_xlsx(path, take_sheet, &book, why, why_bytes) && read_rows(list, &book.best, why, why_bytes);
+    list->control = book.best.control;
+    if (good && book.sheets > 1)
+        text_add(&list->remarks, "the list is sheet '%.60s' of %zu\n", book.name, book.sheets);
+    if (good && book.others.length > 0)
+        text_add(&list->remarks, "other sheets have a header, too, and are not read: %s\n", book.others.at);
+    table_finish(&book.best);
+    text_finish(&book.others);
+    mem_free(book.name);
+    return good;
+}
+
 bool tag_export_read(struct tag_export *list, const char *path, const char *encoding, char *why, size_t why_bytes)
 {
     size_t count;
@@ -410,10 +392,7 @@ bool tag_export_read(struct tag_export *list, const char *path, const char *enco
     if (!bytes) {
         snprintf(why, why_bytes, "%s", strerror(errno));
     } else if (count >= 4 && !memcmp(bytes, "PK\3\4", 4)) {
-        struct table table = { 0 };
-        good = table_read_xlsx(&table, path, why, why_bytes) && read_rows(list, &table, why, why_bytes);
-        list->control = table.control;
-        table_finish(&table);
+        good = read_workbook(list, path, why, why_bytes);
     } else if (count >= 4 && !memcmp(bytes, "\xd0\xcf\x11\xe0", 4)) {
         snprintf(why, why_bytes, "a spreadsheet of Excel 97 to 2003 (.xls); save it as .xlsx or CSV");
     } else {

@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "preprocess/match/fold.h"
 #include "preprocess/match/tag_export.h"
 
 enum { NAMED = 5 };
@@ -71,6 +72,43 @@ static void report_differing(struct tag_export *list, size_t first, size_t secon
         text_add(out, " (lines %d and %d)", list->tags[first].line, list->tags[second].line);
 }
 
+struct folded {
+    char *key;
+    size_t tag;
+};
+
+static int by_key(const void *pa, const void *pb)
+{
+    const struct folded *a = pa, *b = pb;
+    int order = strcasecmp(a->key, b->key);
+    return order ? order : (a->tag > b->tag) - (a->tag < b->tag);
+}
+
+/* Names that look the same to a person: they differ in kinds of dashes, widths of letters or blanks. */
+static void say_alike(struct tag_export *list)
+{
+    struct folded *all = mem_array(list->count + 1, sizeof(*all));
+    struct text names = { 0 };
+    size_t pairs = 0;
+    for (size_t i = 0; i < list->count; i++)
+        all[i] = (struct folded){ fold_text(list->tags[i].fields[EXPORT_NAME]), i };
+    qsort(all, list->count, sizeof(*all), by_key);
+    for (size_t i = 1; i < list->count; i++) {
+        if (strcasecmp(all[i].key, all[i - 1].key) != 0 || pairs++ >= NAMED)
+            continue;
+        text_add(&names, "%s%.60s", names.length > 0 ? ", " : "", all[i].key);
+        if (list->tags[all[i].tag].line > 0)
+            text_add(&names, " (lines %d and %d)", list->tags[all[i - 1].tag].line, list->tags[all[i].tag].line);
+    }
+    if (pairs > 0)
+        text_add(&list->remarks, "%zu tag%s from another one only in kinds of dashes, letters or blanks; both are kept: %s%s\n", pairs,
+                 pairs == 1 ? " differs" : "s differ", names.at, pairs > NAMED ? ", ..." : "");
+    for (size_t i = 0; i < list->count; i++)
+        mem_free(all[i].key);
+    mem_free(all);
+    text_finish(&names);
+}
+
 void tag_export_join(struct tag_export *list)
 {
     struct text differing = { 0 };
@@ -101,6 +139,7 @@ void tag_export_join(struct tag_export *list)
         for (int f = 0; f < EXPORT_FIELDS; f++)
             if (!list->tags[i].fields[f])
                 list->tags[i].fields[f] = mem_strdup("");
+    say_alike(list);
     list->differing_lines = differing.length > 0 ? mem_strdup(differing.at) : NULL;
     text_finish(&differing);
     mem_free(order);

@@ -184,16 +184,19 @@ static bool is_left_out(const struct export_tag *tag, const struct tag_source *s
            (source->modbus && !address_parse(tag->fields[EXPORT_ADDRESS], source->address_base, &address, why));
 }
 
-/* Kepware's names; Ignition's are turned into them. What is not known is left to the address. */
+/* Kepware's names; those of Ignition, IEC 61131-3 and PI are turned into them. What is not known is left to the address. */
 static const char *type_of(const char *type)
 {
-    static const char *const ignition[][2] = { { "Float4", "Float" }, { "Float8", "Double" },   { "Int1", "Short" },   { "Int2", "Short" },
+    static const char *const others[][2] = { { "Float4", "Float" }, { "Float8", "Double" },   { "Int1", "Short" },   { "Int2", "Short" },
                                                { "Int4", "Long" },    { "Int8", "LLong" },      { "Integer", "Long" }, { "Real", "Float" },
-                                               { "Bool", "Boolean" }, { "Discrete", "Boolean" } };
+                                               { "Bool", "Boolean" }, { "Discrete", "Boolean" },
+                                               { "Int", "Short" },    { "DInt", "Long" },       { "UInt", "Word" },    { "UDInt", "DWord" },
+                                               { "LReal", "Double" }, { "Float32", "Float" },   { "Float64", "Double" }, { "Int16", "Short" },
+                                               { "Int32", "Long" } };
     enum data_type parsed;
-    for (size_t i = 0; i < sizeof(ignition) / sizeof(*ignition); i++)
-        if (!strcasecmp(type, ignition[i][0]))
-            return ignition[i][1];
+    for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++)
+        if (!strcasecmp(type, others[i][0]))
+            return others[i][1];
     return data_type_parse(type, &parsed) ? type : "";
 }
 

@@ -13,6 +13,7 @@
 #include "base/mem.h"
 #include "preprocess/match/isa.h"
 #include "preprocess/match/plant_edit.h"
+#include "preprocess/match/quantities.h"
 #include "tests/support/temp.h"
 
 static const char model[] = "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":["
@@ -165,6 +166,79 @@ static void test_isa_names(void **state)
     }
 }
 
+/* Unit, description, words of the name, letters: in this order, none against the unit. */
+static void test_quantities(void **state)
+{
+    static const struct {
+        const char *name, *unit, *description, *quantity; /* "": none */
+    } cases[] = {
+        { "P101.TI", "°C", "Bearing", "Temperature" },
+        { "P101.TI", "s", "Integral time", "" },
+        { "P101.TI", "", "", "" },
+        { "P101.TI", "", "Lagertemperatur", "Temperature" },
+        { "TIC-101.SP", "°C", "Set point", "" },
+        { "P101.PI", "bar", "Discharge", "Pressure" },
+        { "TI_PRESS", "bar", "", "Pressure" },
+        { "TI-101", "bar", "", "Pressure" },
+        { "PI-201", "rpm", "", "Speed" },
+        { "TI-101", "", "Discharge pressure", "Pressure" },
+        { "XX-1", "%", "Füllstand", "Level" },
+        { "XX-1", "℃", "", "Temperature" },
+        { "XX-1", "mbar", "Differenzdruck Filter", "Differential pressure" },
+        { "PDI-101", "mbar", "", "Differential pressure" },
+        { "TI-101", "бар", "Давление на входе", "Pressure" },
+        { "TT-101", "", "泵轴承温度", "Temperature" },
+        { "XX-1", "", "软化水流量", "Flow" },
+        { "XX-1", "", "펌프 압력", "Pressure" },
+        { "XX-1", "", "タンク圧力", "Pressure" },
+        { "XX-1", "", "Débit eau", "Flow" },
+        { "XX-1", "", "Caudal de agua", "Flow" },
+        { "XX-1", "", "Saugdruck", "Pressure" },
+        { "AI-101", "", "Composition", "Analysis" },
+        { "TI-101", "", "Temperatur Druckbehälter, Druck", "Temperature" }, /* two: the letters decide */
+        { "TI-101", "", "Entspannungsbehälter", "Temperature" },
+        { "P_101/Level", "%", "", "Level" },
+        { "FI-101", "m³/h", "", "Flow" },
+        { "LI-101", "m", "", "Level" },
+        { "VI-101", "mm/s", "", "Vibration" },
+    };
+    struct plant plant = { 0 };
+    (void)state;
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        struct export_tag tag = { 0 };
+        struct tag_export list = { .tags = &tag, .count = 1 };
+        struct quantities found = { 0 };
+        for (int f = 0; f < EXPORT_FIELDS; f++)
+            tag.fields[f] = (char *)"";
+        tag.fields[EXPORT_NAME] = (char *)cases[i].name;
+        tag.fields[EXPORT_UNIT] = (char *)cases[i].unit;
+        tag.fields[EXPORT_DESCRIPTION] = (char *)cases[i].description;
+        quantities_find(&found, &plant, NULL, &list, &(struct match){ .status = MATCH_SURE });
+        const char *name = found.of_tag[0] < 0 ? "" : found.at[found.of_tag[0]].name;
+        if (strcmp(name, cases[i].quantity) != 0)
+            fail_msg("%s, '%s', '%s': '%s' for '%s'", cases[i].name, cases[i].unit, cases[i].description, name, cases[i].quantity);
+        quantities_finish(&found);
+    }
+    print_message("# %zu of %zu quantities\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
+}
+
+/* Dashes, widths and blanks do not part a tag from its equipment. */
+static void test_folded_names(void **state)
+{
+    static const char *const written[] = { "TI–101", "TI‑101", "TI−101", "TI－101", "ＴＩ-101", "TI-１０１",
+                                          "TI\u00a0101", "\u200bTI-101" };
+    struct name_tokens plain, tokens;
+    char want[NAME_KEY_BYTES], key[NAME_KEY_BYTES];
+    (void)state;
+    name_tokens_read(&plain, "TI-101");
+    name_tokens_key(&plain, 0, plain.count, want);
+    for (size_t i = 0; i < sizeof(written) / sizeof(*written); i++) {
+        name_tokens_read(&tokens, written[i]);
+        name_tokens_key(&tokens, 0, tokens.count, key);
+        assert_string_equal(key, want);
+    }
+}
+
 static void test_slips(void **state)
 {
     (void)state;
@@ -206,6 +280,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_by_number, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_by_text, set_up, tear_down),
         cmocka_unit_test(test_isa_names),
+        cmocka_unit_test(test_quantities),
+        cmocka_unit_test(test_folded_names),
         cmocka_unit_test(test_slips),
         cmocka_unit_test(test_plant_files_keep_what_people_wrote),
     };

@@ -227,6 +227,111 @@ static void test_udt_kinds(void **state)
     print_message("# %zu of %zu kinds of UDT\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
 }
 
+/* Headers of lists in other languages and of other systems: which columns are found. */
+static void test_header_kinds(void **state)
+{
+    static const struct {
+        const char *kind, *text;
+        const char *name, *address, *unit, *low, *high, *description; /* of the first tag */
+    } cases[] = {
+        { "German", "Messstelle;Adresse;Einheit;Messbereich von;Messbereich bis;Bezeichnung\nT1;4001;°C;0;150;Lager\n", "T1", "4001",
+          "°C",
+          "0", "150", "Lager" },
+        { "German, other words", "Variablenname;SPS-Adresse;Maßeinheit;Anfangswert;Endwert;Klartext\nT1;4001;bar;-1;9,5;Öl\n", "T1",
+          "4001",
+          "bar", "-1", "9.5", "Öl" },
+        { "French", "Repère;Adresse;Unité;Échelle basse;Échelle haute;Désignation\nT1;4001;bar;0;10;Pompe\n", "T1", "4001", "bar",
+          "0", "10",
+          "Pompe" },
+        { "French, other words", "Nom du tag;Adresse;Unité de mesure;Mini échelle;Maxi échelle;Libellé\nT1;4001;bar;;;Pompe\n", "T1",
+          "4001",
+          "bar", "", "", "Pompe" },
+        { "Spanish", "Etiqueta;Dirección;Unidades;Rango mínimo;Rango máximo;Descripción\nT1;4001;bar;0;10;Bomba\n", "T1", "4001", "bar",
+          "0", "10", "Bomba" },
+        { "Korean", "태그명,주소,단위,하한,상한,설명\nT1,4001,℃,0,150,펌프\n", "T1", "4001", "℃", "0", "150", "펌프" },
+        { "Korean, other words", "계기번호,PLC 주소,공학 단위,최소값,최대값,내용\nT1,4001,℃,0,150,펌프\n", "T1",
+          "4001", "℃", "0", "150",
+          "펌프" },
+        { "Chinese", "位号,地址,单位,量程下限,量程上限,描述\nT1,4001,℃,0,150,泵\n", "T1", "4001", "℃", "0", "150",
+          "泵" },
+        { "Chinese, other words", "测点名称,寄存器地址,工程单位,下限,上限,说明\nT1,4001,℃,0,150,泵\n", "T1", "4001",
+          "℃", "0", "150", "泵" },
+        { "Chinese, traditional", "標籤名稱,位址,單位,下限,上限,說明\nT1,4001,℃,0,150,泵\n", "T1", "4001", "℃", "0",
+          "150", "泵" },
+        { "Japanese", "タグ名,アドレス,単位,下限値,上限値,説明\nT1,4001,℃,0,150,ポンプ\n", "T1", "4001", "℃", "0",
+          "150", "ポンプ" },
+        { "Japanese, half-width", "ﾀｸﾞ名,ｱﾄﾞﾚｽ,単位,下限,上限,ｺﾒﾝﾄ\nT1,4001,℃,0,150,ポンプ\n", "T1",
+          "4001", "℃", "0", "150", "ポンプ" },
+        { "Russian",
+          "Тег;Адрес;Ед. изм.;Нижний предел;Верхний предел;Описание\nT1;4001;бар;0;10;Насос\n", "T1", "4001", "бар", "0",
+          "10",
+          "Насос" },
+        { "full-width", "Ｔａｇ　Ｎａｍｅ,Ａｄｄｒｅｓｓ,Ｕｎｉｔ\nT1,4001,bar\n", "T1", "4001", "bar", "", "", "" },
+        { "two languages", "位号 / Tag No.,地址 (Address),单位 Unit,描述 Description\nT1,4001,bar,泵\n", "T1", "4001", "bar", "",
+          "", "泵" },
+        { "units in the header", "Tag Name,Range Low [EU],Range High (EU),Unit\nT1,0,10,bar\n", "T1", "", "bar", "0", "10", "" },
+        { "a header of two rows", "Tag Name;Range;;Unit;Description\n;Min;Max;;\nT1;0;10;bar;Pump\n", "T1", "", "bar", "0", "10", "Pump" },
+        { "a title with a word of a header", "Name: plant 5,Unit: north\n\nTag,Address,Unit,Description\nT1,4001,bar,Pump\n", "T1", "4001",
+          "bar", "", "", "Pump" },
+        { "comments with other separators", "; list; of tags; made; today\n;\nTag Name,Address,Eng Units\nT1,4001,bar\n; T9,1,2\n", "T1",
+          "4001",
+          "bar", "", "", "" },
+        { "PI",
+          "Selected(x),Name,ObjectType,descriptor,pointsource,engunits,zero,span,instrumenttag\n,T1,PIPoint,Pump,OPC,bar,-1,11,PLC.T1\n",
+          "T1", "PLC.T1", "bar", "-1", "10", "Pump" },
+        { "PI, by its own names", "tag,descriptor,engunits,zero,span,instrumenttag,pointsource\nT1,Pump,bar,0,10,ns=2;s=T1,OPC\n", "T1",
+          "ns=2;s=T1", "bar", "0", "10", "Pump" },
+        { "an instrument index", "Instrument Tag,Service,Unit\nT1,Pump,bar\n", "T1", "", "bar", "", "", "Pump" },
+        { "TIA", "Name,Path,Data Type,Logical Address,Comment,Hmi Visible\nT1,Default tag table,Int,%IW64,Pump,True\n", "T1", "%IW64", "",
+          "", "", "Pump" },
+        { "TIA, German", "Name;Pfad;Datentyp;Logische Adresse;Kommentar\nT1;Standard;Real;%DB1.DBD0;Pumpe\n", "T1", "%DB1.DBD0", "", "", "",
+          "Pumpe" },
+        { "Studio 5000",
+          "remark,\"CSV-Import-Export\"\n0.3\nTYPE,SCOPE,NAME,DESCRIPTION,DATATYPE,SPECIFIER,ATTRIBUTES\n"
+          "TAG,,T1,\"Pump $QA$Q$N$'DE$' 5 $$\",\"REAL\",\"\",\"\"\nCOMMENT,,T1,\"step\",\"\",\"T1.3\",\n",
+          "T1", "", "", "", "", "Pump \"A\" 'DE' 5 $" },
+        { "Studio 5000, an alias",
+          "TYPE,SCOPE,NAME,DESCRIPTION,DATATYPE,SPECIFIER,ATTRIBUTES\nALIAS,,T1,\"\",\"\",\"Rack:I.Ch0Data\",\"\"\n"
+          "COMMENT,,Rack:I,\"Bearing$Ntemperature\",\"\",\"Rack:I.Ch0Data\",\n",
+          "T1", "Rack:I.Ch0Data", "", "", "", "Bearing temperature" },
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        struct tag_export list;
+        if (!read_text(&list, cases[i].text))
+            fail_msg("%s: %s", cases[i].kind, why);
+        const char *const wanted[] = { cases[i].name, cases[i].address, cases[i].unit, cases[i].low, cases[i].high, cases[i].description };
+        static const enum export_field fields[] = { EXPORT_NAME,       EXPORT_ADDRESS,     EXPORT_UNIT,
+                                                    EXPORT_SCALED_LOW, EXPORT_SCALED_HIGH, EXPORT_DESCRIPTION };
+        for (size_t f = 0; f < sizeof(fields) / sizeof(*fields); f++)
+            if (strcmp(list.tags[0].fields[fields[f]], wanted[f]) != 0)
+                fail_msg("%s: '%s' for '%s'", cases[i].kind, list.tags[0].fields[fields[f]], wanted[f]);
+        if (list.count != 1)
+            fail_msg("%s: %zu tags", cases[i].kind, list.count);
+        tag_export_finish(&list);
+    }
+    print_message("# %zu of %zu kinds of headers\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
+}
+
+/* Names that look alike are said to be two; both stay. */
+static void test_alike(void **state)
+{
+    static const char *const others[] = { "PI–101", "PI‑101", "PI−101", "PI－101", "ＰＩ-101", "PI-101\u00a0", "\u200bPI-101",
+      "PI-１０１" };
+    (void)state;
+    for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++) {
+        struct tag_export list;
+        char *text = mem_printf("Tag,Address\nPI-101,1\n%s,2\nPI-102,3\n", others[i]);
+        assert_true(read_text(&list, text));
+        assert_int_equal(list.count, 3);
+        check(&list, 1, EXPORT_NAME, others[i]);
+        if (!list.remarks.at || !strstr(list.remarks.at, "1 tag differs") || !strstr(list.remarks.at, "PI-101 (lines 2 and 3)"))
+            fail_msg("%s: %s", others[i], list.remarks.at ? list.remarks.at : "");
+        tag_export_finish(&list);
+        mem_free(text);
+    }
+}
+
 static void test_aveva(void **state)
 {
     struct tag_export list;
@@ -371,6 +476,42 @@ static void test_spreadsheet(void **state)
     assert_non_null(strstr(why, "too large"));
 }
 
+#define CELL(at, text) "<c r=\"" at "\" t=\"inlineStr\"><is><t>" text "</t></is></c>"
+#define SHEET(rows) "<worksheet><sheetData>" rows "</sheetData></worksheet>"
+
+/* A cover, a hidden sheet and a list, in a workbook whose parts have names of their own. */
+static void test_sheets(void **state)
+{
+    struct tag_export list;
+    char *path = temp_path(folder, "book.xlsx");
+    zipFile zip = zipOpen(path, APPEND_STATUS_CREATE);
+    (void)state;
+    add_part(zip, "xl/workbook.xml",
+             "<x:workbook xmlns:x=\"m\" xmlns:r=\"r\"><x:sheets><x:sheet name=\"Cover\" r:id=\"a\"/>"
+             "<x:sheet name=\"Old\" state=\"hidden\" r:id=\"b\"/><x:sheet name=\"Tags\" r:id=\"c\"/></x:sheets></x:workbook>");
+    add_part(zip, "xl/_rels/workbook.xml.rels",
+             "<Relationships><Relationship Id=\"a\" Target=\"worksheets/one.xml\"/><Relationship Id=\"b\" "
+             "Target=\"/xl/worksheets/two.xml\"/><Relationship Id=\"c\" Target=\"worksheets/three.xml\"/></Relationships>");
+    add_part(zip, "xl/worksheets/one.xml", SHEET("<row>" CELL("A1", "Tag list") "</row><row>" CELL("A2", "Unit") CELL("B2", "5") "</row>"));
+    add_part(zip, "xl/worksheets/two.xml",
+             SHEET("<row>" CELL("A1", "Tag") CELL("B1", "Unit") "</row><row>" CELL("A2", "OLD-1") CELL("B2", "bar") "</row>"));
+    add_part(zip, "xl/worksheets/three.xml",
+             "<x:worksheet xmlns:x=\"m\"><x:sheetData><x:row r=\"7\"><x:c r=\"B7\" t=\"inlineStr\"><x:is><x:t>Tag</x:t></x:is></x:c>"
+             "<x:c r=\"C7\" t=\"inlineStr\"><x:is><x:t>Unit</x:t></x:is></x:c><x:c r=\"D7\" t=\"inlineStr\"><x:is><x:t>Service</x:t>"
+             "</x:is></x:c></x:row><x:row r=\"8\"><x:c r=\"B8\" t=\"inlineStr\"><x:is><x:t>T1</x:t></x:is></x:c></x:row></x:sheetData>"
+             "</x:worksheet>");
+    zipClose(zip, NULL);
+    list = (struct tag_export){ 0 };
+    if (!tag_export_read(&list, path, NULL, why, sizeof(why)))
+        fail_msg("%s", why);
+    assert_int_equal(list.count, 1);
+    check(&list, 0, EXPORT_NAME, "T1");
+    assert_non_null(strstr(list.remarks.at, "the list is sheet 'Tags' of 3"));
+    assert_non_null(strstr(list.remarks.at, "not read: 'Old'"));
+    tag_export_finish(&list);
+    mem_free(path);
+}
+
 static void test_refused(void **state)
 {
     static const struct {
@@ -407,7 +548,8 @@ static int tear_down(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_kepware),     cmocka_unit_test(test_ignition),
-                                        cmocka_unit_test(test_udt_kinds),
+                                        cmocka_unit_test(test_udt_kinds),   cmocka_unit_test(test_header_kinds),
+                                        cmocka_unit_test(test_alike),       cmocka_unit_test(test_sheets),
                                         cmocka_unit_test(test_aveva),       cmocka_unit_test(test_lists),
                                         cmocka_unit_test(test_encodings),   cmocka_unit_test(test_repeated),
                                         cmocka_unit_test(test_spreadsheet), cmocka_unit_test(test_refused) };
