@@ -6,6 +6,7 @@
 
 #include "alarm/alarms.h"
 #include "message/message_error.h"
+#include "placing/assumed_places.h"
 #include "placing/placing.h"
 #include "protocol/wire.h"
 #include "loopcheck/loop_checks.h"
@@ -34,6 +35,8 @@ enum message_type {
     MESSAGE_PLACE,
     MESSAGE_COVERAGE,
     MESSAGE_SAVE_TAGS,
+    MESSAGE_ACCEPT_PLACES,
+    MESSAGE_RESTORE_TAGS,
     MESSAGE_LOOP_CHECK,
     MESSAGE_SAVE_VIEW,
     MESSAGE_REMOVE_VIEW,
@@ -214,7 +217,9 @@ struct message {
     struct time_request time; /* time, hello */
     struct place_request place;
     struct coverage_request coverage;
-    char confirm[17]; /* save_tags: hash of the list that was seen; "": none yet */
+    char confirm[17]; /* save_tags, accept_places, restore_tags: hash of the list that was seen; "": none yet */
+    struct assumed_filter accept; /* accept_places */
+    char kept[65];                /* restore_tags: name of the version */
     struct loop_check_request loop_check;
     struct named_view_edit view_edit; /* save_view; remove_view: its id; send_to_wall: view and title */
     struct note_request note;         /* note, remove_note */

@@ -254,6 +254,8 @@ static const struct {
     { "place", MESSAGE_PLACE, place_parse },
     { "gaps", MESSAGE_COVERAGE, coverage_parse },
     { "save_tags", MESSAGE_SAVE_TAGS, save_tags_parse },
+    { "accept_places", MESSAGE_ACCEPT_PLACES, accept_places_parse },
+    { "restore_tags", MESSAGE_RESTORE_TAGS, restore_tags_parse },
     { "prove", MESSAGE_LOOP_CHECK, loop_check_parse },
     { "save_view", MESSAGE_SAVE_VIEW, save_view_parse },
     { "remove_view", MESSAGE_REMOVE_VIEW, remove_view_parse },

@@ -14,6 +14,12 @@
 #include "plant/transform.h"
 #include "scene/far_sensors.h"
 
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 /* --- what is said -------------------------------------------------------------------------------------------------------------- */
 
 static bool take_move(const struct plant *plant, const json_t *o, struct place_move *out, struct message_error *error)
@@ -64,6 +70,51 @@ bool save_tags_parse(const struct plant *plant, const json_t *o, struct message 
 {
     (void)plant;
     return need_seq(o, &out->seq, error) && may_text(o, "confirm", out->confirm, sizeof(out->confirm), NULL, error);
+}
+
+/* Each run of stars multiplies what a glob may take on a long name. */
+static bool is_simple(const char *pattern)
+{
+    int stars = 0;
+    for (const char *at = pattern; *at; at++)
+        stars += *at == '*';
+    return stars <= 4 && !strchr(pattern, '[');
+}
+
+bool accept_places_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    struct assumed_filter *filter = &out->accept;
+    const char *asset = json_string_value(json_object_get(o, "asset")), *group = json_string_value(json_object_get(o, "group"));
+    char name[48];
+    *filter = (struct assumed_filter){ .asset = asset ? plant_find_asset(plant, asset) : -1,
+                                       .group = group ? plant_find_group(plant, group) : -1,
+                                       .within_m = -1,
+                                       .confidence = -1 };
+    if (asset && filter->asset < 0)
+        message_fail(error, "bad_field", "asset: there is no asset '%s'", quoted(asset, name));
+    else if (group && filter->group < 0)
+        message_fail(error, "bad_field", "group: there is no group '%s'", quoted(group, name));
+    else if (!need_words(o, "pattern", false, filter->pattern, sizeof(filter->pattern), error))
+        return false;
+    else if (!is_simple(filter->pattern))
+        message_fail(error, "bad_field", "pattern: at most four *, and no [");
+    else
+        return may_number(o, "within_m", 0, 1e6, &filter->within_m, NULL, error) &&
+               may_number(o, "confidence", 0, 1, &filter->confidence, NULL, error) && save_tags_parse(plant, o, out, error);
+    return false;
+}
+
+bool restore_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    const char *base = base_name(plant->tags_path ? plant->tags_path : "");
+    size_t n = strlen(base);
+    if (!need_words(o, "kept", true, out->kept, sizeof(out->kept), error) || !save_tags_parse(plant, o, out, error))
+        return false;
+    const char *number = out->kept + n + 1;
+    if (!strncmp(out->kept, base, n) && out->kept[n] == '.' && *number && strspn(number, "0123456789") == strlen(number))
+        return true;
+    message_fail(error, "bad_field", "kept: a version of the tag list expected, such as %s.1", base);
+    return false;
 }
 
 /* --- what is answered ---------------------------------------------------------------------------------------------------------- */
@@ -168,12 +219,6 @@ static char *edited(const struct plant *plant, const char *before, const struct 
     return tag_edit(before, edits, count, why);
 }
 
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 char *tags_saved_text(uint32_t seq, bool saved, const char *why)
 {
     return json_text(json_pack("{s:s,s:I,s:b,s:[s]}", "type", "tags_saved", "seq", (json_int_t)seq, "saved", saved, "errors", why), 9);
@@ -188,37 +233,107 @@ static char *conflict_text(const struct plant *plant, const struct message *mess
                      9);
 }
 
-char *tags_diff_text(const struct plant *plant, const char *before, const struct place_set *set, const struct message *message,
+/* A request to put `after` in force, if the message confirms its hash; else NULL. Takes after. */
+static struct tag_save *order_of(const struct plant *plant, const char *before, char *after, const struct message *message, const char *who)
+{
+    char hash[17], real[PATH_MAX]; /* through links, so that they stay */
+    tag_file_hash(after, hash);
+    if (!message->confirm[0] || strcmp(message->confirm, hash) != 0) {
+        mem_free(after);
+        return NULL;
+    }
+    struct tag_save *order = mem_new(sizeof(*order));
+    const char *path = realpath(plant->tags_path, real);
+    *order = (struct tag_save){ .path = mem_strdup(path ? path : plant->tags_path),
+                                .before = mem_strdup(before),
+                                .after = after,
+                                .who = mem_strdup(who),
+                                .seq = message->seq };
+    return order;
+}
+
+/* The list as the message would have it. NULL: *why. */
+static char *wanted_list(const struct scene *scene, const char *before, const struct place_set *set, const struct message *message,
+                         uint8_t *outcome, char **why)
+{
+    const struct plant *plant = scene->plant;
+    if (message->type == MESSAGE_RESTORE_TAGS) {
+        const char *base = base_name(plant->tags_path);
+        char *path = mem_printf("%.*s%s", (int)(base - plant->tags_path), plant->tags_path, message->kept);
+        char *text = tag_file_read(path, why);
+        mem_free(path);
+        return text;
+    }
+    if (message->type != MESSAGE_ACCEPT_PLACES)
+        return edited(plant, before, set, why);
+    assumed_places_choose(scene, &message->accept, outcome);
+    return assumed_places_accept(plant, before, outcome, why);
+}
+
+static char *diff_text(const struct plant *plant, const struct message *message, const char *before, const char *after)
+{
+    size_t more;
+    char hash[17];
+    json_t *lines = lines_of(before, after, &more);
+    tag_file_hash(after, hash);
+    return json_text(json_pack("{s:s,s:I,s:s,s:b,s:s,s:o,s:I}", "type", "tags_diff", "seq", (json_int_t)message->seq, "file",
+                               base_name(plant->tags_path), "conflict", false, "hash", hash, "lines", lines, "more", (json_int_t)more),
+                     9);
+}
+
+static json_t *names_of(const struct plant *plant, const uint8_t *outcome, enum assumed_outcome wanted, size_t most, size_t *count)
+{
+    json_t *names = json_array();
+    *count = 0;
+    for (size_t i = 0; i < plant->tag_count; i++)
+        if (outcome[i] == wanted && (*count)++ < most)
+            json_array_append_new(names, json_string(plant->tags[i].name));
+    return names;
+}
+
+static char *accepted_text(const struct plant *plant, const struct message *message, const uint8_t *outcome, const char *after)
+{
+    static const char *const causes[ASSUMED_OUTCOMES] = {
+        [ASSUMED_NOWHERE] = "nowhere", [ASSUMED_MISSING] = "missing", [ASSUMED_FAR] = "far", [ASSUMED_UNSURE] = "unsure"
+    };
+    enum { ACCEPTED_NAMES = 5000, REFUSED_NAMES = 50 };
+    json_t *refused = json_array();
+    char hash[17];
+    size_t count;
+    tag_file_hash(after, hash);
+    for (int i = ASSUMED_NOWHERE; i < ASSUMED_OUTCOMES; i++) {
+        json_t *names = names_of(plant, outcome, (enum assumed_outcome)i, REFUSED_NAMES, &count);
+        json_t *cause = json_pack("{s:s,s:I,s:o}", "cause", causes[i], "count", (json_int_t)count, "tags", names);
+        if (count > 0)
+            json_array_append(refused, cause);
+        json_decref(cause);
+    }
+    json_t *names = names_of(plant, outcome, ASSUMED_ACCEPTED, ACCEPTED_NAMES, &count);
+    return json_text(json_pack("{s:s,s:I,s:s,s:I,s:o,s:o,s:s}", "type", "places_accepted", "seq", (json_int_t)message->seq, "file",
+                               base_name(plant->tags_path), "count", (json_int_t)count, "tags", names, "refused", refused, "hash", hash),
+                     0);
+}
+
+char *tags_diff_text(const struct scene *scene, const char *before, const struct place_set *set, const struct message *message,
                      const char *who, struct tag_save **order)
 {
-    char *why = NULL, *now = tag_file_read(plant->tags_path, &why), *after = NULL, *text = NULL, hash[17];
+    const struct plant *plant = scene->plant;
+    char *why = NULL, *now = tag_file_read(plant->tags_path, &why), *text = NULL;
+    uint8_t *outcome = mem_array(plant->tag_count + 1, 1);
+    bool conflict = now && strcmp(now, before) != 0;
+    char *after = now && !conflict ? wanted_list(scene, before, set, message, outcome, &why) : NULL;
     *order = NULL;
-    if (now && strcmp(now, before) != 0)
+    if (conflict)
         text = conflict_text(plant, message, before, now);
-    else if (now)
-        after = edited(plant, before, set, &why);
-    if (after) {
-        size_t more;
-        json_t *lines = lines_of(before, after, &more);
-        tag_file_hash(after, hash);
-        text = json_text(json_pack("{s:s,s:I,s:s,s:b,s:s,s:o,s:I}", "type", "tags_diff", "seq", (json_int_t)message->seq, "file",
-                                   base_name(plant->tags_path), "conflict", false, "hash", hash, "lines", lines, "more", (json_int_t)more),
-                         9);
-    }
-    if (after && message->confirm[0] && !strcmp(message->confirm, hash)) {
-        *order = mem_new(sizeof(**order));
-        char real[PATH_MAX]; /* through links, so that they stay */
-        const char *path = realpath(plant->tags_path, real);
-        **order = (struct tag_save){ .path = mem_strdup(path ? path : plant->tags_path),
-                                     .before = mem_strdup(before),
-                                     .after = after,
-                                     .who = mem_strdup(who),
-                                     .seq = message->seq };
-        after = NULL;
-    }
-    if (!text)
+    else if (!after)
         text = tags_saved_text(message->seq, false, why);
-    mem_free(after);
+    else if (message->type == MESSAGE_ACCEPT_PLACES)
+        text = accepted_text(plant, message, outcome, after);
+    else
+        text = diff_text(plant, message, before, after);
+    if (after)
+        *order = order_of(plant, before, after, message, who);
+    mem_free(outcome);
     mem_free(now);
     mem_free(why);
     return text;

@@ -1,22 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The messages with which engineers move sensors on trial, and save the list: `place`, `gaps`, `save_tags`. Thread: the loop. */
+/* The messages with which engineers move sensors on trial, accept assumed places, and save the tag list. Thread: the loop. */
 #ifndef MESSAGE_PLACE_MESSAGE_H
 #define MESSAGE_PLACE_MESSAGE_H
 #include "message/message.h"
 #include "placing/tag_file.h"
 
-/* Parse a message into out->place, out->coverage, out->confirm. Return false with *error saying what is wrong. */
+/* Parse a message into out->place, out->coverage, out->confirm, out->accept, out->kept. Return false with *error saying what is wrong. */
 bool place_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool coverage_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool save_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
+bool accept_places_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
+bool restore_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 
 /* Returns `placed`, the answer to `place`: where the sensors are by now; mem_free. */
 char *placed_text(const struct plant *plant, const struct place_set *set, uint32_t seq);
 /* Returns `gaps`, the answer to it: surfaces that no sensor covers; mem_free. */
 char *coverage_text(const struct scene *scene, const struct place_set *set, const struct sensor_coverage_answer *answer);
-/* Returns how the list in force, `before`, would change by the moves of the set, for the client to confirm; mem_free. If the message
-   confirms that very list, *order is a request to put it in force (tag_save_free); else NULL. who: the user's name. */
-char *tags_diff_text(const struct plant *plant, const char *before, const struct place_set *set, const struct message *message,
+/* Returns how the list in force, `before`, would change by a save_tags (the moves of the set), accept_places or restore_tags, for the
+   client to confirm; mem_free. If the message confirms that very list, *order is a request to put it in force (tag_save_free); else NULL.
+   set: NULL for the last two. who: the user's name. */
+char *tags_diff_text(const struct scene *scene, const char *before, const struct place_set *set, const struct message *message,
                      const char *who, struct tag_save **order);
 /* Returns `tags_saved`: whether a list was put in force, or why not; mem_free. */
 char *tags_saved_text(uint32_t seq, bool saved, const char *why);

@@ -60,8 +60,8 @@ bool role_may_send(enum role role, const struct message *message, struct message
         message_fail(error, "not_allowed", "signed frames tell readings: they take a token");
         return false;
     }
-    bool engineers = message->type == MESSAGE_PLACE || message->type == MESSAGE_COVERAGE || message->type == MESSAGE_SAVE_TAGS ||
-                     message->type == MESSAGE_LOOP_CHECK;
+    bool saves = message->type == MESSAGE_SAVE_TAGS || message->type == MESSAGE_ACCEPT_PLACES || message->type == MESSAGE_RESTORE_TAGS;
+    bool engineers = saves || message->type == MESSAGE_PLACE || message->type == MESSAGE_COVERAGE || message->type == MESSAGE_LOOP_CHECK;
     if (engineers && role < ROLE_ENGINEER) {
         message_fail(error, "not_allowed", "to place or prove sensors takes the role engineer, not %s", name_of(names_role, role));
         return false;

@@ -151,6 +151,10 @@ static void print_metres(double metres, char out[32])
 /* What the edit puts into a column of the file. False: nothing, it stays. */
 static bool wanted(const struct list *list, const struct tag_edit *edit, size_t column, char number[32], const char **out)
 {
+    if (edit->place_only) {
+        *out = "";
+        return list->column[EDIT_PLACE] == (int)column;
+    }
     for (int axis = 0; axis < 3; axis++)
         if (list->column[EDIT_X + axis] == (int)column) {
             number[0] = 0;
@@ -215,7 +219,7 @@ static void widen(struct list *list, const struct tag_edit *edits, size_t count,
         needed[EDIT_NODE] |= edits[i].node != NULL;
         needed[EDIT_PLACE] |= edits[i].place != NULL;
         for (int axis = 0; axis < 3; axis++)
-            needed[EDIT_X + axis] |= !isnan(edits[i].position_m[axis]);
+            needed[EDIT_X + axis] |= !edits[i].place_only && !isnan(edits[i].position_m[axis]);
     }
     for (int i = EDIT_ASSET; i < EDIT_COLUMNS; i++) {
         if (!needed[i] || list->column[i] >= 0)

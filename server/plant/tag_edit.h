@@ -11,6 +11,7 @@ struct tag_edit {
     const char *asset, *group; /* ids; NULL: unchanged */
     const char *node, *place;  /* NULL: cleared */
     double position_m[3];      /* in the frame that the asset states; written to the millimetre. NaN: cleared */
+    bool place_only;           /* `Place` is cleared, and nothing else is changed */
 };
 
 struct tag_line { /* one line that differs */

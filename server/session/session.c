@@ -344,7 +344,9 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_TIME: return session_on_time(session, &message->time, now_ns, now_utc_ns, error);
     case MESSAGE_PLACE: return session_on_place(session, message, now_ns, error);
     case MESSAGE_COVERAGE: return session_ask_coverage(session, message, error);
-    case MESSAGE_SAVE_TAGS: return session_save_tags(session, message, error);
+    case MESSAGE_SAVE_TAGS:
+    case MESSAGE_ACCEPT_PLACES:
+    case MESSAGE_RESTORE_TAGS: return session_save_tags(session, message, error);
     case MESSAGE_LOOP_CHECK: return session_check_loop(session, message, error);
     case MESSAGE_SAVE_VIEW:
     case MESSAGE_REMOVE_VIEW: on_view_edit(session, message, now_utc_ns); return true;

@@ -119,9 +119,23 @@ void session_record_leave(const struct session *session, const char *why)
         record(session, "leave", "done", NULL, why);
 }
 
-void session_record_save(const struct session *session, size_t moved)
+static char *accepted_what(const struct session *session, const struct message *message)
 {
-    char *what = mem_printf("tag list: %zu sensor%s placed; it is put in force", moved, moved == 1 ? "" : "s");
+    const struct scene *scene = session->context->scene;
+    uint8_t *outcome = mem_array(scene->plant->tag_count + 1, 1);
+    size_t count = assumed_places_choose(scene, &message->accept, outcome);
+    char filter[400];
+    assumed_filter_text(scene->plant, &message->accept, filter, sizeof(filter));
+    mem_free(outcome);
+    return mem_printf("tag list: %zu assumed place%s accepted (%s); it is put in force", count, count == 1 ? "" : "s", filter);
+}
+
+void session_record_save(const struct session *session, const struct message *message, size_t moved)
+{
+    const char *plural = moved == 1 ? "" : "s";
+    char *what = message->type == MESSAGE_ACCEPT_PLACES  ? accepted_what(session, message)
+                 : message->type == MESSAGE_RESTORE_TAGS ? mem_printf("tag list: %s restored; it is put in force", message->kept)
+                                                         : mem_printf("tag list: %zu sensor%s placed; it is put in force", moved, plural);
     record(session, "place", "done", what, NULL);
     mem_free(what);
 }

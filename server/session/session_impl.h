@@ -24,8 +24,8 @@ void session_record_view(const struct session *session, const struct message *me
 void session_record_note(const struct session *session, const struct message *message, const char *answer);
 void session_record_pair(const struct session *session, const struct message *message, const char *id, const char *answer);
 void session_record_wall(const struct session *session, const struct message *message, const char *answer);
-/* Records that a tag list with so many sensors at other places is to be put in force. */
-void session_record_save(const struct session *session, size_t moved);
+/* Records that a tag list is to be put in force: by save_tags with so many moved sensors, by accept_places or by restore_tags. */
+void session_record_save(const struct session *session, const struct message *message, size_t moved);
 /* Records baselines that were kept or forgotten for all, if the message's parameters do that. */
 void session_record_params(const struct session *session, const struct message *message);
 /* Records an error, if it says that the client may not do what it asked for. */
@@ -139,7 +139,7 @@ void session_tile_came(struct session *session, struct frame_request *request, i
 
 /* --- session_place.c -------------------------------------------------------------------------------------------------- */
 
-/* Act on `place`, `gaps`, `save_tags` and `prove`. Return false with *error if they are refused. */
+/* Act on `place`, `gaps`, `save_tags` (also accept_places and restore_tags) and `prove`. Return false with *error if they are refused. */
 bool session_on_place(struct session *session, const struct message *message, int64_t now_ns, struct message_error *error);
 bool session_ask_coverage(struct session *session, const struct message *message, struct message_error *error);
 bool session_save_tags(struct session *session, const struct message *message, struct message_error *error);

@@ -89,7 +89,8 @@ bool session_save_tags(struct session *session, const struct message *message, s
         message_fail(error, "not_allowed", "the tag list could not be read when the plant was loaded");
         return false;
     }
-    if (!session->placement.set || place_set_get(session->placement.set, &placed) == 0) {
+    bool moves = message->type == MESSAGE_SAVE_TAGS;
+    if (moves && (!session->placement.set || place_set_get(session->placement.set, &placed) == 0)) {
         message_fail(error, "bad_field", "save_tags: no sensor has been moved");
         return false;
     }
@@ -98,10 +99,10 @@ bool session_save_tags(struct session *session, const struct message *message, s
         return true;
     }
     tag_save_free(session->placement.save);
-    session_reply(session, tags_diff_text(context->plant, context->tag_list, session->placement.set, message, session_who(session),
+    session_reply(session, tags_diff_text(context->scene, context->tag_list, session->placement.set, message, session_who(session),
                                           &session->placement.save));
     if (session->placement.save)
-        session_record_save(session, place_set_get(session->placement.set, &placed));
+        session_record_save(session, message, moves ? place_set_get(session->placement.set, &placed) : 0);
     return true;
 }
 

@@ -29,7 +29,7 @@ static void expect(const char *text, const struct tag_edit *edits, size_t count,
 static void test_one_row(void **state)
 {
     (void)state;
-    const struct tag_edit to = { "TT-2", NULL, NULL, NULL, NULL, { 1.25, -3, 0.12345 } };
+    const struct tag_edit to = { "TT-2", NULL, NULL, NULL, NULL, { 1.25, -3, 0.12345 }, false };
     expect("Tag Name,Group,Asset,X,Y,Z\nTT-1,t,E,1.50,2.000,3\nTT-2,t,E, 4.0 ,5,6\nTT-3,t,E,7,8,9\n", &to, 1,
            "Tag Name,Group,Asset,X,Y,Z\nTT-1,t,E,1.50,2.000,3\nTT-2,t,E,1.25,-3,0.123\nTT-3,t,E,7,8,9\n");
 }
@@ -38,7 +38,7 @@ static void test_one_row(void **state)
 static void test_the_rest_stays_to_the_byte(void **state)
 {
     (void)state;
-    const struct tag_edit to = { "T;\"2\"", "E 2", NULL, NULL, NULL, { 10, 20, -0.0001 } };
+    const struct tag_edit to = { "T;\"2\"", "E 2", NULL, NULL, NULL, { 10, 20, -0.0001 }, false };
 #define HEAD "\xEF\xBB\xBF" "Remark;TAG NAME;x;Y;Z;Asset;Node\r\n\r\n\"# old; see\r\nMaria\";T1;1,0;2;3;E;\r\n"
     expect(HEAD "; \"T;\"\"2\"\"\" ;1;;;E;N-1;more\r\nlast;T3", &to, 1, HEAD "; \"T;\"\"2\"\"\" ;10;20;0;E 2;;more\r\nlast;T3");
 }
@@ -46,21 +46,31 @@ static void test_the_rest_stays_to_the_byte(void **state)
 static void test_columns_that_are_not_there(void **state)
 {
     (void)state;
-    const struct tag_edit to = { "b", "E,1", "t", NULL, NULL, { 1, 2, 3 } };
+    const struct tag_edit to = { "b", "E,1", "t", NULL, NULL, { 1, 2, 3 }, false };
     expect("Tag Name,Address\na,hr:1\nb\nc,hr:3", &to, 1, "Tag Name,Address,Asset,Group,X,Y,Z\na,hr:1\nb,,\"E,1\",t,1,2,3\nc,hr:3");
 }
 
 static void test_a_place_is_no_longer_assumed(void **state)
 {
     (void)state;
-    const struct tag_edit to = { "a", NULL, NULL, NULL, NULL, { 4, 5, 6 } };
+    const struct tag_edit to = { "a", NULL, NULL, NULL, NULL, { 4, 5, 6 }, false };
     expect("Tag Name,Place,X,Y,Z\na,equipment,1,2,3\nb,equipment,,,\n", &to, 1, "Tag Name,Place,X,Y,Z\na,,4,5,6\nb,equipment,,,\n");
+}
+
+static void test_a_place_is_accepted_as_it_stands(void **state)
+{
+    (void)state;
+    const struct tag_edit to = { .tag = "a", .place_only = true };
+    char *why, *out = tag_edit("Tag Name,Place,X,Y,Z,Node\na,Equipment ,1.50,2,,pump\nb,equipment,1,,,\n", &to, 1, &why);
+    assert_string_equal(out, "Tag Name,Place,X,Y,Z,Node\na,,1.50,2,,pump\nb,equipment,1,,,\n");
+    mem_free(out);
 }
 
 static void test_several_and_none(void **state)
 {
     (void)state;
-    const struct tag_edit to[] = { { "b", NULL, NULL, NULL, NULL, { 1, 2, 3 } }, { "a", NULL, NULL, NULL, NULL, { 4, 5, 6 } } };
+    const struct tag_edit to[] = { { "b", NULL, NULL, NULL, NULL, { 1, 2, 3 }, false },
+                                   { "a", NULL, NULL, NULL, NULL, { 4, 5, 6 }, false } };
     expect("Tag Name\tX\tY\tZ\na\t0\t0\t0\nb\t0\t0\t0\n", to, 2, "Tag Name\tX\tY\tZ\na\t4\t5\t6\nb\t1\t2\t3\n");
     expect("Tag Name,X,Y,Z\na,4,5.0,6\n", to + 1, 1, "Tag Name,X,Y,Z\na,4,5,6\n");
     expect("Tag Name,X,Y,Z\na,1,1,1\n", to, 0, "Tag Name,X,Y,Z\na,1,1,1\n");
@@ -69,7 +79,7 @@ static void test_several_and_none(void **state)
 static void test_what_is_not_there_is_refused(void **state)
 {
     (void)state;
-    const struct tag_edit to = { "zz", NULL, NULL, NULL, NULL, { 1, 2, 3 } };
+    const struct tag_edit to = { "zz", NULL, NULL, NULL, NULL, { 1, 2, 3 }, false };
     char *why;
     assert_null(tag_edit("Tag Name,X,Y,Z\na,1,1,1\n", &to, 1, &why));
     assert_string_equal(why, "tag zz is not in the tag list");
@@ -164,7 +174,7 @@ static void test_random_lists(void **state)
         write_random(&text, ",;\t"[below(3)], rows);
         char name[16], *why;
         snprintf(name, sizeof(name), "tag%d", changed);
-        const struct tag_edit edit = { name, "NEW", NULL, NULL, NULL, { 1.5, 2, -0.25 } };
+        const struct tag_edit edit = { name, "NEW", NULL, NULL, NULL, { 1.5, 2, -0.25 }, false };
         char *out = tag_edit(text.at, &edit, 1, &why);
         assert_non_null(out);
         save(before_path, text.at);
@@ -188,6 +198,7 @@ int main(void)
         cmocka_unit_test(test_the_rest_stays_to_the_byte),
         cmocka_unit_test(test_columns_that_are_not_there),
         cmocka_unit_test(test_a_place_is_no_longer_assumed),
+        cmocka_unit_test(test_a_place_is_accepted_as_it_stands),
         cmocka_unit_test(test_several_and_none),
         cmocka_unit_test(test_what_is_not_there_is_refused),
         cmocka_unit_test(test_lines),

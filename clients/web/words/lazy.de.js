@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the parts of the page say that are loaded when they are first used, in German.
 export default `
+accept: Angenommene Plätze bestätigen
 close: Schließen
 sun: aus {wind}, {height}° hoch
 
@@ -630,4 +631,24 @@ remark: Bemerkung
 passed: {tag} bestanden: {value}.
 failed: {tag} nicht bestanden: {why}.
 now: jetzt {value}
+
+[accept]
+asset: Anlagenteil
+all: alle ({count})
+tags: Messstellen
+pattern: Name oder Beschreibung; * und ? in Namen
+within: Höchstens m neben der Fläche
+confidence: Mindestens Sicherheit, 0 bis 1
+count(one): {count} Platz würde bestätigt. Er ist im Bild blau umringt.
+count(other): {count} Plätze würden bestätigt. Sie sind im Bild blau umringt.
+none: Kein Platz würde bestätigt.
+nowhere: {count} nicht: weder Knoten noch Position in der Liste
+missing: {count} nicht: das Anlagenteil hat kein Modell
+far: {count} nicht: weiter neben der Fläche
+unsure: {count} nicht: weniger Sicherheit, oder keine bekannt
+go: {count} bestätigen
+saved(one): {count} Platz bestätigt. Die Liste davor ist {kept}.
+saved(other): {count} Plätze bestätigt. Die Liste davor ist {kept}.
+undo: Zurück zu {kept} …
+undone: Zurückgenommen. {kept} gilt wieder.
 `;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the parts of the page say that are loaded when they are first used, in English.
 export default `
+accept: Accept assumed places
 close: Close
 sun: from {wind}, {height}° high
 
@@ -628,4 +629,24 @@ remark: Remark
 passed: {tag} passed: {value}.
 failed: {tag} failed: {why}.
 now: now {value}
+
+[accept]
+asset: Equipment
+all: all ({count})
+tags: Tags
+pattern: Name or description; * and ? in names
+within: Most m off the surface
+confidence: Least confidence, 0 to 1
+count(one): {count} place would be accepted. It is ringed blue in the picture.
+count(other): {count} places would be accepted. They are ringed blue in the picture.
+none: No place would be accepted.
+nowhere: {count} not: no node and no position in the list
+missing: {count} not: the equipment has no model
+far: {count} not: farther off the surface
+unsure: {count} not: less confidence, or none known
+go: Accept {count}
+saved(one): {count} place accepted. The list before it is {kept}.
+saved(other): {count} places accepted. The list before it is {kept}.
+undo: Undo: back to {kept} …
+undone: Undone. {kept} is in force again.
 `;

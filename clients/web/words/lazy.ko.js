@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the parts of the page say that are loaded when they are first used, in Korean.
 export default `
+accept: 가정한 위치 확정
 close: 닫기
 sun: {wind}쪽, 고도 {height}°
 
@@ -626,4 +627,22 @@ remark: 비고
 passed: {tag} 합격: {value}.
 failed: {tag} 불합격: {why}.
 now: 현재 {value}
+
+[accept]
+asset: 설비
+all: 전체 ({count})
+tags: 태그
+pattern: 이름 또는 설명, 이름에는 * 와 ?
+within: 표면에서 최대 거리(m)
+confidence: 최소 신뢰도, 0~1
+count(other): {count}곳이 확정됩니다. 그림에 파란 고리로 표시됩니다.
+none: 확정될 곳이 없습니다.
+nowhere: {count}곳 제외: 목록에 노드와 위치가 없음
+missing: {count}곳 제외: 설비에 모델이 없음
+far: {count}곳 제외: 표면에서 더 멂
+unsure: {count}곳 제외: 신뢰도가 낮거나 알 수 없음
+go: {count}곳 확정
+saved(other): {count}곳을 확정했습니다. 이전 목록은 {kept}입니다.
+undo: 되돌리기: {kept} …
+undone: 되돌렸습니다. {kept}이(가) 다시 적용됩니다.
 `;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The engineer's panel: sensors are placed, and proven; how the field is computed. Loaded when it is first opened.
 import { say } from '../../core/words.js';
+import { ACCENT } from '../viewport/overlay.js';
 import { byId, make } from '../common/dom.js';
 import { Method } from './field_settings.js';
 import { closeButton } from '../common/widgets.js';
@@ -77,24 +78,33 @@ export class Engineer {
         return this.open && this.part === part && this.parts[part][name] === tag.name;
     }
 
-    // Whether mark() draws anything: it is not left out where markers crowd.
-    isMarked(tag) {
-        return this.page.session.model.placed.has(tag.name) || this.isAt('place', 'tag', tag) || this.isAt('prove', 'stirred', tag);
+    // Whether its assumed place is one of those that would be accepted.
+    isAccepted(tag) {
+        return this.open && this.part === 'place' && this.parts.place.accepting.names.has(tag.name);
     }
 
-    // Over its marker: a dashed ring where it is tried out, a whole one where it is chosen, a double one where it moved.
+    // Whether mark() draws anything: it is not left out where markers crowd.
+    isMarked(tag) {
+        return this.page.session.model.placed.has(tag.name) || this.isAccepted(tag) || this.isAt('place', 'tag', tag) ||
+            this.isAt('prove', 'stirred', tag);
+    }
+
+    // Over its marker: a dashed ring where it is tried out, a blue one where its assumed place would be accepted, a whole one where it
+    // is chosen, a double one where it moved.
     mark(tag) {
         const c = this.page.overlay.context, moved = this.page.session.model.placed.has(tag.name);
         const stirred = this.isAt('prove', 'stirred', tag);
-        const ring = (radius, dash, width) => {
+        const ring = (radius, dash, width, colour = '#1d252d') => {
             c.beginPath();
             c.arc(0, 0, radius, 0, 2 * Math.PI);
             c.lineWidth = width;
             c.setLineDash(dash);
-            c.strokeStyle = '#1d252d';
+            c.strokeStyle = colour;
             c.stroke();
             c.setLineDash([]);
         };
+        if (this.isAccepted(tag))
+            ring(8, [], 2.5, ACCENT);
         if (moved)
             ring(13, [4, 3], 2);
         if (this.isAt('place', 'tag', tag))

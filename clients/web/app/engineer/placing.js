@@ -6,6 +6,7 @@ import { askPick, tellAsEngineer } from '../../core/requests.js';
 import { say } from '../../core/words.js';
 import { make, setText } from '../common/dom.js';
 import { fill } from '../common/widgets.js';
+import { Accepting } from './accepting.js';
 
 const SHOWN_TAGS = 60, GRAB_PX = { mouse: 14, pen: 18, touch: 26 };
 const metres = (m) => numberText(m, m < 1 ? 3 : 2);
@@ -19,6 +20,7 @@ export class Placing {
         this.undone = [];  // what the moves were, step by step
         this.tag = null;   // the one to be placed, by name
         this.dragging = null;
+        this.accepting = new Accepting({ session, refresh });
         this.build();
         this.listen();
     }
@@ -37,8 +39,8 @@ export class Placing {
         this.gaps = make('div', { class: 'gaps' });
         this.note = make('p', { class: 'note', role: 'status' });
         this.dialog = make('dialog', { class: 'help diff', 'aria-label': say('eng.save') });
-        this.element = make('div', { class: 'part' }, this.hint, this.find, this.list, make('h3', {}, say('eng.moves')), this.none,
-            this.tried,
+        this.element = make('div', { class: 'part' }, this.hint, this.find, this.list, this.accepting.element,
+            make('h3', {}, say('eng.moves')), this.none, this.tried,
             make('div', { class: 'line' }, this.undo, this.back, button('eng.gaps', () => tellAsEngineer(this.session, 'gaps')), this.save),
             this.note, this.gaps, this.dialog);
     }
@@ -154,6 +156,7 @@ export class Placing {
         this.none.hidden = this.moves.length > 0;
         fill(this.tried, ...this.moves.map((move) => this.row(move, model.placed.get(move.tag))));
         this.showTags();
+        this.accepting.show();
         this.refresh();
     }
 
@@ -210,7 +213,10 @@ export class Placing {
     showDiff({ file, conflict, hash, lines, more }) {
         if (this.saving)
             return; // of the one that was confirmed
-        const close = () => this.dialog.close();
+        const close = () => {
+            this.accepting.restores = false;
+            this.dialog.close();
+        };
         const change = ([number, before, after]) => make('div', { class: 'change' }, make('span', {}, say('eng.diff.line', { n: number })),
             before === null ? null : make('pre', { class: 'before', 'aria-label': say('eng.diff.before') }, before),
             after === null ? null : make('pre', { class: 'after', 'aria-label': say('eng.diff.after') }, after));
@@ -228,18 +234,23 @@ export class Placing {
 
     confirm(hash) {
         this.dialog.close();
+        if (this.accepting.restores)
+            return this.accepting.confirmRestore(hash);
         this.saving = true;
         setText(this.note, say('eng.saving'));
-        tellAsEngineer(this.session, 'save_tags', { confirm: hash });
+        return tellAsEngineer(this.session, 'save_tags', { confirm: hash });
     }
 
-    onSaved({ saved, kept, errors }) {
+    onSaved(message) {
+        const { saved, kept, errors } = message;
+        if (this.accepting.onSaved(message))
+            return this.show();
         this.saving = false;
         setText(this.note, saved ? say('eng.saved', { kept }) : say('eng.unsaved', { text: errors.map(refusalText).join('; ') }));
         if (saved) {
             this.moves = this.undone = [];
             this.tag = null;
         }
-        this.onWelcome();
+        return this.onWelcome();
     }
 }

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Many assumed places are accepted at once: by equipment, name, distance from the surface and confidence of the match. What would be
+// accepted is counted and marked on the model first, and the list as it was can be put back.
+import { tellAsEngineer } from '../../core/requests.js';
+import { refusalText } from '../../core/refusals.js';
+import { say } from '../../core/words.js';
+import { make, setText } from '../common/dom.js';
+import { fill } from '../common/widgets.js';
+
+const ASK_MS = 300; // after the last change of the filter
+
+export class Accepting {
+    constructor({ session, refresh }) {
+        Object.assign(this, { session, refresh });
+        this.names = new Set(); // of tags that would be accepted
+        this.found = null;      // the newest `places_accepted` of the filter as it is
+        this.sent = null;       // 'accept' or 'restore', until `tags_saved`
+        this.kept = null;       // version of the list before the last acceptance
+        this.restores = false;  // a `tags_diff` of a version is asked for
+        this.build();
+        session.on('places_accepted', (message) => this.onFound(message));
+    }
+
+    build() {
+        const input = (key, type, more = {}) => make('input', { type, placeholder: say(key), oninput: () => this.ask(), ...more });
+        const named = (key, field) => make('label', {}, say(key), field);
+        this.asset = make('select', { onchange: () => this.ask() });
+        this.pattern = input('accept.pattern', 'search', { maxlength: 100 });
+        this.within = input('accept.within', 'number', { min: 0, step: 'any', placeholder: '–' });
+        this.confidence = input('accept.confidence', 'number', { min: 0, max: 1, step: 'any', placeholder: '–' });
+        this.count = make('p', { role: 'status' });
+        this.refused = make('ul', { class: 'quiet' });
+        this.note = make('p', { class: 'accepted', role: 'status' });
+        this.go = make('button', { type: 'button', disabled: true, onclick: () => this.accept() });
+        this.undo = make('button', { type: 'button', hidden: true, onclick: () => this.restore() });
+        this.element = make('details', { class: 'accept', hidden: true, ontoggle: () => this.ask() },
+            make('summary', {}, say('accept')), named('accept.asset', this.asset), named('accept.tags', this.pattern),
+            make('div', { class: 'line' }, named('accept.within', this.within), named('accept.confidence', this.confidence)),
+            this.count, this.refused, make('div', { class: 'line' }, this.go, this.undo), this.note);
+    }
+
+    // The plant may be another one, with fewer assumed places.
+    show() {
+        const assumed = this.session.model.tags.filter(({ place }) => place === 'equipment'), counts = new Map();
+        assumed.forEach(({ asset }) => counts.set(asset, (counts.get(asset) ?? 0) + 1));
+        this.element.hidden = assumed.length === 0 && !this.kept;
+        const chosen = this.asset.value, shape = JSON.stringify([...counts]);
+        if (shape !== this.shape) {
+            fill(this.asset, make('option', { value: '' }, say('accept.all', { count: assumed.length })),
+                ...[...counts].map(([id, count]) => make('option', { value: id, selected: id === chosen }, `${id} (${count})`)));
+            this.shape = shape;
+            this.ask();
+        }
+        this.undo.hidden = !this.kept;
+        setText(this.undo, this.kept ? say('accept.undo', { kept: this.kept }) : '');
+    }
+
+    get filter() {
+        const number = (field) => (field.value === '' ? undefined : field.valueAsNumber);
+        return { asset: this.asset.value || undefined, pattern: this.pattern.value.trim() || undefined, within_m: number(this.within),
+            confidence: number(this.confidence) };
+    }
+
+    ask() {
+        clearTimeout(this.timer);
+        this.onFound(null);
+        if (this.element.open && [this.within, this.confidence].every((field) => field.validity.valid))
+            this.timer = setTimeout(() => { this.asked = tellAsEngineer(this.session, 'accept_places', this.filter); }, ASK_MS);
+    }
+
+    onFound(message) {
+        if (this.sent || (message && message.seq !== this.asked))
+            return;
+        this.found = message;
+        this.names = new Set(message?.tags);
+        const count = message?.count ?? 0;
+        setText(this.count, !message ? '' : count > 0 ? say('accept.count', { count }) : say('accept.none'));
+        fill(this.refused, ...(message?.refused ?? []).map(({ cause, count: number }) =>
+            make('li', {}, say(`accept.${cause}`, { count: number }))));
+        setText(this.go, say('accept.go', { count }));
+        this.go.disabled = count === 0;
+        this.refresh();
+    }
+
+    accept() {
+        this.accepted = this.found.count;
+        this.send('accept', 'accept_places', { ...this.filter, confirm: this.found.hash });
+    }
+
+    restore() {
+        this.restores = true;
+        tellAsEngineer(this.session, 'restore_tags', { kept: this.kept });
+    }
+
+    confirmRestore(hash) {
+        this.restores = false;
+        this.send('restore', 'restore_tags', { kept: this.kept, confirm: hash });
+    }
+
+    send(what, type, fields) {
+        this.sent = what;
+        this.go.disabled = true;
+        setText(this.note, say('eng.saving'));
+        tellAsEngineer(this.session, type, fields);
+    }
+
+    // Returns whether the list that was saved is one that this part had put in force.
+    onSaved({ saved, kept, errors }) {
+        const { sent } = this;
+        if (!sent)
+            return false;
+        this.sent = null;
+        this.ask();
+        if (!saved)
+            setText(this.note, say('eng.unsaved', { text: errors.map(refusalText).join('; ') }));
+        else if (sent === 'accept')
+            setText(this.note, say('accept.saved', { count: this.accepted, kept }));
+        else
+            setText(this.note, say('accept.undone', { kept: this.kept }));
+        if (saved)
+            this.kept = sent === 'accept' ? kept : null;
+        return true;
+    }
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Five hundred assumed places are accepted at once, by equipment, name, distance and confidence, and the list is put back to the byte.
+import assert from 'node:assert/strict';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { DESKTOP, openPage, settle, shoot, waitForPicture } from '../support/browser.mjs';
+import { missing, TinyPlant } from '../support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync('/usr/bin/chromium') ? 'no chromium' : false;
+const options = { skip, timeout: 200000 };
+const ASSUMED = 500, OFF_M = 0.4;
+const name = (i) => `TA-${String(i).padStart(3, '0')}`;
+// A hundred are off the surface of E-101, fifty are on P-101A, and twenty stand nowhere.
+const isOff = (i) => i % 5 === 0, isNowhere = (i) => i >= 480, assetOf = (i) => (i % 10 === 1 ? 'P-101A' : 'E-101');
+const confidence = (i) => (i < 250 ? 0.95 : 0.6);
+const count = (of) => Array.from({ length: ASSUMED }, (_, i) => i).filter(of).length;
+let plant, browser, page, tagsFile, original;
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    tagsFile = join(plant.folder, 'tags.csv');
+    const head = readFileSync(tagsFile, 'utf8').replace('Stale s\n', 'Stale s,Place\n');
+    const middle = { 'E-101': 0, 'P-101A': 3 }; // boxes of a metre
+    writeFileSync(tagsFile, head + Array.from({ length: ASSUMED }, (_, i) => {
+        const x = middle[assetOf(i)] - 0.45 + 0.9 * ((i * 37 % 100) / 100), z = -0.45 + 0.9 * ((i * 61 % 100) / 100);
+        const place = isNowhere(i) ? ',,' : `${x.toFixed(3)},${isOff(i) ? -0.5 - OFF_M : -0.5},${z.toFixed(3)}`;
+        return `${name(i)},${400201 + 2 * i},Float,°C,assumed,temperature,${assetOf(i)},${place},600,equipment\r\n`;
+    }).join(''));
+    writeFileSync(join(plant.folder, 'matches.csv'), `Tag,Status,Asset,Place,Confidence\n${Array.from({ length: ASSUMED }, (_, i) =>
+        `${name(i)},sure,${assetOf(i)},middle,${confidence(i)}\n`).join('')}`);
+    original = readFileSync(tagsFile, 'utf8');
+    const prepared = plant.prepare();
+    assert.equal(prepared.code, 0, prepared.err);
+    await plant.startSim();
+    await plant.startDaemon('--audit', join(plant.folder, 'audit.log'));
+    browser = await openPage(`http://127.0.0.1:${plant.port}/?lang=en`, DESKTOP);
+    page = browser.page;
+    await waitForPicture(page);
+    await page.locator('#engineer-toggle').click();
+    await page.locator('#engineer .accept summary').click();
+});
+after(async () => {
+    await browser?.close();
+    await plant?.destroy();
+});
+
+const says = (selector, text) => page.waitForFunction(([where, what]) =>
+    document.querySelector(where)?.textContent.includes(what), [selector, text], { timeout: 120000 });
+const rows = () => readFileSync(tagsFile, 'utf8').split('\n').filter((row) => row.startsWith('TA-'));
+const assumed = () => rows().filter((row) => /equipment\r?$/.test(row)).length;
+
+test('the filter says how many, which not and why, and marks them on the model', options, async () => {
+    const all = count((i) => !isNowhere(i));
+    await says('#engineer .accept p', `${all} places would be accepted`);
+    await says('#engineer .accept ul', '20 not: no node and no position');
+    await page.getByLabel('Most m off the surface').fill('0.1');
+    await says('#engineer .accept p', `${count((i) => !isNowhere(i) && !isOff(i))} places would be accepted`);
+    await says('#engineer .accept ul', `${count((i) => !isNowhere(i) && isOff(i))} not: farther off the surface`);
+    await page.getByLabel('Least confidence').fill('0.9');
+    const sure = count((i) => i < 250 && !isOff(i));
+    await says('#engineer .accept p', `${sure} places would be accepted`);
+    await page.locator('#engineer .accept select').selectOption('E-101');
+    await page.getByPlaceholder('Name or description').fill('ta-1*');
+    const some = count((i) => i >= 100 && i < 200 && !isOff(i) && assetOf(i) === 'E-101');
+    await says('#engineer .accept p', `${some} places would be accepted`);
+    assert.equal(await page.evaluate(() => globalThis.plantcast.modules.there('engineer').parts.place.accepting.names.size), some);
+    await settle(page);
+    await shoot(page, 'accepting');
+    await page.getByLabel('Least confidence').fill('7');
+    await page.getByRole('button', { name: /^Accept/ }).isDisabled();
+    await page.getByLabel('Least confidence').fill('0.9');
+    assert.equal(assumed(), ASSUMED, 'nothing is written before');
+});
+
+test('accepted: one list, one line in the audit trail, the others as they were', options, async () => {
+    await page.locator('#engineer .accept select').selectOption('');
+    await page.getByPlaceholder('Name or description').fill('');
+    const sure = count((i) => i < 250 && !isOff(i));
+    await says('#engineer .accept p', `${sure} places would be accepted`);
+    await page.getByRole('button', { name: `Accept ${sure}`, exact: true }).click();
+    await says('#engineer .accept .accepted', `${sure} places accepted. The list before it is tags.csv.1.`);
+    assert.equal(assumed(), ASSUMED - sure);
+    const before = original.split('\n'), now = readFileSync(tagsFile, 'utf8').split('\n');
+    before.forEach((row, n) => assert.equal(now[n],
+        row.startsWith('TA-') && !/equipment/.test(now[n]) ? row.replace('equipment', '') : row));
+    assert.ok(!existsSync(`${tagsFile}.2`), 'the list is written once');
+    const lines = readFileSync(join(plant.folder, 'audit.log'), 'utf8').split('\n').filter((line) => /assumed place/.test(line));
+    assert.equal(lines.length, 1, lines.join('\n'));
+    assert.match(lines[0], new RegExp(`${sure} assumed places accepted \\(within 0.1 m of the surface, confidence at least 0.9\\)`));
+    await page.waitForFunction((n) => globalThis.plantcast.session.model.tags.filter(({ place }) => place === 'equipment').length === n,
+        ASSUMED - sure);
+    await settle(page);
+    await shoot(page, 'accepting-accepted');
+});
+
+test('undone: the list is what it was, to the byte', options, async () => {
+    await page.getByRole('button', { name: 'Undo: back to tags.csv.1 …' }).click();
+    await page.locator('dialog.diff[open]').waitFor();
+    await shoot(page, 'accepting-undo');
+    await page.getByRole('button', { name: 'Save and put in force' }).click();
+    await says('#engineer .accept .accepted', 'Undone. tags.csv.1 is in force again.');
+    assert.equal(readFileSync(tagsFile, 'utf8'), original);
+    assert.notEqual(readFileSync(`${tagsFile}.2`, 'utf8'), original, 'what was undone is kept, too');
+    assert.deepEqual(browser.errors, []);
+});
