@@ -67,7 +67,7 @@ async function withPage(url, f) {
 test('a wall whose main thread hangs says so, and shows the plant again by itself', options, () =>
     withPage(`${plant.url}?wall=room&lang=en`, async (page) => {
         await page.waitForURL(/wall\.html/);
-        await page.waitForFunction(() => globalThis.wall?.session.model && document.querySelector('canvas.watchdog'));
+        await page.waitForFunction(() => globalThis.wall?.session.model && document.querySelector('canvas.watches'));
         await page.waitForFunction(() => document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session.picture);
         await page.evaluate(() => { globalThis.wall.before = true; });
         const again = page.waitForEvent('load', { predicate: (one) => /wall\.html/.test(one.url()), timeout: PATIENCE_MS });
@@ -84,7 +84,7 @@ test('a wall whose main thread hangs says so, and shows the plant again by itsel
 test('a desk that hangs says so until it answers again; the daemon logs that it acknowledges nothing', options, () =>
     withPage(`${plant.url}?lang=de`, async (page) => {
         await waitForPicture(page);
-        await page.waitForFunction(() => document.querySelector('canvas.watchdog'));
+        await page.waitForFunction(() => document.querySelector('canvas.watches'));
         await page.evaluate(() => { setTimeout(() => { for (const end = performance.now() + 16000; performance.now() < end;); }); });
         const moving = setInterval(() => plant.ask(`set TI-1 ${20 + 30 * Math.random()}`).catch(() => {}), 500);
         savePng(await seesVeil(true), join(SCREENSHOTS, 'hang-desk.png'));

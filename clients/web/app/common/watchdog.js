@@ -26,6 +26,7 @@ export async function watchMainThread({ scale = () => 1, reloads = false } = {})
     const beat = () => worker.postMessage(document.hidden ? 'rest' : 'beat');
     window.addEventListener('resize', fit);
     document.addEventListener('visibilitychange', beat);
+    worker.onmessage = () => requestAnimationFrame(() => requestAnimationFrame(() => line.classList.add('watches')));
     fit();
     beat();
     setInterval(beat, BEAT_MS);

@@ -20,6 +20,8 @@ onmessage = ({ data }) => {
     // Wipes it; and in the beginning: the first picture of a canvas, its size and its font take the main thread.
     if (isSaid || data.width)
         draw();
+    if (data.width)
+        requestAnimationFrame(() => postMessage('watches')); // the picture is presented
 };
 
 setInterval(() => {
