@@ -27,7 +27,7 @@
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
 #define WORTH 0.95          /* a coarser level that would get more than so much of the next finer one is of no use; */
-#define WORTH_MANY 0.5      /* likewise, of so many sensors or more, whose distances take most of a file: */
+#define WORTH_MANY 0.5      /* the same for MANY_SENSORS, whose distances take most of a file, and where the finest ran out of triangles */
 #define MANY_SENSORS 128
 #define SAMPLE_WORTH 9000   /* levels of so many triangles or more are first tried on a sample: those of fewer hang on too few of them */
 #define SAMPLE_ROUNDS 4     /* of cuts, then it is known or never will be */
@@ -476,7 +476,7 @@ static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t f
     subdiv->slack_m = SLACK * error_m;
     subdiv->shortest_m = subdiv->finest ? SHORTEST_NEAR * tolerance_m : max_of(tolerance_m, SHORTEST * error_m);
     subdiv->jump_m = JUMP_WIDTH * max_of(tolerance_m, SHORTEST * error_m);
-    double tris = (double)(level->index_count / 3), worth = subdiv->sensors < MANY_SENSORS ? WORTH : WORTH_MANY;
+    double tris = (double)(level->index_count / 3), worth = subdiv->sensors < MANY_SENSORS && !subdiv->finest_full ? WORTH : WORTH_MANY;
     subdiv->most_tris = (size_t)(subdiv->finest ? tris + max_of(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS) : worth * (double)finer_tris);
     subdiv->full = !subdiv->finest && (is_known_hopeless(subdiv) || is_hopeless(subdiv, level, limits[0]));
     if (subdiv->full)
@@ -488,6 +488,7 @@ static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t f
         cut_to(subdiv, limits[l]);
     if (subdiv->full && !subdiv->finest)
         return;
+    subdiv->finest_full |= subdiv->full;
     measure_edges(subdiv);
     tell_left(subdiv, level);
     subdiv_mesh_store(&subdiv->mesh, level);

@@ -13,7 +13,8 @@
 
    The largest errors are cut first, and the number of triangles is bounded: the finest level grows to three times its triangles or by
    100,000, whichever is more; a coarser one that would need more than 0.95 of the next finer one's triangles is given up, and with 128
-   sensors or more, whose distances take most of a file, one of more than half. What is left is counted by its reason (level.left). */
+   sensors or more, whose distances take most of a file, or where the finest level reached its bound, one of more than
+   half. What is left is counted by its reason (level.left). */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIVIDE_H
 #define PREPROCESS_SUBDIVISION_SUBDIVIDE_H
 #include "preprocess/levels/levels.h"

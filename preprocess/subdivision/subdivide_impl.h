@@ -30,6 +30,7 @@ struct subdiv {
     double on_surface_m; /* what is farther from the surface is hidden inside another part */
     double error_m, shortest_m, slack_m;
     double jump_m;                 /* where a distance jumps, shorter edges are not cut */
+    bool finest_full;              /* the finest level ran out of triangles */
     bool full;                     /* it may hardly grow any more */
     size_t sample_blocks;          /* while a sample of the level is in hand: blocks of it; else 0 */
     double sample_of;              /* triangles of the level for each of the sample's */
