@@ -179,6 +179,21 @@ static void add_surface(json_t *asset, const char *folder, uint64_t key)
     mem_free(path);
 }
 
+/* Tells the daemon which levels have triangles enough, so that it need not look for what they err by (server/field/drawn_error.h). */
+static void add_resolved(json_t *asset, const char *folder, uint64_t key)
+{
+    char *text = folder_report(folder, key);
+    json_t *report = text ? json_loads(text, 0, NULL) : NULL, *level;
+    json_int_t resolved = 0;
+    size_t i;
+    json_array_foreach(json_object_get(report, "levels"), i, level)
+        if (i < 62 && json_integer_value(json_object_get(level, "limited_by_triangles")) == 0)
+            resolved |= (json_int_t)1 << i;
+    json_object_set_new(asset, "resolved_levels", json_integer(resolved));
+    json_decref(report);
+    mem_free(text);
+}
+
 static char *manifest_text(const char *folder, const struct folder_entry *entries, size_t count)
 {
     json_t *assets = json_array(), *root = json_pack("{s:i, s:o}", "format", 2, "assets", assets);
@@ -197,6 +212,7 @@ static char *manifest_text(const char *folder, const struct folder_entry *entrie
         if (entries[i].missing)
             json_object_set_new(asset, "missing", missing ? missing : json_string("it cannot be prepared"));
         add_surface(asset, folder, entries[i].geometry_key);
+        add_resolved(asset, folder, entries[i].key);
         json_array_append_new(assets, asset);
         mem_free(file);
     }

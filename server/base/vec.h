@@ -106,6 +106,11 @@ static inline void vecf_sub(const float a[3], const float b[3], double out[3])
         out[i] = (double)a[i] - (double)b[i];
 }
 
+static inline float vecf_distance(const float a[3], const float b[3])
+{
+    float x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
+    return sqrtf(x * x + y * y + z * z);
+}
 static inline float vecf_dot(const float a[3], const float b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

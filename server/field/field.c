@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/mem.h"
+#include "field/drawn_error.h"
 #include "field/field_impl.h"
 #include "field/update.h"
 #include "plant/influence.h"
@@ -214,6 +215,7 @@ bool field_begin_update(struct field *field, struct state *state, const struct s
     }
     state_fill(state);
     struct weights *weights = state->weights;
+    drawn_error_measure(weights, &state->params, state->usable, count, field->workers);
     uint64_t previous = weights->used;
     weights->used = field->tick;
     if (!state_is_behind(state) && state->scalars.ready >= count)

@@ -105,7 +105,23 @@ bool field_is_assumed(struct field *field, int asset, const struct field_params 
 /* Returns whether there is anything to show on the asset with these parameters, given enough memory. */
 bool field_covers(struct field *field, int asset, const struct field_params *params);
 
-/* What the field at any point of an asset is made of, for whoever works it out by himself. */
+/* A place on the surface: in a triangle of the asset's file, by barycentric coordinates. */
+struct field_place {
+    uint32_t corners[3];
+    double parts[3];
+};
+struct field_point {
+    double value; /* in the unit of what is shown */
+    bool no_data, uncertain;
+    double drawn_error; /* bound on the error of the pictures around this place; 0: less than 1/255 of the range */
+};
+/* Computes the field at a place from the readings: exactly for distances through space, along the surface from the distances at the
+   triangle's corners. Prepared interpolations are linear between vertices. Returns false if the asset has no field with these
+   parameters. */
+bool field_at(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
+              const struct field_place *place, struct field_point *out);
+
+/* Inputs of the field on an asset, for callers that evaluate the field themselves. */
 struct field_sensor {
     int tag;
     float surface_m[3];   /* as the asset file's positions */

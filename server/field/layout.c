@@ -2,11 +2,13 @@
 /* Sensors of one group on one asset, and their distances from the asset file. */
 #include "field/layout.h"
 
+#include <float.h>
 #include <math.h>
 #include <pthread.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "field/kernels.h"
 #include "protocol/asset_distance.h"
 
@@ -126,11 +128,66 @@ bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mo
     return mode != DISTANCE_EUCLIDEAN && !sensor->tried && !layout_along(sensor, mode);
 }
 
+static float corner_distance(const struct layout *layout, const struct layout_sensor *sensor, const float *along_m, uint32_t corner)
+{
+    return along_m ? along_m[corner] : asset_distance_m(&layout->file->view, sensor->column, corner);
+}
+
+void layout_set_point(const struct asset_view *file, const struct layout_points *points, size_t point, const uint32_t corners[3],
+                      const float parts[3])
+{
+    memcpy(points->corners[point], corners, sizeof(*points->corners));
+    memcpy(points->parts[point], parts, sizeof(*points->parts));
+    for (int c = 0; c < 3; c++) {
+        double at = 0;
+        for (int k = 0; k < 3; k++)
+            at += (double)parts[k] * (double)file->positions_m[corners[k]][c];
+        points->positions_m[point][c] = (float)at;
+    }
+    for (int k = 0; k < 3; k++)
+        points->away_m[point][k] = parts[k] == 1 ? 0 : vecf_distance(points->positions_m[point], file->positions_m[corners[k]]);
+}
+
+/* The distance from a source in the triangle's plane, unfolded: |p - s|^2 = sum_k part_k (|corner_k - s|^2 - |corner_k - p|^2). Where two
+   ways round meet in the triangle no such source exists: then the triangle inequality bounds the distance. */
+static float along_at(const struct layout *layout, const struct layout_sensor *sensor, const float *along_m, size_t point)
+{
+    const float *part = layout->points->parts[point], *away_m = layout->points->away_m[point];
+    float square_m2 = 0, least_m = 0, most_m = FLT_MAX;
+    for (int k = 0; k < 3; k++) {
+        float far_m = part[k] != 0 ? corner_distance(layout, sensor, along_m, layout->points->corners[point][k]) : 0;
+        if (part[k] == 0)
+            continue;
+        square_m2 += part[k] * (far_m - away_m[k]) * (far_m + away_m[k]);
+        least_m = far_m - away_m[k] > least_m ? far_m - away_m[k] : least_m;
+        most_m = far_m + away_m[k] < most_m ? far_m + away_m[k] : most_m;
+    }
+    if (!(square_m2 <= FLT_MAX))
+        return INFINITY;
+    float distance_m = square_m2 > 0 ? sqrtf(square_m2) : 0;
+    distance_m = distance_m > least_m ? distance_m : least_m;
+    return distance_m < most_m ? distance_m : most_m;
+}
+
+static const float *point_distances(const struct layout *layout, enum distance_mode mode, const struct layout_sensor *sensor, size_t begin,
+                                    size_t count, float *scratch)
+{
+    const float *along_m = layout_along(sensor, mode);
+    bool along = along_m || layout_is_in_file(sensor, mode);
+    if (!along)
+        kernel_euclidean(layout->points->positions_m + begin, count, sensor->surface_m, scratch);
+    for (size_t j = 0; along && j < count; j++)
+        scratch[j] = along_at(layout, sensor, along_m, begin + j);
+    return scratch;
+}
+
 const float *layout_distances(const struct layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
                               float *scratch)
 {
     const struct layout_sensor *from = &layout->sensors[sensor];
     const float *along_m = layout_along(from, mode);
+    if (layout->points)
+        return point_distances(layout, mode, from, begin, count, scratch);
     if (along_m)
         return along_m + begin;
     if (layout_is_in_file(from, mode)) {

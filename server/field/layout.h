@@ -18,6 +18,18 @@ struct layout_sensor {
     float strength, decay; /* as configured, >= 0 */
 };
 
+/* Points inside triangles of the file. */
+struct layout_points {
+    float (*positions_m)[3];
+    uint32_t (*corners)[3]; /* vertices of the file */
+    float (*parts)[3];      /* barycentric coordinates */
+    float (*away_m)[3];     /* distances from the corners */
+};
+
+/* Places a point in a triangle of the file: sets all that `points` has of it. */
+void layout_set_point(const struct asset_view *file, const struct layout_points *points, size_t point, const uint32_t corners[3],
+                      const float parts[3]);
+
 struct layout {
     const struct asset *file;
     const struct plant_group *group;
@@ -25,6 +37,7 @@ struct layout {
     const struct plant_tag *tags; /* of the plant */
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;
+    const struct layout_points *points; /* the places that distances are asked for; NULL: the file's vertices */
     bool assumed;       /* the places of all of them are: one of them stands for the whole asset, evenly (field.h) */
     float largest_m[DISTANCES]; /* by distance_mode; 0: not looked for yet */
     uint32_t trial;     /* of which some of the places are; 0: none */
@@ -43,7 +56,8 @@ const float *layout_along(const struct layout_sensor *sensor, enum distance_mode
 /* Returns whether its distances by this way are those of its column in the asset file. */
 bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode);
 /* Returns the distances of `count` vertices from `begin` on from one sensor: a pointer to them, or to scratch, which receives them. They
-   must be of one block of KERNEL_BLOCK vertices.
+   must be of one block of KERNEL_BLOCK vertices. With layout->points: of these points; along the surface as the corners' distances give it
+   in a flat triangle that is reached from one side.
    Straight-line ones start at the sensor's point on the surface, so that both kinds are 0 there; they stand in for geodesic ones that are
    not known yet. */
 const float *layout_distances(const struct layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,

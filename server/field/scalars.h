@@ -9,7 +9,7 @@ struct scalar {
     float value;       /* engineering units; may pass MIN and MAX. Finite even where there is no data, so that it can be interpolated */
     uint8_t lacking;   /* beyond the rim of the data, by distance: above 127 there is none; so the rim runs true between vertices */
     uint8_t uncertain; /* above 127: at least half of the weight is on Uncertain sensors (or filled by neighbours); by how much of it, as
-                          its rim too shall run true between vertices */
+                          its rim too shall run true between vertices. 255 also where triangles err (struct scalars' drawn_error) */
     uint8_t no_limits; /* 255: for operators; the nearest sensor is good, but its tag has no limits. Then there is data, but no value */
     uint8_t no_data;   /* 255: no good sensor reaches, or the nearest configured one is Bad; else 0. What `lacking` says */
 };
@@ -23,6 +23,8 @@ struct scalars {
     size_t ready;           /* so many of the first vertices are up to date: what the levels asked for need */
     uint64_t grown;         /* counts how often more became ready than was before */
     const struct scalar *at;
+    double drawn_error;    /* bound on how far triangles may show another value than the field has, in the unit of values; 0: all of them
+                              are right to 1/255 of the range. Vertices of others are marked uncertain */
     int64_t oldest_age_ns; /* of the readings that take part; INT64_MAX: none does */
 };
 

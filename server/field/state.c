@@ -230,7 +230,7 @@ bool state_needs_weights(const struct state *state)
 
 bool state_is_behind(const struct state *state)
 {
-    if (state->scalars.version == 0)
+    if (state->scalars.version == 0 || state->errors_version != state->weights->errors_version)
         return true;
     for (size_t i = 0; i < state->layout->sensor_count; i++) {
         const struct state_input *now = &state->now[i], *shown = &state->shown[i];

@@ -22,6 +22,9 @@ struct state {
     struct scalar *at;
     double *sums;                    /* by vertex: numerator; NULL: few sensors, always summed anew */
     size_t room;                     /* for so many of the first vertices in these two */
+    double error_limit; /* vertices with a larger weights->errors are marked uncertain; 0 at first */
+    unsigned errors_version; /* of weights->errors, as they are shown */
+    double error_scale; /* times weights->errors: the largest error drawn */
     unsigned added;                  /* updates since they were made anew */
     struct state_input *now, *shown; /* by sensor of the layout: asked for, and in the scalars */
     uint8_t *usable;                 /* by sensor of the layout, of `now` */

@@ -13,6 +13,9 @@
 #include "plant/influence.h"
 
 #define FLAG 255
+#define DRAWN_ERROR (1 / 255.0) /* of the range: what may be drawn with a larger error is marked uncertain */
+#define ERROR_MARGIN 1.1        /* the limit is chosen so much too strict, */
+#define ERROR_SLACK 1.5         /* and again when it is more too strict than that */
 #define BLIND_MOST 1000.0 /* times the group's range: a hot spot that nobody would see */
 #define STEP_LIMIT 1e6    /* times the range: a larger step would leave its rounding in the sum for good */
 #define ADDED_MOST 4096   /* updates before all is summed anew: what rounding leaves behind stays below 1e-9 of the range */
@@ -72,32 +75,68 @@ static bool steps_are_small(const struct update *update)
     return update->changed.count * 2 <= state->weights->member_count;
 }
 
-static void choose_rule(struct update *update)
+void update_rule(const struct state *state, const struct state_input *inputs, struct kernel_value *rule)
 {
-    const struct state *state = update->state;
     const struct plant_group *group = state->layout->group;
     bool difference = state->params.show == SHOW_DIFFERENCE, places = state->params.show == SHOW_OPERATOR;
     if (state->params.interpolation == INTERPOLATION_PAPER && places) {
-        update->rule = (struct kernel_value){ .scale = 1, .low = -(float)LIMIT_PLACE_MOST, .high = (float)LIMIT_PLACE_MOST };
+        *rule = (struct kernel_value){ .scale = 1, .low = -(float)LIMIT_PLACE_MOST, .high = (float)LIMIT_PLACE_MOST };
     } else if (state->params.interpolation == INTERPOLATION_PAPER) {
         float scale = (float)(group->max - group->min), offset = difference ? 0 : (float)group->min;
-        update->rule = (struct kernel_value){
+        *rule = (struct kernel_value){
             .scale = scale, .offset = offset, .low = difference ? -scale : offset, .high = difference ? scale : (float)group->max
         };
     } else {
         bool around = state->params.interpolation == INTERPOLATION_FIN; /* values are above what is around; 0 is one of them */
         float offset = around && !difference && !places ? (float)group->ambient : 0;
-        update->rule =
-            (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
+        *rule = (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
         if (state->params.interpolation == INTERPOLATION_GP) /* may pass the readings between them */
-            update->rule.low = -FLT_MAX, update->rule.high = FLT_MAX;
+            rule->low = -FLT_MAX, rule->high = FLT_MAX;
         for (size_t m = 0; m < state->weights->member_count; m++) {
-            float value = (float)state->now[state->weights->members[m]].value;
-            update->rule.low = fminf(update->rule.low, value + offset);
-            update->rule.high = fmaxf(update->rule.high, value + offset);
+            float value = (float)inputs[state->weights->members[m]].value;
+            rule->low = fminf(rule->low, value + offset);
+            rule->high = fmaxf(rule->high, value + offset);
         }
     }
-    update->rule.empty = difference || places ? 0 : (float)group->min;
+    rule->empty = difference || places ? 0 : (float)group->min;
+}
+
+/* The largest value that a sum of error weights can be multiplied by: Shepard's add up to 0, so only the spread of the readings counts. */
+static double error_scale(const struct state *state)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (size_t m = 0; m < state->weights->member_count; m++) {
+        double value = state->now[state->weights->members[m]].value;
+        low = fmin(low, value);
+        high = fmax(high, value);
+    }
+    if (!(low <= high))
+        return 0;
+    if (state->params.interpolation != INTERPOLATION_PAPER)
+        return high - low;
+    const struct plant_group *group = state->layout->group;
+    double unit = state->params.show == SHOW_OPERATOR ? 1 : group->max - group->min;
+    return unit * fmax(fabs(low), fabs(high));
+}
+
+/* Chooses the weights error above which vertices are marked. It stays as it is while that is safe and not much too strict, so that readings
+   which hardly change do not rebuild all flags. Returns whether it changed in a way that can be seen. */
+static bool choose_error_limit(struct state *state)
+{
+    const struct weights *weights = state->weights;
+    const struct plant_group *group = state->layout->group;
+    double range = state->params.show == SHOW_OPERATOR     ? 2 * LIMIT_PLACE_MOST
+                   : state->params.show == SHOW_DIFFERENCE ? 0.5 * (group->max - group->min)
+                                                           : group->max - group->min;
+    double scale = weights->errors ? error_scale(state) : 0, limit = scale > 0 ? DRAWN_ERROR * range / scale : INFINITY;
+    bool measured = state->errors_version != weights->errors_version;
+    bool seen = measured || (double)weights->largest_error > fmin(limit, state->error_limit);
+    state->errors_version = weights->errors_version;
+    state->error_scale = scale;
+    if (limit >= state->error_limit && limit <= ERROR_SLACK * state->error_limit)
+        return measured;
+    state->error_limit = limit / ERROR_MARGIN;
+    return seen;
 }
 
 static bool qualities_changed(const struct state *state)
@@ -118,12 +157,13 @@ void update_begin(struct state *state, size_t count)
     update->all = choose_terms(state, true);
     update->changed = choose_terms(state, false);
     update->flags = qualities_changed(state);
+    update->flags |= choose_error_limit(state);
     update->anew = !state->sums || update->flags || state->added >= ADDED_MOST || !steps_are_small(update);
     for (size_t i = 0; i < update->all.count; i++)
         update->marks |= update->all.marked[i];
     if (!update->anew && update->changed.count == 0) /* only more vertices than before */
         update->next = update->old;
-    choose_rule(update);
+    update_rule(state, state->now, &update->rule);
     pthread_mutex_init(&update->lock, NULL);
     state->added = update->anew ? 0 : state->added + 1;
     state->wanted = count;
@@ -131,20 +171,6 @@ void update_begin(struct state *state, size_t count)
 }
 
 /* --- block by block --------------------------------------------------------------------------------------------------------- */
-
-/* At the rim of what is reached, or of what a lost sensor leaves without data. */
-static uint8_t lacking_of(const struct weights *weights, size_t vertex, bool filled, bool no_limits)
-{
-    float near_m = weights->near_m[vertex];
-    if (no_limits)
-        return 0;
-    if (near_m == INFINITY)
-        return FLAG;
-    uint8_t reach = weights->reach_m < INFINITY ? weights_lacking(weights, near_m - weights->reach_m) : 0;
-    uint8_t share = weights->beyond_m ? weights_lacking(weights, weights->beyond_m[vertex]) : 0;
-    reach = share > reach ? share : reach;
-    return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
-}
 
 /* By how much of the weight is on Uncertain sensors; filled: by how far a lost sensor is the nearest. */
 static uint8_t uncertain_of(double marked, double total, uint8_t filled)
@@ -154,24 +180,29 @@ static uint8_t uncertain_of(double marked, double total, uint8_t filled)
     return leans > filled ? leans : filled;
 }
 
+void update_flags(const struct state *state, const struct weights *weights, size_t vertex, double total, double marked, struct scalar *at)
+{
+    bool blind = state->params.show == SHOW_BLIND; /* around a lost sensor it is told, too */
+    bool fill = blind || state->params.fill == FILL_NEIGHBOURS, filled = fill && weights->place[vertex] == PLACE_LOST;
+    at->no_limits = weights->place[vertex] == PLACE_NO_LIMITS ? FLAG : 0;
+    at->no_data = weights->place[vertex] == PLACE_GOOD || filled || at->no_limits ? 0 : FLAG;
+    uint8_t spread = fill && !blind && at->no_data == 0 && !at->no_limits ? weights->lost[vertex] : 0;
+    at->uncertain = uncertain_of(marked, total, spread);
+    at->lacking = weights_lacking_at(weights, vertex, filled);
+    if (weights->errors && (double)weights->errors[vertex] > state->error_limit && !field_params_cover(&state->params))
+        at->uncertain = FLAG;
+}
+
 static bool set_flags(const struct update *update, size_t begin, size_t count, const double *total, const double *marked)
 {
-    const uint8_t *place = update->state->weights->place + begin;
     struct scalar *at = update->state->at + begin;
-    bool blind = update->state->params.show == SHOW_BLIND; /* around a lost sensor it is told, too */
-    bool fill = blind || update->state->params.fill == FILL_NEIGHBOURS, changed = false;
+    bool changed = false;
     for (size_t j = 0; j < count; j++) {
-        bool filled = fill && place[j] == PLACE_LOST;
-        uint8_t no_limits = place[j] == PLACE_NO_LIMITS ? FLAG : 0;
-        uint8_t no_data = place[j] == PLACE_GOOD || filled || no_limits ? 0 : FLAG;
-        uint8_t spread = fill && !blind && no_data == 0 && !no_limits ? update->state->weights->lost[begin + j] : 0;
-        uint8_t uncertain = uncertain_of(update->marks ? marked[j] : 0, update->marks ? total[j] : 0, spread);
-        uint8_t lacking = lacking_of(update->state->weights, begin + j, filled, no_limits);
-        changed |= at[j].lacking != lacking || at[j].no_data != no_data || at[j].uncertain != uncertain || at[j].no_limits != no_limits;
-        at[j].no_limits = no_limits;
-        at[j].no_data = no_data;
-        at[j].lacking = lacking;
-        at[j].uncertain = uncertain;
+        struct scalar now = { .value = at[j].value };
+        update_flags(update->state, update->state->weights, begin + j, update->marks ? total[j] : 0, update->marks ? marked[j] : 0, &now);
+        changed |= at[j].lacking != now.lacking || at[j].no_data != now.no_data || at[j].uncertain != now.uncertain ||
+                   at[j].no_limits != now.no_limits;
+        at[j] = now;
     }
     return changed;
 }
@@ -201,21 +232,23 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
     return flags && set_flags(update, begin, count, total, marked);
 }
 
-/* What depends on the sensors that are good, and not on what they say. A hot spot of size s, exp(-D^2 / 2 s^2), is shown in a picture by
-   the nearest sensor, which reads so much of it. */
+float update_blind(const struct plant_group *group, float near_m)
+{
+    double far = (double)near_m / group->hot_spot_m, most = BLIND_MOST * (group->max - group->min);
+    return (float)fmin(PLANT_SEEN_PART * (group->max - group->min) * exp(far * far / 2), most);
+}
+
+/* What depends on which sensors are good, and not on their readings. */
 static bool map_block(const struct update *update, size_t begin, size_t count, float *values)
 {
     const struct state *state = update->state;
     struct weights *weights = state->weights;
-    const struct plant_group *group = state->layout->group;
     const double nothing[KERNEL_BLOCK] = { 0 };
     weights_prepare(weights, begin, count);
     if (state->params.show == SHOW_UNCERTAINTY)
         weights_deviations(weights, begin, count, values);
-    for (size_t j = 0; state->params.show == SHOW_BLIND && j < count; j++) {
-        double far = (double)weights->near_m[begin + j] / group->hot_spot_m, most = BLIND_MOST * (group->max - group->min);
-        values[j] = (float)fmin(PLANT_SEEN_PART * (group->max - group->min) * exp(far * far / 2), most);
-    }
+    for (size_t j = 0; state->params.show == SHOW_BLIND && j < count; j++)
+        values[j] = update_blind(state->layout->group, weights->near_m[begin + j]);
     return set_flags(update, begin, count, nothing, nothing);
 }
 
@@ -297,6 +330,12 @@ void update_run(struct state *state)
     update->next = update->end;
 }
 
+static double drawn_error(const struct state *state)
+{
+    double error = field_params_cover(&state->params) ? 0 : (double)state->weights->largest_error;
+    return error > state->error_limit ? error * state->error_scale : 0;
+}
+
 void update_end(struct state *state, uint64_t *versions)
 {
     struct update *update = state->update;
@@ -304,6 +343,7 @@ void update_end(struct state *state, uint64_t *versions)
     bool first = scalars->version == 0, grown = update->end > update->old;
     memcpy(state->shown, state->now, state->layout->sensor_count * sizeof(*state->now));
     scalars->ready = update->end * KERNEL_BLOCK < scalars->count ? update->end * KERNEL_BLOCK : scalars->count;
+    scalars->drawn_error = drawn_error(state);
     scalars->grown += grown;
     if (first || grown || update->value_changed || update->flag_changed)
         scalars->version = ++*versions;

@@ -20,4 +20,12 @@ void update_end(struct state *state, uint64_t *versions);
 /* Abandons the update, if one is under way. */
 void update_forget(struct state *state);
 
+/* Writes the rule that turns sums into values; inputs: by sensor of the layout. */
+void update_rule(const struct state *state, const struct state_input *inputs, struct kernel_value *rule);
+/* Sets all of *at but its value for a prepared vertex of `weights`, which were made for the state's parameters and sensors. total: the
+   weights' sum; marked: that of Uncertain sensors; 0: there are none. */
+void update_flags(const struct state *state, const struct weights *weights, size_t vertex, double total, double marked, struct scalar *at);
+/* Returns the smallest hot spot that a sensor near_m metres away shows: one of size s, exp(-D^2 / 2 s^2), of which it reads a part. */
+float update_blind(const struct plant_group *group, float near_m);
+
 #endif

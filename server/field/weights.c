@@ -247,6 +247,7 @@ void weights_destroy(struct weights **weights_ptr)
     mem_free(weights->takes_part);
     mem_free(weights->ones);
     mem_free(weights->beyond_m);
+    mem_free(weights->errors);
     influence_fill_destroy(&weights->fill);
     mem_free(weights);
     *weights_ptr = NULL;
@@ -254,7 +255,7 @@ void weights_destroy(struct weights **weights_ptr)
 
 size_t weights_bytes(const struct layout *layout)
 {
-    size_t each_vertex = 3 * sizeof(float) + 2;
+    size_t each_vertex = 4 * sizeof(float) + 2;
     size_t each_sensor = 2 * sizeof(float) + 1 + sizeof(uint32_t) + sizeof(struct key_sensor);
     return sizeof(struct weights) + sizeof(struct key_head) + layout->vertex_count * each_vertex + block_count(layout->vertex_count) +
            layout->sensor_count * each_sensor;
@@ -333,6 +334,19 @@ uint8_t weights_lacking(const struct weights *weights, float beyond_m)
     if (beyond_m > 0)
         return (uint8_t)(steps < 127 ? 128 + (int)steps : 255);
     return (uint8_t)(steps > -127 ? 127 + (int)steps : 0);
+}
+
+uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool filled)
+{
+    float near_m = weights->near_m[vertex];
+    if (weights->place[vertex] == PLACE_NO_LIMITS)
+        return 0;
+    if (near_m == INFINITY)
+        return 255;
+    uint8_t reach = weights->reach_m < INFINITY ? weights_lacking(weights, near_m - weights->reach_m) : 0;
+    uint8_t share = weights->beyond_m ? weights_lacking(weights, weights->beyond_m[vertex]) : 0;
+    reach = share > reach ? share : reach;
+    return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
 }
 
 /* Distances to the nearest sensor that is used, lost and without limits. */

@@ -57,6 +57,10 @@ struct weights {
     const float *deviations;     /* gp, by vertex: how far the field may err while all sensors are used; else NULL */
     const float *priors;         /* gp, by vertex: how far it would without any */
     float deviation;             /* gp: that of the prior */
+    float *errors;               /* by vertex: linear interpolation error of the triangles around it (drawn_error.h); NULL: not measured */
+    float largest_error;         /* the largest of them */
+    uint64_t measured_levels;    /* levels of detail that are in them, by bits */
+    unsigned errors_version;     /* counts their changes */
     float *beyond_m;             /* fin, gp, by vertex: how far beyond the rim of what sensors know; else NULL */
     float *columns; /* [block][member][KERNEL_BLOCK] of the first kept_blocks, or NULL; of others they are made anew each time */
     uint8_t *kept;  /* [block][member]: its column is filled; beside columns */
@@ -96,6 +100,8 @@ void weights_drop_columns(struct weights *weights);
 
 /* Encodes a distance beyond the rim of the data (negative: within it), in metres, as struct scalar's `lacking`. */
 uint8_t weights_lacking(const struct weights *weights, float beyond_m);
+/* Returns a vertex's byte for struct scalar's `lacking`; filled: a lost sensor leaves no hole. The vertex must be prepared. */
+uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool filled);
 /* Computes what is still missing of near_m, top and place for a block of vertices (begin: a multiple of KERNEL_BLOCK; count <=
    KERNEL_BLOCK). Thread: any, on different blocks. */
 void weights_prepare(struct weights *weights, size_t begin, size_t count);

@@ -137,6 +137,7 @@ static void remember(struct known_markers *known, const struct frame *frame)
         memcpy(known->labels, frame->labels, frame->label_count * sizeof(*known->labels));
     known->marker_count = frame->marker_count;
     known->label_count = frame->label_count;
+    known->drawn_error = frame->drawn_error;
     known->any = true;
 }
 
@@ -192,6 +193,8 @@ char *marker_text(struct frame *frame, uint32_t seq, struct known_markers *known
         lists->arrows = lists->arrows ? lists->arrows : json_text(all_arrows(frame), ARROW_DIGITS);
         add_list(&text, "arrows", lists->arrows);
     }
+    if (frame->drawn_error != known->drawn_error)
+        text_add(&text, ",\"drawn_error\":%g", frame->drawn_error);
     remember(known, frame);
     if (text.length == head)
         text_finish(&text);

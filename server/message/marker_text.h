@@ -11,6 +11,7 @@ struct known_markers { /* as a client was last told; zero-initialise; known_mark
     size_t marker_count, marker_capacity;
     struct frame_label *labels;
     size_t label_count, label_capacity;
+    double drawn_error;
 };
 
 struct marker_text_cache { /* JSON lists of the last frame, for all who get it; zero-initialise; marker_text_cache_finish */

@@ -44,6 +44,7 @@ struct frame {
     int64_t data_utc_ns;                      /* of the snapshot it shows */
     bool clock_unset;                         /* nothing kept the clock right that told it */
     int64_t oldest_age_ns;                    /* INT64_MAX: no value takes part */
+    double drawn_error;                       /* in the unit of values, rounded up: places marked uncertain may be so far off; 0: none is */
     int64_t field_ns, render_ns, readback_ns; /* stage times */
     int64_t turn_ns;                          /* of the render thread for it, whatever held it up; 0: drawn elsewhere */
     struct baseline baseline;                 /* of a difference; id 0: none */

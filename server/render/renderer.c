@@ -2,6 +2,8 @@
 /* From a view and the field to a frame: the order of the passes. */
 #include "render/renderer.h"
 
+#include <math.h>
+
 #include "base/clock.h"
 #include "base/mem.h"
 #include "render/gl/gl_backend.h"
@@ -87,6 +89,20 @@ static int64_t oldest_age_of(const struct frame_context *context)
     return oldest_ns;
 }
 
+/* Rounded up to 1, 2 or 5 times a power of ten, so that it seldom changes while readings do. */
+static double drawn_error_of(const struct frame_context *context)
+{
+    double most = 0;
+    for (size_t i = 0; i < context->visible_count; i++) {
+        const struct fields_entry *field = context->fields[context->visible[i]];
+        most = field ? fmax(most, field->drawn_error) : most;
+    }
+    if (!(most > 0))
+        return 0;
+    double unit = pow(10, floor(log10(most))), parts = most / unit;
+    return unit * (parts <= 1 ? 1 : parts <= 2 ? 2 : parts <= 5 ? 5 : 10);
+}
+
 /* Returns an empty frame with all that the plan says of it. NULL: out of memory, logged. */
 static struct frame *start_frame(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context)
 {
@@ -99,6 +115,7 @@ static struct frame *start_frame(struct renderer *renderer, const struct frame_p
     frame->view = *view;
     frame->data_utc_ns = plan->data_utc_ns;
     frame->oldest_age_ns = oldest_age_of(context);
+    frame->drawn_error = drawn_error_of(context);
     frame->content = plan->content;
     frame->field_ns = plan->field_ns;
     frame->triangles = frame_triangles(context);

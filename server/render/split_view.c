@@ -2,6 +2,7 @@
 /* Draws the halves one after the other and lays them side by side. */
 #include "render/split_view.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -110,6 +111,7 @@ static void add_meaning(struct frame *whole, const struct frame *part, int half)
         whole->oldest_age_ns = part->oldest_age_ns;
     else if (part->oldest_age_ns != INT64_MAX && part->oldest_age_ns > whole->oldest_age_ns)
         whole->oldest_age_ns = part->oldest_age_ns;
+    whole->drawn_error = fmax(whole->drawn_error, part->drawn_error);
     if (!whole->baseline.id)
         whole->baseline = part->baseline;
     whole->field_ns += part->field_ns;

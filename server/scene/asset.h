@@ -16,6 +16,7 @@ struct asset {
     size_t bytes;
     struct cache_file influence_file; /* beside it; zero: none was asked for */
     struct influence_view influence;
+    uint64_t resolved_levels; /* by bits: preparing cut the level's triangles until they show the field right (field/drawn_error.h) */
     _Atomic int refs;
     struct closed_bodies *_Atomic *closed; /* by level; NULL: nobody asked yet */
 };

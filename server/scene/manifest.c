@@ -45,11 +45,13 @@ static bool read_entry(struct log *log, struct manifest *manifest, size_t index,
     }
     const char *surface = json_string_value(json_object_get(item, "surface"));
     const char *missing = json_string_value(json_object_get(item, "missing"));
-    manifest->entries[index] = (struct manifest_entry){ .id = mem_strdup(id),
-                                                        .file = mem_strdup(file),
-                                                        .surface = file_name_good(surface) ? mem_strdup(surface) : NULL,
-                                                        .missing = missing ? mem_strdup(missing) : NULL,
-                                                        .recipe = strtoull(recipe, NULL, 16) };
+    struct manifest_entry *entry = &manifest->entries[index];
+    *entry = (struct manifest_entry){ .id = mem_strdup(id),
+                                      .file = mem_strdup(file),
+                                      .surface = file_name_good(surface) ? mem_strdup(surface) : NULL,
+                                      .missing = missing ? mem_strdup(missing) : NULL,
+                                      .recipe = strtoull(recipe, NULL, 16) };
+    entry->resolved_levels = (uint64_t)json_integer_value(json_object_get(item, "resolved_levels"));
     manifest->count = index + 1;
     return true;
 }

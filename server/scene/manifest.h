@@ -15,6 +15,7 @@ struct manifest {
         char *surface;   /* likewise, surface_store.h; NULL: none was kept */
         char *missing;   /* why it could not be prepared, and has no file; NULL: it has */
         uint64_t recipe; /* plant/recipe.h */
+        uint64_t resolved_levels; /* struct asset's */
     } *entries;
     size_t count;
 };

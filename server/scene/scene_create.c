@@ -220,6 +220,7 @@ static bool create_asset(struct log *log, struct scene *scene, int index)
 struct file_use {
     const char *name; /* in the prepared folder */
     int asset;
+    uint64_t resolved_levels; /* struct asset's */
 };
 
 struct file_uses {
@@ -280,7 +281,7 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, u
         return create_missing(log, scene, asset, entry);
     if (!recipe_fits(log, scene->plant, hashes, index, entry))
         return false;
-    uses->at[uses->count++] = (struct file_use){ entry->file, index };
+    uses->at[uses->count++] = (struct file_use){ entry->file, index, entry->resolved_levels };
     return true;
 }
 
@@ -313,6 +314,7 @@ static bool create_assets(struct log *log, struct scene *scene, const struct man
             good = false;
             continue;
         }
+        asset->file->resolved_levels = uses.at[i].resolved_levels;
         grow_box(scene->bounds_min_m, scene->bounds_max_m, asset->bounds_min_m);
         grow_box(scene->bounds_min_m, scene->bounds_max_m, asset->bounds_max_m);
     }

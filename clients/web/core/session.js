@@ -457,6 +457,8 @@ const HANDLERS = {
         }
         known.isolines = message.isolines ?? newest.isolines;
         known.arrows = message.arrows ?? newest.arrows;
+        if ('drawn_error' in message)
+            this.emit('shown', this.drawnError = message.drawn_error);
         this.markers.set(message.seq, known);
     },
 

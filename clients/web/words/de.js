@@ -108,6 +108,7 @@ glossy: Glänzend: Licht ändert die Farben. Keine Werte ablesen.
 nolimits: Ohne Grenzwerte
 nodata: Keine Daten
 uncertain: Unsicher
+drawn: Punkte: mit bis zu {off} Fehler gezeichnet.
 
 [following]
 own: Eigene Ansicht

@@ -107,6 +107,7 @@ glossy: 광택 모양: 빛이 색을 바꾸므로 값을 읽지 마십시오.
 nolimits: 한계 없음
 nodata: 데이터 없음
 uncertain: 불확실
+drawn: 점: 오차 ≤ {off}
 
 [following]
 own: 내 화면

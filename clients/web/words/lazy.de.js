@@ -312,6 +312,7 @@ context: Kein Sensor dieser Messgröße daran
 equipment: Ein Sensor steht für das Ganze: sein Ort ist angenommen
 inside: Inneres des Aufgeschnittenen
 uncertain: {state}, unsicher
+drawn: Hier berechnet. Das Bild ringsum weicht um bis zu {value} ab
 hide: Ausblenden
 ghost: Durchsichtig
 only: Nur dies

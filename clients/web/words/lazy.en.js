@@ -310,6 +310,7 @@ context: No sensor of this quantity on it
 equipment: One sensor stands for all of it: its place is assumed
 inside: Inside of what is cut open
 uncertain: {state}, uncertain
+drawn: Computed here. Pictures around it err by up to {value}
 hide: Hide
 ghost: Ghost
 only: Only

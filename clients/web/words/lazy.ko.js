@@ -309,6 +309,7 @@ context: 이 측정량의 센서가 없는 설비
 equipment: 센서 하나가 설비 전체를 나타냄: 위치는 추정
 inside: 잘린 설비의 내부
 uncertain: {state}, 불확실
+drawn: 이 값은 계산한 값. 주변 그림의 오차는 최대 {value}
 hide: 숨기기
 ghost: 투명
 only: 이것만

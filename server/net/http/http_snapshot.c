@@ -187,6 +187,8 @@ static void say_values(const struct frame *frame, struct text *out)
         text_add(out, "none");
     else
         text_add(out, "%lld", (long long)(frame->oldest_age_ns / 1000000));
+    if (frame->drawn_error > 0)
+        text_add(out, ", drawn_error=%g", frame->drawn_error);
 }
 
 /* For who may know it; a name that is longer than this is nobody's title. */

@@ -10,7 +10,7 @@
 #include "render/overlay/overlay_pen.h"
 #include "render/shaded_colormap.h"
 
-enum { NOTES = 4, ROWS = 7 + ALARM_PRIORITIES };
+enum { NOTES = 6, ROWS = 7 + ALARM_PRIORITIES };
 static const double ROW = 1.5, NOTE = 1.3; /* heights, in text_px */
 enum row {
     ROW_BELOW,
@@ -25,7 +25,7 @@ enum row {
 };
 /* What it says, and where its parts lie. */
 struct legend {
-    char title[160], above[60], below[60], since[120], longest[80];
+    char title[160], above[60], below[60], since[120], longest[80], drawn_error[120];
     enum row rows[ROWS]; /* under the bar */
     const char *notes[NOTES];
     int row_count, note_count;
@@ -151,6 +151,19 @@ static void write_hot_spot(const struct pen *pen, struct legend *legend)
     add_note(legend, legend->since);
 }
 
+/* The cause of the dots where triangles cannot follow the field. */
+static void write_drawn_error(const struct pen *pen, struct legend *legend)
+{
+    const char *unit = view_is_operator(&pen->view) ? "" : view_unit(pen->scene->plant, &pen->view);
+    char number[80];
+    if (!(pen->frame->drawn_error > 0))
+        return;
+    snprintf(number, sizeof(number), "%g %.60s", pen->frame->drawn_error, unit);
+    pen_say(pen, WORD_DRAWN_ERROR_2, number, NULL, legend->drawn_error, sizeof(legend->drawn_error));
+    add_note(legend, pen_word(pen, WORD_DRAWN_ERROR));
+    add_note(legend, legend->drawn_error);
+}
+
 static void write_words(const struct pen *pen, struct legend *legend)
 {
     const struct view *view = &pen->view;
@@ -180,6 +193,7 @@ static void write_words(const struct pen *pen, struct legend *legend)
         write_hot_spot(pen, legend);
     if (!view_is_operator(view) && !colormap_at((size_t)view->colormap)->safe)
         add_note(legend, pen_word(pen, WORD_MISREAD));
+    write_drawn_error(pen, legend);
     if (view->look == LOOK_GLOSSY) {
         add_note(legend, pen_word(pen, WORD_GLOSSY));
         add_note(legend, pen_word(pen, WORD_GLOSSY_2));

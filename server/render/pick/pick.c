@@ -98,22 +98,6 @@ static void find_sensor(const struct spot *spot, const struct trial *trial, doub
 
 /* --- what the field says ----------------------------------------------------------------------------------------------------- */
 
-/* As the picture interpolates it. */
-static void read_field(const struct spot *spot, const struct scalars *scalars, struct pick *out)
-{
-    double value = 0, no_data = 0, uncertain = 0;
-    for (int k = 0; k < 3; k++) {
-        const struct scalar *at = &scalars->at[spot->hit.corners[k]];
-        double weight = spot->hit.weights[k];
-        value += weight * (double)at->value;
-        no_data += weight * at->lacking / 255;
-        uncertain += weight * at->uncertain / 255;
-    }
-    out->state = no_data > 0.5 ? PICK_NO_DATA : PICK_BETWEEN;
-    out->uncertain = uncertain > 0.5;
-    out->value = value;
-}
-
 static double distance_of(const struct spot *spot, const struct field_sensor *sensor, const double place_file_m[3])
 {
     const struct asset_view *file = &spot->scene->assets[spot->hit.asset].file->view;
@@ -176,10 +160,16 @@ static void read_place(struct spot *spot, struct field *field, struct pick *out)
     struct field_params params = spot->view->field;
     if (params.show == SHOW_OPERATOR)
         params.show = SHOW_VALUE;
-    const struct scalars *scalars = out->inside ? NULL : field_scalars(field, out->asset, &params, spot->snapshot);
-    if (!scalars)
+    struct field_place place;
+    struct field_point point;
+    memcpy(place.corners, spot->hit.corners, sizeof(place.corners));
+    memcpy(place.parts, spot->hit.weights, sizeof(place.parts));
+    if (out->inside || !field_at(field, out->asset, &params, spot->snapshot, &place, &point))
         return;
-    read_field(spot, scalars, out);
+    out->state = point.no_data ? PICK_NO_DATA : PICK_BETWEEN;
+    out->uncertain = point.uncertain;
+    out->value = point.value;
+    out->drawn_error = point.drawn_error;
     read_sensors(spot, field, &params, out);
     if (is_measured(spot, &params, out))
         out->state = PICK_MEASURED;

@@ -20,6 +20,7 @@ struct pick {
     enum pick_state state;
     bool uncertain, inside;
     double value; /* of PICK_BETWEEN and PICK_MEASURED; in the unit of the view. For operators the reading, not its place between limits */
+    double drawn_error; /* in the same unit: pictures may be so far off around this place, and mark it uncertain; 0: they are not */
     int nearest_count;
     struct pick_sensor {
         int tag;
@@ -33,7 +34,8 @@ struct pick {
     int64_t data_utc_ns;
 };
 
-/* Picks at x_px, y_px, from the top left of the whole picture, also of a split view. Evaluates the field of `snapshot` at that point. */
+/* Picks at x_px, y_px, from the top left of the whole picture, also of a split view. Computes the field of `snapshot` at that point from
+   the sensors' readings (field_at). */
 void pick_at(const struct scene *scene, struct field *field, const struct view *view, const struct snapshot *snapshot, double x_px,
              double y_px, struct pick *out);
 

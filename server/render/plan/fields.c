@@ -192,6 +192,7 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
     take_directions(fields, entry, ask);
     entry->wanted = count;
     entry->oldest_age_ns = scalars->oldest_age_ns;
+    entry->drawn_error = scalars->drawn_error;
     entry->used = ++fields->uses;
     return entry;
 }

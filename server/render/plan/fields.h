@@ -24,6 +24,7 @@ struct fields_entry { /* without a slice: it could not be worked out or kept; dr
     bool uploaded;  /* the slice holds what is shown */
     GLuint sensors; /* 0, or for fragments that work the field out themselves (render/reference/reference.h) */
     int64_t oldest_age_ns;
+    double drawn_error; /* of the scalars (field/scalars.h) */
     uint64_t used;
     struct sensor_direction *directions; /* of a group that has some, else NULL (field/directions.h) */
     size_t direction_count;

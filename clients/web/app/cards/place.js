@@ -91,7 +91,7 @@ export class Place {
     }
 
     build() {
-        const { state, value, unit, uncertain, inside, nearest, place } = this.picked;
+        const { state, value, unit, uncertain, drawn_error: error, inside, nearest, place } = this.picked;
         const asset = this.session.model.asset(this.picked.asset);
         const found = say(`place.${place ?? state}`);
         const words = inside ? say('place.inside') : uncertain ? say('place.uncertain', { state: found }) : found;
@@ -105,6 +105,7 @@ export class Place {
             make('h3', {}, asset.tag || asset.id), make('p', { class: 'about' }, asset.description ?? ''),
             value === null ? null : make('p', { class: 'value' }, this.number(value), make('i', {}, ` ${unitText(unit)}`)),
             make('p', { class: 'state' }, words),
+            error ? make('p', { class: 'state' }, say('place.drawn', { value: `${this.number(error)} ${unitText(unit)}` })) : null,
             rows.length > 0 ? make('ul', { class: 'nearest' }, ...rows) : null,
             make('div', { class: 'buttons' }, ...['hide', 'ghost', 'only'].map(button)));
     }

@@ -63,8 +63,7 @@ function at(element, place) {
 
 // By `show`, of the quantity's name and the parameters: title, what stands behind it, a note. Of rarer ones: coverage.js.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
-// What depends on no reading is never uncertain; and the least that it can be, of the group's range: of blind places, what can
-// be seen, 5 %, and a thousandth of that for rounding.
+// What depends on no reading is never uncertain. Its least value, in parts of the range; blind: 5 % and rounding.
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
@@ -99,7 +98,7 @@ export class Legend {
     contents(params) {
         const { group, show, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
         return JSON.stringify([group, show, this.title(params), colormap, ramp_interval, this.session.rangeOf(params), scale,
-            breaks, isolines, look, unit, this.unproven(params), this.assumed(params)]);
+            breaks, isolines, look, unit, this.unproven(params), this.assumed(params), this.session.drawnError]);
     }
 
     show(again = false) {
@@ -132,8 +131,10 @@ export class Legend {
     }
 
     notes(params, map, isOperator) {
-        const { look, scale } = params;
+        const { look, scale } = params, off = this.session.drawnError;
         return [
+            // In the unit of the title.
+            off && say('legend.drawn', { off }),
             this.title(params)[2],
             isOperator && say('legend.operator'),
             !isOperator && scale === 'log' && say('legend.log'),
@@ -195,7 +196,7 @@ export class Legend {
         return this.ticksAt(places, this.apart(places, 15, 32), values.map(text));
     }
 
-    // Numbers beside the bar; where they had to move apart, the line from the bar leads to them.
+    // Numbers beside the bar, joined to it by lines where they had to move apart.
     ticksAt(from, to, texts) {
         const lying = this.lying.matches, line = (a, b) => (lying ? { x1: 100 * a, y1: 0, x2: 100 * b, y2: 1 }
             : { x1: 0, y1: 100 - 100 * a, x2: 1, y2: 100 - 100 * b });

@@ -1,0 +1,353 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Samples triangles where the weights may bend, the closer the nearer a sensor is. */
+#include "field/drawn_error.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "plant/singles.h"
+
+/* Triangles at a time; triangles of a job; pieces of one triangle. */
+enum { GROUP = 64, GRAIN = 1024, PIECES_MOST = 96 };
+#define STEP 0.3f             /* of the distance to the nearest sensor: longer pieces are halved */
+#define SHARPNESS 2.0f        /* power of shepard up to which STEP is fine enough */
+#define ACCEPTED 6.0f         /* L^2 K / (6 d^2) bounds the error of a triangle of side L whose weights bend by K / d^2 */
+#define PAPER_ACCEPTED 0.015f /* of the nearest distance and of R */
+#define STEP_OF_COLOR (1 / 255.0f)
+#define RIM 4       /* steps of `lacking`: so far the rim of the data may be drawn elsewhere */
+#define LEAST 1e-4f /* smaller errors are 0 */
+
+struct piece {           /* part of a triangle; its sample is the middle of its longest side */
+    uint32_t tri;        /* in the group */
+    float corners[3][3]; /* barycentric */
+};
+
+struct sampler { /* of one thread */
+    const struct weights *of;
+    const struct asset_view *file;
+    struct layout layout;
+    struct layout_points points;
+    struct weights *weights; /* of the points */
+    struct weights_terms terms;
+    double values[KERNEL_BLOCK], total[KERNEL_BLOCK];
+    float *corners;        /* [member][3 GROUP]: weights at the corners of the group's triangles */
+    uint32_t *tris[GROUP]; /* their vertices */
+    float *errors[GROUP];  /* where to */
+    int pieces[GROUP];
+    size_t tri_count;
+    struct piece *queue;
+    size_t queued, capacity;
+};
+
+struct job {
+    const struct weights *weights;
+    const struct field_params *params;
+    const uint8_t *usable, *members_marked;
+    float radius_m, accepted, error_m;
+    const uint32_t *members;
+    const double *ones;
+    uint32_t first; /* triangle */
+    float *errors;  /* by triangle */
+};
+
+/* --- weights at points ------------------------------------------------------------------------------------------------------ */
+
+static bool sampler_init(struct sampler *sampler, const struct job *job)
+{
+    size_t members = job->weights->member_count;
+    *sampler = (struct sampler){ .of = job->weights, .file = &job->weights->layout->file->view, .layout = *job->weights->layout };
+    sampler->layout.points = &sampler->points;
+    sampler->layout.vertex_count = KERNEL_BLOCK;
+    sampler->points.positions_m = mem_array(KERNEL_BLOCK, sizeof(*sampler->points.positions_m));
+    sampler->points.corners = mem_array(KERNEL_BLOCK, sizeof(*sampler->points.corners));
+    sampler->points.parts = mem_array(KERNEL_BLOCK, sizeof(*sampler->points.parts));
+    sampler->points.away_m = mem_array(KERNEL_BLOCK, sizeof(*sampler->points.away_m));
+    sampler->corners = mem_try_array(members * 3 * GROUP, sizeof(float));
+    sampler->weights = weights_create(&sampler->layout, job->params, job->radius_m, job->usable, &(struct weights_key){ 0 });
+    sampler->terms = (struct weights_terms){ job->members, job->ones, job->members_marked, members };
+    return sampler->corners && sampler->weights && weights_keep(sampler->weights, weights_column_bytes(sampler->weights)) > 0;
+}
+
+static void sampler_finish(struct sampler *sampler)
+{
+    weights_destroy(&sampler->weights);
+    mem_free(sampler->points.positions_m);
+    mem_free(sampler->points.corners);
+    mem_free(sampler->points.parts);
+    mem_free(sampler->points.away_m);
+    mem_free(sampler->corners);
+    mem_free(sampler->queue);
+}
+
+/* Afterwards each member's column divided by the total is its weight. */
+static void evaluate(struct sampler *sampler, size_t count)
+{
+    struct weights *weights = sampler->weights;
+    weights->known[0] = 0;
+    memset(weights->kept, 0, weights->member_count);
+    memset(sampler->values, 0, count * sizeof(*sampler->values));
+    memset(sampler->total, 0, count * sizeof(*sampler->total));
+    weights_prepare(weights, 0, count);
+    weights_add(weights, 0, count, &sampler->terms, &(struct weights_sums){ sampler->values, sampler->total, NULL });
+    for (size_t j = 0; j < count; j++)
+        sampler->total[j] = sampler->total[j] > 0 ? 1 / sampler->total[j] : 0;
+}
+
+/* --- one group of triangles ------------------------------------------------------------------------------------------------- */
+
+static void evaluate_corners(struct sampler *sampler)
+{
+    static const float at_corner[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+    size_t count = 3 * sampler->tri_count;
+    for (size_t j = 0; j < count; j++)
+        layout_set_point(sampler->file, &sampler->points, j, sampler->tris[j / 3], at_corner[j % 3]);
+    evaluate(sampler, count);
+    for (uint32_t m = 0; m < sampler->weights->member_count; m++) {
+        const float *column = weights_column(sampler->weights, 0, m);
+        for (size_t j = 0; j < count; j++)
+            sampler->corners[m * 3 * GROUP + j] = column[j] * (float)sampler->total[j];
+    }
+}
+
+static void enqueue(struct sampler *sampler, const struct piece *piece)
+{
+    if (sampler->pieces[piece->tri]++ >= PIECES_MOST)
+        return;
+    mem_grow(&sampler->queue, &sampler->capacity, sampler->queued + 1, sizeof(*sampler->queue));
+    sampler->queue[sampler->queued++] = *piece;
+}
+
+/* Returns the length of the longest side and the corner where it begins. */
+static float longest_side(const struct sampler *sampler, const struct piece *piece, int *begin)
+{
+    float at[3][3], longest = -1;
+    const uint32_t *corners = sampler->tris[piece->tri];
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++) {
+            at[k][c] = 0;
+            for (int i = 0; i < 3; i++)
+                at[k][c] += piece->corners[k][i] * sampler->file->positions_m[corners[i]][c];
+        }
+    for (int k = 0; k < 3; k++) {
+        float length = vecf_distance(at[k], at[(k + 1) % 3]);
+        if (length > longest) {
+            longest = length;
+            *begin = k;
+        }
+    }
+    return longest;
+}
+
+static void split(struct sampler *sampler, const struct piece *piece, int begin, const float middle[3])
+{
+    struct piece half = *piece;
+    memcpy(half.corners[begin], middle, sizeof(half.corners[begin]));
+    enqueue(sampler, &half);
+    half = *piece;
+    memcpy(half.corners[(begin + 1) % 3], middle, sizeof(half.corners[begin]));
+    enqueue(sampler, &half);
+}
+
+/* The data end here, and the corners say that they do not. */
+static bool hides_rim(const struct sampler *sampler, size_t point, const struct piece *piece, const float parts[3], bool *shown)
+{
+    const uint32_t *corners = sampler->tris[piece->tri];
+    float drawn = 0, here = weights_lacking_at(sampler->weights, point, false);
+    for (int k = 0; k < 3; k++)
+        drawn += parts[k] * (float)weights_lacking_at(sampler->of, corners[k], false);
+    *shown = here <= 127;
+    return here > 127 + RIM && drawn <= 127;
+}
+
+static void add_errors(struct sampler *sampler, const struct piece *pieces, size_t count)
+{
+    float more[KERNEL_BLOCK] = { 0 }, less[KERNEL_BLOCK] = { 0 };
+    for (uint32_t m = 0; m < sampler->weights->member_count; m++) {
+        const float *column = weights_column(sampler->weights, 0, m), *at = sampler->corners + m * 3 * GROUP;
+        for (size_t j = 0; j < count; j++) {
+            const float *corner = at + 3 * pieces[j].tri, *part = sampler->points.parts[j];
+            float off = column[j] * (float)sampler->total[j] - part[0] * corner[0] - part[1] * corner[1] - part[2] * corner[2];
+            more[j] += off > 0 ? off : 0;
+            less[j] -= off < 0 ? off : 0;
+        }
+    }
+    for (size_t j = 0; j < count; j++) {
+        bool shown;
+        float *error = sampler->errors[pieces[j].tri], worst = fmaxf(more[j], less[j]);
+        if (hides_rim(sampler, j, &pieces[j], sampler->points.parts[j], &shown))
+            *error = 1;
+        else if (shown && worst > LEAST)
+            *error = fmaxf(*error, worst);
+    }
+}
+
+static void sample_group(struct sampler *sampler, float step)
+{
+    struct piece taken[KERNEL_BLOCK];
+    int begins[KERNEL_BLOCK];
+    float lengths_m[KERNEL_BLOCK];
+    evaluate_corners(sampler);
+    for (uint32_t t = 0; t < sampler->tri_count; t++) {
+        sampler->pieces[t] = 0;
+        enqueue(sampler, &(struct piece){ t, { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } });
+    }
+    for (size_t next = 0; next < sampler->queued;) {
+        size_t count = sampler->queued - next < KERNEL_BLOCK ? sampler->queued - next : KERNEL_BLOCK;
+        memcpy(taken, sampler->queue + next, count * sizeof(*taken));
+        next += count;
+        for (size_t j = 0; j < count; j++) {
+            float middle[3];
+            lengths_m[j] = longest_side(sampler, &taken[j], &begins[j]);
+            for (int i = 0; i < 3; i++)
+                middle[i] = 0.5f * (taken[j].corners[begins[j]][i] + taken[j].corners[(begins[j] + 1) % 3][i]);
+            layout_set_point(sampler->file, &sampler->points, j, sampler->tris[taken[j].tri], middle);
+        }
+        evaluate(sampler, count);
+        add_errors(sampler, taken, count);
+        for (size_t j = 0; j < count; j++)
+            if (lengths_m[j] > step * sampler->weights->near_m[j])
+                split(sampler, &taken[j], begins[j], sampler->points.parts[j]);
+    }
+    sampler->queued = sampler->tri_count = 0;
+}
+
+/* --- all of them ------------------------------------------------------------------------------------------------------------ */
+
+/* So small beside the way to the nearest sensor that nothing bends in it; or, in a coarser level, smaller than its pixels. */
+static bool is_straight(const struct job *job, const uint32_t corners[3])
+{
+    const struct weights *weights = job->weights;
+    const float(*at)[3] = weights->layout->file->view.positions_m;
+    float longest_m = 0, near_m = INFINITY;
+    bool data = false;
+    for (int k = 0; k < 3; k++) {
+        longest_m = fmaxf(longest_m, vecf_distance(at[corners[k]], at[corners[(k + 1) % 3]]));
+        near_m = fminf(near_m, weights->near_m[corners[k]]);
+        data |= weights->place[corners[k]] != PLACE_NOBODY;
+        if (weights->reach_m < INFINITY)
+            near_m = fminf(near_m, fabsf(weights->reach_m - weights->near_m[corners[k]]));
+    }
+    return !data || longest_m < 2 * job->error_m || longest_m <= job->accepted * (near_m - longest_m);
+}
+
+static void measure_some(void *arg, size_t begin, size_t end)
+{
+    const struct job *job = arg;
+    struct sampler *sampler = mem_new(sizeof(*sampler));
+    uint32_t *indices = (uint32_t *)job->weights->layout->file->view.indices;
+    bool good = sampler_init(sampler, job);
+    float step = STEP * fminf(1, SHARPNESS / job->weights->power);
+    for (size_t t = job->first + begin; t < job->first + end && !good; t++) /* out of memory: nothing is known of them */
+        job->errors[t] = 1;
+    for (size_t t = job->first + begin; t < job->first + end && good; t++) {
+        if (!is_straight(job, indices + 3 * t)) {
+            sampler->tris[sampler->tri_count] = indices + 3 * t;
+            sampler->errors[sampler->tri_count++] = &job->errors[t];
+        }
+        if (sampler->tri_count == GROUP || (sampler->tri_count > 0 && t + 1 == job->first + end))
+            sample_group(sampler, step);
+    }
+    sampler_finish(sampler);
+    mem_free(sampler);
+}
+
+static void prepare_some(void *arg, size_t begin, size_t end)
+{
+    struct weights *weights = arg;
+    for (size_t block = begin; block < end; block++) {
+        size_t at = block * KERNEL_BLOCK, left = weights->layout->vertex_count - at;
+        weights_prepare(weights, at, left < KERNEL_BLOCK ? left : KERNEL_BLOCK);
+    }
+}
+
+/* Weights bend by K / d^2 at most, d metres from the nearest sensor: by the second derivatives of D^-p, with |grad D| = 1. */
+static float accepted_of(const struct weights *weights)
+{
+    float p = weights->power;
+    if (weights->interpolation == INTERPOLATION_SHEPARD)
+        return sqrtf(ACCEPTED * STEP_OF_COLOR / (1.5f * p * p + 0.5f * p));
+    for (size_t m = 0; m < weights->member_count; m++)
+        if (weights->decay[weights->members[m]] != 1 || weights->strength[weights->members[m]] > 1)
+            return 0;
+    return PAPER_ACCEPTED;
+}
+
+static void spread(struct weights *weights, const float *errors, const struct asset_level *level)
+{
+    const struct asset_view *file = &weights->layout->file->view;
+    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++)
+        for (uint32_t i = file->primitives[p].first_index; i < file->primitives[p].first_index + file->primitives[p].index_count; i++) {
+            float *error = &weights->errors[file->indices[i]];
+            *error = fmaxf(*error, errors[i / 3]);
+            weights->largest_error = fmaxf(weights->largest_error, errors[i / 3]);
+        }
+}
+
+static void measure_level(struct job *job, struct weights *weights, const struct asset_level *level, struct workers *workers)
+{
+    const struct asset_view *file = &weights->layout->file->view;
+    size_t members = weights->member_count;
+    uint32_t *numbers = mem_array(members, sizeof(*numbers));
+    uint8_t *unmarked = mem_array(members, 1);
+    double *ones = mem_array(members, sizeof(*ones));
+    for (uint32_t m = 0; m < members; m++) {
+        numbers[m] = m;
+        ones[m] = 1;
+    }
+    job->members = numbers;
+    job->ones = ones;
+    job->members_marked = unmarked;
+    workers_for(workers, (level->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK, 4, prepare_some, weights);
+    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
+        job->first = file->primitives[p].first_index / 3;
+        workers_for(workers, file->primitives[p].index_count / 3, GRAIN, measure_some, job);
+    }
+    spread(weights, job->errors, level);
+    mem_free(numbers);
+    mem_free(unmarked);
+    mem_free(ones);
+}
+
+/* The weights bend no more than those that preparing cut the triangles for (preprocess/subdivision/linear_error.h). */
+static bool is_as_prepared(const struct weights *weights, const struct field_params *params)
+{
+    const struct layout *layout = weights->layout;
+    const struct plant_group *group = layout->group;
+    if (layout->trial || params->override_count > 0 || params->distance == DISTANCE_HEAT || params->reach_m != group->reach_m)
+        return false;
+    if (params->interpolation == INTERPOLATION_SHEPARD)
+        return params->power <= group->power;
+    return params->strength == 1 && params->decay == 1 && params->radius_m == group->radius_m &&
+           (layout->sensor_count > 1 || plant_cuts_singles(group));
+}
+
+void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices,
+                         struct workers *workers)
+{
+    const struct layout *layout = weights->layout;
+    const struct asset_view *file = &layout->file->view;
+    uint32_t number = 0;
+    while (number + 1 < file->header->level_count && file->levels[number + 1].vertex_count >= vertices)
+        number++;
+    uint64_t bit = (uint64_t)1 << (number < 63 ? number : 63);
+    if (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 ||
+        (weights->member_count == 1 && weights->interpolation == INTERPOLATION_SHEPARD))
+        return;
+    weights->measured_levels |= bit;
+    if (layout->file->resolved_levels & bit && is_as_prepared(weights, params))
+        return;
+    struct job job = { .weights = weights,
+                       .params = params,
+                       .usable = usable,
+                       .radius_m = weights->radius_m,
+                       .accepted = accepted_of(weights),
+                       .error_m = file->levels[number].error_m,
+                       .errors = mem_try_array(file->header->index_count / 3, sizeof(float)) };
+    weights->errors = weights->errors ? weights->errors : mem_try_array(layout->vertex_count, sizeof(float));
+    weights->errors_version++;
+    if (job.errors && weights->errors)
+        measure_level(&job, weights, &file->levels[number], workers);
+    mem_free(job.errors);
+}

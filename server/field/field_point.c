@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The field at one point, computed from the sensors. */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "field/field_impl.h"
+#include "field/update.h"
+#include "plant/influence.h"
+
+/* As the picture interpolates it. */
+static void point_drawn(const struct scalars *scalars, const struct field_place *place, struct field_point *out)
+{
+    double value = 0, no_data = 0, uncertain = 0;
+    for (int k = 0; k < 3; k++) {
+        const struct scalar *at = &scalars->at[place->corners[k]];
+        double part = place->parts[k];
+        value += part * (double)at->value;
+        no_data += part * at->lacking / 255;
+        uncertain += part * at->uncertain / 255;
+    }
+    *out = (struct field_point){ .value = value, .no_data = no_data > 0.5, .uncertain = uncertain > 0.5 };
+}
+
+/* The largest of the triangles around the corners: whichever of them is drawn there. */
+static double error_near(const struct state *state, const struct field_place *place)
+{
+    double most = 0;
+    for (int k = 0; k < 3 && state->weights && state->weights->errors; k++)
+        most = fmax(most, (double)state->weights->errors[place->corners[k]]);
+    return most > state->error_limit ? most * state->error_scale : 0;
+}
+
+struct one { /* a layout of one point */
+    float position_m[1][3], parts[1][3], away_m[1][3];
+    uint32_t corners[1][3];
+    struct layout_points points;
+    struct layout layout;
+};
+
+static void one_init(struct one *one, const struct layout *layout, const struct field_place *place)
+{
+    *one = (struct one){ .points = { one->position_m, one->corners, one->parts, one->away_m }, .layout = *layout };
+    one->layout.points = &one->points;
+    one->layout.vertex_count = 1;
+    const float parts[3] = { (float)place->parts[0], (float)place->parts[1], (float)place->parts[2] };
+    layout_set_point(&layout->file->view, &one->points, 0, place->corners, parts);
+}
+
+static void point_distance(const struct state *state, const struct one *one, struct field_point *out)
+{
+    float room;
+    size_t i = 0;
+    while (i < one->layout.sensor_count && one->layout.sensors[i].tag != state->params.sensor)
+        i++;
+    if (i == one->layout.sensor_count)
+        return;
+    double far_m = (double)*layout_distances(&one->layout, state->params.distance, i, 0, 1, &room);
+    out->no_data = !isfinite(far_m);
+    out->value = out->no_data ? out->value : far_m;
+}
+
+/* Of the sensors as they are shown, by the arithmetic of the vertices. */
+static void point_sum(const struct state *state, const struct one *one, struct field_point *out)
+{
+    const size_t sensors = one->layout.sensor_count;
+    uint8_t *usable = mem_array(sensors, 1), *marked = mem_array(sensors, 1);
+    double *values = mem_array(sensors, sizeof(*values)), value = 0, total = 0, uncertain = 0;
+    uint32_t *members = mem_array(sensors, sizeof(*members));
+    for (size_t i = 0; i < sensors; i++)
+        usable[i] = state->shown[i].usable;
+    struct weights *weights = weights_create(&one->layout, &state->params, state->weights->radius_m, usable, &(struct weights_key){ 0 });
+    if (weights) {
+        for (uint32_t m = 0; m < weights->member_count; m++) {
+            members[m] = m;
+            values[m] = state->shown[weights->members[m]].value;
+            marked[m] = state->shown[weights->members[m]].uncertain;
+        }
+        struct kernel_value rule;
+        struct scalar at = { 0 };
+        update_rule(state, state->shown, &rule);
+        weights_prepare(weights, 0, 1);
+        weights_add(weights, 0, 1, &(struct weights_terms){ members, values, marked, weights->member_count },
+                    &(struct weights_sums){ &value, &total, &uncertain });
+        float weight = (float)total, shown;
+        kernel_value(&rule, &value, &weight, 1, &shown);
+        update_flags(state, weights, 0, total, uncertain, &at);
+        out->value = state->params.show == SHOW_BLIND ? (double)update_blind(one->layout.group, weights->near_m[0]) : (double)shown;
+        out->no_data = at.no_data;
+        out->uncertain = at.uncertain > 127;
+    }
+    weights_destroy(&weights);
+    mem_free(usable);
+    mem_free(marked);
+    mem_free(values);
+    mem_free(members);
+}
+
+bool field_at(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
+              const struct field_place *place, struct field_point *out)
+{
+    struct field_params room;
+    const struct scalars *scalars = field_scalars(field, asset, params, snapshot);
+    if (!scalars)
+        return false;
+    params = field_params_of(field, asset, params, &room);
+    const struct state *state = field_state(field, asset, params);
+    point_drawn(scalars, place, out);
+    if (params->show != SHOW_DISTANCE && state->weights->prepared)
+        return true;
+    struct one one;
+    one_init(&one, state->layout, place);
+    if (params->show == SHOW_DISTANCE) {
+        point_distance(state, &one, out);
+        return true;
+    }
+    point_sum(state, &one, out);
+    out->drawn_error = field_params_cover(params) ? 0 : error_near(state, place);
+    out->uncertain |= out->drawn_error > 0;
+    return true;
+}

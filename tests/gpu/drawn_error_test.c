@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Triangles too long for the field: picks and pixels on them, against plain sums over all sensors in double precision. Each pick must be
+   within a step of colour; each pixel must be, too, or be marked uncertain. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "render/pick/pick.h"
+#include "render/renderer_compare.h"
+#include "scene/scene_create.h"
+#include "tests/support/prep_case.h"
+#include "tests/support/rig.h"
+#include "tests/support/sweep.h"
+#include "tests/support/synthetic.h"
+#include "value/quality.h"
+
+#define FOUND "../shared/data/found/long_part/"
+enum { WIDTH_PX = 480, HEIGHT_PX = 270, PIXELS = WIDTH_PX * HEIGHT_PX, PICKS = 1500, NEEDLES = 60, SENSORS = 6 };
+static const double STEP = 1.0 / 255, SIDE_M = 4;
+static struct rig rig;
+static uint64_t random_state;
+
+struct site {
+    const struct scene *scene;
+    struct field *field;
+    struct renderer *renderer;
+    struct snapshot *snapshot;
+};
+struct tally {
+    int compared, marked, marked_right, no_data, other;
+    double worst_pick, worst_drawn;    /* in parts of the range; drawn: where nothing is marked */
+    double worst_marked, worst_beyond; /* beyond: what pick.drawn_error says, less than 0 if it is a bound */
+};
+
+static double between(double low, double high)
+{
+    return low + (high - low) * synthetic_random_unit(&random_state);
+}
+
+/* --- the plain sum ---------------------------------------------------------------------------------------------------------- */
+
+static double weight_of(const struct view *view, double distance_m, double radius_m, double *term)
+{
+    if (view->field.interpolation == INTERPOLATION_SHEPARD)
+        return *term = pow(fmax(distance_m, 1e-12), -view->field.power);
+    double near = fmax(0, 1 - distance_m / radius_m), weight = exp(near);
+    *term = weight * near;
+    return weight;
+}
+
+/* NAN: no data, by distances through space. */
+static double truth_at(const struct site *site, const struct view *view, const struct pick *pick)
+{
+    const struct scene_asset *asset = &site->scene->assets[pick->asset];
+    const struct plant_group *group = &site->scene->plant->groups[view->field.group];
+    double sum = 0, total = 0, nearest_m = INFINITY;
+    bool lost = false;
+    for (size_t i = 0; i < asset->sensor_count; i++) {
+        const struct reading *reading = &site->snapshot->readings[asset->sensors[i].tag];
+        double away = 0, term, value = reading->value;
+        for (int c = 0; c < 3; c++)
+            away += pow(pick->position_m[c] - asset->sensors[i].surface_m[c], 2);
+        away = sqrt(away);
+        bool bad = quality_is_bad(reading->quality);
+        if (away < nearest_m) {
+            nearest_m = away;
+            lost = bad;
+        }
+        if (bad)
+            continue;
+        if (view->field.interpolation == INTERPOLATION_PAPER)
+            value = fmin(fmax((value - group->min) / (group->max - group->min), 0), 1);
+        total += weight_of(view, away, view->field.radius_m, &term);
+        sum += value * term;
+    }
+    double value = sum / total;
+    if (view->field.interpolation == INTERPOLATION_PAPER)
+        value = group->min + value * (group->max - group->min);
+    return lost ? (double)NAN : value;
+}
+
+/* --- comparing -------------------------------------------------------------------------------------------------------------- */
+
+static void compare_pixel(const struct site *site, const struct view *view, const float pixel[4], int x, int y, struct tally *tally)
+{
+    double range = view->range_max - view->range_min;
+    struct pick pick;
+    pick_at(site->scene, site->field, view, site->snapshot, x + 0.5, y + 0.5, &pick);
+    if (pick.asset < 0 || pick.state == PICK_CONTEXT || pixel[1] < 0) {
+        tally->other++;
+        return;
+    }
+    double truth = truth_at(site, view, &pick);
+    if (isnan(truth) || pick.state == PICK_NO_DATA) {
+        tally->no_data++;
+        tally->other += isnan(truth) != (pick.state == PICK_NO_DATA); /* at the rim */
+        return;
+    }
+    double drawn = fabs((double)pixel[0] - (truth - view->range_min) / range);
+    bool marked = pixel[2] > 0.5f || pixel[1] > 0.5f;
+    tally->compared++;
+    tally->marked += marked;
+    tally->marked_right += marked && drawn <= STEP;
+    tally->worst_pick = fmax(tally->worst_pick, fabs(pick.value - truth) / range);
+    if (marked)
+        tally->worst_marked = fmax(tally->worst_marked, drawn);
+    else
+        tally->worst_drawn = fmax(tally->worst_drawn, drawn);
+    if (pick.drawn_error > 0)
+        tally->worst_beyond = fmax(tally->worst_beyond, drawn - pick.drawn_error / range);
+}
+
+/* From a random direction above it, filling the picture or close to it. */
+static void look(const struct scene *scene, struct view *view)
+{
+    double forward[3] = { between(-1, 1), between(-1, 1), between(-2, -0.5) }, nearer = between(0.4, 1);
+    camera_fit_along(&view->camera, forward, scene->bounds_min_m, scene->bounds_max_m, (double)WIDTH_PX / HEIGHT_PX,
+                     &(struct camera_window){ 0 });
+    for (int c = 0; c < 3; c++)
+        view->camera.eye_m[c] = view->camera.target_m[c] + nearer * (view->camera.eye_m[c] - view->camera.target_m[c]);
+}
+
+static void compare_view(const struct site *site, const struct view *view, struct tally *tally)
+{
+    float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
+    assert_true(renderer_measure(site->renderer, view, site->snapshot, true, measured));
+    for (int i = 0; i < PICKS; i++) {
+        int x = (int)between(0, WIDTH_PX), y = (int)between(0, HEIGHT_PX);
+        compare_pixel(site, view, measured[y * WIDTH_PX + x], x, y, tally);
+    }
+    mem_free(measured);
+}
+
+/* One view each by shepard with a soft and a sharp power, and by the paper. */
+static void compare(const struct site *site, struct tally *tally)
+{
+    static const double powers[] = { 2, 6, 0 };
+    for (int way = 0; way < 3; way++) {
+        struct view view;
+        view_default(site->scene, WIDTH_PX, HEIGHT_PX, &view);
+        view.tier = TIER_PREVIEW;
+        view.field.distance = DISTANCE_EUCLIDEAN;
+        if (powers[way] > 0)
+            view.field.power = powers[way];
+        else
+            view.field.interpolation = INTERPOLATION_PAPER, view.field.radius_m = 1.5;
+        look(site->scene, &view);
+        compare_view(site, &view, tally);
+    }
+}
+
+static void expect_truth(const char *name, const struct tally *tally)
+{
+    print_message("# %s: %d pixels, %d without data, %d others; picks off by %.2f steps at most, unmarked pixels by %.2f, marked by %.1f; "
+                  "marked %d, %d of them right\n",
+                  name, tally->compared, tally->no_data, tally->other, tally->worst_pick / STEP, tally->worst_drawn / STEP,
+                  tally->worst_marked / STEP, tally->marked, tally->marked_right);
+    print_message("# beyond the bound that picks tell: %.2f steps\n", tally->worst_beyond / STEP);
+    assert_true(tally->compared > 500);
+    assert_true(tally->worst_pick <= STEP);
+    assert_true(tally->worst_drawn <= 1.02 * STEP); /* a pixel's value is a float, its place another one */
+    assert_true(tally->worst_beyond <= 0.1 * STEP);
+}
+
+/* --- needles ---------------------------------------------------------------------------------------------------------------- */
+
+/* A plate of NEEDLES strips from side to side, each two triangles, and a small box for each sensor. */
+static void make_needles(struct shape *shape, double (*places)[3])
+{
+    double low = 0;
+    for (int i = 0; i < NEEDLES; i++) {
+        double high = i + 1 == NEEDLES ? SIDE_M : low + (SIDE_M - low) * between(0.2, 1.8) / (NEEDLES - i);
+        shape_plate(shape, TOY_STEEL, (double[3]){ low, 0, 0 }, (double[3]){ high - low, 0, 0 }, (double[3]){ 0, SIDE_M, 0 }, 1);
+        low = high;
+    }
+    for (int i = 0; i < SENSORS; i++) {
+        double x = between(0.2, SIDE_M - 0.2), y = between(0.2, SIDE_M - 0.2);
+        memcpy(places[i], (double[3]){ x, y, between(0.01, 0.1) }, sizeof(places[i]));
+        shape_box(shape, TOY_BLUE, (double[3]){ x - 0.01, y - 0.01, places[i][2] - 0.005 },
+                  (double[3]){ x + 0.01, y + 0.01, places[i][2] + 0.005 });
+    }
+}
+
+static void fill(struct snapshot *snapshot, int round)
+{
+    for (int i = 0; i < SENSORS; i++)
+        toy_set(snapshot, i, between(0, 100), round % 3 == 2 && i == 1 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD);
+}
+
+static void test_needles(void **state)
+{
+    (void)state;
+    struct tally tally = { .worst_beyond = -1 };
+    random_state = sweep_seed();
+    for (int round = 0; round < sweep(12, 3); round++) {
+        struct toy *toy = toy_create();
+        struct shape shape = { 0 };
+        struct stand stand;
+        double places[SENSORS][3];
+        make_needles(&shape, places);
+        toy_add(toy, "NEEDLES", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, SENSORS);
+        toy->scene.assets[0].file->resolved_levels = 0;
+        stand_init(&stand, &rig, toy);
+        fill(stand.snapshot, round);
+        struct site site = { &toy->scene, stand.field, stand.renderer, stand.snapshot };
+        compare(&site, &tally);
+        stand_finish(&stand);
+    }
+    expect_truth("needles", &tally);
+    assert_true(tally.marked > tally.compared / 4 && tally.worst_marked > STEP); /* there is something to be marked */
+}
+
+/* The frame says how far it may be off, and nothing where readings are equal. */
+static void test_equal_readings_mark_nothing(void **state)
+{
+    (void)state;
+    struct toy *toy = toy_create();
+    struct shape shape = { 0 };
+    struct stand stand;
+    struct view view;
+    double places[SENSORS][3];
+    random_state = sweep_seed();
+    make_needles(&shape, places);
+    toy_add(toy, "NEEDLES", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, SENSORS);
+    toy->scene.assets[0].file->resolved_levels = 0;
+    stand_init(&stand, &rig, toy);
+    view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, &view);
+    view.field.distance = DISTANCE_EUCLIDEAN;
+    for (int spread = 40; spread >= 0; spread -= 40) {
+        for (int i = 0; i < SENSORS; i++)
+            toy_set(stand.snapshot, i, 50 + (i % 2 ? spread : 0), QUALITY_GOOD);
+        struct frame *frame = stand_draw(&stand, &view);
+        assert_true(spread > 0 ? frame->drawn_error > 1 && frame->drawn_error <= 50 : frame->drawn_error == 0);
+        frame_unref(&frame);
+    }
+    stand_finish(&stand);
+}
+
+/* --- what was found --------------------------------------------------------------------------------------------------------- */
+
+static void test_long_part(void **state)
+{
+    static const double readings[] = { 20, 95, 40, 110, 60, 5 };
+    struct prep_case *c = *state;
+    if (access(FOUND, R_OK) != 0) {
+        print_message("# " FOUND " is not there\n");
+        skip();
+    }
+    char *copy = mem_printf("cp %s* %s && chmod -R u+w %s", FOUND, c->folder, c->folder);
+    assert_int_equal(system(copy), 0);
+    mem_free(copy);
+    prep_case_expect(c, "$PLANT", 0);
+    struct diag diag = { 0 };
+    struct plant *plant = plant_load(c->plant, &diag);
+    diag_finish(&diag);
+    char *prepared = mem_printf("%s/plant.prepared", c->folder);
+    struct scene *scene = plant ? scene_create(rig.log, plant, prepared) : NULL;
+    assert_non_null(scene);
+    struct site site = { .scene = scene, .field = field_create(rig.workers, scene), .snapshot = snapshot_create(plant->tag_count) };
+    site.renderer = renderer_create(rig.log, rig.gl, scene, site.field);
+    assert_non_null(site.renderer);
+    for (int i = 0; i < SENSORS; i++)
+        site.snapshot->readings[i] = (struct reading){ .value = readings[i], .quality = QUALITY_GOOD };
+    struct tally tally = { .worst_beyond = -1 };
+    random_state = sweep_seed();
+    for (int round = 0; round < sweep(8, 2); round++)
+        compare(&site, &tally);
+    expect_truth("long_part", &tally);
+    renderer_destroy(&site.renderer);
+    field_destroy(&site.field);
+    snapshot_destroy(&site.snapshot);
+    scene_destroy(&scene);
+    plant_destroy(&plant);
+    mem_free(prepared);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_needles),
+        cmocka_unit_test(test_equal_readings_mark_nothing),
+        cmocka_unit_test_setup_teardown(test_long_part, prep_case_set_up, prep_case_tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "drawn_error_test"))
+        return 0;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    rig_finish(&rig);
+    return failed;
+}
