@@ -8,27 +8,7 @@
 
 #include "base/charset.h"
 #include "base/text.h"
-
-enum export_field { /* of a tag, as text; numbers have a decimal point */
-                    EXPORT_NAME,
-                    EXPORT_ADDRESS,
-                    EXPORT_TYPE,
-                    EXPORT_SCAN,
-                    EXPORT_SCALING,
-                    EXPORT_RAW_LOW,
-                    EXPORT_RAW_HIGH,
-                    EXPORT_SCALED_LOW,
-                    EXPORT_SCALED_HIGH,
-                    EXPORT_UNIT,
-                    EXPORT_DESCRIPTION,
-                    EXPORT_AREA, /* area, folder or path in the control system */
-                    EXPORT_DEVICE,
-                    EXPORT_LL,
-                    EXPORT_L,
-                    EXPORT_H,
-                    EXPORT_HH,
-                    EXPORT_FIELDS
-};
+#include "preprocess/match/export_field.h"
 
 struct export_tag {
     char *fields[EXPORT_FIELDS]; /* UTF-8; "": none */

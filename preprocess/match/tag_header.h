@@ -2,8 +2,8 @@
 /* The header of a tag list: which column is what. Thread: any. */
 #ifndef PREPROCESS_MATCH_TAG_HEADER_H
 #define PREPROCESS_MATCH_TAG_HEADER_H
+#include "preprocess/match/export_field.h"
 #include "preprocess/match/table.h"
-#include "preprocess/match/tag_export.h"
 
 struct tag_header {
     int columns[EXPORT_FIELDS]; /* -1: none */

@@ -191,7 +191,8 @@ static const char *type_of(const char *type)
                                                { "Int4", "Long" },    { "Int8", "LLong" },      { "Integer", "Long" }, { "Real", "Float" },
                                                { "Bool", "Boolean" }, { "Discrete", "Boolean" },
                                                { "Int", "Short" },    { "DInt", "Long" },       { "UInt", "Word" },    { "UDInt", "DWord" },
-                                               { "LReal", "Double" }, { "Float32", "Float" },   { "Float64", "Double" }, { "Int16", "Short" },
+                                               { "LReal", "Double" }, { "Float32", "Float" },   { "Float64", "Double" },
+                                               { "Int16", "Short" },
                                                { "Int32", "Long" } };
     enum data_type parsed;
     for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++)

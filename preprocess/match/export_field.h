@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What an exported tag list says of a tag. */
+#ifndef PREPROCESS_MATCH_EXPORT_FIELD_H
+#define PREPROCESS_MATCH_EXPORT_FIELD_H
+
+enum export_field { /* of a tag, as text; numbers have a decimal point */
+                    EXPORT_NAME,
+                    EXPORT_ADDRESS,
+                    EXPORT_TYPE,
+                    EXPORT_SCAN,
+                    EXPORT_SCALING,
+                    EXPORT_RAW_LOW,
+                    EXPORT_RAW_HIGH,
+                    EXPORT_SCALED_LOW,
+                    EXPORT_SCALED_HIGH,
+                    EXPORT_UNIT,
+                    EXPORT_DESCRIPTION,
+                    EXPORT_AREA, /* area, folder or path in the control system */
+                    EXPORT_DEVICE,
+                    EXPORT_LL,
+                    EXPORT_L,
+                    EXPORT_H,
+                    EXPORT_HH,
+                    EXPORT_FIELDS
+};
+
+#endif
