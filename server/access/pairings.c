@@ -181,14 +181,41 @@ static bool draw_digits(struct pairings *pairings, char digits[PAIRING_DIGITS + 
     return true;
 }
 
+static size_t count_from(const struct pairings *pairings, const uint8_t address[16])
+{
+    size_t from = 0;
+    for (size_t i = 0; i < pairings->count; i++)
+        from += memcmp(pairings->waiting[i].address, address, sizeof(pairings->waiting[i].address)) == 0;
+    return from;
+}
+
+/* Where all places are taken, an address that would still have fewer takes one of the address that has most: its newest. So a few
+   addresses cannot keep others out. Returns false if no address has so many. */
+static bool make_room(struct pairings *pairings, size_t from)
+{
+    size_t most = from + 1, victim = pairings->count;
+    for (size_t i = 0; i < pairings->count; i++) {
+        size_t count = count_from(pairings, pairings->waiting[i].address);
+        bool newer = victim < pairings->count && count == most && pairings->waiting[i].begun_ns > pairings->waiting[victim].begun_ns;
+        if (count > most || newer) {
+            most = count;
+            victim = i;
+        }
+    }
+    if (victim == pairings->count)
+        return false;
+    log_info(pairings->kept.log, "pairing: all %d places are taken; %s, which has %zu of them, loses one", PAIRINGS,
+             pairings->waiting[victim].from, most);
+    forget(pairings, victim);
+    return true;
+}
+
 /* NULL: too many wait. */
 static struct waiting *begin(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
                              int64_t now_ns)
 {
-    size_t from = 0;
-    for (size_t i = 0; i < pairings->count; i++)
-        from += memcmp(pairings->waiting[i].address, request->address, sizeof(pairings->waiting[i].address)) == 0;
-    if (pairings->count == PAIRINGS || from >= PAIRINGS_FROM)
+    size_t from = count_from(pairings, request->address);
+    if (from >= PAIRINGS_FROM || (pairings->count == PAIRINGS && !make_room(pairings, from)))
         return NULL;
     struct waiting waiting = { .place = request->place, .begun_ns = now_ns };
     if (!draw_digits(pairings, waiting.digits))
