@@ -66,6 +66,8 @@ struct server_context {
     struct request *snapshots;                       /* HTTP requests that wait for a frame, a pick or a reload */
     int stream_count, picture_count, question_count; /* the latter two: of HTTP, that are being answered */
     int64_t answer_bytes;                            /* of HTTP answers that their clients have not read yet */
+    int64_t upload_bytes;                            /* sizes of files that are being uploaded, together */
+    int uploads;                                     /* their number */
     const struct quotas *quotas;
     struct address_limits *limits;
     int connection_count, unanswered_count; /* the latter: of those, connections that wait for an answer, or have not asked yet */

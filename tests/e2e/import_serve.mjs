@@ -5,6 +5,7 @@ import { spawn, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import { once } from 'node:events';
 import { copyFileSync, existsSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -145,6 +146,34 @@ test('uploads: names, sizes, other sites, one import at a time', options, async 
         assert.equal((await served.post('/remove?name=other.csv')).status, 200);
         assert.equal((await served.idle()).files.length, 1);
     } finally {
+        await served.destroy();
+    }
+});
+
+test('files on their way: four at most, and none that drips', options, async () => {
+    const served = await Served.start(), drips = [];
+    const put = (name) => served.post(`/upload?name=${name}`, 'x');
+    try {
+        for (let i = 0; i < 4; i++) {
+            const socket = connect(served.port, '127.0.0.1'), drip = { socket, said: '' };
+            socket.on('data', (bytes) => { drip.said += bytes; }).on('error', () => {});
+            socket.write(`POST /api/v1/import/upload?name=drip${i}.glb HTTP/1.1\r\nHost: 127.0.0.1:${served.port}\r\n` +
+                'Content-Length: 1000000000\r\n\r\nx');
+            drip.timer = setInterval(() => socket.write('x'), 500);
+            drips.push(drip);
+        }
+        for (let status = 200; status !== 503; await new Promise((done) => setTimeout(done, 100))) { // once all four have begun
+            ({ status } = await put('fifth.glb'));
+            assert.ok([200, 503].includes(status), `${status}`);
+        }
+        for (const end = performance.now() + 120000; !drips.every(({ said }) => /^HTTP\/1\.1 408 /.test(said));) {
+            assert.ok(performance.now() < end, drips.map(({ said }) => said.slice(0, 60)).join());
+            await new Promise((done) => setTimeout(done, 200));
+        }
+        assert.equal((await put('fifth.glb')).status, 200);
+        assert.deepEqual(readdirSync(join(served.folder, 'exports')).filter((file) => file.includes('drip')), []);
+    } finally {
+        drips.forEach(({ socket, timer }) => { clearInterval(timer); socket.destroy(); });
         await served.destroy();
     }
 });

@@ -6,18 +6,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "base/text.h"
 #include "net/http/http_impl.h"
 #include "net/connection.h"
 
 static const int64_t most_bytes = (int64_t)2 << 30, most_in_all = (int64_t)8 << 30, most_decisions = 16 << 20;
-enum { MOST_FILES = 64, MATCHES_BYTES = 32 << 20 };
+enum { MOST_FILES = 64, MATCHES_BYTES = 32 << 20, MOST_UPLOADS = 4, SLOW_S = 20, SLOWEST_BPS = 10000 };
 static const char BUSY[] = "another import is under way; wait for its end, or cancel it\n";
 
 struct body {
     struct export_upload *upload;
-    int64_t left;
+    int64_t left, bytes; /* that are to come; of the whole file */
+    int64_t begun_ns;
     char name[256];
     bool decides; /* its end is an order */
 };
@@ -158,11 +160,11 @@ static int remove_file(struct server_context *server, struct request *request, c
 /* --- uploads ---------------------------------------------------------------------------------------------------------- */
 
 /* Whether as much may be added; *text says why not. */
-static bool has_room(const char *folder, const char *name, int64_t bytes, const char **text)
+static bool has_room(const struct server_context *server, const char *folder, const char *name, int64_t bytes, const char **text)
 {
     struct export_list list = { 0 };
-    int64_t all = bytes;
-    size_t others = 0;
+    int64_t all = bytes + server->upload_bytes;
+    size_t others = (size_t)server->uploads;
     export_folder_list(folder, &list);
     for (size_t i = 0; i < list.count; i++)
         if (strcmp(list.at[i].name, name) != 0) {
@@ -184,13 +186,17 @@ static int begin_body(struct server_context *server, struct request *request, co
     int64_t bytes = strtoll(length, NULL, 10);
     if (bytes <= 0 || bytes > (decides ? most_decisions : most_bytes))
         return refuse_with(request, 413, bytes <= 0 ? "the file is empty\n" : "the file is larger than 2 GB\n");
-    if (!decides && !has_room(folder, name, bytes, &why))
+    if (server->uploads >= MOST_UPLOADS)
+        return refuse_with(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "four files are on their way already; wait until one has come\n");
+    if (!decides && !has_room(server, folder, name, bytes, &why))
         return refuse_with(request, 413, why);
     struct export_upload *upload = export_upload_begin(folder, name, &error);
     if (!upload)
         return fail_with(request, name, error);
     request->body_in = mem_new(sizeof(*request->body_in));
-    *request->body_in = (struct body){ .upload = upload, .left = bytes, .decides = decides };
+    *request->body_in = (struct body){ .upload = upload, .left = bytes, .bytes = bytes, .begun_ns = clock_mono_ns(), .decides = decides };
+    server->uploads++;
+    server->upload_bytes += bytes;
     snprintf(request->body_in->name, sizeof(request->body_in->name), "%s", name);
     return 0;
 }
@@ -210,6 +216,13 @@ static int begin_decisions(struct server_context *server, struct request *reques
     return begin_body(server, request, plant_import_decisions(), true);
 }
 
+/* A file that comes more slowly than any link would keep its place for ever. One that stops altogether is closed by lws. */
+static bool drips(const struct body *body)
+{
+    int64_t taken_s = (clock_mono_ns() - body->begun_ns) / NS_PER_S;
+    return taken_s >= SLOW_S && body->left > 0 && body->bytes - body->left < taken_s * SLOWEST_BPS;
+}
+
 int import_take_body(struct server_context *server, struct request *request, const void *bytes, size_t count)
 {
     (void)server;
@@ -218,11 +231,14 @@ int import_take_body(struct server_context *server, struct request *request, con
         return 0; /* it was refused */
     body->left -= (int64_t)count;
     int error = body->left < 0 ? -EFBIG : export_upload_write(body->upload, bytes, count);
-    if (!error)
+    bool slow = drips(body);
+    if (!error && !slow)
         return 0;
     char name[256];
     strcpy(name, body->name);
     import_abandon_body(request);
+    if (slow)
+        return refuse_with(request, 408, "the file comes too slowly: less than 10 kB/s\n");
     return fail_with(request, name, error);
 }
 
@@ -252,8 +268,12 @@ int import_end_body(struct server_context *server, struct request *request)
 
 void import_abandon_body(struct request *request)
 {
-    if (request->body_in)
-        export_upload_abandon(&request->body_in->upload);
+    struct server_context *server = server_context_of(request->wsi);
+    if (!request->body_in)
+        return;
+    export_upload_abandon(&request->body_in->upload);
+    server->uploads--;
+    server->upload_bytes -= request->body_in->bytes;
     mem_free(request->body_in);
     request->body_in = NULL;
 }
