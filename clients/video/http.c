@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "readers.h"
 #include "refusal.h"
 
 enum {
@@ -102,8 +103,7 @@ static gboolean may_read(SoupAuthDomain *domain, SoupServerMessage *message, con
 {
     const struct http *http = data;
     (void)domain;
-    (void)message;
-    return !strcmp(user, http->options->user) && !strcmp(password, http->options->password);
+    return reader_may(http->options, message, user, password);
 }
 
 static void on_closed(gpointer data, GObject *connection)

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "readers.h"
 #include "refusal.h"
 #include "whep_session.h"
 
@@ -72,27 +73,16 @@ static void place_free(gpointer data)
 
 /* --- who may ------------------------------------------------------------------------------------------------------------------ */
 
-/* Takes as long whichever letter it is that differs. */
-static bool is_same(const char *a, const char *b)
-{
-    gsize count = strlen(b);
-    int differs = 0;
-    if (strlen(a) != count)
-        return false;
-    for (gsize i = 0; i < count; i++)
-        differs |= a[i] ^ b[i];
-    return !differs;
-}
-
-static bool is_basic(const struct options *options, const char *code)
+static bool is_basic(const struct options *options, SoupServerMessage *message, const char *code)
 {
     gsize count = 0;
     guchar *bytes = g_base64_decode(code, &count);
-    char *said = g_strndup((const char *)bytes, count), *expected = g_strconcat(options->user, ":", options->password, NULL);
-    bool good = is_same(said, expected);
+    char *user = g_strndup((const char *)bytes, count), *colon = strchr(user, ':');
+    if (colon)
+        *colon = 0;
+    bool good = colon && reader_may(options, message, user, colon + 1);
     g_free(bytes);
-    g_free(said);
-    g_free(expected);
+    g_free(user);
     return good;
 }
 
@@ -101,9 +91,9 @@ static bool may(const struct options *options, SoupServerMessage *message)
     const char *said = soup_message_headers_get_one(soup_server_message_get_request_headers(message), "Authorization");
     if (!options->user)
         return true;
-    if (said && !g_ascii_strncasecmp(said, "Bearer ", 7) && is_same(said + 7, options->password))
+    if (said && !g_ascii_strncasecmp(said, "Bearer ", 7) && reader_may(options, message, NULL, said + 7))
         return true;
-    if (said && !g_ascii_strncasecmp(said, "Basic ", 6) && is_basic(options, said + 6))
+    if (said && !g_ascii_strncasecmp(said, "Basic ", 6) && is_basic(options, message, said + 6))
         return true;
     soup_message_headers_replace(soup_server_message_get_response_headers(message), "WWW-Authenticate", "Bearer");
     answer(message, SOUP_STATUS_UNAUTHORIZED, "a bearer token is needed: the password of --readers-file\n");

@@ -151,6 +151,11 @@ test('SRT and HLS carry the same pictures, encrypted and by password', options, 
     assert.notEqual(await stranger.ended, 0);
     assert.equal(stranger.frames.length, 0);
     assert.equal((await fetch(`http://127.0.0.1:${ports.http}/hls/index.m3u8`)).status, 401);
+    for (let i = 0; i < 30; i++)
+        assert.equal((await fetch(`http://127.0.0.1:${ports.http}/hls/index.m3u8`,
+            { headers: { Authorization: `Basic ${btoa(`wall:wrong ${i}`)}` } })).status, 401);
+    await video.line(/wrong user or password from 127\.0\.0\.1; only one in five seconds/);
+    assert.ok(video.said.match(/wrong user or password/g).length < 20, 'not all of them were judged');
     for (const path of ['/hls/', '/hls/none.ts', '/hls/..%2Freaders', '/hls/%2e%2e/readers'])
         assert.ok([400, 404].includes((await http(path)).status), path);
     const list = await (await http('/hls/index.m3u8')).text();
