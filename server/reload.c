@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "access/tokens.h"
+#include "base/atomic_file.h"
 #include "base/clock.h"
 #include "base/json_text.h"
 #include "base/mem.h"
@@ -70,7 +71,7 @@ static void say(void *arg)
 static char *saved_text(const struct reload *reload, bool good, const json_t *object)
 {
     json_t *said = json_pack("{s:s,s:I,s:b}", "type", "tags_saved", "seq", (json_int_t)reload->saving->seq, "saved", good);
-    static const char *const names[] = { "configuration", "changes", "errors" };
+    static const char *const names[] = { "configuration", "changes", "errors", "unaudited" };
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
         if (json_object_get(object, names[i]))
             json_object_set(said, names[i], json_object_get(object, names[i]));
@@ -98,6 +99,9 @@ static void answer(struct reload *reload, bool good, json_t *object)
     struct verdict verdict = { reload->net, good, NULL, 0, NULL };
     json_object_set_new(object, "by", json_string(reload->by));
     record(reload, good, object);
+    int error = audit_settle(reload->context->audit);
+    if (error)
+        json_object_set_new(object, "unaudited", json_string(atomic_file_not_kept(error)));
     if (reload->saving) {
         verdict.client = reload->saving->client;
         verdict.saved = saved_text(reload, good, object);

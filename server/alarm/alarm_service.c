@@ -334,6 +334,11 @@ const char *alarm_service_act(struct alarm_service *service, const char *name, e
     return why;
 }
 
+int alarm_service_settle(struct alarm_service *service)
+{
+    return service->journal ? journal_settle(service->journal) : 0;
+}
+
 const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole)
 {
     pthread_mutex_lock(&service->thread.lock);

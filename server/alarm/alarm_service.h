@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The alarm service of a running plant. Its thread evaluates the samples of the store ten times a second, writes the journal, and sets the
-   alarm of each tag in the store. No call waits for the disk. Thread: any. */
+   alarm of each tag in the store. No call waits for the disk but alarm_service_settle() and alarm_service_halt(). Thread: any. */
 #ifndef ALARM_ALARM_SERVICE_H
 #define ALARM_ALARM_SERVICE_H
 #include "alarm/alarms.h"
@@ -42,6 +42,9 @@ uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, vo
 /* Does what an operator asks for: acknowledges, shelves and so on. name: of a tag, or for ALARM_LINK of a device. Returns NULL, or why it
    was refused (static). */
 const char *alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act);
+/* Waits, for a second at most, until what was done is in the journal on disk. Returns 0, also where nothing is recorded, or -errno: it is
+   in force, and is lost if the daemon is killed now. */
+int alarm_service_settle(struct alarm_service *service);
 /* Takes the states of alarms as a core has them, by name and kind, in that order; whole: all others are normal. For a service that mirrors.
    Returns NULL, or why it cannot (static); then nothing changed. */
 const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole);

@@ -12,7 +12,7 @@
 #include "base/thread.h"
 
 enum { WAITING_MAX = 200000, RETRY_MAX_S = 30 };
-static const int64_t GATHER_NS = NS_PER_S / 4, FORGET_NS = 600 * NS_PER_S;
+static const int64_t GATHER_NS = NS_PER_S / 4, SETTLE_NS = NS_PER_S, FORGET_NS = 600 * NS_PER_S;
 #define US_PER_DAY INT64_C(86400000000)
 
 struct entries {
@@ -37,6 +37,11 @@ struct journal {
     /* --- below: under thread.lock */
     struct entries waiting;
     bool asks;
+    bool urgent;              /* somebody waits for the rows to be on disk */
+    uint64_t queued, written; /* rows, since the start */
+    uint64_t failures;
+    int error;                /* of the last try */
+    pthread_cond_t settled;
 };
 
 /* --- writing ---------------------------------------------------------------------------------------------------------------- */
@@ -66,10 +71,23 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
     return error;
 }
 
-static void try_to_write(struct journal *journal, bool last)
+/* Tells whoever waits in journal_settle(). */
+static void tell_settled(struct journal *journal, size_t count, int error)
+{
+    pthread_mutex_lock(&journal->thread.lock);
+    journal->written += error ? 0 : count;
+    journal->failures += error != 0;
+    journal->error = error;
+    pthread_cond_broadcast(&journal->settled);
+    pthread_mutex_unlock(&journal->thread.lock);
+}
+
+/* now: whatever failed just before. */
+static void try_to_write(struct journal *journal, bool now)
 {
     int64_t mono_ns = clock_mono_ns();
-    if (!journal->taken.count || (journal->failing && !last && mono_ns < journal->retry_ns))
+    size_t rows = journal->taken.count;
+    if (!rows || (journal->failing && !now && mono_ns < journal->retry_ns))
         return;
     int error = write_taken(journal, mono_ns);
     if (error) {
@@ -84,6 +102,7 @@ static void try_to_write(struct journal *journal, bool last)
     }
     journal->failing = error != 0;
     counter_set(journal->counters.good, !error);
+    tell_settled(journal, rows - journal->taken.count, error);
 }
 
 /* With those that are waiting behind those that could not be written. */
@@ -92,6 +111,7 @@ static void take(struct journal *journal)
     struct entries *taken = &journal->taken, *waiting = &journal->waiting;
     size_t room = WAITING_MAX - taken->count, count = waiting->count < room ? waiting->count : room;
     counter_inc(journal->counters.lost, (int64_t)(waiting->count - count));
+    journal->written += waiting->count - count; /* nobody waits for them any more */
     mem_grow(&taken->at, &taken->capacity, taken->count + count, sizeof(*taken->at));
     if (count > 0)
         memcpy(taken->at + taken->count, waiting->at, count * sizeof(*waiting->at));
@@ -99,16 +119,19 @@ static void take(struct journal *journal)
     waiting->count = 0;
 }
 
-/* Until there is something, and then a moment more: what comes together is written together. */
-static bool wait_for_work(struct journal *journal)
+/* Waits for rows, and a moment more: what comes together is written together. Rows that somebody waits for are written at once, and
+   *urgent is set. */
+static bool wait_for_work(struct journal *journal, bool *urgent)
 {
     int64_t until_ns = clock_mono_ns() + GATHER_NS;
     pthread_mutex_lock(&journal->thread.lock);
-    while (!journal->thread.stopping && clock_cond_wait(&journal->thread.wake, &journal->thread.lock, until_ns))
+    while (!journal->thread.stopping && !journal->urgent && clock_cond_wait(&journal->thread.wake, &journal->thread.lock, until_ns))
         continue;
-    while (!journal->thread.stopping && !journal->waiting.count && !journal->taken.count)
+    while (!journal->thread.stopping && !journal->urgent && !journal->waiting.count && !journal->taken.count)
         pthread_cond_wait(&journal->thread.wake, &journal->thread.lock);
     take(journal);
+    *urgent = journal->urgent;
+    journal->urgent = false;
     bool stopping = journal->thread.stopping;
     pthread_mutex_unlock(&journal->thread.lock);
     counter_set(journal->counters.waiting, (int64_t)journal->taken.count);
@@ -118,8 +141,9 @@ static bool wait_for_work(struct journal *journal)
 static void *run(void *arg)
 {
     struct journal *journal = arg;
-    while (wait_for_work(journal))
-        try_to_write(journal, false);
+    bool urgent;
+    while (wait_for_work(journal, &urgent))
+        try_to_write(journal, urgent);
     try_to_write(journal, true);
     if (journal->taken.count)
         log_err(journal->log, "alarms: %zu rows of the journal could not be written and are lost", journal->taken.count);
@@ -135,12 +159,28 @@ static void put(struct journal *journal, const struct journal_entry *entry)
     if (waiting->count < WAITING_MAX) {
         mem_grow(&waiting->at, &waiting->capacity, waiting->count + 1, sizeof(*waiting->at));
         waiting->at[waiting->count++] = *entry;
+        journal->queued++;
     } else {
         counter_inc(journal->counters.lost, 1);
     }
     if (waiting->count == 1)
         pthread_cond_signal(&journal->thread.wake);
     pthread_mutex_unlock(&journal->thread.lock);
+}
+
+int journal_settle(struct journal *journal)
+{
+    int64_t until_ns = clock_mono_ns() + SETTLE_NS;
+    pthread_mutex_lock(&journal->thread.lock);
+    uint64_t rows = journal->queued, failures = journal->failures;
+    journal->urgent = journal->written < rows;
+    pthread_cond_signal(&journal->thread.wake);
+    bool in_time = true;
+    while (journal->written < rows && journal->failures == failures && in_time)
+        in_time = clock_cond_wait(&journal->settled, &journal->thread.lock, until_ns);
+    int error = journal->written >= rows ? 0 : journal->failures != failures ? journal->error : -ETIMEDOUT;
+    pthread_mutex_unlock(&journal->thread.lock);
+    return error;
 }
 
 int64_t journal_newest_utc_ns(const struct journal *journal)
@@ -241,6 +281,7 @@ struct journal *journal_start(const struct journal_params *params, struct alarms
 {
     struct journal *journal = mem_new(sizeof(*journal));
     thread_init(&journal->thread);
+    clock_cond_init(&journal->settled);
     journal->log = params->log;
     journal->folder = mem_strdup(params->folder);
     journal->keep_days = params->keep_days;
@@ -262,6 +303,7 @@ void journal_stop(struct journal **pointer)
     mem_free(journal->taken.at);
     mem_free(journal->folder);
     thread_finish(&journal->thread);
+    pthread_cond_destroy(&journal->settled);
     mem_free(journal);
     *pointer = NULL;
 }

@@ -2,6 +2,7 @@
 /* The thread that writes the audit trail. */
 #include "audit/audit.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,7 +14,7 @@
 #include "base/thread.h"
 
 enum { MOST_WAITING = 10000, FILE_BYTES = 64 << 20 };
-static const int64_t RETRY_NS = NS_PER_S;
+static const int64_t RETRY_NS = NS_PER_S, SETTLE_NS = NS_PER_S;
 
 struct waiting {
     struct audit_entry entry; /* its texts lie behind it */
@@ -34,6 +35,9 @@ struct audit {
     struct waiting *first, **last;
     size_t count;
     int64_t lost_count; /* since entries were last written */
+    uint64_t recorded, written, failures; /* entries since the start; tries that failed */
+    int error;                            /* of the last try */
+    pthread_cond_t settled;
 };
 
 /* --- entries that wait ---------------------------------------------------------------------------------------------------- */
@@ -71,9 +75,26 @@ void audit_say(struct audit *audit, const struct audit_entry *entry)
         *audit->last = waiting;
         audit->last = &waiting->next;
         audit->count++;
+        audit->recorded++;
         pthread_cond_signal(&audit->thread.wake);
     }
     pthread_mutex_unlock(&audit->thread.lock);
+}
+
+int audit_settle(struct audit *audit)
+{
+    if (!audit)
+        return 0;
+    int64_t until_ns = clock_mono_ns() + SETTLE_NS;
+    pthread_mutex_lock(&audit->thread.lock);
+    uint64_t entries = audit->recorded, failures = audit->failures;
+    pthread_cond_signal(&audit->thread.wake);
+    bool in_time = true;
+    while (audit->written < entries && audit->failures == failures && in_time)
+        in_time = clock_cond_wait(&audit->settled, &audit->thread.lock, until_ns);
+    int error = audit->written >= entries ? 0 : audit->failures != failures ? audit->error : -ETIMEDOUT;
+    pthread_mutex_unlock(&audit->thread.lock);
+    return error;
 }
 
 /* --- writing -------------------------------------------------------------------------------------------------------------- */
@@ -104,8 +125,8 @@ static void say_written(struct audit *audit, const char *why)
     counter_set(audit->good, !audit->failing);
 }
 
-/* Returns whether it is on the disk. */
-static bool write_entry(struct audit *audit, const struct audit_entry *entry, int64_t utc_us)
+/* Returns 0, or -errno: it is not on the disk. */
+static int write_entry(struct audit *audit, const struct audit_entry *entry, int64_t utc_us)
 {
     struct text line = { 0 };
     char *finding;
@@ -124,7 +145,7 @@ static bool write_entry(struct audit *audit, const struct audit_entry *entry, in
             audit_syslog_send(audit->syslog, entry->event, is_good(entry), utc_us, line.at, line.length - 1);
     }
     text_finish(&line);
-    return !error;
+    return error;
 }
 
 /* Under the lock. */
@@ -173,9 +194,13 @@ static void *run(void *arg)
         if (!first)
             break;
         pthread_mutex_unlock(&audit->thread.lock);
-        bool written = write_entry(audit, &first->entry, first->utc_us);
+        int error = write_entry(audit, &first->entry, first->utc_us);
         pthread_mutex_lock(&audit->thread.lock);
-        if (written) {
+        audit->error = error;
+        audit->written += !error;
+        audit->failures += error != 0;
+        pthread_cond_broadcast(&audit->settled);
+        if (!error) {
             free_first(audit);
             say_lost(audit);
         } else if (audit->thread.stopping) {
@@ -199,6 +224,7 @@ static void finish(struct audit *audit)
         free_first(audit);
     audit_file_close(&audit->file);
     thread_finish(&audit->thread);
+    pthread_cond_destroy(&audit->settled);
     mem_free(audit->path);
     mem_free(audit);
 }
@@ -229,6 +255,7 @@ struct audit *audit_start(const struct audit_params *params)
     audit->lost = counters_add(params->counters, "plantcast_audit_lost_total", "counter", "Entries that the audit trail lacks.");
     counter_set(audit->good, 1);
     thread_init(&audit->thread);
+    clock_cond_init(&audit->settled);
     if (start(audit))
         return audit;
     finish(audit);

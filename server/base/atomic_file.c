@@ -89,12 +89,7 @@ void atomic_file_abandon(struct atomic_file *file)
     end(file);
 }
 
-int atomic_file_put(const char *path, const void *bytes, size_t count)
-{
-    return atomic_file_put_parts(path, &(struct atomic_file_part){ bytes, count }, 1);
-}
-
-int atomic_file_put_parts(const char *path, const struct atomic_file_part *parts, size_t part_count)
+static int put_parts(const char *path, const struct atomic_file_part *parts, size_t part_count, bool durable)
 {
     struct atomic_file file;
     int error = atomic_file_begin(&file, path, 0666);
@@ -103,7 +98,34 @@ int atomic_file_put_parts(const char *path, const struct atomic_file_part *parts
     for (size_t i = 0; i < part_count && !error; i++)
         error = atomic_file_write(&file, parts[i].bytes, parts[i].count);
     if (!error)
-        return atomic_file_commit(&file, false);
+        return atomic_file_commit(&file, durable);
     atomic_file_abandon(&file);
     return error;
+}
+
+int atomic_file_put_parts(const char *path, const struct atomic_file_part *parts, size_t part_count)
+{
+    return put_parts(path, parts, part_count, false);
+}
+
+int atomic_file_put(const char *path, const void *bytes, size_t count)
+{
+    return put_parts(path, &(struct atomic_file_part){ bytes, count }, 1, false);
+}
+
+int atomic_file_keep(const char *path, const void *bytes, size_t count)
+{
+    return put_parts(path, &(struct atomic_file_part){ bytes, count }, 1, true);
+}
+
+const char *atomic_file_not_kept(int error)
+{
+    switch (-error) {
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG: return "it could not be kept on disk: the disk is full";
+    case EROFS: return "it could not be kept on disk: the disk is read-only";
+    case ETIMEDOUT: return "it could not be kept on disk: the disk does not answer within a second";
+    default: return "it could not be kept on disk; the log says why";
+    }
 }

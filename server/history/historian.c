@@ -44,11 +44,12 @@ struct now {
 
 struct historian {
     struct log *log;
+    struct counters *all_counters;
     const struct plant *plant;
     struct store *store;
     char *folder;
     struct {
-        counter *samples, *points, *lost, *waiting, *good, *bytes, *free, *backup;
+        counter *samples, *points, *lost, *waiting, *good, *bytes, *backup;
     } counters;
     struct postgres *postgres; /* NULL: history is sent nowhere */
     atomic_bool restored;      /* it has put points of the past into the files */
@@ -357,15 +358,19 @@ static int write_second(struct historian *historian)
     return error ? error : write_rows(historian, held, true);
 }
 
-/* What others have done: how full the disk is, and when `plantcast backup` was here. A reserve that was used is made again. */
+static int64_t measure_free(void *arg)
+{
+    const struct historian *historian = arg;
+    struct statvfs disk;
+    return statvfs(historian->folder, &disk) == 0 ? (int64_t)(disk.f_bavail * disk.f_frsize) : -1;
+}
+
+/* What others have done: when `plantcast backup` was here. A reserve that was used is made again. */
 static void look_around(struct historian *historian)
 {
-    struct statvfs disk;
     struct stat backup;
     spool_reserve(historian->folder);
     char *path = mem_printf("%s/" HISTORY_BACKUP_STAMP, historian->folder);
-    if (statvfs(historian->folder, &disk) == 0)
-        counter_set(historian->counters.free, (int64_t)(disk.f_bavail * disk.f_frsize));
     if (stat(path, &backup) == 0)
         counter_set(historian->counters.backup, (int64_t)backup.st_mtime);
     mem_free(path);
@@ -608,7 +613,8 @@ static void add_counters(struct historian *historian, struct counters *counters)
     historian->counters.waiting = counters_add(counters, "plantcast_history_waiting_points", "gauge", "Points that wait to be written.");
     historian->counters.good = counters_add(counters, "plantcast_history_good", "gauge", "1 while history can be written.");
     historian->counters.bytes = counters_add(counters, "plantcast_history_bytes", "gauge", "What all months take on disk.");
-    historian->counters.free = counters_add(counters, "plantcast_history_free_bytes", "gauge", "What is free on that disk.");
+    counters_add_measured(counters, "plantcast_history_free_bytes", "gauge", "What is free on that disk, at this moment.", measure_free,
+                          historian);
     historian->counters.backup =
         counters_add(counters, "plantcast_backup_timestamp_seconds", "gauge", "When the last backup was made; 0: not known.");
 }
@@ -633,6 +639,7 @@ struct historian *historian_start(const struct historian_params *params)
     struct historian *historian = mem_new(sizeof(*historian));
     thread_init(&historian->thread);
     historian->log = params->log;
+    historian->all_counters = params->counters;
     historian->plant = params->plant;
     historian->store = params->store;
     historian->folder = mem_strdup(params->folder);
@@ -659,6 +666,7 @@ void historian_stop(struct historian **pointer)
     struct historian *historian = *pointer;
     if (!historian)
         return;
+    counters_forget_measured(historian->all_counters, historian);
     store_unlisten(historian->store, on_sample, historian);
     thread_stop(&historian->thread);
     postgres_stop(&historian->postgres, historian->owed);

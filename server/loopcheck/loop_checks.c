@@ -15,8 +15,10 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "plant/csv.h"
+#include "plant/plant_folder.h"
 
 const char *const loop_check_state_names[] = {
     [LOOP_CHECK_NONE] = "none", [LOOP_CHECK_PASSED] = "pass", [LOOP_CHECK_FAILED] = "fail", [LOOP_CHECK_CHANGED] = "changed"
@@ -187,7 +189,7 @@ void loop_checks_close(struct loop_checks **pointer)
 
 /* A line that was cut off, by a power cut say, is ended first. The historian makes the folder too, on a thread of its own, and may not
  * have come to it yet. */
-static bool append(const char *folder, const char *path, const struct text *row)
+static bool append(struct log *log, const char *folder, const char *path, const struct text *row)
 {
     mkdir(folder, 0777); /* where it cannot be made, opening says why */
     FILE *file = fopen(path, "a+b");
@@ -201,7 +203,11 @@ static bool append(const char *folder, const char *path, const struct text *row)
         good = fseek(file, 0, SEEK_END) == 0 && fputc('\n', file) != EOF;
     good = good && fwrite(row->at, 1, row->length, file) == row->length && fflush(file) == 0 && fsync(fileno(file)) == 0;
     int error = errno;
+    if (!good && size >= 0 && ftruncate(fileno(file), size) != 0) /* a part of the row, or a whole one that is said not to be kept */
+        log_err(log, "%s: %s", path, strerror(errno));
     fclose(file);
+    if (good && size == 0 && plant_folder_sync(folder) != 0)
+        good = false;
     errno = error;
     return good;
 }
@@ -210,11 +216,12 @@ const char *loop_checks_add(struct loop_checks *loop_checks, int tag, const stru
 {
     struct text row = { 0 };
     add_row(&row, loop_checks->plant, tag, check);
-    bool good = append(loop_checks->folder, loop_checks->path, &row);
+    bool good = append(loop_checks->log, loop_checks->folder, loop_checks->path, &row);
+    int error = errno;
     text_finish(&row);
     if (!good) {
-        log_err(loop_checks->log, "%s: %s: %s", loop_checks->path, loop_checks->plant->tags[tag].name, strerror(errno));
-        return "it could not be kept on disk; the log says why";
+        log_err(loop_checks->log, "%s: %s: %s", loop_checks->path, loop_checks->plant->tags[tag].name, strerror(error));
+        return atomic_file_not_kept(-error);
     }
     loop_checks->at[tag] = *check;
     loop_checks->numbers[tag] = ++loop_checks->number;

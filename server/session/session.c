@@ -248,7 +248,7 @@ static bool on_alarm(struct session *session, const struct message *message, str
     }
     char *answer = alarm_do(context->alarm_service, context->plant, message, session_who(session));
     session_record_alarm(session, message, answer);
-    session_reply(session, answer);
+    session_reply_recorded(session, answer);
     return true;
 }
 
@@ -256,7 +256,7 @@ static void on_view_edit(struct session *session, const struct message *message,
 {
     char *answer = view_edit_do(session->context->named_views, message, session_who(session), now_utc_ns / 1000);
     session_record_view(session, message, answer);
-    session_reply(session, answer);
+    session_reply_recorded(session, answer);
 }
 
 static void on_note(struct session *session, const struct message *message, int64_t now_utc_ns)
@@ -264,14 +264,14 @@ static void on_note(struct session *session, const struct message *message, int6
     const struct session_context *context = session->context;
     char *answer = note_do(context->notes, context->plant, message, session_who(session), now_utc_ns / 1000);
     session_record_note(session, message, answer);
-    session_reply(session, answer);
+    session_reply_recorded(session, answer);
 }
 
 static void on_send_to_wall(struct session *session, const struct message *message, int64_t now_utc_ns)
 {
     char *answer = send_to_wall_do(session->context->wall_remote, message, session_who(session), now_utc_ns / 1000);
     session_record_wall(session, message, answer);
-    session_reply(session, answer);
+    session_reply_recorded(session, answer);
 }
 
 bool session_may_be(struct session *session, const struct wall_place *place, struct message_error *error)
@@ -312,7 +312,7 @@ static bool on_pair(struct session *session, const struct message *message, int6
                                        "id", id, "kept", !why, "why", why ? why : ""),
                              0);
     session_record_pair(session, message, id, answer);
-    session_reply(session, answer);
+    session_reply_recorded(session, answer);
     return true;
 }
 

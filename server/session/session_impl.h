@@ -28,6 +28,9 @@ void session_record_wall(const struct session *session, const struct message *me
 void session_record_save(const struct session *session, const struct message *message, size_t moved);
 /* Records baselines that were kept or forgotten for all, if the message's parameters do that. */
 void session_record_params(const struct session *session, const struct message *message);
+/* Queues the answer to what was recorded, once the audit trail has it on disk; where it cannot be kept, the answer says so in `unaudited`.
+   Takes the answer (mem_free). */
+void session_reply_recorded(struct session *session, char *answer);
 /* Records an error, if it says that the client may not do what it asked for. */
 void session_record_refusal(const struct session *session, const struct message_error *error);
 

@@ -115,6 +115,6 @@ bool session_check_loop(struct session *session, const struct message *message, 
     }
     char *answer = loop_check_do(context->loop_checks, context->plant, context->snapshot, message, session_who(session));
     session_record_loop_check(session, message, answer);
-    session_reply(session, answer);
+    session_reply_recorded(session, answer);
     return true;
 }

@@ -60,13 +60,13 @@ const char *kept_list_put(struct kept_list *kept, json_t *list)
     char *text = json_dumps(file, JSON_INDENT(1));
     if (kept->folder)
         mkdir(kept->folder, 0777); /* where it cannot be made, writing says why */
-    int error = !text ? -ENOMEM : kept->path ? atomic_file_put(kept->path, text, strlen(text)) : 0;
+    int error = !text ? -ENOMEM : kept->path ? atomic_file_keep(kept->path, text, strlen(text)) : 0;
     free(text);
     json_decref(file);
     if (error) {
         log_err(kept->log, "%s: %s", kept->path, strerror(-error));
         json_decref(list);
-        return "it could not be kept on disk; the log says why";
+        return atomic_file_not_kept(error);
     }
     json_decref(kept->list);
     kept->list = list;

@@ -190,6 +190,12 @@ session.on('error', async ({ text, about, code }) => {
     tell(put('refused', { text: refusalText(text, code) }));
 });
 
+// It was done, and is not, or not all of it, on the server's disk.
+session.on('unkept', async ({ not_kept: count, why, unaudited }) => {
+    const { put, refusalText } = await import('../core/refusals.js');
+    tell(put(count ? 'unkept' : 'unaudited', { text: refusalText(count ? why : unaudited) }), 5 * TOAST_MS);
+});
+
 function tell(text, ms = TOAST_MS) {
     setText(byId('toast'), text);
     byId('toast').hidden = false;

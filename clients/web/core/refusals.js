@@ -23,6 +23,8 @@ const KNOWN = [
     [/^the value is beyond the tolerance$/, 'tolerance'],
     [/^the reading is not good$/, 'reading'],
     [/^said to have failed$/, 'failed'],
+    [/^it could not be kept on disk: the disk is full$|: No space left on device$/, 'disk_full'],
+    [/^it could not be kept on disk: the disk is read-only$/, 'disk_locked'],
     [/^it could not be kept on disk/, 'disk'],
     [/^this view is in the plant file/, 'fixed'],
     [/^there is no such view$/, 'viewless'],

@@ -324,6 +324,8 @@ export class Session {
             this.emit('ignored', `message of type ${message.type}`);
         else if (message.type === 'welcome' || message.type === 'error' || this.model)
             handler.call(this, message);
+        if (message.not_kept || message.unaudited)
+            this.emit('unkept', message);
     }
 
     // What changed between hello and welcome.

@@ -24,7 +24,11 @@ shelf: ein Alarm kann höchstens eine Woche zurückgestellt werden
 tolerance: der Wert liegt außerhalb der Toleranz
 reading: der Messwert ist nicht gut
 failed: als durchgefallen gemeldet
-disk: es konnte auf dem Server nicht gespeichert werden
+disk: nicht gespeichert: der Datenträger des Servers nimmt es nicht an
+disk_full: nicht gespeichert: der Datenträger des Servers ist voll
+disk_locked: nicht gespeichert: der Datenträger des Servers ist schreibgeschützt
+unkept: In Kraft, aber nach einem Neustart des Servers verloren ({text})
+unaudited: Geschehen, fehlt aber im Prüfprotokoll ({text})
 fixed: diese Ansicht steht in der Anlagendatei und wird dort geändert
 viewless: jemand hat diese Ansicht entfernt
 digits: kein Bildschirm zeigt diese Ziffern

@@ -24,7 +24,11 @@ shelf: an alarm can be shelved for a week at most
 tolerance: the value is beyond the tolerance
 reading: the reading is not good
 failed: said to have failed
-disk: it could not be kept on the server’s disk
+disk: not kept: the server’s disk does not take it
+disk_full: not kept: the server’s disk is full
+disk_locked: not kept: the server’s disk is read-only
+unkept: In force, but lost if the server restarts ({text})
+unaudited: Done, but missing in the audit trail ({text})
 fixed: this view is in the plant file, and is changed there
 viewless: somebody has removed this view
 digits: no display shows these digits

@@ -3,7 +3,7 @@
 import { asideOf, inMessages, passes, rowActions, targetsOf } from '../../core/alarm_actions.js';
 import { isGone } from '../../core/alarms.js';
 import { ageText, zoneClock } from '../../core/format.js';
-import { refusalText } from '../../core/refusals.js';
+import { put, refusalText } from '../../core/refusals.js';
 import { actOnAlarm } from '../../core/requests.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
@@ -265,8 +265,9 @@ export class AlarmList {
         byId('shelve').close();
     }
 
-    answered({ refused }) {
-        setText(byId('alarms-refused'), refused.map(([tag, kind, why]) => `${tag} ${kind}: ${refusalText(why)}`).join('; '));
+    answered({ refused, not_kept: count, why }) {
+        const texts = refused.map(([tag, kind, cause]) => `${tag} ${kind}: ${refusalText(cause)}`);
+        setText(byId('alarms-refused'), [...texts, ...(count ? [put('unkept', { text: refusalText(why) })] : [])].join('; '));
     }
 }
 

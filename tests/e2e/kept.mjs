@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whatever somebody does is answered when it is on disk, or with "not kept": of each kind of action, what is answered as done is there
+// after a kill -9 in that very moment; on a disk that is full it is said not to be kept, to programs and on the page.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { appendFileSync, chmodSync, cpSync, readFileSync, rmSync, statfsSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, shoot, waitForPicture } from './support/browser.mjs';
+import { until } from './support/nodes.mjs';
+import { PlainClient } from './support/plain_client.mjs';
+import { freePort } from './support/ports.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : process.getuid() === 0 ? false : 'only root may mount a small disk';
+const options = { skip, timeout: 240000 };
+const FULL = /the disk is full|No space left on device/;
+const SECRET = `pc_${'7'.repeat(64)}`;
+let plant, port, engineer, mounted;
+
+const path = (name) => join(plant.folder, name);
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    plant.addAlarms();
+    plant.keepFresh();
+    appendFileSync(plant.file, `views: [{ id: whole, title: Whole unit, view: "group=temperature" }]
+walls: [{ id: room, displays: [{ grid: [main], panes: [{ area: main, views: whole }] }] }]
+`);
+    assert.equal(plant.prepare().code, 0);
+    engineer = runProgram('plantcast', ['token', 'add', path('tokens'), '--role', 'engineer', '--name', 'eve']).out.trim();
+    chmodSync(path('tokens'), 0o600);
+    // All of it, also the plant file, is on a disk of 24 MB.
+    const aside = `${plant.folder}.aside`;
+    cpSync(plant.folder, aside, { recursive: true });
+    mounted = spawnSync('mount', ['-t', 'tmpfs', '-o', 'size=24m', 'tmpfs', plant.folder]).status === 0;
+    cpSync(aside, plant.folder, { recursive: true });
+    rmSync(aside, { recursive: true });
+    await plant.startSim();
+    for (const [tag, value] of [['TI-1', 95.5], ['TI-2', 20], ['PI-1', 5]])
+        await plant.tell(`set ${tag} ${value}`);
+    port = await freePort();
+    await start();
+    await until('the alarm', async () => (await alarm())?.state === 'unacknowledged');
+});
+after(async () => {
+    const folder = plant?.folder;
+    await plant?.daemon?.stop('SIGKILL');
+    if (mounted)
+        spawnSync('umount', ['-l', folder]);
+    await plant?.destroy();
+});
+
+const start = () => plant.startDaemon('--port', String(port), '--tokens', path('tokens'), '--trust-local', '--history', path('history'),
+    '--audit', path('audit.log'));
+async function killed() {
+    plant.daemon.stopped = true;
+    await plant.daemon.stop('SIGKILL');
+    await start();
+}
+const ask = (where) => fetch(`http://127.0.0.1:${port}${where}`, { headers: { authorization: `Bearer ${engineer}` } });
+const fetched = async (where) => (await ask(where)).json();
+const alarm = async () => (await fetched('/api/v1/alarms')).alarms.find(({ tag, kind }) => tag === 'TI-1' && kind === 'H');
+const listed = async (where) => (await ask(where)).text();
+const trail = () => readFileSync(path('audit.log'), 'utf8').trim().split('\n').map((line) => JSON.parse(line));
+
+// What another program leaves of the disk: nothing.
+const fill = () => assert.notEqual(spawnSync('dd', ['if=/dev/zero', `of=${path('full')}`, 'bs=4k']).status, 0);
+const free = () => rmSync(path('full'), { force: true });
+
+async function enter() {
+    const client = await PlainClient.open(port);
+    await client.hello({ token: engineer });
+    return client;
+}
+async function told(type) {
+    const client = await enter(), text = JSON.stringify(await client.text(type));
+    client.close();
+    return text;
+}
+const shelve = { action: 'shelve', for_s: 3600, reason: 'is looked at' };
+const onAlarm = (more) => ({ type: 'alarm', alarms: [['TI-1', 'H']], ...more });
+const device = () => fetch(`http://127.0.0.1:${port}/api/v1/pair?wall=room&display=1`, { headers: { Authorization: `Pairing ${SECRET}` } });
+
+// name, message (or what returns it), the type of its answer, event of the audit trail, whether it is there: asked of the daemon.
+const ACTIONS = [
+    ['acknowledge', onAlarm({ action: 'acknowledge' }), 'alarmed', 'alarm', async () => (await alarm()).state === 'acknowledged'],
+    ['shelve', onAlarm(shelve), 'alarmed', 'alarm', async () => (await alarm()).state === 'shelved'],
+    ['unshelve', onAlarm({ action: 'unshelve' }), 'alarmed', 'alarm', async () => (await alarm()).state !== 'shelved'],
+    ['suppress', onAlarm({ action: 'out_of_service', reason: 'gone' }), 'alarmed', 'alarm',
+        async () => (await alarm()).state === 'out_of_service'],
+    ['put back', onAlarm({ action: 'in_service' }), 'alarmed', 'alarm', async () => (await alarm()).state !== 'out_of_service'],
+    ['note', { type: 'note', text: 'leaks a little', asset: 'E-101' }, 'noted', 'note',
+        async () => (await listed('/api/v1/notes')).includes('leaks a little')],
+    ['save a view', { type: 'save_view', id: 'pump', title: 'The pump', view: 'asset=P-101A' }, 'view_saved', 'view',
+        async () => (await listed('/api/v1/views')).includes('The pump')],
+    ['remove a view', { type: 'remove_view', id: 'pump' }, 'view_saved', 'view',
+        async () => !(await listed('/api/v1/views')).includes('The pump')],
+    ['send to a wall', { type: 'send_to_wall', wall: 'room', display: 1, area: 'main', view: 'group=pressure', title: 'Look here' },
+        'sent_to_wall', 'wall', async () => (await told('walls')).includes('Look here')],
+    ['check a loop', { type: 'prove', tag: 'TI-2', expected: 20, tolerance: 1, remark: 'by hand' }, 'proved', 'proof',
+        async () => (await listed('/api/v1/proofs')).includes('by hand')],
+    ['pair a display', async () => ({ type: 'pair', digits: await until('digits', async () => (await (await device()).json()).digits) }),
+        'paired', 'device', async () => (await listed('/api/v1/devices')).includes('room.1.1')],
+    ['revoke a display', { type: 'unpair', id: 'room.1.1' }, 'paired', 'device',
+        async () => !(await listed('/api/v1/devices')).includes('room.1.1')],
+    ['place a sensor', async (client) => {
+        client.say({ type: 'place', seq: 900, moves: [{ tag: 'TI-2', asset: 'E-101', position: [-0.5, 0.25, 0] }] });
+        client.say({ type: 'save_tags', seq: 901 });
+        return { type: 'save_tags', confirm: (await client.text('tags_diff')).hash };
+    }, 'tags_saved', 'reload', () => readFileSync(path('tags.csv'), 'utf8').includes(',-0.5,0.25,0,')],
+];
+
+// Does one. Returns its answer.
+async function act(message, type, seq) {
+    const client = await enter();
+    client.say({ ...(typeof message === 'function' ? await message(client) : message), seq });
+    const isAnswer = (one) => (one.type === type && one.seq === seq) || one.type === 'error';
+    const answer = await client.until(type, ({ texts }) => texts.find(isAnswer));
+    return { answer, client };
+}
+const isDone = ({ done, kept, saved, passed }) => (done ?? 0) > 0 || kept === true || saved === true || (passed && kept !== false);
+const whyNot = ({ why, refused = [], errors = [] }) => [why, ...errors, ...refused.flat()].filter(Boolean).join('; ');
+
+test('on a full disk each kind is answered with "not kept", and why; once there is room, it is', options, async (t) => {
+    if (!mounted)
+        return t.skip('this user may not mount a file system');
+    t.after(free);
+    const unkept = [], unaudited = [];
+    for (const [i, [name, message, type]] of ACTIONS.entries()) {
+        if (/^(remove|revoke|unshelve|put back)/.test(name)) // of what could not be kept
+            continue;
+        fill();
+        const { answer, client } = await act(message, type, i + 1);
+        client.close();
+        if (isDone(answer))
+            continue; // it had room: what follows holds it to that
+        unkept.push(name);
+        assert.match(whyNot(answer), FULL, `${name}: ${JSON.stringify(answer)}`);
+        if (answer.unaudited)
+            unaudited.push(name);
+        if (type === 'alarmed')
+            assert.deepEqual([answer.done, answer.not_kept], [0, 1], 'it is in force, and not kept');
+    }
+    console.log(`# not kept, and said so: ${unkept.join(', ')}; also not in the trail: ${unaudited.join(', ')}`);
+    assert.ok(unkept.length >= 7, unkept.join());
+    const text = await (await ask('/metrics')).text();
+    const metric = () => Number(/^plantcast_history_free_bytes (\d+)$/m.exec(text)[1]);
+    const { bavail, bsize } = statfsSync(plant.folder);
+    assert.ok(Math.abs(metric() - bavail * bsize) < 1 << 18, `${metric()} bytes are free: measured when asked for`);
+    free();
+    await until('that the journal is written again', () => /the journal is written again/.test(plant.daemon.said));
+    await killed();
+    assert.notEqual((await alarm()).state, 'unacknowledged', 'what was in force, and could not be kept then, was once there was room');
+});
+
+test('what is answered as done is there after a kill -9 in that moment, and in the trail', { ...options, timeout: 300000 }, async (t) => {
+    if (!mounted)
+        return t.skip('this user may not mount a file system');
+    await plant.tell('set TI-1 20');
+    const client = await enter();
+    for (const action of ['unshelve', 'in_service'])
+        client.say({ ...onAlarm({ action }), seq: 1 });
+    await until('no alarm', async () => ['returned', undefined].includes((await alarm())?.state));
+    client.say({ ...onAlarm({ action: 'acknowledge' }), seq: 2 });
+    await until('quiet', async () => !await alarm());
+    client.close();
+    await plant.tell('set TI-1 95.5');
+    await until('the alarm', async () => (await alarm())?.state === 'unacknowledged');
+    for (const [i, [name, message, type, event, there]] of ACTIONS.entries()) {
+        const lines = trail().length, { answer } = await act(message, type, 100 + i);
+        await killed();
+        assert.ok(isDone(answer), `${name}: ${JSON.stringify(answer)}`);
+        assert.equal(answer.unaudited, undefined, name);
+        assert.ok(await there(), `${name} was answered ${JSON.stringify(answer)}, and is gone`);
+        const line = trail().slice(lines).find((one) => one.event === event && one.result === 'done');
+        assert.ok(line, `${name} is not in the trail`);
+    }
+    console.log(`# ${ACTIONS.length} kinds of action are there after a kill -9: ${ACTIONS.map(([name]) => name).join(', ')}`);
+});
+
+test('the page says that it is not kept, in three languages', options, async (t) => {
+    if (!mounted)
+        return t.skip('this user may not mount a file system');
+    for (const [lang, words] of [['en', /In force, but lost if the server restarts \(not kept: the server’s disk is full\)/],
+        ['ko', /서버를 다시 시작하면 사라집니다 \(저장되지 않음: 서버 디스크가 가득 찼습니다\)/],
+        ['de', /nach einem Neustart des Servers verloren \(nicht gespeichert: der Datenträger des Servers ist voll\)/]]) {
+        const browser = await openPage(`http://127.0.0.1:${port}/?lang=${lang}`, { viewport: { width: 1280, height: 800 } });
+        const { page } = browser;
+        try {
+            await waitForPicture(page);
+            fill();
+            await page.evaluate((message) => globalThis.plantcast.session.post(message), { ...onAlarm(shelve), seq: 1 });
+            await page.waitForFunction((text) => new RegExp(text).test(document.getElementById('toast').textContent), words.source);
+            await shoot(page, `not-kept-${lang}`);
+            assert.deepEqual(browser.errors, []);
+        } finally {
+            await browser.close();
+            free();
+        }
+        const client = await enter();
+        client.say({ ...onAlarm({ action: 'unshelve' }), seq: 2 });
+        await client.text('alarmed');
+        client.close();
+    }
+});
