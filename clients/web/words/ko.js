@@ -94,16 +94,16 @@ about: 선택한 설비 정보
 worst: 가장 나쁜 품질: {quality}
 
 [viewport]
-waiting: 첫 화면을 기다리는 중
+waiting: 첫 화면 대기 중
 
 [legend]
-right: 오른쪽 화면의 범례
-colours: {min}부터 {max}까지의 색
+right: 오른쪽 범례
+colours: {min}~{max}의 색
 distance: {tag}에서의 거리
 operator: 태그마다 정해진 한계 기준.
 log: 로그 눈금.
-unsafe: 잘못 읽기 쉬운 색입니다.
-glossy: 광택 모양: 빛이 색을 바꾸므로 값을 읽지 마십시오.
+unsafe: 잘못 읽기 쉬운 색.
+glossy: 광택 모양: 빛이 색을 바꿈. 값을 읽지 마십시오.
 nolimits: 한계 없음
 nodata: 데이터 없음
 uncertain: 불확실
