@@ -5,7 +5,8 @@
 #include "base/clock.h"
 #include "session/session_impl.h"
 
-/* A page that is hidden for longer, or again within that time of being shown, gives up its pixels. It is admitted again as a new session is. */
+/* A page that is hidden for longer, or again within that time of being shown, gives up its pixels. Shown again, it is admitted as a new
+   session is. */
 static const int64_t HIDDEN_NS = 15 * NS_PER_S;
 
 static void hold(struct session *session, int64_t pixels)
