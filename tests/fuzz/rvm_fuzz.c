@@ -32,13 +32,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     struct attribute_counts attributes;
     char why[256] = "";
     const struct rvm_params params = { .chord_m = 0.01 };
+    const struct attribute_params attribute_params = { .model_encoding = "" };
     if (count < 1)
         return 0;
     struct cad_model *model = cad_model_create();
     if (bytes[0] % 2) {
         cad_model_add_node(model, -1, "/A");
         cad_model_add_node(model, 0, "/A/B");
-        if (!cad_attributes_read(model, (const char *)bytes + 1, count - 1, &attributes, why, sizeof(why)))
+        if (!cad_attributes_read(model, (const char *)bytes + 1, count - 1, &attribute_params, &attributes, why, sizeof(why)))
             require(why[0], "what is refused says why");
     } else if (!rvm_read(model, bytes + 1, count - 1, &params, &counts, why, sizeof(why))) {
         require(why[0], "what is refused says why");
