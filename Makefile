@@ -161,7 +161,7 @@ $(bin)/plantcast-import-occt: $(by_occt) $(by_reader) $(out)/lib/prep.a $(out)/l
 $(bin)/plantcast-import-assimp: $(call objects,preprocess/import/readers/assimp) $(by_reader) $(out)/lib/prep.a $(out)/lib/base.a
 	@mkdir -p $(@D); echo "  LINK $@"
 	@$(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lassimp -luchardet -ljansson -lm
-$(bin)/plantcast-match: $(call objects,preprocess/match/main.c) $(out)/lib/match.a $(archives)
+$(bin)/plantcast-match: $(call objects,preprocess/match/main.c) $(out)/lib/match.a $(out)/lib/prep.a $(archives)
 	$(link) -lminizip -lexpat
 $(bin)/plantcast-images.so: $(patsubst %,$(out)/obj/server/base/%.pic.o,image_shim mem)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -shared -o $@ $^ $(pkg_libs)

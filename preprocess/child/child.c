@@ -76,10 +76,8 @@ static void become(const struct child_params *params, int out, int errors, const
     sigprocmask(SIG_UNBLOCK, signals, NULL);
     int nothing = open("/dev/null", O_RDONLY);
     dup2(nothing, STDIN_FILENO);
-    if (!params->shares_output) {
-        dup2(out, STDOUT_FILENO);
-        dup2(errors, STDERR_FILENO);
-    }
+    dup2(out, STDOUT_FILENO);
+    dup2(errors, STDERR_FILENO);
     close_all_but(params->result);
     limit_all(params);
     const struct confine_params confined = { .role = params->role, .paths = params->paths, .path_count = params->path_count };
@@ -223,6 +221,8 @@ static bool judge(const struct child *child, const struct child_params *params, 
         snprintf(why, CHILD_WHY_BYTES, "%s was killed (SIGKILL): the memory of this machine or service is used up", name);
     else if (WIFSIGNALED(status))
         snprintf(why, CHILD_WHY_BYTES, "%s crashed (SIG%s)", name, sigabbrev_np(WTERMSIG(status)));
+    else if (params->errors)
+        return false;
     else
         last_line(&child->errors, why);
     if (!why[0])
@@ -257,6 +257,8 @@ bool child_run(const struct child_params *params, struct text *out, char why[CHI
     for (int i = 0; i < WATCHED; i++)
         if (child.fds[i] >= 0)
             close(child.fds[i]);
+    if (params->errors && child.errors.at)
+        text_add_bytes(params->errors, child.errors.at, child.errors.length);
     text_finish(&child.errors);
     sigprocmask(SIG_SETMASK, &before, NULL);
     return good;

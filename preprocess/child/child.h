@@ -24,7 +24,7 @@ struct child_params {
     const struct confine_path *paths; /* files and folders that it may use; the folder too only if it is among them */
     size_t path_count;
     int result;               /* a descriptor that it keeps, besides stdin (/dev/null), stdout and stderr; 0: none */
-    bool shares_output;       /* prints where this process prints; `out` stays empty and `why` has no line of its own */
+    struct text *errors;      /* receives all that it wrote to stderr, at most 1 MB; then `why` stays empty where it ended by itself */
 };
 
 /* Runs the program to its end and appends what it printed, at most 1 MB, to out. Returns whether it exited with status 0. Otherwise `why`

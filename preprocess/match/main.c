@@ -29,6 +29,8 @@ static void print_usage(FILE *out)
           "  --unit N              of that source: unit identifier, 0 to 255\n"
           "  --byte-order ORDER    of that source: ABCD, CDAB, BADC, DCBA\n"
           "  --address-base N      of that source: what the first register is called, 0 or 1 (1)\n"
+          "  --timeout S           limit of the time that reading and matching may take (120)\n"
+          "  --memory MB           limit of the memory that they may take (2048)\n"
           "  --dry-run             says what it would do\n"
           "Exit status: 0 good, 1 something cannot be read or would not be valid (nothing is written), 2 usage.\n",
           out);
@@ -36,9 +38,20 @@ static void print_usage(FILE *out)
 
 enum { EQUIPMENT_MOST = 100 };
 
+/* Takes the argument of an option. Returns false, already said, if it is no number between these. */
+static bool take_number(const char *option, const char *range, long least, long most, long *number)
+{
+    char *end;
+    *number = strtol(optarg, &end, 10);
+    bool good = end != optarg && !*end && *number >= least && *number <= most;
+    if (!good)
+        fprintf(stderr, "plantcast match: --%s %s: %s\n", option, optarg, range);
+    return good;
+}
+
 int main(int argc, char **argv)
 {
-    enum { ENCODING = 1, RULES, ALIASES, SOURCE, MODBUS, UNIT, ORDER, BASE, EQUIPMENT, DECIDE, LENT, DRY, HELP };
+    enum { ENCODING = 1, RULES, ALIASES, SOURCE, MODBUS, UNIT, ORDER, BASE, EQUIPMENT, DECIDE, LENT, TIMEOUT, MEMORY, DRY, HELP };
     static const struct option options[] = { { "encoding", required_argument, NULL, ENCODING },
                                              { "rules", required_argument, NULL, RULES },
                                              { "aliases", required_argument, NULL, ALIASES },
@@ -50,13 +63,18 @@ int main(int argc, char **argv)
                                              { "equipment", required_argument, NULL, EQUIPMENT },
                                              { "decide", required_argument, NULL, DECIDE },
                                              { "folder-lent", required_argument, NULL, LENT },
+                                             { "timeout", required_argument, NULL, TIMEOUT },
+                                             { "memory", required_argument, NULL, MEMORY },
                                              { "dry-run", no_argument, NULL, DRY },
                                              { "help", no_argument, NULL, HELP },
                                              { 0 } };
     const char *equipment[EQUIPMENT_MOST];
-    struct matching_params params = { .unit = -1, .address_base = 1, .equipment = equipment };
+    struct matching_params params = {
+        .unit = -1, .address_base = 1, .equipment = equipment, .timeout_s = 120, .memory_bytes = (size_t)2048 << 20
+    };
     enum byte_order order;
-    char *end, encoding[CHARSET_NAME_BYTES];
+    long number;
+    char encoding[CHARSET_NAME_BYTES];
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;)
         switch (option) {
         case ENCODING:
@@ -71,11 +89,9 @@ int main(int argc, char **argv)
         case SOURCE: params.source = optarg; break;
         case MODBUS: params.modbus = optarg; break;
         case UNIT:
-            params.unit = (int)strtol(optarg, &end, 10);
-            if (end == optarg || *end || params.unit < 0 || params.unit > 255) {
-                fprintf(stderr, "plantcast match: --unit %s: 0 to 255\n", optarg);
+            if (!take_number("unit", "0 to 255", 0, 255, &number))
                 return 2;
-            }
+            params.unit = (int)number;
             break;
         case ORDER:
             params.byte_order = optarg;
@@ -100,6 +116,16 @@ int main(int argc, char **argv)
             break;
         case DECIDE: params.decisions = optarg; break;
         case LENT: params.lent = atoi(optarg); break;
+        case TIMEOUT:
+            if (!take_number("timeout", "1 to 86400 (s)", 1, 86400, &number))
+                return 2;
+            params.timeout_s = (int)number;
+            break;
+        case MEMORY:
+            if (!take_number("memory", "64 to 1000000 (MB)", 64, 1000000, &number))
+                return 2;
+            params.memory_bytes = (size_t)number << 20;
+            break;
         case DRY: params.dry_run = true; break;
         case HELP: print_usage(stdout); return 0;
         default: print_usage(stderr); return 2;

@@ -3,15 +3,20 @@
 #include "preprocess/match/matching.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <regex.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "preprocess/child/child.h"
+#include "preprocess/child/child_paths.h"
 #include "preprocess/match/equipment.h"
 #include "preprocess/match/file_set.h"
 #include "preprocess/match/plant_edit.h"
@@ -32,6 +37,7 @@ struct run {
     struct place_proposal *places;
     struct tag_rows rows;
     struct tag_source source;
+    char *result;                /* lines for people */
     char *plant_text, *new_text; /* the plant file as it is, and as it will be */
     char *plant_before, *tags_before, *matches_before; /* as they were read; NULL: they were not there */
     struct text tags_text, matches_text, left_names; /* the first of those that are no longer in the list */
@@ -120,7 +126,8 @@ static bool read_optional(struct run *run, const char *stated, const char *name,
     return good;
 }
 
-static bool read_all(struct run *run)
+/* The plant itself: files that the daemon reads, too. */
+static bool read_plant(struct run *run)
 {
     const struct matching_params *params = run->params;
     char why[MODEL_INDEX_WHY_BYTES];
@@ -140,11 +147,19 @@ static bool read_all(struct run *run)
         return fail_at(params->plant, why);
     if (params->equipment_count > 0 && !choose_equipment(run))
         return false;
+    return true;
+}
+
+/* In the child. */
+static bool read_lists(struct run *run)
+{
+    const struct matching_params *params = run->params;
+    char why[MODEL_INDEX_WHY_BYTES];
     if (!tag_export_read(&run->list, params->tags, params->encoding, why, sizeof(why)))
         return fail_at(params->tags, why);
     print_list(run);
     run->matcher.site = &run->site;
-    path = beside(run, "matches.csv");
+    char *path = beside(run, "matches.csv");
     bool good = !params->decisions || decisions_read(&run->before, params->decisions, why) || fail_at(params->decisions, why);
     good = good && (decisions_read(&run->before, path, why) || fail_at(path, why));
     mem_free(path);
@@ -419,27 +434,27 @@ static bool write_files(struct run *run, const char *matches_path)
     return good;
 }
 
-static void print_result(const struct run *run)
+static void print_result(const struct run *run, FILE *out)
 {
     size_t counts[3] = { 0 };
     for (size_t i = 0; i < run->list.count; i++)
         counts[run->matches[i].status]++;
-    printf("%zu tags: %zu sure, %zu likely, %zu none", run->list.count, counts[MATCH_SURE], counts[MATCH_LIKELY], counts[MATCH_NONE]);
-    printf(run->by_hand > 0 ? "; %zu of them by hand\n" : "\n", run->by_hand);
-    printf("places: %zu at a node of their own, %zu assumed\n", run->own_nodes, run->assumed);
+    fprintf(out, "%zu tags: %zu sure, %zu likely, %zu none", run->list.count, counts[MATCH_SURE], counts[MATCH_LIKELY], counts[MATCH_NONE]);
+    fprintf(out, run->by_hand > 0 ? "; %zu of them by hand\n" : "\n", run->by_hand);
+    fprintf(out, "places: %zu at a node of their own, %zu assumed\n", run->own_nodes, run->assumed);
     if (run->left_out > 0)
-        printf(run->left_out == 1 ? "%zu tag is not in the tag list: it is a text, or has no address that %s can read\n"
+        fprintf(out, run->left_out == 1 ? "%zu tag is not in the tag list: it is a text, or has no address that %s can read\n"
                                   : "%zu tags are not in the tag list: they are texts, or have no address that %s can read\n",
                run->left_out,
                run->source.id ? run->source.id : "a source");
     if (run->left > 0)
-        printf("%zu tags of before are no longer in the list; what was decided about them stays: %s%s\n", run->left, run->left_names.at,
-               run->left > LEFT_NAMED ? ", ..." : "");
+        fprintf(out, "%zu tags of before are no longer in the list; what was decided about them stays: %s%s\n", run->left,
+                run->left_names.at, run->left > LEFT_NAMED ? ", ..." : "");
     if (!run->source.id)
-        printf("there is no source yet, so the tag list has no addresses: --modbus HOST makes one\n");
+        fprintf(out, "there is no source yet, so the tag list has no addresses: --modbus HOST makes one\n");
     for (size_t i = 0; i < run->quantities.count; i++)
         if (run->quantities.at[i].is_new)
-            printf("group %s: %zu tag%s\n", run->quantities.at[i].id, run->quantities.at[i].tags,
+            fprintf(out, "group %s: %zu tag%s\n", run->quantities.at[i].id, run->quantities.at[i].tags,
                    run->quantities.at[i].tags == 1 ? "" : "s");
 }
 
@@ -450,7 +465,7 @@ static bool write_all(struct run *run)
     bool good = loaded != NULL;
     plant_destroy(&loaded);
     if (good)
-        print_result(run);
+        fputs(run->result, stdout);
     if (good && !run->params->dry_run)
         good = write_files(run, matches_path);
     mem_free(matches_path);
@@ -471,6 +486,7 @@ static void finish(struct run *run)
     text_finish(&run->tags_text);
     text_finish(&run->matches_text);
     text_finish(&run->left_names);
+    mem_free(run->result);
     mem_free(run->plant_text);
     mem_free(run->new_text);
     mem_free(run->plant_before);
@@ -490,26 +506,153 @@ static int lock_folder(const struct matching_params *params)
     return lock;
 }
 
+/* --- the child ---------------------------------------------------------------------------------------------------------------- */
+
+struct answer {
+    struct run *run;
+    int file; /* in memory, shared with the child: for each text its length, 8 bytes, and its bytes */
+};
+
+static bool put_text(int file, const char *text)
+{
+    uint64_t length = text ? strlen(text) : 0;
+    bool good = write(file, &length, sizeof(length)) == (ssize_t)sizeof(length);
+    for (ssize_t n; good && length > 0; text += n, length -= (uint64_t)n) {
+        n = write(file, text, length);
+        good = n > 0;
+    }
+    return good;
+}
+
+/* Returns NULL if the child, which may be in a stranger's hands, left anything else. */
+static char *get_text(int file)
+{
+    uint64_t length;
+    if (read(file, &length, sizeof(length)) != (ssize_t)sizeof(length) || length > max_list_bytes)
+        return NULL;
+    char *text = mem_new(length + 1);
+    for (size_t at = 0; at < length;) {
+        ssize_t n = read(file, text + at, length - at);
+        if (n <= 0 || memchr(text + at, 0, (size_t)n)) {
+            mem_free(text);
+            return NULL;
+        }
+        at += (size_t)n;
+    }
+    return text;
+}
+
+/* Reads and matches the stranger's list, and composes all files. Returns its exit status. */
+static int match_in_child(void *arg)
+{
+    const struct answer *answer = arg;
+    struct run *run = answer->run;
+    if (!read_lists(run) || !find_source(run))
+        return 1;
+    run->matches = matcher_run(&run->matcher, &run->list);
+    if (!obey(run))
+        return 1;
+    bool placeholder = strstr(run->plant_text, plant_edit_placeholder) != NULL;
+    for (size_t i = 0; i < run->plant->tag_count; i++)
+        placeholder &= run->plant->tags[i].group < 0;
+    quantities_find(&run->quantities, run->plant, placeholder ? "temperature" : NULL, &run->list, run->matches);
+    run->places = places_find(&run->site, &run->list, run->matches, &run->quantities);
+    put_rows(run);
+    keep_left(run);
+    tag_rows_write(&run->rows, &run->tags_text);
+    if (!compose_plant(run, placeholder))
+        return 1;
+    size_t length;
+    FILE *out = open_memstream(&run->result, &length);
+    if (!out)
+        return 1;
+    print_result(run, out);
+    fclose(out);
+    return put_text(answer->file, run->new_text) && put_text(answer->file, run->tags_text.at) &&
+                   put_text(answer->file, run->matches_text.at) && put_text(answer->file, run->result)
+               ? 0
+               : 1;
+}
+
+static bool take_answer(struct run *run, int file)
+{
+    char *texts[4];
+    bool good = lseek(file, 0, SEEK_SET) == 0;
+    for (int i = 0; i < 4; i++)
+        texts[i] = get_text(file);
+    for (int i = 0; i < 4; i++)
+        good = good && texts[i];
+    if (good) {
+        run->new_text = texts[0];
+        text_add(&run->tags_text, "%s", texts[1]);
+        text_add(&run->matches_text, "%s", texts[2]);
+        run->result = texts[3];
+    }
+    for (int i = good ? 1 : 0; i < (good ? 3 : 4); i++)
+        mem_free(texts[i]);
+    return good || fail_at(run->params->tags, "the tag list reader left no answer");
+}
+
+static void add_paths(const struct run *run, struct child_paths *paths)
+{
+    const struct matching_params *params = run->params;
+    const char *const stated[] = { params->tags, params->decisions, params->rules, params->aliases, run->plant->tags_path };
+    static const char *const names[] = { "matches.csv", "match_rules.csv", "aliases.csv" };
+    for (size_t i = 0; i < sizeof(stated) / sizeof(stated[0]); i++)
+        child_paths_add(paths, stated[i], CONFINE_READ);
+    for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
+        char *path = beside(run, names[i]);
+        child_paths_add(paths, path, CONFINE_READ);
+        mem_free(path);
+    }
+}
+
+/* The child can write nothing but its answer. */
+static bool match(struct run *run)
+{
+    char why[CHILD_WHY_BYTES], folder[PATH_MAX];
+    struct text said = { 0 }, errors = { 0 };
+    struct child_paths paths = { 0 };
+    struct answer answer = { run, memfd_create("matches", MFD_CLOEXEC) };
+    if (answer.file < 0 || !getcwd(folder, sizeof(folder))) {
+        fail_at(run->params->tags, strerror(errno));
+        if (answer.file >= 0)
+            close(answer.file);
+        return false;
+    }
+    add_paths(run, &paths);
+    bool good = child_run(&(struct child_params){ .call = match_in_child,
+                                                  .arg = &answer,
+                                                  .name = "the tag list reader",
+                                                  .folder = folder, /* relative paths stay true */
+                                                  .timeout_s = run->params->timeout_s,
+                                                  .memory_bytes = run->params->memory_bytes,
+                                                  .timeout_option = "--timeout",
+                                                  .memory_option = "--memory",
+                                                  .role = CONFINE_READER,
+                                                  .paths = paths.at,
+                                                  .path_count = paths.count,
+                                                  .result = answer.file,
+                                                  .errors = &errors },
+                          &said, why);
+    fputs(said.at ? said.at : "", stdout);
+    if (why[0])
+        fail_at(run->params->tags, why);
+    else
+        fputs(errors.at ? errors.at : "", stderr);
+    good = good && take_answer(run, answer.file);
+    close(answer.file);
+    child_paths_finish(&paths);
+    text_finish(&said);
+    text_finish(&errors);
+    return good;
+}
+
 int matching_run(const struct matching_params *params)
 {
     struct run run = { .params = params };
     int lock = lock_folder(params);
-    bool good = lock >= 0 && read_all(&run) && find_source(&run);
-    if (good) {
-        run.matches = matcher_run(&run.matcher, &run.list);
-        good = obey(&run);
-    }
-    if (good) {
-        bool placeholder = strstr(run.plant_text, plant_edit_placeholder) != NULL;
-        for (size_t i = 0; i < run.plant->tag_count; i++)
-            placeholder &= run.plant->tags[i].group < 0;
-        quantities_find(&run.quantities, run.plant, placeholder ? "temperature" : NULL, &run.list, run.matches);
-        run.places = places_find(&run.site, &run.list, run.matches, &run.quantities);
-        put_rows(&run);
-        keep_left(&run);
-        tag_rows_write(&run.rows, &run.tags_text);
-        good = compose_plant(&run, placeholder) && write_all(&run);
-    }
+    bool good = lock >= 0 && read_plant(&run) && match(&run) && write_all(&run);
     finish(&run);
     if (lock >= 0)
         close(lock);

@@ -3,6 +3,7 @@
 #ifndef PREPROCESS_MATCH_MATCHING_H
 #define PREPROCESS_MATCH_MATCHING_H
 #include <stdbool.h>
+#include <stddef.h>
 
 struct matching_params {
     const char *plant;            /* the plant file */
@@ -18,6 +19,8 @@ struct matching_params {
     const char *byte_order; /* of that source; NULL: none */
     int address_base;       /* likewise */
     int lent;               /* plant_folder.h */
+    int timeout_s;          /* of reading and matching, in a confined process */
+    size_t memory_bytes;    /* of the same */
     bool dry_run;           /* says what it found, and writes nothing */
 };
 
