@@ -4,11 +4,13 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/mem.h"
 #include "base/service_manager.h"
 #include "plant/model_check.h"
+#include "preprocess/child/child_self.h"
 #include "preprocess/convert/convert.h"
 #include "preprocess/debug/debug_views.h"
 #include "preprocess/diff/diff.h"
@@ -236,16 +238,50 @@ static bool run_diff(const struct options *options, struct diag *diag)
     return good;
 }
 
-static bool run_plant(const struct options *options, struct diag *diag)
+/* Models are strangers' files. This program may read the plant's files and write the prepared ones, but not read keys and tokens. */
+static bool confine_self(const struct plant *plant, const char *folder, char **argv, struct diag *diag)
+{
+    static const char beside[] = ".yaml .yml .csv .glb .gltf .bin .buffer .dat .png .jpg .jpeg .webp .ktx .ktx2 .basis .dds .gif .bmp .tga "
+                                 ".tif .tiff .exr .hdr";
+    struct child_paths paths = { 0 };
+    bool notifies = getenv("NOTIFY_SOCKET") != NULL;
+    mkdir(folder, 0777); /* a failure shows when the first file is written */
+    child_paths_add(&paths, "/proc/self/exe", CONFINE_EXECUTE);
+    child_paths_add_folder_of(&paths, "/proc/self/exe", CONFINE_READ); /* modules */
+    child_paths_add(&paths, folder, CONFINE_WRITE);
+    child_paths_add(&paths, plant->tags_path, CONFINE_READ);
+    child_paths_add_beside(&paths, plant->path, beside);
+    for (size_t i = 0; i < plant->asset_count; i++)
+        if (i == 0 || strcmp(plant->assets[i].model, plant->assets[i - 1].model) != 0) {
+            child_paths_add(&paths, plant->assets[i].model, CONFINE_READ);
+            child_paths_add_beside(&paths, plant->assets[i].model, beside);
+        }
+    for (size_t i = 0; i < plant->group_count; i++)
+        child_paths_add(&paths, plant->groups[i].gp.fit, CONFINE_READ);
+    if (notifies)
+        child_paths_add(&paths, "/proc", CONFINE_READ); /* service_patience asks whether processes are at work */
+    int status = child_self_confine(&paths, notifies, argv);
+    child_paths_finish(&paths);
+    if (status != 0)
+        diag_error(diag, plant->path, 0, 0, "plantcast-prep cannot be confined: %s", strerror(-status));
+    return status == 0;
+}
+
+static bool run_plant(const struct options *options, char **argv, struct diag *diag)
 {
     struct plant *plant = plant_load(options->plant, diag);
     if (!plant)
         return false;
-    struct log *log = log_create(LOG_INFO);
-    struct workers *workers = workers_create(0);
     struct service_patience *patience = service_patience_begin("preparing the plant", ASSET_LIMIT_S); /* before a unit's daemon starts */
     char *folder = options->output ? mem_strdup(options->output) : plant_prepared_folder(plant);
-    bool good = convert_run(plant, folder, stderr, diag);
+    bool confined = child_self_confined(), good = confined || convert_run(plant, folder, stderr, diag);
+    if (good && !confined && !options->distances && !options->debug_view) {
+        service_patience_end(&patience);
+        good = confine_self(plant, folder, argv, diag);
+        patience = service_patience_begin("preparing the plant", ASSET_LIMIT_S);
+    }
+    struct log *log = log_create(LOG_INFO);
+    struct workers *workers = workers_create(0);
     if (good && options->distances)
         good = run_distances(options, log, workers, plant, folder, diag);
     else if (good)
@@ -270,7 +306,7 @@ int main(int argc, char **argv)
         return 0;
     }
     catch_signals();
-    bool good = (options.diff ? run_diff : run_plant)(&options, &diag);
+    bool good = options.diff ? run_diff(&options, &diag) : run_plant(&options, argv, &diag);
     diag_print(&diag, stderr);
     diag_finish(&diag);
     return good && fflush(stdout) == 0 ? 0 : 1;

@@ -15,6 +15,7 @@
 
 #include "agent.h"
 #include "base/clock.h"
+#include "base/confine.h"
 #include "base/counters.h"
 #include "base/mem.h"
 #include "corelink/seat.h"
@@ -225,8 +226,11 @@ static bool start_net(struct server *server)
 
 static bool start_import(struct server *server)
 {
+    char lacks[CONFINE_LACKS_BYTES];
     if (!server->params.imports)
         return true;
+    if (confine_lacks(lacks))
+        log_warn(server->log, "--import: this kernel has %s", lacks);
     server->import = plant_import_create(server->params.plant_path);
     if (!server->import)
         log_err(server->log, "%s: no folder for exports can be made beside it: %s", server->params.plant_path, strerror(errno));
@@ -275,7 +279,7 @@ static bool prepare(struct server *server)
         log_warn(server->log, "%s: the plant is prepared now, as it is not what was prepared before", server->params.plant_path);
         supervision_starting(server->supervision, "preparing the plant");
         atomic_store(&preparing, true);
-        why = sibling_run(&(struct sibling_params){ .arguments = arguments, .stop = is_told_to_end }); /* it asks for time itself */
+        why = sibling_run(&(struct sibling_params){ .arguments = arguments, .stop = is_told_to_end, .notifies = true });
         atomic_store(&preparing, false);
         good = !why && !atomic_load(&told_to_end);
         if (atomic_load(&told_to_end))
@@ -527,6 +531,7 @@ int server_run(const struct server_params *params)
     struct server server = { .params = *params, .log = log_create(params->log_level), .begun_ns = clock_mono_ns() };
     log_set_format(server.log, params->log_format, NULL);
     pthread_mutex_init(&server.wake_lock, NULL);
+    confine_hide_memory();
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN); /* a file that may not grow is an error of writing, as a full disk is */
     handle_early_signals();
@@ -597,7 +602,9 @@ int server_check(const struct server_params *params)
     struct diag diag = { 0 };
     struct plant *plant = plant_load(params->plant_path, &diag);
     size_t sensors = 0;
-    char *folder = plant_folder_of(params->plant_path);
+    char *folder = plant_folder_of(params->plant_path), lacks[CONFINE_LACKS_BYTES];
+    if (params->imports && confine_lacks(lacks))
+        printf("%s: warning: --import: this kernel has %s\n", params->plant_path, lacks);
     if (plant_folder_unsettled(folder))
         diag_warning(&diag, params->plant_path, 0, 0,
                      "an import that was killed has replaced a part of the files; the next start finishes it");

@@ -14,6 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/confine.h"
 #include "base/mem.h"
 #include "base/text.h"
 
@@ -49,10 +50,16 @@ static int start(struct sibling *sibling)
         if (!error)
             error = posix_spawn_file_actions_adddup2(&actions, sibling->ends[i][1], i == STDOUT ? STDOUT_FILENO : STDERR_FILENO);
     }
+    if (!error)
+        error = posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     if (!error && sibling->params->lent > 0)
         error = posix_spawn_file_actions_adddup2(&actions, sibling->params->lent, SIBLING_LENT);
     if (!error)
-        error = posix_spawn(&sibling->child, program, &actions, NULL, (char *const *)(uintptr_t)sibling->params->arguments, environ);
+        error = posix_spawn_file_actions_addclosefrom_np(&actions, sibling->params->lent > 0 ? SIBLING_LENT + 1 : STDERR_FILENO + 1);
+    char **environment = confine_environment(NULL, sibling->params->notifies);
+    if (!error)
+        error = posix_spawn(&sibling->child, program, &actions, NULL, (char *const *)(uintptr_t)sibling->params->arguments, environment);
+    mem_free(environment);
     posix_spawn_file_actions_destroy(&actions);
     for (int i = 0; i < PIPES; i++)
         close_end(&sibling->ends[i][1]);

@@ -12,6 +12,7 @@ struct sibling_params {
     void (*say)(void *arg, const char *text); /* takes what it prints, piece by piece; NULL: it goes where ours goes */
     void *arg;                                /* of both */
     char **remark;                            /* on SIBLING_PARTLY: the last line that it wrote to stderr (mem_free); NULL: is a failure */
+    bool notifies;                            /* it may tell the service manager how far it is */
     int lent;                                 /* a descriptor that it has as SIBLING_LENT; 0: none */
 };
 

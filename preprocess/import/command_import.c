@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/confine.h"
 #include "base/mem.h"
 #include "preprocess/import/commands.h"
 #include "preprocess/import/file_name.h"
@@ -263,7 +264,9 @@ int command_import(int argc, char **argv)
         return revise_undo(import.folder, import.force, import.lent);
     if (two_alike(import.paths, import.count))
         return 1;
-    char *stem = file_name_stem(import.paths[0]);
+    char *stem = file_name_stem(import.paths[0]), lacks[CONFINE_LACKS_BYTES];
+    if (confine_lacks(lacks))
+        fprintf(stderr, "plantcast import: warning: this kernel has %s\n", lacks);
     import.name = import.name ? import.name : stem;
     int status = run(&import);
     mem_free(stem);
