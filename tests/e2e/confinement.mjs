@@ -6,6 +6,7 @@ import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync,
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { test } from 'node:test';
+import { deflateRawSync } from 'node:zlib';
 import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const ESCAPE = resolve(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/escape');
@@ -68,3 +69,197 @@ test('a reader that is taken over reaches nothing of the daemon or the machine',
     }
 }));
 
+// --- files that crash, hang or swell -------------------------------------------------------------------------------------------
+
+const gltf = (rest) => JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }], ...rest });
+const CORNERS = Buffer.from(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]).buffer).toString('base64');
+const accessor = (more) => gltf({ accessors: [{ componentType: 5126, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 1], ...more }],
+    bufferViews: [{ buffer: 0, byteLength: 36 }],
+    buffers: [{ byteLength: 36, uri: `data:application/octet-stream;base64,${CORNERS}` }] });
+const collada = (geometry, nodes, scene) => `<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="1"/><up_axis>Z_UP</up_axis></asset><library_geometries>${geometry}</library_geometries>
+<library_nodes>${nodes}</library_nodes><library_visual_scenes><visual_scene id="s">${scene}</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>`;
+const TRIANGLE = `<geometry id="g"><mesh><source id="p"><float_array id="a" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common>
+<accessor source="#a" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor>
+</technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="1">
+<input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>`;
+// Each node holds the next one ten times.
+const tenfold = (levels) => collada(TRIANGLE, Array.from({ length: levels }, (_, i) => `<node id="n${i}">${(i + 1 < levels
+    ? `<instance_node url="#n${i + 1}"/>` : '<instance_geometry url="#g"/>').repeat(i + 1 < levels ? 10 : 1)}</node>`).join(''),
+'<node id="root"><instance_node url="#n0"/></node>');
+const laughs = `<!DOCTYPE x [<!ENTITY a "ha">${Array.from({ length: 12 }, (_, i) =>
+    `<!ENTITY ${'bcdefghijklm'[i]} "${`&${'abcdefghijkl'[i]};`.repeat(10)}">`).join('')}]>`;
+function stlOf(count) {
+    const bytes = Buffer.alloc(84 + 50);
+    bytes.writeUInt32LE(count, 80);
+    return bytes;
+}
+const step = (data) => `ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n` +
+    `FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n${data}ENDSEC;\nEND-ISO-10303-21;\n`;
+function rvmOf(depth) { // groups within groups
+    const words = (...numbers) => Buffer.concat(numbers.map((n) => { const b = Buffer.alloc(4); b.writeUInt32BE(n >>> 0); return b; }));
+    const name = (text) => Buffer.concat([...text].map((c) => words(c.charCodeAt(0))));
+    const chunk = (id) => Buffer.concat([name(id), words(0xffffffff, 1)]);
+    return Buffer.concat([chunk('HEAD'), ...Array.from({ length: depth }, () => chunk('CNTB'))]);
+}
+
+const sparse = (count) => ({ count, indices: { bufferView: 0, componentType: 5125 }, values: { bufferView: 0 } });
+const XYZ = 'property float x\nproperty float y\nproperty float z\n';
+const INSTANCE = '<instance_node url="#n"/>';
+const MODELS = {
+    'count.gltf': accessor({ count: 4294967295, bufferView: 0 }), 'empty.gltf': accessor({ count: 1500000000 }),
+    'sparse.gltf': accessor({ count: 1400000000, sparse: sparse(1) }),
+    'sparse_count.gltf': accessor({ count: 3, sparse: sparse(4000000000) }),
+    'nested.gltf': `{"asset":${'{"a":'.repeat(300000)}1${'}'.repeat(300000)}}`,
+    'nodes.gltf': gltf({ nodes: [{ children: [1] }, ...Array.from({ length: 200000 }, (_, i) => ({ children: [i + 2] })), {}] }),
+    'buffer.gltf': gltf({ buffers: [{ byteLength: 9007199254740991 }], bufferViews: [{ buffer: 0, byteLength: 9007199254740991 }],
+        accessors: [{ bufferView: 0, componentType: 5126, type: 'VEC3', count: 3, min: [0, 0, 0], max: [1, 1, 1] }] }),
+    'instances.dae': tenfold(10), 'itself.dae': collada(TRIANGLE, `<node id="n">${INSTANCE}</node>`, `<node>${INSTANCE}</node>`),
+    'laughs.dae': `<?xml version="1.0"?>${laughs}<COLLADA>&m;</COLLADA>`, 'deep.dae': `<?xml version="1.0"?>${'<node>'.repeat(500000)}`,
+    'floats.dae': collada(TRIANGLE.replace('count="9"', 'count="4000000000"'), '', '<node><instance_geometry url="#g"/></node>'),
+    'count.stl': stlOf(0xffffffff), 'some.stl': stlOf(80000000),
+    'faces.ply': `ply\nformat ascii 1.0\nelement vertex 4000000000\n${XYZ}end_header\n0 0 0\n`,
+    'list.ply': `ply\nformat binary_little_endian 1.0\nelement vertex 1\n${XYZ}element face 3000000000\n` +
+        'property list uint int vertex_indices\nend_header\n\0\0\0\0\0\0\0\0\0\0\0\0\xff\xff\xff\xff',
+    'cycle.stp': step("#1=PRODUCT_DEFINITION_SHAPE('','',#1);\n".repeat(3)), 'deep.stp': step(`#1=${'('.repeat(500000)};\n`),
+    'numbers.stp': step("#99999999999999999999=CARTESIAN_POINT('',(1.,2.,3.));\n"),
+    'list.stp': step(`#1=CARTESIAN_POINT('',(${'1.,'.repeat(3000000)}1.));\n`), 'string.stp': step(`#1=PRODUCT('${'x'.repeat(20000000)}`),
+    'deep.igs': `${' '.repeat(72)}S      1\n`.repeat(2000), 'deep.rvm': rvmOf(200000),
+    'deep.ifc': step(`#1=IFCWALL(${'('.repeat(1000000)};\n`).replace('AUTOMOTIVE_DESIGN', 'IFC4'),
+    'cycle.ifc': step("#1=IFCRELAGGREGATES('a',$,$,$,#2,(#2));\n#2=IFCBUILDING('b',$,$,$,$,#3,$,$,$,$,$,$);\n" +
+        '#3=IFCLOCALPLACEMENT(#3,#4);\n').replace('AUTOMOTIVE_DESIGN', 'IFC4'),
+    'deep.obj': `${'g a\n'.repeat(300000)}v 0 0 0\nf 1 -1 2147483647\n`, 'noise.fbx': `Kaydara FBX Binary  \0\x1a\0${'\xff'.repeat(4000)}`,
+    'noise.3ds': Buffer.from([0x4d, 0x4d, 0xff, 0xff, 0xff, 0xff, 0x3d, 0x3d, 0xff, 0xff, 0xff, 0x7f]),
+};
+
+const kindOf = (status, line) => (status === 0 ? 'read' : /needs more|was ended|crashed/.exec(line)?.[0] ?? 'refused');
+
+test('a model that crashes, hangs or swells is one line, and the other models are imported', { skip }, () => inFolder((folder) => {
+    const good = join(folder, 'good.gltf'), table = {};
+    writeFileSync(good, accessor({ count: 3, bufferView: 0 }));
+    for (const [name, bytes] of Object.entries(MODELS)) {
+        const model = join(folder, name), plant = join(folder, 'plant');
+        writeFileSync(model, bytes, 'latin1');
+        const since = performance.now();
+        const { status, stderr, signal } = spawnSync(join(BIN, 'plantcast'),
+            ['import', model, good, '-o', plant, '--timeout', '10', '--memory', '512'], { encoding: 'utf8', maxBuffer: 1 << 26 });
+        const said = stderr.split('\n').filter((line) => line.includes(name)), seconds = (performance.now() - since) / 1000;
+        console.log(`# ${name}: ${seconds.toFixed(1)} s: ${status === 0 ? 'read' : said.join(' | ').replace(model, '').slice(0, 180)}`);
+        assert.equal(signal, null);
+        assert.ok(status === 0 || status === 3, `${name}: ${stderr}`);
+        assert.ok(seconds < 40, name);
+        assert.ok(existsSync(join(plant, 'good.glb')), name);
+        if (status === 3) {
+            assert.equal(said.length, 1, `${name}: ${stderr}`);
+            assert.match(said[0], new RegExp(`^plantcast import: .*${name}: .{5,}`));
+        }
+        const kind = kindOf(status, said[0]);
+        table[kind] = (table[kind] ?? 0) + 1;
+        rmSync(plant, { recursive: true });
+        rmSync(model);
+    }
+    console.log(`# ${Object.keys(MODELS).length} models: ${JSON.stringify(table)}`);
+}));
+
+// --- tag lists -----------------------------------------------------------------------------------------------------------------
+
+function zip(files) {
+    const parts = [], central = [];
+    let at = 0;
+    for (const [name, bytes] of Object.entries(files)) {
+        const packed = deflateRawSync(bytes, { level: 9 }), head = Buffer.alloc(30), entry = Buffer.alloc(46);
+        head.writeUInt32LE(0x04034b50, 0);
+        entry.writeUInt32LE(0x02014b50, 0);
+        for (const [buffer, from] of [[head, 4], [entry, 6]]) {
+            buffer.writeUInt16LE(20, from);
+            buffer.writeUInt16LE(8, from + 4);
+            buffer.writeUInt32LE(crc32(bytes), from + 10);
+            buffer.writeUInt32LE(packed.length, from + 14);
+            buffer.writeUInt32LE(bytes.length, from + 18);
+            buffer.writeUInt16LE(name.length, from + 22);
+        }
+        entry.writeUInt32LE(at, 42);
+        parts.push(head, Buffer.from(name), packed);
+        central.push(entry, Buffer.from(name));
+        at += head.length + name.length + packed.length;
+    }
+    const list = Buffer.concat(central), end = Buffer.alloc(22), count = Object.keys(files).length;
+    end.writeUInt32LE(0x06054b50, 0);
+    end.writeUInt16LE(count, 8);
+    end.writeUInt16LE(count, 10);
+    end.writeUInt32LE(list.length, 12);
+    end.writeUInt32LE(at, 16);
+    return Buffer.concat([...parts, list, end]);
+}
+
+function crc32(bytes) {
+    let crc = -1;
+    for (const byte of bytes)
+        crc = (crc >>> 8) ^ CRC[(crc ^ byte) & 255];
+    return ~crc >>> 0;
+}
+const CRC = Array.from({ length: 256 }, (_, n) => {
+    for (let k = 0; k < 8; k++)
+        n = n & 1 ? (n >>> 1) ^ 0xedb88320 : n >>> 1;
+    return n;
+});
+
+const workbook = (sheet, strings = '<sst/>', sheets = 1) => zip({
+    '[Content_Types].xml': '<Types/>',
+    'xl/workbook.xml': `<workbook xmlns:r="r"><sheets>${'<sheet name="s" sheetId="1" r:id="r1"/>'.repeat(sheets)}</sheets></workbook>`,
+    'xl/_rels/workbook.xml.rels': '<Relationships><Relationship Id="r1" Type="worksheet" Target="worksheets/sheet1.xml"/></Relationships>',
+    'xl/sharedStrings.xml': Buffer.from(strings), 'xl/worksheets/sheet1.xml': Buffer.from(sheet),
+});
+const sheet = (rows) => `<worksheet><sheetData>${rows}</sheetData></worksheet>`;
+const cell = (at, more) => `<c r="${at}" ${more}</c>`;
+const words = (at, text) => cell(at, `t="inlineStr"><is><t>${text}</t></is>`);
+const HEAD = `<row r="1">${words('A1', 'Tag Name')}${words('B1', 'Address')}</row>`;
+const LISTS = {
+    'bomb.xlsx': () => workbook(sheet(HEAD + `<row>${cell('A2', `t="inlineStr"><is><t>${'x'.repeat(400 << 20)}</t></is>`)}</row>`)),
+    'deep.xlsx': () => workbook(sheet('<row>'.repeat(5000000))),
+    'laughs.xlsx': () => workbook(`${laughs}${sheet(HEAD + `<row>${cell('A2', 't="inlineStr"><is><t>&m;</t></is>')}</row>`)}`),
+    'shared.xlsx': () => workbook(sheet(HEAD + `<row>${cell('A2', 't="s"><v>0</v>').repeat(1)}</row>` +
+        `<row>${'<c t="s"><v>0</v></c>'.repeat(300)}</row>`.repeat(20000)), `<sst><si><t>${'y'.repeat(30000)}</t></si></sst>`),
+    'columns.xlsx': () => workbook(sheet(HEAD + Array.from({ length: 100000 },
+        (_, i) => `<row r="${i + 2}">${cell(`XFD${i + 2}`, '><v>1</v>')}</row>`).join(''))),
+    'row.xlsx': () => workbook(sheet(`${HEAD}<row r="1048576"><c r="XFD1048576"><v>1</v></c></row>` +
+        '<row r="4294967295"><c r="ZZZZZZ1"><v>1</v></c></row>')),
+    'strings.xlsx': () => workbook(sheet(HEAD),
+        `<sst count="4294967295" uniqueCount="4294967295">${'<si><t>a</t></si>'.repeat(4000000)}</sst>`),
+    'sheets.xlsx': () => workbook(sheet(HEAD), '<sst/>', 500000),
+    'cut.xlsx': () => workbook(sheet(HEAD)).subarray(0, 200),
+    'wide.csv': () => `Tag Name,Address${','.repeat(20000000)}\nA,400001\n`,
+    'quote.csv': () => `Tag Name,Address\n"${'x\n'.repeat(40000000)}`,
+    'deep.json': () => `${'{"tags":['.repeat(1000000)}`,
+    'same.json': () => `{"tags":[${'{"name":"a","tagType":"Folder","tags":[]},'.repeat(500000)}{}]}`,
+};
+
+test('a tag list that swells is one line or is read, and changes nothing else', { skip }, async () => {
+    const plant = await TinyPlant.create(), table = {};
+    try {
+        for (const [name, make] of Object.entries(LISTS)) {
+            const list = join(plant.folder, name), before = readFileSync(plant.file, 'utf8');
+            writeFileSync(list, make());
+            const since = performance.now();
+            const { status, stdout, stderr, signal } = spawnSync(join(BIN, 'plantcast'),
+                ['match', plant.file, list, '--dry-run', '--timeout', '10', '--memory', '512'], { encoding: 'utf8', maxBuffer: 1 << 28 });
+            const lines = stderr.trim().split('\n'), seconds = (performance.now() - since) / 1000;
+            console.log(`# ${name}: ${seconds.toFixed(1)} s: ${status === 0 ? `read: ${stdout.slice(0, 100).replaceAll('\n', '; ')}`
+                : lines.join(' | ').replace(list, '').slice(0, 200)}`);
+            assert.equal(signal, null);
+            assert.ok(status === 0 || lines.length === 1, `${name}: ${stderr.slice(0, 1000)}`);
+            assert.ok(seconds < 30, name);
+            assert.equal(readFileSync(plant.file, 'utf8'), before);
+            const kind = kindOf(status, lines[0]);
+            table[kind] = (table[kind] ?? 0) + 1;
+            rmSync(list);
+        }
+        console.log(`# ${Object.keys(LISTS).length} tag lists: ${JSON.stringify(table)}`);
+    } finally {
+        await plant.destroy();
+    }
+});
