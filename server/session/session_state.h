@@ -136,6 +136,7 @@ struct owed_texts {
     bool alarms_sent;                                                           /* at least once */
     uint64_t alarms_number;                                                     /* of the last change of alarms that was sent */
     uint64_t views_sent, notes_sent, walls_sent, pointers_sent; /* likewise of views with names, notes, what desks sent, pointers */
+    int64_t notes_at_us;                                                        /* the instant whose notes were sent; 0: now */
     uint64_t loop_checks_sent;                                                  /* number of the newest loop check that was sent */
     int64_t told_at_us;                                                         /* the instant that is shown, as last told; 0: now */
     bool told_beginning;                                                        /* the last `time` said where recorded history begins */

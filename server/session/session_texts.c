@@ -57,10 +57,15 @@ static bool views_due(const struct session *session)
            named_views_number(session->context->named_views) > session->owed.views_sent;
 }
 
+/* A picture of the past has the notes of its instant. */
 static bool notes_due(const struct session *session)
 {
-    return session->hello && !session_is_open(session) && session->context->notes &&
-           notes_number(session->context->notes) > session->owed.notes_sent;
+    const struct notes *notes = session->context->notes;
+    if (!session->hello || session_is_open(session) || !notes || notes_number(notes) == 0)
+        return false;
+    int64_t sent_us = session->owed.notes_at_us, at_us = session_view(session)->at_us;
+    bool other_instant = (sent_us == 0) != (at_us == 0) || (at_us != sent_us && notes_differ(notes, sent_us, at_us));
+    return other_instant || notes_number(notes) > session->owed.notes_sent;
 }
 
 static bool walls_due(const struct session *session)
@@ -129,8 +134,11 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
         add_owned(session, out, reply_views_text(context, NULL));
         session->owed.views_sent = named_views_number(context->named_views);
     } else if (notes_due(session)) {
-        add_owned(session, out, notes_text(context->notes, now_utc_ns / 1000));
+        session->owed.notes_at_us = session_view(session)->at_us;
         session->owed.notes_sent = notes_number(context->notes);
+        int64_t at_us = session->owed.notes_at_us;
+        add_owned(session, out,
+                  at_us ? notes_text_between(context->notes, at_us, at_us) : notes_text(context->notes, now_utc_ns / 1000));
     } else if (walls_due(session)) {
         add_owned(session, out, wall_remote_text(context->wall_remote));
         session->owed.walls_sent = wall_remote_number(context->wall_remote);

@@ -161,6 +161,19 @@ char *notes_text(const struct notes *notes, int64_t now_us)
     return text_of(notes->kept.list, now_us, INT64_MAX);
 }
 
+static bool in_force(const json_t *note, int64_t at_us)
+{
+    return time_of(note, "time_us") <= at_us && !has_ended(note, at_us);
+}
+
+bool notes_differ(const struct notes *notes, int64_t one_us, int64_t other_us)
+{
+    size_t i = 0, all = json_array_size(notes->kept.list);
+    while (i < all && in_force(json_array_get(notes->kept.list, i), one_us) == in_force(json_array_get(notes->kept.list, i), other_us))
+        i++;
+    return i < all;
+}
+
 char *notes_text_between(const struct notes *notes, int64_t from_us, int64_t to_us)
 {
     return text_of(notes->kept.list, from_us, to_us);

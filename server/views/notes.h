@@ -30,10 +30,12 @@ const char *notes_add(struct notes *notes, const struct note *note, const char *
 const char *notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us);
 /* Returns a number that increases with each change; 0: there has been no note. */
 uint64_t notes_number(const struct notes *notes);
-/* Return the message `notes` with those in force, or with all that were in force in a span of time, with how they ended. Free with
-   mem_free. */
+/* Return the message `notes` with the notes in force at an instant, or with all that were in force in a span of time, with how they ended.
+   Free with mem_free. */
 char *notes_text(const struct notes *notes, int64_t now_us);
 char *notes_text_between(const struct notes *notes, int64_t from_us, int64_t to_us);
+/* Returns whether other notes are in force at one instant than at another. */
+bool notes_differ(const struct notes *notes, int64_t one_us, int64_t other_us);
 /* For a core and its renderers: return the list of notes, which belongs to them; and take it from the other one (false: it
    is none, and nothing changed). */
 json_t *notes_list(const struct notes *notes);

@@ -81,6 +81,9 @@ static void they_end_by_their_time_or_by_hand(void **state)
     assert_string_not_equal(first, f->id);
     assert_non_null(add(f, "over", NOON, NOON - S));
     assert_notes(notes_text(f->notes, NOON + S), "stays hour");
+    assert_notes(notes_text_between(f->notes, NOON - S, NOON - S), ""); /* before they were written */
+    assert_true(notes_differ(f->notes, NOON - S, NOON + S) && notes_differ(f->notes, NOON + 3600 * S, NOON + S));
+    assert_false(notes_differ(f->notes, NOON + S, NOON + 2 * S));
     assert_notes(notes_text(f->notes, NOON + 3600 * S), "stays");
     assert_non_null(notes_end(f->notes, f->id, "lee", NOON + 3601 * S)); /* it has ended */
     assert_non_null(notes_end(f->notes, "n1", "lee", NOON));

@@ -28,6 +28,13 @@ test('one whose time is over does not count, whatever the server said last', () 
     assert.equal(inForce(notes, null).length, 2);
 });
 
+test('a picture of the past has the notes of its instant', () => {
+    const notes = [{ id: 'later', time_us: 60, until_us: 0, ended_us: 0 }, { id: 'over', time_us: 10, until_us: 40, ended_us: 0 },
+        { id: 'removed', time_us: 10, until_us: 0, ended_us: 50 }];
+    const then = (atUs) => inForce(notes, 100, atUs).map(({ id }) => id);
+    assert.deepEqual([9, 10, 39, 40, 50, 60].map(then), [[], ['over', 'removed'], ['over', 'removed'], ['removed'], [], ['later']]);
+});
+
 test('notes, what was sent to walls and pointers are heard, and go with the plant', () => {
     for (const name of ['notes', 'walls', 'pointed'])
         sockets[0].say(vector(`server/${name}.json`));

@@ -12,5 +12,7 @@ export function placeOf(model, { position, tag, asset }) {
 // Returns what it is at, in words; null: a place.
 export const whereOf = (model, { tag, asset }) => tag ?? (asset ? model.asset(asset)?.tag || asset : null);
 
-// Returns those whose time is not over.
-export const inForce = (notes, nowUs) => notes.filter(({ until_us: until }) => until === 0 || nowUs === null || until > nowUs);
+// Returns the notes that are in force now; with atUs (an instant of the past that is shown), the notes that were in force then.
+export const inForce = (notes, nowUs, atUs = null) => notes.filter(({ time_us: from, until_us: until, ended_us: ended }) => (atUs === null
+    ? until === 0 || nowUs === null || until > nowUs
+    : from <= atUs && (!until || until > atUs) && (!ended || ended > atUs)));

@@ -186,7 +186,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
             const { value, quality } = model.readings[alarm.tag.index];
             add(markOf(alarm, quality === 'bad' ? null : value, true), alarm.tag.position);
         }
-        for (const note of inForce(session.notes, words.clockUs()))
+        for (const note of inForce(session.notes, words.clockUs(), session.time.atUs))
             add(make('p', { class: 'note' }, make('span', {}, note.text)), placeOfNote(session.model, note));
         if (pointer) {
             add(make('i', { class: 'ring' }), pointer.position);
@@ -202,7 +202,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
             pointer = null;
         if (!frame || !words.model || !session.model)
             return;
-        const now = JSON.stringify([frame.seq, session.tiles.part, pointer, inForce(session.notes, words.clockUs()),
+        const now = JSON.stringify([frame.seq, session.tiles.part, pointer, inForce(session.notes, words.clockUs(), session.time.atUs),
             words.model.alarms.list().map(({ id, state, priority }) => [id, state, priority])]);
         if (now !== marksOf)
             drawMarks();

@@ -28,7 +28,8 @@ export class Notes {
             make('a', { id: 'notes-handover', href: 'handover.html', target: '_blank', rel: 'opener' }, say('notes.handover')));
         byId('views').append(this.element);
         session.on('notes', () => this.hear());
-        session.on('welcome', () => this.hear());
+        for (const name of ['welcome', 'time'])
+            session.on(name, () => this.hear());
         session.on('pointed', () => this.point());
         session.on('params', () => this.offer());
         session.on('noted', ({ kept, why }) => (kept ? this.onKept() : tell(refusalText(why))));
@@ -37,8 +38,9 @@ export class Notes {
         this.point();
     }
 
+    // Notes are made and removed now: not while the past is shown.
     get may() {
-        return MAY.includes(this.session.role);
+        return MAY.includes(this.session.role) && this.session.time.atUs === null;
     }
 
     // --- making one
@@ -86,7 +88,7 @@ export class Notes {
     // --- those there are
 
     get notes() {
-        return inForce(this.session.notes, this.session.clockUs());
+        return inForce(this.session.notes, this.session.clockUs(), this.session.time.atUs);
     }
 
     // Some may end meanwhile, and others be at what is there only now.
