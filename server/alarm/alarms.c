@@ -10,6 +10,7 @@
 #include "value/quality.h"
 
 enum { LONGEST_RETURN_S = 60 };
+static const int64_t LINK_DELAY_NS = INT64_C(10000000000);
 
 /* --- which there are -------------------------------------------------------------------------------------------------------- */
 
@@ -58,17 +59,19 @@ static void add_bad(struct alarms *alarms, int tag)
     add_suppression(alarms, index);
 }
 
-/* As soon, and one less urgent, as the first and the most urgent of those that it stands for. */
-static void add_link(struct alarms *alarms, struct device *device, const struct alarm *bad)
+/* The alarm of a device is as soon and as urgent as those of its tags: at the shortest delay, one level below the highest priority. */
+static void add_link(struct alarms *alarms, struct device *device, int tag, int64_t least_on_ns)
 {
-    const struct plant_alarm_settings *alarm_settings = &alarms->plant->tags[bad->tag].alarm_settings;
-    int priority = (alarm_settings->priority ? alarm_settings->priority : ALARM_PRIORITY_DEFAULT) + 1;
+    const struct plant_alarm_settings *settings = &alarms->plant->tags[tag].alarm_settings;
+    int priority = (settings->priority ? settings->priority : ALARM_PRIORITY_DEFAULT) + 1;
+    int64_t on_ns = ns_of(settings->on_delay_s), off_ns = ns_of(settings->off_delay_s);
     priority = priority > ALARM_PRIORITIES ? ALARM_PRIORITIES : priority;
+    on_ns = on_ns < least_on_ns ? least_on_ns : on_ns;
     if (device->alarm >= 0) {
         struct alarm *link = &alarms->list[device->alarm];
         link->priority = priority < link->priority ? priority : link->priority;
-        link->delays.on_ns = bad->delays.on_ns < link->delays.on_ns ? bad->delays.on_ns : link->delays.on_ns;
-        link->delays.off_ns = bad->delays.off_ns < link->delays.off_ns ? bad->delays.off_ns : link->delays.off_ns;
+        link->delays.on_ns = on_ns < link->delays.on_ns ? on_ns : link->delays.on_ns;
+        link->delays.off_ns = off_ns < link->delays.off_ns ? off_ns : link->delays.off_ns;
         return;
     }
     const struct alarm link = { .name = device->name,
@@ -78,7 +81,7 @@ static void add_link(struct alarms *alarms, struct device *device, const struct 
                                 .limit = NAN,
                                 .value = NAN,
                                 .rule = { .acknowledges = alarms->plant->alarms == ALARMS_LOCAL },
-                                .delays = bad->delays,
+                                .delays = { on_ns, off_ns },
                                 .older = -1,
                                 .newer = -1 };
     device->alarm = (int)alarms->count;
@@ -86,15 +89,34 @@ static void add_link(struct alarms *alarms, struct device *device, const struct 
     alarms->list[alarms->count++] = link;
 }
 
+static bool never_stale(const struct alarms *alarms, size_t tag)
+{
+    return alarms->plant->tags[tag].stale_s >= PLANT_NEVER_STALE_S;
+}
+
+/* Every device has an alarm. Tags that raise BAD alarms decide when it comes; where a device has none, all its tags do. A replay is a file:
+   it ends, and only then if somebody waits for its tags. */
 static void add_links(struct alarms *alarms)
 {
-    size_t count = alarms->count;
-    alarms->devices = devices_create(alarms->plant);
-    for (size_t i = 0; i < count; i++) {
-        const struct alarm bad = alarms->list[i];
-        int of = bad.kind == ALARM_BAD ? alarms->devices->of_tag[bad.tag] : -1;
-        if (of >= 0)
-            add_link(alarms, &alarms->devices->list[of], &bad);
+    const struct plant *plant = alarms->plant;
+    size_t count = alarms->count, tag_count = plant->tag_count;
+    alarms->devices = devices_create(plant);
+    struct device *list = alarms->devices->list;
+    const int *of_tag = alarms->devices->of_tag;
+    for (size_t i = 0; i < count; i++)
+        if (alarms->list[i].kind == ALARM_BAD && of_tag[alarms->list[i].tag] >= 0)
+            add_link(alarms, &list[of_tag[alarms->list[i].tag]], alarms->list[i].tag, 0);
+    size_t with_bad = alarms->count;
+    for (size_t i = 0; i < tag_count; i++) {
+        struct device *device = of_tag[i] < 0 ? NULL : &list[of_tag[i]];
+        const char *kind = device ? plant->sources[device->source].kind : NULL;
+        if (device && (device->alarm < 0 || device->alarm >= (int)with_bad) && !(kind && !strcmp(kind, "replay")))
+            add_link(alarms, device, (int)i, LINK_DELAY_NS);
+    }
+    for (size_t i = 0; i < tag_count; i++) { /* no Stale s bridges a short loss of the connection */
+        struct alarm *link = of_tag[i] < 0 || list[of_tag[i]].alarm < 0 ? NULL : &alarms->list[list[of_tag[i]].alarm];
+        if (link && never_stale(alarms, i) && link->delays.on_ns < LINK_DELAY_NS)
+            link->delays.on_ns = LINK_DELAY_NS;
     }
 }
 
@@ -495,11 +517,18 @@ static void call_those_left(struct alarms *alarms, struct instant now)
     }
 }
 
-/* What becomes of devices is known before what becomes of their tags is judged. */
+/* A tag that never gets stale keeps its last value while its device is lost. */
+static enum device_status status_of(const struct alarms *alarms, size_t tag, uint32_t quality)
+{
+    bool lost = quality == QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE && never_stale(alarms, tag);
+    return lost ? DEVICE_GONE : device_status_of(quality);
+}
+
+/* Devices are judged before their tags. */
 void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        devices_put(alarms->devices, event[i].tag, device_status_of(event[i].quality), event[i].mono_ns);
+        devices_put(alarms->devices, event[i].tag, status_of(alarms, (size_t)event[i].tag, event[i].quality), event[i].mono_ns);
     if (count > 0)
         look_at_devices(alarms, (struct instant){ event[count - 1].mono_ns, event[count - 1].utc_ns });
     for (size_t i = 0; i < count; i++) {
@@ -535,7 +564,7 @@ static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32
         return true;
     if (!seen->sampled)
         return !bad;
-    return seen->bad == bad && (!counts || alarms->devices->statuses[tag] == device_status_of(quality));
+    return seen->bad == bad && (!counts || alarms->devices->statuses[tag] == status_of(alarms, tag, quality));
 }
 
 /* Those that went stale since they were sampled, or never came. */

@@ -12,7 +12,7 @@ struct device {
     int source, unit;
     int usable, gone;    /* the number of its tags that are DEVICE_USABLE, and DEVICE_GONE */
     int64_t back_ns;     /* monotonic: since when one of its tags is usable; 0: none is */
-    int alarm;           /* index in alarms; -1: it needs none */
+    int alarm;           /* index in alarms; -1: it has none */
     bool changed;        /* since alarms.c evaluated it */
 };
 

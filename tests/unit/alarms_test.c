@@ -579,6 +579,56 @@ static void what_a_device_carries_outlives_us(void **unused)
     end(&s);
 }
 
+/* None of its tags has a limit: nothing else says that it is gone. */
+static void a_device_without_limits_has_an_alarm(void **unused)
+{
+    struct stage s = { .plant = NULL };
+    (void)unused;
+    make_plant(&s, ALARMS_LOCAL);
+    for (int tag = 0; tag < 5; tag++)
+        for (int i = 0; i < LIMIT_COUNT; i++)
+            s.plant->tags[tag].limits[i] = NAN;
+    s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
+    s.snapshot = snapshot_create(5);
+    hear_all(&s, 1, 50, QUALITY_GOOD);
+    hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE); /* one missed poll */
+    tick(&s, 14);
+    hear_all(&s, 15, 50, QUALITY_BAD_COMMUNICATION_ERROR);
+    tick(&s, 24);
+    hear_all(&s, 24, 50, QUALITY_GOOD);
+    tick(&s, 26);
+    assert_told(&s, "");
+    hear_all(&s, 30, 50, QUALITY_BAD_COMMUNICATION_ERROR);
+    tick(&s, 41);
+    assert_told(&s, "40 a.LINK raise: normal > unacknowledged\n");
+    assert_null(act_on_link(&s, 42, "a", ALARM_ACKNOWLEDGE));
+    hear(&s, 43, 4, 1, QUALITY_GOOD);
+    assert_told(&s, "42 a.LINK acknowledge: unacknowledged > acknowledged by kim\n43 a.LINK clear: acknowledged > normal\n");
+    end(&s);
+}
+
+/* A broker or a server that tells of changes only: its tags keep their last values while it is gone. */
+static void a_lost_source_that_never_gets_stale_has_an_alarm(void **unused)
+{
+    struct stage s = { .plant = NULL };
+    (void)unused;
+    make_plant(&s, ALARMS_LOCAL);
+    for (int tag = 0; tag < 5; tag++)
+        s.plant->tags[tag].stale_s = PLANT_NEVER_STALE_S;
+    s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
+    s.snapshot = snapshot_create(5);
+    hear_all(&s, 1, 50, QUALITY_GOOD);
+    s.log[0] = 0;
+    hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+    tick(&s, 19);
+    s.log[0] = 0;
+    tick(&s, 21);
+    assert_told(&s, "20 a.LINK raise: normal > unacknowledged\n");
+    hear_all(&s, 25, 50, QUALITY_GOOD);
+    assert_told(&s, "25 a.LINK clear: unacknowledged > returned\n");
+    end(&s);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -596,6 +646,8 @@ int main(void)
         cmocka_unit_test(counts_are_what_there_is),
         cmocka_unit_test(what_is_there_stands_before_what_has_gone),
         cmocka_unit_test(a_lost_device_is_one_alarm),
+        cmocka_unit_test(a_device_without_limits_has_an_alarm),
+        cmocka_unit_test(a_lost_source_that_never_gets_stale_has_an_alarm),
         cmocka_unit_test(those_that_went_before_are_carried_too),
         cmocka_unit_test(a_stopped_controller_is_one_and_a_failed_sensor_its_own),
         cmocka_unit_test(units_are_devices_of_their_own),
