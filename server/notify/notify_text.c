@@ -111,7 +111,7 @@ static void add_line(struct text *out, const struct plant *plant, const struct o
     text_add(out, "  ");
     add_name(out, plant, item);
     if (isfinite(item->value) && item->kind != ALARM_ON && item->kind != ALARM_BAD)
-        text_add(out, ": %.6g%s%s", item->value, space, unit);
+        text_add(out, ": raised at %.6g%s%s", item->value, space, unit);
     if (isfinite(item->limit))
         text_add(out, " (limit %.6g%s%s)", item->limit, space, unit);
     if (asset)

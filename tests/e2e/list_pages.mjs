@@ -4,6 +4,6 @@ import { describe } from 'node:test';
 import './support/browser.mjs'; // whose browser ends with the program, not with the first subject
 
 describe('list_pages', { concurrency: 2 }, () => {
-    for (const subject of ['alarms', 'engineer', 'accepting', 'assets'])
+    for (const subject of ['alarms', 'engineer', 'accepting', 'assets', 'present'])
         describe(subject, { concurrency: 1 }, () => import(`./list_pages/${subject}.mjs`));
 });

@@ -3,6 +3,7 @@
 import { byEquipment } from '../core/alarm_call.js';
 import { isGone } from '../core/alarms.js';
 import { ageText, decimalsFor, numberText, qualityText, quantityText, unitText, zoneClock } from '../core/format.js';
+import { health } from '../core/health.js';
 import { refusalText } from '../core/refusals.js';
 import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
@@ -24,6 +25,9 @@ export function paneOf(pane, context) {
     const { tick = () => {} } = KINDS[pane.kind](pane, { ...context, title, body, element, timeOf });
     return { element, kind: pane.kind, tick };
 }
+
+// As the strip of alarms says it. The server that is silent does not tell the present value.
+const nowText = (session, alarm) => limitText(session, alarm, !['lost', 'silent'].includes(health(session, clock.now()).kind));
 
 const ageOf = (ms) => say('walls.age', { age: ms === null ? '–' : ageText(ms) });
 
@@ -103,7 +107,7 @@ function ViewsPane(pane, context) {
         page.session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
         page.flyToTag(tag);
         words.replaceChildren(badge(alarm.priority, isGone(alarm.state)), make('b', {}, ` ${say(`kind.${alarm.kind}`)} ${tag.name} `),
-            make('span', {}, `${limitText(session.model, alarm)} `),
+            make('span', { class: 'raised' }, `${nowText(session, alarm)} `),
             make('span', {}, say('walls.since', { time: timeOf(session, alarm.raisedUs) })));
     }
 
@@ -130,8 +134,11 @@ function ViewsPane(pane, context) {
         element.classList.toggle('unshown', Boolean(unshown));
         element.classList.toggle('called', Boolean(alarm));
         element.classList.toggle('coming', Boolean(alarm) && ofOther(page.session, alarm)); // no legend of another quantity below its name
-        if (wanted === shown && page === shownIn)
+        if (wanted === shown && page === shownIn) {
+            if (alarm)
+                setText(words.querySelector('.raised'), `${nowText(session, alarm)} `);
             return;
+        }
         [shown, shownIn] = [wanted, page];
         changedAt = now;
         if (alarm)
@@ -170,7 +177,7 @@ function AlarmsPane(pane, { session, call, title, body }) {
     const rowOf = (alarm) => make('li', { class: [alarm.waiting ? 'waiting' : '', isGone(alarm.state) ? 'gone' : ''].join(' ') },
         badge(alarm.priority, isGone(alarm.state)),
         make('b', {}, `${say(`kind.${alarm.kind}`)} `, make('span', { class: 'tag' }, alarm.tag.name)),
-        make('span', { class: 'what' }, [limitText(session.model, alarm), alarm.tag.description].filter(Boolean).join(' · ')),
+        make('span', { class: 'what' }, [nowText(session, alarm), alarm.tag.description].filter(Boolean).join(' · ')),
         make('time', {}, timeOf(session, alarm.raisedUs)));
     const rowOfMany = ({ asset, count, worst }) => make('li', { class: 'waiting' }, badge(worst.priority),
         make('b', {}, asset ?? worst.tag.name), make('span', { class: 'what' },
@@ -193,7 +200,7 @@ function AlarmsPane(pane, { session, call, title, body }) {
         const { alarms } = session.model, all = alarms.list(), flood = call.isFlood(all, session.clockUs());
         setText(about, ageOf(clock.now() - session.freshAt));
         const { active, waiting } = alarms.counts(), now = JSON.stringify([flood, body.clientHeight,
-            all.map(({ id, state, priority, value }) => [id, state, priority, value])]);
+            all.map((alarm) => [alarm.id, alarm.state, alarm.priority, flood ? '' : nowText(session, alarm)])]);
         if (now === said)
             return;
         said = now;

@@ -125,8 +125,7 @@ latched: {latched} zurückzusetzen
 asof: Stand {time}: {alarms}
 gone: Priorität {priority}, Ursache gegangen
 now: Jetzt: {alarms}
-at: {alarm} bei {value}
-value: {value} (Grenzwert {limit})
+value: ausgelöst bei {value}, jetzt {now} (Grenzwert {limit})
 priority: Priorität {priority}
 
 [kind]

@@ -125,8 +125,7 @@ latched: {latched} to be reset
 asof: As of {time}: {alarms}
 gone: Priority {priority}, its cause has gone
 now: Now: {alarms}
-at: {alarm} at {value}
-value: {value} (limit {limit})
+value: raised at {value}, now {now} (limit {limit})
 priority: Priority {priority}
 
 [kind]

@@ -123,8 +123,7 @@ latched: 리셋할 것 {latched}건
 asof: {time} 기준: {alarms}
 gone: 우선순위 {priority}, 원인 사라짐
 now: 현재: {alarms}
-at: {alarm}, {value}
-value: {value} (한계 {limit})
+value: 발생 {value}, 현재 {now} (한계 {limit})
 priority: 우선순위 {priority}
 
 [kind]

@@ -287,6 +287,7 @@ sensors.name: Sensoren
 far: Auf diesem Bildschirm sind die Buchstaben bis {metres} m groß genug, nicht bis {wanted} m.
 
 [callout]
+held: gehalten seit {time}
 count: {count} Alarme
 worst: schwerster
 

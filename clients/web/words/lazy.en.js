@@ -285,6 +285,7 @@ sensors.name: Sensors
 far: On this screen letters are large enough up to {metres} m, not {wanted} m.
 
 [callout]
+held: held since {time}
 count: {count} alarms
 worst: worst
 

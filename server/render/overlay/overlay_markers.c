@@ -2,6 +2,7 @@
 /* Sensors: a mark at each place, and a label wherever it covers nothing else. */
 #include <math.h>
 #include <stdio.h>
+#include <time.h>
 
 #include "base/mem.h"
 #include "render/frame_record.h"
@@ -99,20 +100,39 @@ static bool is_elsewhere(const struct pen *pen, const struct frame_marker *marke
     return pen->view.field.show == SHOW_DISTANCE && isnan(marker->value);
 }
 
+/* Of a reading that is Bad: its alarm stays as it was when the last value came. */
+static void format_bad(const struct pen *pen, const struct reading *reading, char out[64])
+{
+    enum alarm_kind alarm = (enum alarm_kind)reading->alarm;
+    time_t seconds = (time_t)(reading->received_utc_ns / 1000000000);
+    struct tm local;
+    char clock[16], since[48];
+    if (alarm == ALARM_NONE || alarm == ALARM_BAD || !reading->received_utc_ns || !localtime_r(&seconds, &local)) {
+        snprintf(out, 64, "%s", pen_word(pen, WORD_BAD));
+        return;
+    }
+    strftime(clock, sizeof(clock), "%H:%M", &local);
+    pen_say(pen, WORD_HELD_SINCE, clock, NULL, since, sizeof(since));
+    snprintf(out, 64, "%s %s", alarm_kind_name(alarm), since);
+}
+
 static void format_value(const struct pen *pen, const struct frame_marker *marker, char out[64])
 {
     const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
     const struct plant_group *group = &pen->scene->plant->groups[pen->view.field.group];
-    bool difference = pen->view.field.show == SHOW_DIFFERENCE, lost = quality_is_bad(pen->snapshot->readings[marker->tag].quality);
-    const char *alarm = alarm_kind_name((enum alarm_kind)pen->snapshot->readings[marker->tag].alarm);
+    const struct reading *reading = &pen->snapshot->readings[marker->tag];
+    bool difference = pen->view.field.show == SHOW_DIFFERENCE, lost = quality_is_bad(reading->quality);
+    const char *alarm = alarm_kind_name((enum alarm_kind)reading->alarm);
     int decimals = pen_decimals(group->max - group->min);
     double value = pen_rounded(marker->value, decimals);
     if (is_elsewhere(pen, marker))
         snprintf(out, 64, "%s", alarm ? alarm : "");
     else if (pen->view.field.show == SHOW_DISTANCE)
         snprintf(out, 64, "%.2f m", marker->value);
+    else if (quality_is_bad(marker->quality) && lost)
+        format_bad(pen, reading, out);
     else if (quality_is_bad(marker->quality))
-        snprintf(out, 64, "%s", pen_word(pen, lost ? WORD_BAD : WORD_UNKNOWN_THEN));
+        snprintf(out, 64, "%s", pen_word(pen, WORD_UNKNOWN_THEN));
     else
         snprintf(out, 64, "%s%s%.*f %s%s%s%s", difference ? "Δ " : "", difference && value > 0 ? "+" : "", decimals, value,
                  tag->unit ? tag->unit : "", quality_is_uncertain(marker->quality) ? " ?" : "", alarm ? " " : "", alarm ? alarm : "");

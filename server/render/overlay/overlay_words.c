@@ -27,6 +27,7 @@ static const char *const words[OVERLAY_WORDS][LANGUAGES] = {
     [WORD_GLOSSY] = { "glossy: light changes", "광택: 빛이", "glänzend: Licht ändert" },
     [WORD_GLOSSY_2] = { "the colours", "색을 바꿈", "die Farben" },
     [WORD_BAD] = { "BAD", "불량", "SCHLECHT" },
+    [WORD_HELD_SINCE] = { "held since {}", "{}부터 유지", "gehalten seit {}" },
     [WORD_UNKNOWN_THEN] = { "not known then", "당시에는 모름", "damals unbekannt" },
     [WORD_FROM] = { "From {}", "{}에서의 거리", "Abstand von {}" },
     [WORD_HOT_SPOT] = { "Hot spot seen: {}", "보이는 과열부: {}", "Erkannte Heißstelle: {}" },

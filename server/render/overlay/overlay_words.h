@@ -27,6 +27,7 @@ enum overlay_word {
     WORD_GLOSSY, /* two lines */
     WORD_GLOSSY_2,
     WORD_BAD,
+    WORD_HELD_SINCE,
     WORD_UNKNOWN_THEN,
     WORD_FROM, /* {}: where overlay_say() puts something in */
     WORD_HOT_SPOT,

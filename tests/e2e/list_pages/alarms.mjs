@@ -56,7 +56,7 @@ test('what comes beyond its limit is counted, marked and listed, the most urgent
     assert.deepEqual((({ kind, state }) => [kind, state])(await ring(HOT)), ['HH', 'unacknowledged']);
     await page.locator('#alarm-strip').click();
     const first = page.locator('#alarms-list li').first();
-    assert.match(await first.textContent(), new RegExp(`${HOT} High high, ${limitOf(HOT).HH + 1}`));
+    assert.match(await first.textContent(), new RegExp(`${HOT} High high, raised at ${limitOf(HOT).HH + 1}`));
     await settle(page);
     const [legend, list] = await Promise.all(['#legend', '#alarms'].map((id) => page.locator(id).boundingBox()));
     assert.ok(legend.x + legend.width <= list.x, 'the legend is read beside the list');
@@ -226,7 +226,7 @@ test('without a connection the strip says as of when, and offers nothing', optio
     });
     await waitForWords('^As of \\d\\d:\\d\\d:\\d\\d: ');
     assert.equal((await words()).replace(/^As of [\d:]+: /, ''), before);
-    assert.ok(await page.locator('#alarm-strip.stale').isVisible());
+    assert.ok(await page.locator('.stale #alarm-strip').isVisible());
     await page.waitForFunction(() => document.querySelectorAll('#alarms .do button').length === 0);
     assert.match(await page.locator('#alarms-stale').textContent(), /^Not of now: as of \d\d:\d\d:\d\d/);
     assert.equal(await page.evaluate(() => document.body.classList.contains('alarm-blink')), false);

@@ -8,13 +8,15 @@ export const badge = (priority, hollow = false) => make('span', {
     class: `priority p${priority}${hollow ? ' hollow' : ''}`, title: say(hollow ? 'alarms.gone' : 'alarms.priority', { priority }),
 }, String(priority));
 
-// Its value and its limit, in words; empty where it has none.
-export function limitText(model, { tag, value, limit }) {
+// The value at which an alarm was raised, the present value, and the limit, in words; empty for an alarm without a limit. fresh: the server
+// speaks to us. Else, or while the past is shown, the present value is a dash.
+export function limitText({ model, time }, { tag, value, limit }, fresh) {
     if (value === null || limit === null)
         return '';
     const group = model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
-    const text = `${numberText(value, decimals)} ${unitText(tag.unit || group?.unit)}`;
-    return say('alarms.value', { value: text, limit: numberText(limit, decimals) });
+    const textOf = (number) => `${numberText(number, decimals)} ${unitText(tag.unit || group?.unit)}`;
+    const reading = model.readings[tag.index], known = reading.quality === 'bad' ? say('novalue') : textOf(reading.value);
+    return say('alarms.value', { value: textOf(value), now: fresh && time.atUs === null ? known : '–', limit: textOf(limit) });
 }
 
 export class AlarmBar {
@@ -22,6 +24,7 @@ export class AlarmBar {
         Object.assign(this, { session, refresh, fresh: true });
         for (const name of ['welcome', 'alarms', 'time'])
             session.on(name, () => this.show());
+        session.on('tags', () => this.showNewest());
         setInterval(() => this.tick(), 500);
     }
 
@@ -32,7 +35,7 @@ export class AlarmBar {
     // false: the server does not speak to us; what is said is as of when it last did.
     setFresh(fresh) {
         this.fresh = fresh;
-        byId('alarm-strip').classList.toggle('stale', !fresh);
+        document.body.classList.toggle('stale', !fresh);
         document.body.classList.remove('alarm-blink');
         this.show();
     }
@@ -49,13 +52,13 @@ export class AlarmBar {
     show() {
         if (!this.alarms?.known)
             return;
-        const counts = this.alarms.counts(), { active, waiting, of, gone } = counts, [newest] = this.alarms.list();
+        const counts = this.alarms.counts(), { active, waiting, of, gone } = counts;
         byId('alarm-strip').dataset.kind = active === 0 ? (waiting > 0 ? 'gone' : 'none') : waiting > 0 ? 'waiting' : 'some';
         const badges = (list, hollow) =>
             list.flatMap((count, i) => (count > 0 ? [badge(i + 1, hollow), make('b', {}, `×\u2009${count}`)] : []));
         byId('alarm-counts').replaceChildren(...badges(of, false), ...badges(gone, true));
-        setText(byId('alarm-words'), this.words(counts, Boolean(newest)));
-        setText(byId('alarm-newest'), newest ? this.newestText(newest) : '');
+        setText(byId('alarm-words'), this.words(counts, this.alarms.byTag.size > 0));
+        this.showNewest();
         setText(byId('alarm-mode'), say(`mode.${this.alarms.mode}`));
     }
 
@@ -69,9 +72,13 @@ export class AlarmBar {
         return session.time.atUs === null ? alarms : say('alarms.now', { alarms });
     }
 
+    showNewest() {
+        const [newest] = this.alarms?.known ? this.alarms.list() : [];
+        setText(byId('alarm-newest'), newest ? this.newestText(newest) : '');
+    }
+
     newestText(newest) {
-        const alarm = `${newest.tag.name} ${say(`kind.${newest.kind}`)}`, value = limitText(this.session.model, newest);
-        return value ? say('alarms.at', { alarm, value }) : alarm;
+        return [`${newest.tag.name} ${say(`kind.${newest.kind}`)}`, limitText(this.session, newest, this.fresh)].filter(Boolean).join(', ');
     }
 }
 

@@ -77,8 +77,10 @@ export class AlarmList {
             return;
         if (this.shownFresh !== this.overlay.fresh)
             this.show();
-        for (const [element, alarm] of this.ages ?? [])
-            setText(element, this.since(alarm));
+        for (const [row, alarm] of this.ages ?? []) {
+            setText(row.querySelector('.since'), this.since(alarm));
+            setText(row.querySelector('.raised'), this.readingText(alarm));
+        }
     }
 
     show() {
@@ -122,7 +124,7 @@ export class AlarmList {
             const is = JSON.stringify(said, (key, value) => (key === 'tag' ? undefined : value));
             const row = before.get(is) ?? Object.assign(this.row(alarm), { said: is });
             before.delete(is);
-            this.ages.push([row.querySelector('.since'), alarm]);
+            this.ages.push([row, alarm]);
             return row;
         });
         for (const row of before.values())
@@ -213,15 +215,20 @@ export class AlarmList {
             `${say(`kind.${kind}`)} (${say(`state.${state}`)})`).join(', ') });
     }
 
+    readingText(alarm) {
+        const value = limitText(this.session, alarm, this.overlay.fresh);
+        return value ? `, ${value}` : '';
+    }
+
     row(alarm) {
         const { tag, kind, state, priority } = alarm, { mode } = this.alarms, actions = rowActions(alarm, mode, this.role);
-        const value = limitText(this.session.model, alarm), what = ` ${say(`kind.${kind}`)}${value ? `, ${value}` : ''}`;
+        const reading = make('span', { class: 'raised' }, this.readingText(alarm));
         const asset = this.session.model.asset(tag.asset), age = make('span', { class: 'since' }, this.since(alarm));
         const title = say('alarms.fly', { tag: tag.name }), nowhere = tag.index === null; // a device is at no place of the model
         const how = nowhere ? { class: 'alarm-go' } : { type: 'button', class: 'alarm-go', title, onclick: () => this.flyTo(tag) };
         const note = [this.note(alarm), this.also(alarm)].filter(Boolean).join('; ');
         const fly = make(nowhere ? 'div' : 'button', how, badge(priority, isGone(state)),
-            make('span', { class: 'what' }, make('b', {}, tag.name), what),
+            make('span', { class: 'what' }, make('b', {}, tag.name), ` ${say(`kind.${kind}`)}`, reading),
             make('span', { class: 'where' }, [asset?.tag ?? asset?.id, tag.description].filter(Boolean).join(', ')),
             make('span', { class: 'state' }, say(`state.${state}`)), age, make('span', { class: 'note' }, note));
         const buttons = actions.map((action) =>

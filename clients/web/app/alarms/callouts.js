@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Call-outs: what the rings of alarms that are close together say as one, in two lines.
+// Call-outs: what the rings of alarms that are close together say as one, in two lines. Also labels of alarms that are held.
 import { graver } from '../../core/alarms.js';
 import { placeRings } from '../../core/callouts.js';
+import { zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { INK, INK_2, LABEL_HEIGHT } from '../viewport/overlay.js';
 
@@ -14,6 +15,16 @@ export class Callouts {
         Object.assign(this, { overlay, session, place: placeRings });
         overlay.callouts = this;
         refresh();
+    }
+
+    // The label of a ring whose reading is bad: its alarm stays as it was when the last value came. null: there was none.
+    held(tag, { kind }) {
+        const { session } = this, { model, time } = session, ageMs = model.ageMs(tag.index, session.now());
+        const nowUs = time.atUs ?? session.clockUs();
+        if (kind === 'BAD' || ageMs === null || nowUs === null)
+            return null;
+        const since = zoneClock(model.plant.time_zone)(nowUs / 1000 - ageMs).time.slice(0, 5);
+        return [[kind, 700, null], [say('callout.held', { time: since }), 400, INK_2]];
     }
 
     // Parts of the two lines, as the overlay's labels have them, and whose alarm is named.

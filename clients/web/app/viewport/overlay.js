@@ -119,8 +119,6 @@ export class Overlay {
         this.dirty = false;
         const { wide: width, high: height, unit } = this, ratio = window.devicePixelRatio * unit;
         const c = this.context;
-        if (!(width > 0 && height > 0))
-            return; // a viewport without area, as beside the trends of a wall
         const pixels = [Math.round(width * ratio), Math.round(height * ratio)];
         if (this.canvas.width !== pixels[0] || this.canvas.height !== pixels[1])
             [this.canvas.width, this.canvas.height] = pixels;
@@ -162,7 +160,7 @@ export class Overlay {
         return tag.name === this.selection.tag || tag === this.selection.hover;
     }
 
-    // Each half for itself. Call-outs come when there are rings that may need them.
+    // Places the labels of each half. Call-outs are loaded when there are rings that may need them.
     place(labels) {
         const { shown } = this.session, { wide: width, high: height, callouts } = this, blocked = this.blocked();
         const placed = halves(shown, width).map((half, number) => placeLabels(labels.filter((label) => label.half === number), {
@@ -170,7 +168,7 @@ export class Overlay {
             rings: callouts?.place, measure: (members) => callouts.measure(members),
         }));
         const all = new Map(placed.flatMap((one) => [...one])), rings = labels.filter(({ rank }) => rank === RANK_RING);
-        if (!callouts && (rings.length > 1 || rings.some(({ id }) => !all.has(id))))
+        if (!callouts && (rings.length > 1 || rings.some(({ id, bad }) => bad || !all.has(id))))
             this.onRings();
         return all;
     }
@@ -189,17 +187,20 @@ export class Overlay {
             const parts = this.parts(marker, named || onSelected || marker.origin || alarm !== null);
             const width = this.lineWidth(parts);
             const bad = reading.quality === 'bad', unseen = (marker.occluded || marker.distance_m === null) && !alarm;
-            const silent = unseen || this.isChosen(tag) || (bad && tooMany) || (this.calm && !alarm && !bad);
+            const silent = unseen || this.isChosen(tag) || (bad && tooMany && !alarm) || (this.calm && !alarm && !bad);
             const rank = silent ? -1 : alarm ? RANK_RING : bad || marker.origin ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
             const { x, y, depth, half } = marker;
             const { slot: held, callout } = this.places.get(id) ?? {}, ring = alarm !== null;
-            return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held, callout, parts, alarm, ring, tag };
+            return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held, callout, parts, alarm, ring, bad, tag };
         });
     }
 
     // Pieces of a label: [text, weight, colour].
     parts({ tag, reading, change, distance_m, alarm }, withName) {
         const parts = withName ? [[tag.name, 400, INK_2]] : [];
+        const held = alarm && reading.quality === 'bad' && this.callouts?.held(tag, alarm);
+        if (held)
+            return [...parts, ...held];
         const group = this.session.model.group(tag.group), decimals = decimalsFor(group.max - group.min);
         if (distance_m !== false) {
             if (distance_m !== null)

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nothing of another time passes for the present: the value at which an alarm was raised, notes that were written later, rings and lists of
+// a device or a server that is lost.
+import assert from 'node:assert/strict';
+import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, settle, shoot, travel, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { missing, TinyPlant } from '../support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const SCREEN = { viewport: { width: 1280, height: 720 } };
+let plant, url, desk, german, wall;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    appendFileSync(plant.file, `alarms: local
+views:
+- { id: near, view: "look=default" }
+walls:
+- id: room
+  displays:
+  - grid: [main alarms]
+    panes:
+    - { area: main, views: [near], on_alarm: yes }
+    - { area: alarms, alarms: yes }
+`);
+    const tags = join(plant.folder, 'tags.csv'), [head, ...rows] = readFileSync(tags, 'utf8').trim().split('\n');
+    const limits = { 'TI-1': ',60,90', 'TI-2': ',60,90', 'PI-1': ',,' };
+    writeFileSync(tags, `${[`${head},H,HH`, ...rows.map((row) => row + limits[row.split(',')[0]])].join('\n')}\n`);
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    for (const [tag, value] of [['TI-1', 50], ['TI-2', 20], ['PI-1', 5]])
+        await plant.tell(`set ${tag} ${value}`);
+    await plant.startDaemon();
+    url = `http://127.0.0.1:${plant.port}/`;
+    desk = await openPage(url, SCREEN);
+    german = await openPage(`${url}?lang=de`, SCREEN);
+    for (const { page } of [desk, german]) {
+        await waitForPicture(page);
+        await waitForHealth(page, 'live');
+    }
+});
+after(async () => {
+    for (const browser of [desk, german, wall])
+        await browser?.close();
+    await plant?.destroy();
+});
+
+const waitForText = (page, selector, pattern) => page.waitForFunction(
+    ([where, p]) => new RegExp(p).test(document.querySelector(where)?.textContent), [selector, pattern], { timeout: 60000 });
+const labels = (page) => page.evaluate(() => globalThis.plantcast.overlay.labels().filter(({ rank, ring }) => ring && rank >= 0)
+    .map(({ parts }) => parts.map(([text]) => text).join(' ')));
+
+test('an alarm says at which value it was raised, and the present one', options, async () => {
+    await plant.tell('set TI-1 95.5');
+    await waitForText(desk.page, '#alarm-newest', '^TI-1 High high, raised at 95\\.5 °C, now 95\\.5 °C \\(limit 90\\.0 °C\\)$');
+    await plant.tell('set TI-1 70.25');
+    await waitForText(desk.page, '#alarm-newest', 'TI-1 High.*now 70\\.3 °C');
+    await plant.tell('set TI-1 40'); // gone, and nobody has acknowledged it
+    await waitForText(desk.page, '#alarm-newest', 'raised at .* now 40\\.0 °C \\(limit');
+    await waitForText(german.page, '#alarm-newest', 'ausgelöst bei .*, jetzt 40,0 °C \\(Grenzwert');
+    await desk.page.locator('#alarm-strip').click();
+    await waitForText(desk.page, '#alarms-list .raised', 'now 40\\.0 °C');
+    await plant.tell('set TI-1 41');
+    await waitForText(desk.page, '#alarms-list .raised', 'now 41\\.0 °C');
+    await settle(desk.page);
+    await shoot(desk.page, 'present-list');
+    await shoot(german.page, 'present-strip-de');
+    await desk.page.locator('#alarms-close').click();
+    wall = await openPage(`${url}wall.html?wall=room&display=1`, SCREEN);
+    await waitForText(wall.page, '.pane.alarms .what', 'raised at .*, now 41\\.0 °C');
+    await waitForText(wall.page, '.pane.views h2', 'raised at .*, now 41\\.0 °C');
+    await plant.tell('set TI-1 42');
+    await waitForText(wall.page, '.pane.alarms .what', 'now 42\\.0 °C');
+    await waitForText(wall.page, '.pane.views h2', 'now 42\\.0 °C');
+    await shoot(wall.page, 'present-wall');
+});
+
+test('a note is shown at an instant if it was there then', options, async () => {
+    const { page } = desk, nowUs = () => page.evaluate(() => globalThis.plantcast.session.clockUs());
+    const pins = () => page.evaluate(() => [...document.querySelectorAll('.note-pin')].map(({ textContent }) => textContent));
+    const waitForPins = (...texts) => page.waitForFunction((wanted) => [...document.querySelectorAll('.note-pin')]
+        .map(({ textContent }) => textContent).join('|') === wanted, texts.join('|'), { timeout: 30000 });
+    const later = async (us) => { // history of an instant is settled after 3 s
+        await page.waitForFunction((then) => globalThis.plantcast.session.clockUs() > then + 3.5e6, us);
+        return us;
+    };
+    const before = await nowUs();
+    await later(before);
+    await page.evaluate(() => globalThis.plantcast.session.post({ type: 'note', seq: 900, text: 'Manhole open', asset: 'E-101' }));
+    await waitForPins('Manhole open');
+    const during = await nowUs();
+    await later(during);
+    await page.evaluate(() => {
+        const { session } = globalThis.plantcast;
+        session.post({ type: 'remove_note', seq: 901, id: session.notes[0].id });
+    });
+    await waitForPins();
+    const gone = await later(await nowUs());
+    await travel(page, before);
+    await waitForHealth(page, 'past');
+    await page.waitForFunction((us) => globalThis.plantcast.session.picture.dataTimeUs === us, before);
+    assert.deepEqual(await pins(), []);
+    await travel(page, during);
+    await waitForPins('Manhole open');
+    await waitForText(page, '#alarm-newest', 'raised at .*, now – \\(limit');
+    await shoot(page, 'present-note-then');
+    await travel(page, gone);
+    await waitForPins();
+    await travel(page, during);
+    await waitForPins('Manhole open');
+    await travel(page, null);
+    await waitForHealth(page, 'live');
+    await waitForPins();
+});
+
+test('a lost device raises an alarm of its own; rings keep their names and say since when they are held', options, async () => {
+    await plant.tell('set TI-1 95.5');
+    await plant.tell('set TI-2 95.5');
+    const rings = (page, pattern) => page.waitForFunction((p) => {
+        const said = globalThis.plantcast.overlay.labels().filter(({ rank, ring }) => ring && rank >= 0)
+            .map(({ parts }) => parts.map(([text]) => text).join(' '));
+        return said.length === 2 && said.every((text) => new RegExp(p).test(text));
+    }, pattern, { timeout: 60000 });
+    await rings(desk.page, '^TI-[12] 95\\.5 °C HH$');
+    await plant.tell('pause');
+    await rings(desk.page, '^TI-[12] HH held since \\d\\d:\\d\\d$');
+    await rings(german.page, '^TI-[12] HH gehalten seit \\d\\d:\\d\\d$');
+    await desk.page.waitForFunction(() => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind, state }) =>
+        tag.name === 'plc1' && kind === 'LINK' && state === 'unacknowledged'), null, { timeout: 60000 });
+    await desk.page.locator('#alarm-strip').click();
+    await waitForText(desk.page, '#alarms-list', 'plc1');
+    await waitForText(desk.page, '#alarms-list', 'raised at 95\\.5 °C, now no value');
+    await shoot(desk.page, 'present-device-lost');
+    await shoot(german.page, 'present-device-lost-de');
+    await shoot(wall.page, 'present-device-lost-wall');
+    await desk.page.locator('#alarms-close').click();
+    await plant.tell('resume');
+    await rings(desk.page, '^TI-[12] 95\\.5 °C HH$');
+    assert.equal((await labels(desk.page)).length, 2);
+});
+
+test('the server is lost: the equipment list goes grey as the strip and the picture do', options, async () => {
+    const { page } = desk, list = page.locator('#assets-list');
+    if (await page.locator('#assets-toggle').getAttribute('aria-expanded') !== 'true')
+        await page.locator('#assets-toggle').click();
+    await list.locator('.limit-flag').first().waitFor();
+    const filter = () => list.evaluate((element) => getComputedStyle(element).filter);
+    assert.equal(await filter(), 'none');
+    await plant.daemon.stop();
+    await page.waitForFunction(() => getComputedStyle(document.getElementById('assets-list')).filter === 'grayscale(1)', null,
+        { timeout: 60000 });
+    assert.equal(await page.locator('#alarm-newest').evaluate((element) => getComputedStyle(element).filter), 'grayscale(1)');
+    await waitForText(page, '#alarm-newest', 'raised at .*, now –');
+    await shoot(page, 'present-server-lost');
+    await shoot(wall.page, 'present-server-lost-wall');
+});
