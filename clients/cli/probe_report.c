@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "probe.h"
+#include "stream_reach.h"
 
 const char *const probe_motions[MOTION_COUNT] = { "still", "orbit", "random" };
 static const char *const stage_names[STAGE_COUNT] = { "wait", "field", "render", "encode", "network", "decode" };
@@ -194,6 +195,8 @@ bool probe_report(const struct probe *probe)
     else if (sum.frames > 0)
         print_table(probe, &sum);
     print_failures(probe);
+    if (sum.failed > 0 && sum.frames == 0)
+        stream_is_blocked(&probe->url);
     bool good = sum.failed == 0 && sum.frames > 0;
     summary_finish(&sum);
     return good;

@@ -4,11 +4,13 @@
 #include <string.h>
 
 #include "commands.h"
+#include "stream_reach.h"
 #include "clients/link/daemon.h"
 
 static const char usage[] = "usage: plantcast ready URL\n"
                             "\n"
-                            "Ends with 0 if the daemon (http://HOST:PORT/ or https://) serves pictures, else with 1 and the reason.\n";
+                            "Ends with 0 if the daemon (http://HOST:PORT/ or https://) serves pictures, else with 1 and the reason.\n"
+                            "Over http:// it also tries whether a proxy in between passes WebSockets on.\n";
 
 int cmd_ready(int argc, char **argv)
 {
@@ -25,5 +27,7 @@ int cmd_ready(int argc, char **argv)
     if (status && status != 200)
         fprintf(stderr, "plantcast: not ready: %s\n", body.at ? body.at : "");
     text_finish(&body);
+    if (status == 200 && !stream_opens(&url) && stream_is_blocked(&url))
+        return 1;
     return status == 200 ? 0 : 1;
 }

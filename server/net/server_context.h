@@ -5,6 +5,7 @@
 #include <libwebsockets.h>
 
 #include "access/openid/openid.h"
+#include "base/log_pace.h"
 #include "message/alarm_text.h"
 #include "message/marker_text.h"
 #include "net/address_limits.h"
@@ -99,6 +100,11 @@ struct server_context {
     uint64_t alarms_number;                /* of the last change of alarms that sessions were told of */
     struct marker_text_cache marker_lists; /* of the frame that was sent last */
     struct neighbour_text_cache neighbour_texts;
+    struct {
+        struct log_pace pace;  /* of requests for the stream without Upgrade */
+        int64_t refused_ns;    /* monotonic: when a handshake was refused last */
+        char refused[120];     /* why */
+    } upgrade;
     struct latency_stages latency;
     struct wall_displays displays;
     struct tile_wall tile_walls[WALLS];

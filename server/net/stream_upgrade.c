@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who may open a stream: path, origin and subprotocol of the hand-shake. */
+#include <stdio.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "corelink/core_identity.h"
 #include "message/json_fields.h"
@@ -11,6 +13,8 @@
 static int refuse(struct server_context *server, struct lws *wsi, int status, const char *text)
 {
     counter_inc(server->counters.refused, 1);
+    server->upgrade.refused_ns = clock_mono_ns();
+    snprintf(server->upgrade.refused, sizeof(server->upgrade.refused), "%s", text);
     return http_answer(wsi, status, text) < 0 ? -1 : 1;
 }
 

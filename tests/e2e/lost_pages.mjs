@@ -4,6 +4,6 @@ import { describe } from 'node:test';
 import './support/browser.mjs'; // whose browser ends with the program, not with the first subject
 
 describe('lost_pages', { concurrency: 2 }, () => {
-    for (const subject of ['weight', 'first_light', 'truth'])
+    for (const subject of ['weight', 'first_light', 'truth', 'proxy'])
         describe(subject, { concurrency: 1 }, () => import(`./lost_pages/${subject}.mjs`));
 });

@@ -98,7 +98,7 @@ test('by its code, where there are no words for the text; else the server\'s own
 
 test('every language has words for all of it, with the same things to put in, and none for nothing', () => {
     const blanks = (text) => (text.match(/\{\w+\}/g) ?? []).sort();
-    const used = ['core/refusals.js', 'app/sharing/arrival.js', 'app/main.js']
+    const used = ['core/refusals.js', 'core/blocked.js', 'app/sharing/arrival.js', 'app/main.js']
         .map((name) => readFileSync(new URL(name, WEB), 'utf8')).join('\n');
     for (const table of Object.values(tables)) {
         assert.deepEqual(Object.keys(table), Object.keys(tables.en));

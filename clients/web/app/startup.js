@@ -51,6 +51,7 @@ export async function probeCodecs() {
 
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/#.*$/, '')).href;
 export const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
+connection.onUnopened = () => import('../core/blocked.js').then(({ explain }) => explain(connection), () => {});
 const wanted = { ...address, params: { ...address.params, backdrop } };
 export const session = new Session({ connection, now: clock.now, wanted, codecs: codecs() });
 session.token = stored('token');

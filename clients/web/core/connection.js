@@ -4,7 +4,8 @@ import { SUBPROTOCOL } from './wire.js';
 import { say } from './words.js';
 
 export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
-export const PING_MS = 2000;   // a server with nothing to say answers at least these
+// A server with nothing to say answers at least these.
+export const PING_MS = 2000;
 export const QUIET_MS = 5000;
 export const DEAD_MS = 12000;
 
@@ -15,19 +16,27 @@ const CLOSE_REASONS = {
 
 export class Connection {
     // open(url, protocol): a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers: onState(connection),
-    // onOpen(), onText(string), onBytes(ArrayBuffer).
+    // onOpen(), onText(string), onBytes(ArrayBuffer). onUnopened(): not for the first time
+    // in a row, a WebSocket did not open; blocked is what to say of it.
     // spreadMs, to be set: up to so much is added to each wait.
     constructor({ url, open, clock, random = Math.random }) {
-        Object.assign(this, { url, openSocket: open, clock, random, spreadMs: 0 });
-        this.state = 'stopped'; // connecting | open | waiting | barred (until retryNow)
-        this.quiet = false;     // open, but nothing was heard for QUIET_MS
-        this.reason = '';       // why the last connection ended
-        this.tries = 0;         // failed ones since the last good connection
+        Object.assign(this, { url, openSocket: open, clock, random, spreadMs: 0, unopened: 0, blocked: '' });
+        // stopped | connecting | open | waiting | barred (until retryNow)
+        this.state = 'stopped';
+        // Open, but nothing was heard for QUIET_MS.
+        this.quiet = false;
+        // Why the last connection ended.
+        this.reason = '';
+        // Failed tries since the last good connection.
+        this.tries = 0;
         this.retryAt = null;
-        this.leastWait = 0;     // before the next try, as the server asked
-        this.lostAt = null;     // when the last good connection ended
-        this.activeAt = Date.now(); // somebody was at the page, which notes it; runs on while a machine sleeps
-        this.onState = this.onOpen = this.onText = this.onBytes = () => {};
+        // The least wait before the next try, as the server asked, in ms.
+        this.leastWait = 0;
+        // When the last good connection ended.
+        this.lostAt = null;
+        // When somebody was last at the page; of the clock that runs on while a machine sleeps.
+        this.activeAt = Date.now();
+        this.onState = this.onOpen = this.onText = this.onBytes = this.onUnopened = () => {};
     }
 
     start() {
@@ -102,19 +111,27 @@ export class Connection {
             if (back)
                 this.leastWait = back[1] * 1000;
             const known = CLOSE_REASONS[event.code];
-            this.lose(known ? say(known) : event.reason || say('reason.unreachable'));
+            // Not the first time: a server that was restarting is back by the second.
+            const again = this.state === 'connecting' && !known && this.unopened++;
+            this.lose(known ? say(known) : event.reason || this.blocked || say('reason.unreachable'));
+            if (again)
+                this.onUnopened();
         };
         this.timer = this.clock.setTimeout(() => this.lose(say('reason.unanswered')), OPENING_MS);
         this.become('connecting');
     }
 
     opened() {
+        this.unopened = 0;
+        this.blocked = '';
         this.lastHeard = this.clock.now();
-        this.pingAt = null; // of the first one that nothing came after
+        // Time of the first ping that nothing came after.
+        this.pingAt = null;
         this.nextPing = this.lastHeard + PING_MS;
         this.watch();
         this.state = 'open';
-        this.onOpen(); // before anybody is told: what the last server said holds no more
+        // Before onState: what the last server said no longer holds.
+        this.onOpen();
         this.become('open');
     }
 

@@ -36,6 +36,7 @@ if (token)
     store('token', token); // the panes are pages of their own, which look for it there
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/[?#].*$/, '')).href;
 const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
+connection.onUnopened = () => import('../core/blocked.js').then(({ explain }) => explain(connection), () => {});
 connection.spreadMs = SPREAD_MS;
 const session = new Session({ connection, now: clock.now, codecs: ['jpeg'] });
 session.token = token;

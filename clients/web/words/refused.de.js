@@ -9,6 +9,10 @@ not_allowed: das ist hier nicht erlaubt
 core_lost: der Kern ist nicht erreichbar: nichts geschah, oder es ist ungewiss; sehen Sie nach, sobald er zurück ist
 role: das darf nur die Rolle {role}
 no: in dieser Anlage gibt es „{name}“ nicht ({kind})
+blocked: Der Server antwortet über HTTP, aber {proxy} leitet den WebSocket nicht weiter. {needs}
+blocked_proxy: ein Proxy dazwischen
+blocked_lines: Nötig ist {lines} in seinem location-Block
+blocked_page: Was er braucht, steht in INSTALL.md, „Behind a reverse proxy“
 link: Dieser Link passt nicht: {why}. Er kann zu einer anderen Anlage gehören oder älter sein als eine Änderung der Anlage.
 unknown: „{name}“ ist hier nicht bekannt
 uncut: Paper wird nicht richtig gezeichnet, wo {group} nur einen Sensor hat ({count} von {all} Anlagenteilen, zuerst {asset}).

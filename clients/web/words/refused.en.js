@@ -9,6 +9,10 @@ not_allowed: that is not allowed here
 core_lost: the core cannot be reached: what was asked for was not done, or nobody knows; look again once it is back
 role: that takes the role {role}
 no: this plant has no {kind} “{name}”
+blocked: The server answers over HTTP, but {proxy} does not pass the WebSocket on. {needs}
+blocked_proxy: a proxy in between
+blocked_lines: It needs {lines} in its location block
+blocked_page: INSTALL.md, section “Behind a reverse proxy”, says what it needs
 link: This link does not fit: {why}. It may be of another plant, or from before the plant was changed.
 unknown: “{name}” is not known here
 uncut: Paper cannot be drawn truly where {group} has one sensor ({count} of {all} assets, the first {asset}).

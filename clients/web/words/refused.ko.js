@@ -9,6 +9,10 @@ not_allowed: 여기서는 허용되지 않습니다
 core_lost: 코어에 연결할 수 없습니다. 처리 여부를 복구 후 확인하십시오
 role: {role} 권한이 필요합니다
 no: 이 플랜트에는 “{name}” {kind} 항목이 없습니다
+blocked: 서버는 HTTP로 응답하지만 {proxy}이(가) WebSocket을 전달하지 않습니다. {needs}
+blocked_proxy: 중간 프록시
+blocked_lines: location 블록에 {lines} 설정이 필요합니다
+blocked_page: 필요한 설정은 INSTALL.md의 “Behind a reverse proxy”에 있습니다
 link: 이 링크는 맞지 않습니다: {why}.
   다른 플랜트의 링크이거나 플랜트가 바뀌기 전의 링크일 수 있습니다.
 unknown: “{name}”은(는) 여기서 알 수 없습니다

@@ -2,8 +2,10 @@
 /* HTTP beside the stream: who may ask what, and the files of the web client. */
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "corelink/core_instant.h"
+#include "message/json_fields.h"
 #include "net/http/http_impl.h"
 #include "net/http/site.h"
 #include "net/tls.h"
@@ -29,11 +31,35 @@ static int ready(struct server_context *server, struct request *request)
     return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the GL context was lost; a new one is being made\n");
 }
 
+#define NGINX_LINES "proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection \"upgrade\";"
+
+static const int64_t REFUSED_NS = 15 * NS_PER_S; /* the page asks why within seconds */
+
+/* Proxies take out Upgrade and Connection, which are for one hop, and leave the rest of a handshake. */
+static void log_without_upgrade(struct server_context *server, struct lws *wsi, int64_t now_ns)
+{
+    char more[LOG_PACE_BYTES], via[100], shown[48];
+    bool handshake = lws_hdr_total_length(wsi, WSI_TOKEN_KEY) > 0;
+    server->upgrade.pace.first_ns = server->upgrade.pace.longest_ns = 60 * NS_PER_S;
+    if (!log_pace_take(&server->upgrade.pace, now_ns, more))
+        return;
+    bool named = lws_hdr_copy(wsi, via, sizeof(via), WSI_TOKEN_HTTP_VIA) > 0;
+    log_warn(server->params.log, "stream: a request from %s came without Upgrade: websocket%s%s%s%s; nginx needs: %s%s",
+             connection_of(wsi)->address, handshake ? ", and is a WebSocket's handshake: a proxy on the way removes it" : "",
+             named ? " (Via: " : "", named ? quoted(via, shown) : "", named ? ")" : "", NGINX_LINES, more);
+}
+
 static int stream_without_upgrade(struct server_context *server, struct request *request)
 {
-    (void)server;
-    static const char text[] = "a WebSocket with the subprotocol " WIRE_SUBPROTOCOL " is here\n";
-    return request_answer(request, 426, HTTP_TEXT, mem_strdup(text), strlen(text), "upgrade:", "websocket");
+    static const char text[] = "426 Upgrade Required: /stream is a WebSocket with the subprotocol " WIRE_SUBPROTOCOL
+                               ", and this request came without `Upgrade: websocket`. If a browser or a program asked, a proxy on the way "
+                               "removed it. nginx needs: " NGINX_LINES "\n";
+    int64_t now_ns = clock_mono_ns();
+    bool refused = server->upgrade.refused_ns && now_ns - server->upgrade.refused_ns < REFUSED_NS;
+    if (lws_hdr_total_length(request->wsi, WSI_TOKEN_HTTP_URI_ARGS) == 0) /* the page asks with ?why, once its handshake has failed */
+        log_without_upgrade(server, request->wsi, now_ns);
+    char *body = refused ? mem_printf("%srefused: %s", text, server->upgrade.refused) : mem_strdup(text);
+    return request_answer(request, 426, HTTP_TEXT, body, strlen(body), "upgrade:", "websocket");
 }
 
 static int file(struct server_context *server, struct request *request, const char *path)

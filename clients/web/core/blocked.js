@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Why no WebSocket opens though the page was loaded from the same server: most often a proxy in between, which is named with what it needs.
+import { put } from './refusals.js';
+import { say } from './words.js';
+
+const ANSWER_MS = 5000;
+const NGINX = 'proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection "upgrade";';
+
+// By the headers of an answer, which the server itself sends without any of these.
+const proxyOf = (headers) => headers.get('server')?.split(/[/ ]/)[0] || /^\S+ ([^ ,]+)/.exec(headers.get('via') ?? '')?.[1] || '';
+
+// url: of the WebSocket. '': the server does not answer over HTTP either.
+async function whyBlocked(url) {
+    const address = new URL(url.replace(/^ws/, 'http'));
+    address.search = '?why'; // the server logs others that ask without a WebSocket
+    const answer = await fetch(address, { cache: 'no-store', signal: AbortSignal.timeout(ANSWER_MS) });
+    if (answer.status >= 500)
+        return '';
+    const refused = answer.status === 426 ? /^refused: (.+)$/m.exec(await answer.text())?.[1] : null;
+    if (refused) // the handshake reached the server
+        return refused;
+    const proxy = proxyOf(answer.headers), isNginx = /nginx|openresty/i.test(proxy);
+    const needs = isNginx ? put('blocked_lines', { lines: NGINX }) : put('blocked_page');
+    return put('blocked', { proxy: proxy || put('blocked_proxy'), needs });
+}
+
+// Asks over HTTP, and gives the connection the reason that was found.
+export async function explain(connection) {
+    const tried = connection.unopened;
+    connection.blocked = await whyBlocked(connection.url).catch(() => '');
+    if (connection.unopened !== tried || connection.state !== 'waiting')
+        return;
+    connection.reason = connection.blocked || say('reason.unreachable');
+    connection.become('waiting');
+}

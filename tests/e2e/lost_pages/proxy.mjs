@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Proxies that let pages through and no WebSocket: the page, the log and the command line name the proxy and what it needs.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { existsSync, writeFileSync } from 'node:fs';
+import { createServer, request } from 'node:http';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { DESKTOP, openPage, PHONE, shoot, waitForPicture } from '../support/browser.mjs';
+import { freePort } from '../support/ports.mjs';
+import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
+
+const PASSES = 'proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection "upgrade";';
+const NGINX = '/usr/sbin/nginx', LINES = /proxy_set_header Upgrade \$http_upgrade; proxy_set_header Connection "upgrade";/;
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const withNginx = { ...options, skip: options.skip || (existsSync(NGINX) ? false : 'nginx is not installed') };
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+let plant;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    await plant.startDaemon();
+});
+after(() => plant?.destroy());
+
+// The plant under /plantcast/ of a proxy; more: further lines of its location.
+async function startNginx(port, more, host = '$http_host') {
+    const path = (name) => join(plant.folder, name);
+    const temporary = ['client_body', 'proxy', 'fastcgi', 'uwsgi', 'scgi'].map((name) => `${name}_temp_path ${path(name)};`).join('\n');
+    writeFileSync(path('nginx.conf'), `daemon off;\nmaster_process off;\npid ${path('nginx.pid')};\nerror_log stderr;\nevents {}
+http {\naccess_log off;\n${temporary}\nserver { listen 127.0.0.1:${port};
+location /plantcast/ { proxy_pass http://127.0.0.1:${plant.port}/; proxy_set_header Host ${host}; ${more} } } }\n`);
+    const nginx = spawn(NGINX, ['-c', path('nginx.conf'), '-p', plant.folder], { stdio: ['ignore', 'ignore', 'pipe'] });
+    const ended = new Promise((done) => nginx.once('exit', done));
+    for (let tries = 0; ; tries++) {
+        if (await fetch(`http://127.0.0.1:${port}/plantcast/healthz`).then(({ ok }) => ok, () => false))
+            return async () => { nginx.kill(); await ended; };
+        assert.ok(tries < 200, 'nginx starts');
+        await sleep(50);
+    }
+}
+
+const shown = (page, pattern) => page.waitForFunction(([source]) => new RegExp(source).test(document.getElementById('banner').innerText),
+    [pattern.source]);
+
+test('nginx without the lines for WebSocket is named on the page, with these lines; with them the page goes on', withNginx, async () => {
+    const port = await freePort(), url = `http://127.0.0.1:${port}/plantcast/`;
+    let stop = await startNginx(port, 'proxy_http_version 1.1;');
+    const desk = await openPage(url, DESKTOP);
+    try {
+        await shown(desk.page, /The server answers over HTTP, but nginx does not pass the WebSocket on/);
+        await shown(desk.page, LINES);
+        await shoot(desk.page, 'proxy-desk');
+        for (const [name, query, screen, words] of [['phone', '?lang=de', PHONE, /nginx leitet den WebSocket nicht weiter/],
+            ['wall', '?wall', DESKTOP, /nginx does not pass/], ['korean', '?lang=ko', DESKTOP, /WebSocket을 전달하지 않습니다/]]) {
+            const { page, close } = await openPage(`${url}${query}`, screen);
+            try {
+                await shown(page, words);
+                await shown(page, LINES);
+                await shoot(page, `proxy-${name}`);
+                assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${name}: nothing sticks out`);
+            } finally {
+                await close();
+            }
+        }
+        await plant.daemon.line(/stream: a request from 127\.0\.0\.1 came without Upgrade: websocket, and is a WebSocket's handshake/);
+        assert.equal(plant.daemon.said.match(/came without Upgrade/g).length, 1, 'one line a minute');
+        const answer = await fetch(`http://127.0.0.1:${plant.port}/stream`);
+        assert.equal(answer.status, 426);
+        assert.match(await answer.text(), /^426 Upgrade Required: /);
+        for (const args of [['ready', url], ['probe', url, '--seconds', '1'], ['probe', url, '--seconds', '1', '--blind']]) {
+            const { code, err } = runProgram('plantcast', args);
+            assert.equal(code, 1, err);
+            assert.match(err, /the server answers over HTTP, but no WebSocket gets through/);
+            assert.match(err, LINES);
+        }
+        assert.equal(runProgram('plantcast', ['ready', `http://127.0.0.1:${plant.port}/`]).code, 0);
+        await stop();
+        stop = await startNginx(port, PASSES, `127.0.0.1:${plant.port}`); // the handshake arrives, by a name that is not the page's
+        await shown(desk.page, /his origin is not allowed/);
+        await stop();
+        stop = await startNginx(port, PASSES);
+        await waitForPicture(desk.page);
+        assert.equal(runProgram('plantcast', ['ready', url]).code, 0);
+    } finally {
+        await desk.close();
+        await stop();
+    }
+});
+
+// A proxy that answers handshakes itself, and passes the rest on. answer: a line of status, or null: it goes away without one.
+async function startOther(answer, headers) {
+    const server = createServer((asked, told) => {
+        const on = request({ port: plant.port, path: asked.url, headers: { ...asked.headers, host: `127.0.0.1:${plant.port}` } }, (got) => {
+            told.writeHead(asked.url.startsWith('/stream') && answer?.code ? answer.code : got.statusCode, { ...got.headers, ...headers });
+            got.pipe(told);
+        });
+        on.on('error', () => { told.writeHead(502, headers); told.end(); });
+        asked.pipe(on);
+    });
+    const refusal = answer ? `HTTP/1.1 ${answer.line}\r\nContent-Length: 4\r\n\r\npage` : '';
+    server.on('upgrade', (asked, socket) => socket.end(refusal));
+    const port = await freePort();
+    await new Promise((done) => server.listen(port, '127.0.0.1', done));
+    return { url: `http://127.0.0.1:${port}/`, stop: () => { server.closeAllConnections(); server.close(); } };
+}
+
+const OTHERS = [
+    ['answers 200 with a page', { line: '200 OK', code: 200 }, { via: '1.1 gate.example (squid)' },
+        /gate\.example does not pass the WebSocket on/],
+    ['answers 400', { line: '400 Bad Request' }, { server: 'Apache/2.4' }, /Apache does not pass the WebSocket on\. INSTALL\.md/],
+    ['answers 404', { line: '404 Not Found', code: 404 }, {}, /a proxy in between does not pass the WebSocket on/],
+    ['hangs up', null, {}, /a proxy in between does not pass the WebSocket on/],
+];
+for (const [name, answer, headers, words] of OTHERS)
+    test(`a proxy that ${name} is named`, options, async () => {
+        const proxy = await startOther(answer, headers), { page, close } = await openPage(proxy.url, DESKTOP);
+        try {
+            await shown(page, words);
+        } finally {
+            await close();
+            proxy.stop();
+        }
+    });
+
+test('a server that is not there is not blamed on its proxy', options, async () => {
+    const proxy = await startOther({ line: '502 Bad Gateway' }, { server: 'nginx' }), { page, close } = await openPage(proxy.url, DESKTOP);
+    try {
+        await shown(page, /nginx does not pass the WebSocket on/);
+        await plant.daemon.stop();
+        await page.evaluate(() => globalThis.plantcast.session.connection.retryNow());
+        await shown(page, /The server cannot be reached/);
+    } finally {
+        await close();
+        proxy.stop();
+    }
+});
