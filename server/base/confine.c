@@ -189,8 +189,8 @@ bool confine_lacks(char out[CONFINE_LACKS_BYTES])
 {
     int version = landlock_version();
     bool calls = prctl(PR_GET_SECCOMP, 0, 0, 0, 0) >= 0;
-    const char *landlock = version < 1            ? "no Landlock: programs that read uploaded files can read all files of this user, and "
-                                                    "write those of this user (needs Linux 6.12 with landlock in its list of LSMs)"
+    const char *landlock = version < 1            ? "no Landlock: programs that read uploaded files can read and write all files of "
+                                                    "this user (needs Linux 6.12 with landlock in its list of LSMs)"
                            : version < ABI_SCOPES ? "an old Landlock (needs Linux 6.12): plantcast-import and plantcast-prep can signal "
                                                     "other processes of this user"
                                                   : "";

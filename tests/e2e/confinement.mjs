@@ -69,6 +69,41 @@ test('a reader that is taken over reaches nothing of the daemon or the machine',
     }
 }));
 
+// As a kernel without Landlock, which answers ENOSYS.
+const WITHOUT = `import errno, os, seccomp, sys
+calls = seccomp.SyscallFilter(seccomp.ALLOW)
+calls.set_attr(seccomp.Attr.ACT_BADARCH, seccomp.ALLOW)
+calls.add_rule(seccomp.ERRNO(errno.ENOSYS), 'landlock_create_ruleset')
+calls.load()
+os.execv(sys.argv[1], sys.argv[1:])`;
+const hasSeccomp = spawnSync('/usr/bin/python3', ['-c', 'import seccomp']).status === 0;
+
+test('without Landlock, models are read under the list of system calls, and what is missing is said', {
+    skip: skip || (hasSeccomp ? false : 'python3-seccomp is not installed'),
+}, () => inFolder(async (folder) => {
+    const plant = await TinyPlant.create(), missingLine = /this kernel has no Landlock: .*needs Linux 6\.12/;
+    const model = join(folder, 'model.obj'), run = (program, ...args) =>
+        spawnSync('/usr/bin/python3', ['-c', WITHOUT, program, ...args], { encoding: 'utf8' });
+    try {
+        assert.equal(plant.prepare().code, 0);
+        plant.confine('/usr/bin/python3', '-c', WITHOUT);
+        await plant.startDaemon('--import');
+        assert.match(plant.daemon.said, missingLine);
+        assert.match(run(join(BIN, 'plantcastd'), '--check', '--import', plant.file).stdout, missingLine);
+        const targets = `${plant.daemon.child.pid} ${plant.port} ${plant.file} ${join(plant.folder, 'tags.csv')}\n`;
+        writeFileSync(model, targets);
+        const { status, stdout, stderr } = run(join(programs(folder, ESCAPE), 'plantcast'), 'import', model, '-o', join(folder, 'plant'));
+        assert.equal(status, 0, stderr);
+        assert.match(stderr, missingLine);
+        const got = Object.entries(attempts(stdout)).filter(([, how]) => how === 'succeeded').map(([name]) => name);
+        console.log(`# by system calls alone, these are not held back: ${got.join(', ')}`);
+        for (const name of got) // files, and the daemon's where root asks
+            assert.match(name, /^(read|list|create|append|mkdir|rename|open|program|shell)-?/);
+    } finally {
+        await plant.destroy();
+    }
+}));
+
 // --- files that crash, hang or swell -------------------------------------------------------------------------------------------
 
 const gltf = (rest) => JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }],
