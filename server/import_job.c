@@ -170,6 +170,7 @@ static char *read_models(struct import_job *job, const struct import_order *orde
     add(&list, job->folder);
     add_option(&list, "--units", order->units);
     add_option(&list, "--up", order->up);
+    add_option(&list, "--encoding", order->encoding);
     for (size_t i = 0; i < exports->count; i++)
         if (exports->at[i].kind == EXPORT_MODEL) {
             add_export(&list, job, exports->at[i].name);
@@ -208,6 +209,7 @@ static char *match_tags(struct import_job *job, const struct import_order *order
         add(&list, decisions);
     }
     add_lent(&list);
+    add_option(&list, "--encoding", order->encoding);
     if (*order->source.host)
         add_source(&list, &order->source);
     add(&list, job->params.plant_path);

@@ -70,6 +70,8 @@ static void print_list(const struct run *run)
     if (*list->encoding.other)
         printf("%s: read as %s, but it may be %s: --encoding NAME says which\n", path, list->encoding.name,
                list->encoding.other);
+    else if (*list->encoding.name && strcmp(list->encoding.name, "UTF-8") != 0)
+        printf("%s: read as %s\n", path, list->encoding.name);
     if (list->same > 0)
         printf("%s: %zu rows repeat a tag word for word: taken once\n", path, list->same);
     if (list->differing > 0)

@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -30,15 +31,19 @@ struct plant_import {
     char *why; /* the last one failed; NULL: it did not */
 };
 
-/* The file is "UNITS/UP". */
+/* The file is "UNITS/UP" or "UNITS/UP/ENCODING". */
 static void read_choice(struct plant_import *import)
 {
     size_t bytes;
     struct import_order order = { 0 };
     char *text = text_read_file(import->choice, 100, &bytes), *up = text ? strchr(text, '/') : NULL;
+    char *encoding = up ? strchr(up + 1, '/') : NULL;
+    if (encoding)
+        *encoding++ = 0;
     if (up && up - text < IMPORT_CHOICE_BYTES && strlen(up + 1) < IMPORT_CHOICE_BYTES) {
         memcpy(order.units, text, (size_t)(up - text));
         strcpy(order.up, up + 1);
+        snprintf(order.encoding, sizeof(order.encoding), "%s", encoding ? encoding : "");
         if (import_order_good(&order))
             import->read = order;
     }
@@ -107,7 +112,10 @@ static bool is_one_of(const char *word, const char *const *words)
 bool import_order_good(const struct import_order *order)
 {
     static const char *const units[] = { "", "m", "mm", "cm", "in", "ft", NULL }, *const axes[] = { "", "y", "z", NULL };
-    return is_one_of(order->units, units) && is_one_of(order->up, axes) && (!*order->source.host || import_source_good(&order->source));
+    static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+    bool named = order->encoding[strspn(order->encoding, letters)] == 0 && *order->encoding != '-';
+    return named && is_one_of(order->units, units) && is_one_of(order->up, axes) &&
+           (!*order->source.host || import_source_good(&order->source));
 }
 
 bool plant_import_order(struct plant_import *import, const struct import_order *order)
@@ -116,6 +124,8 @@ bool plant_import_order(struct plant_import *import, const struct import_order *
     bool taken = !import->busy;
     if (taken) {
         import->order = *order;
+        if (order->decides || *order->source.host) /* they say nothing of the encoding: the list stays as it was read */
+            strcpy(import->order.encoding, import->read.encoding);
         import->ordered = import->busy = true;
         import->cancelled = false;
         import->phase = order->models ? IMPORT_READING : IMPORT_MATCHING;
@@ -161,9 +171,9 @@ char *plant_import_text(struct plant_import *import, const struct import_source 
     static const char *const phases[] = { "idle", "reading", "matching", "preparing", "loading" };
     json_t *array = files(import->exports);
     pthread_mutex_lock(&import->lock);
-    json_t *object = json_pack("{s:s,s:i,s:s,s:s?,s:s,s:s,s:o}", "phase", phases[import->phase], "number", (int)import->number, "said",
+    json_t *object = json_pack("{s:s,s:i,s:s,s:s?,s:s,s:s,s:s,s:o}", "phase", phases[import->phase], "number", (int)import->number, "said",
                                import->said.at ? import->said.at : "", "failed", import->why, "units", import->read.units, "up",
-                               import->read.up, "files", array);
+                               import->read.up, "encoding", import->read.encoding, "files", array);
     pthread_mutex_unlock(&import->lock);
     json_object_set_new(object, "source", *source->host ? import_source_json(source) : json_null());
     return json_text(object, 0);
@@ -223,7 +233,9 @@ void plant_import_end(struct plant_import *import, bool in_force, const char *wh
     pthread_mutex_lock(&import->lock);
     if (in_force && import->order.models)
         import->read = import->order;
-    char *choice = mem_printf("%s/%s", import->read.units, import->read.up);
+    if (in_force)
+        strcpy(import->read.encoding, import->order.encoding);
+    char *choice = mem_printf("%s/%s/%s", import->read.units, import->read.up, import->read.encoding);
     import->phase = IMPORT_IDLE;
     import->busy = false;
     mem_free(import->why);

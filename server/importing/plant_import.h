@@ -7,7 +7,7 @@
 
 #include "importing/import_source.h"
 
-enum { IMPORT_CHOICE_BYTES = 4 };
+enum { IMPORT_CHOICE_BYTES = 4, IMPORT_ENCODING_BYTES = 24 };
 
 struct import_order {
     bool models;                     /* models are read anew, and tags matched; else only that */
@@ -15,6 +15,7 @@ struct import_order {
     bool decides;                    /* without models: the decisions that were uploaded are taken */
     char units[IMPORT_CHOICE_BYTES]; /* of models that do not say theirs: m, mm, cm, in, ft; "": what the reader takes them for */
     char up[IMPORT_CHOICE_BYTES];    /* likewise: y or z */
+    char encoding[IMPORT_ENCODING_BYTES]; /* of tag list and models, by its name; "": the one that they state or look like */
     struct import_source source;     /* of the tags; without a host: as it is */
 };
 

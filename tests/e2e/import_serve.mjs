@@ -647,3 +647,32 @@ test('millimetres taken for metres: seen beside a person, and corrected', option
         await huge.destroy();
     }
 });
+
+test('letters: what a list is read as is shown, and another encoding is chosen', options, async () => {
+    const own = await Served.start(), view = await openPage(`${own.url}?lang=en`, DESK), { page: sheet } = view;
+    const text = 'Tag Name,Eng Units,Description\nTI-101,℃,泵轴承温度\n';
+    const { stdout: list } = spawnSync('iconv', ['-f', 'UTF-8', '-t', 'GB18030'], { input: text });
+    const readAs = (pattern) => sheet.waitForFunction((what) => !document.querySelector('#import.busy') &&
+        new RegExp(what).test(document.querySelector('#import .quiet').textContent), pattern, { timeout: 120000 });
+    const unfold = () => sheet.locator('#import .files').first().evaluate((files) => { files.closest('details').open = true; });
+    try {
+        await choose(sheet, [{ name: 'm.gltf', text: boxes(['P-101', 'V-201']) }, { name: 'tags.csv', text: list }]);
+        await readAs('^tags.csv: read as GB18030$');
+        assert.match(own.read('tags.csv'), /TI-101,.*℃,泵轴承温度/);
+        await unfold();
+        await settle(sheet);
+        await shoot(sheet, 'import-9-letters');
+        await sheet.getByLabel('Letters of names and units').selectOption('Windows-1251');
+        await readAs('^tags.csv: read as Windows-1251$');
+        assert.doesNotMatch(own.read('tags.csv'), /泵/);
+        await sheet.reload();
+        await sheet.waitForFunction(() => document.querySelector('#import select')?.value === 'Windows-1251', null, { timeout: 60000 });
+        await unfold();
+        await sheet.getByLabel('Letters of names and units').selectOption('');
+        await readAs('^tags.csv: read as GB18030$');
+        assert.match(own.read('tags.csv'), /TI-101,.*℃,泵轴承温度/);
+    } finally {
+        await view.close();
+        await own.destroy();
+    }
+});

@@ -150,6 +150,9 @@ static void test_orders(void **state)
     assert_true(import_order_good(&order));
     assert_false(import_order_good(&(struct import_order){ .units = "km" }));
     assert_false(import_order_good(&(struct import_order){ .up = "x" }));
+    assert_true(import_order_good(&(struct import_order){ .encoding = "Shift-JIS" }));
+    assert_false(import_order_good(&(struct import_order){ .encoding = "-x" }));
+    assert_false(import_order_good(&(struct import_order){ .encoding = "a b" }));
     check_told(f, "idle", "", NULL);
     assert_false(plant_import_next(f->import, &taken));
     plant_import_cancel(f->import);

@@ -24,6 +24,10 @@ again: Noch einmal lesen
 details: Was gefunden wurde
 size: Größe
 metres: {wide} × {deep} × {high} m
+encoding: Zeichensatz von Namen und Einheiten
+encoding.found: wie in den Dateien angegeben oder erkannt
+encoding.read: {file}: gelesen als {name}
+encoding.unsure: {file}: gelesen als {name}, vielleicht {other}
 units: Einheit des Modells
 units.said: wie es sagt
 units.m: Meter

@@ -24,6 +24,10 @@ again: Read again
 details: What was found
 size: Size
 metres: {wide} × {deep} × {high} m
+encoding: Letters of names and units
+encoding.found: as the files state or look
+encoding.read: {file}: read as {name}
+encoding.unsure: {file}: read as {name}, but it may be {other}
 units: Units of the model
 units.said: as it says
 units.m: metres

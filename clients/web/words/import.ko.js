@@ -23,6 +23,10 @@ again: 다시 읽기
 details: 찾은 내용
 size: 크기
 metres: {wide} × {deep} × {high} m
+encoding: 이름과 단위의 문자 인코딩
+encoding.found: 파일에 적힌 대로 또는 자동 판별
+encoding.read: {file}: {name}(으)로 읽음
+encoding.unsure: {file}: {name}(으)로 읽음, {other}일 수 있음
 units: 모델의 단위
 units.said: 파일대로
 units.m: 미터

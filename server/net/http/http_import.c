@@ -120,8 +120,9 @@ static int order_all(struct server_context *server, struct request *request, con
     wanted.anew = !strcmp(what, "anew");
     wanted.models = wanted.anew || !*what;
     if (!take_argument(args, "units", wanted.units, sizeof(wanted.units)) || !take_argument(args, "up", wanted.up, sizeof(wanted.up)) ||
-        !import_order_good(&wanted))
-        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "units are m, mm, cm, in or ft; up is y or z\n");
+        !take_argument(args, "encoding", wanted.encoding, sizeof(wanted.encoding)) || !import_order_good(&wanted))
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST,
+                           "units are m, mm, cm, in or ft; up is y or z; encoding is a name such as GB18030\n");
     return order(server, request, &wanted);
 }
 

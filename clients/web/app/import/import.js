@@ -11,6 +11,9 @@ import { Source } from './source.js';
 import { TagTable } from './tag_table.js';
 
 const UNITS = ['', 'm', 'mm', 'cm', 'in', 'ft'], AXES = ['', 'y', 'z'];
+// As `plantcast match --encoding` takes them; others are for the command line.
+const ENCODINGS = ['UTF-8', 'GB18030', 'Big5', 'Shift-JIS', 'EUC-JP', 'EUC-KR', 'Windows-1250', 'Windows-1251', 'Windows-1252',
+    'Windows-1253', 'Windows-1254', 'KOI8-R', 'CP866', 'CP850', 'UTF-16LE', 'UTF-16BE'];
 const PLACEHOLDER = 'person'; // the only asset of a plant that nothing was imported into
 
 const choice = (key, values, onchange) => {
@@ -22,6 +25,10 @@ const button = (key, onclick, attributes = {}) => make('button', { type: 'button
 const megabytes = (bytes) => say('import.bytes', { mb: numberText(bytes / 1e6, bytes < 1e7 ? 2 : 0) });
 // Of what the programs printed: where files are is known.
 const plain = (text) => text.replace(/\S*\/exports\//g, '');
+
+// Which letters were taken for which, of all that was printed: "tags.csv: Windows-1251", and a second encoding that is as likely.
+const readAs = (said) => [...new Set([...plain(said).matchAll(/^(.*): read as ([^,\n]+)(?:, but it may be ([^:\n]+))?/gm)]
+    .map(([, file, name, other]) => say(other ? 'import.encoding.unsure' : 'import.encoding.read', { file, name, other })))].join(' · ');
 
 export class Import {
     constructor(page) {
@@ -56,7 +63,11 @@ export class Import {
         this.again = button('import.again', () => this.try(() => this.read()));
         this.said = make('pre', { tabindex: '0' });
         this.details = make('details', {}, make('summary', {}, say('import.details')), this.said);
-        this.filesFold = make('details', { open: true }, this.filesTitle, this.files, this.details);
+        this.readAs = make('p', { class: 'quiet' });
+        this.encoding = make('select', { onchange: () => this.try(() => this.read({ what: 'anew' })) }, make('option', { value: '' },
+            say('import.encoding.found')), ...ENCODINGS.map((value) => make('option', { value }, value)));
+        this.encodingLine = make('label', { class: 'choice' }, make('span', {}, say('import.encoding')), this.encoding);
+        this.filesFold = make('details', { open: true }, this.filesTitle, this.files, this.readAs, this.encodingLine, this.details);
         this.size = make('b', { class: 'size' });
         const [units, unitsSelect] = choice('units', UNITS, () => this.showSize());
         const [up, upSelect] = choice('up', AXES, () => this.showSize());
@@ -163,7 +174,7 @@ export class Import {
     }
 
     read(query = {}) {
-        return this.exports.order('/run', { ...query, units: this.units.value, up: this.up.value });
+        return this.exports.order('/run', { ...query, units: this.units.value, up: this.up.value, encoding: this.encoding.value });
     }
 
     decide() {
@@ -193,16 +204,20 @@ export class Import {
             this.takeUnits(state);
         this.table.setBusy(busy);
         setText(this.said, plain(state.said));
+        this.encoding.disabled = busy;
+        setText(this.readAs, readAs(state.said));
         this.details.hidden = state.said === '';
         if (!busy)
             setText(this.wrong, plain(state.failed ?? ''));
     }
 
     // Of the models in force. What was chosen and is not applied stays until those change.
-    takeUnits({ units, up }) {
-        if (this.known?.units === units && this.known?.up === up)
+    takeUnits({ units, up, encoding }) {
+        if (this.known?.encoding !== encoding)
+            this.encoding.value = encoding;
+        if (this.known?.units === units && this.known?.up === up && this.known?.encoding === encoding)
             return;
-        this.known = { units, up };
+        this.known = { units, up, encoding };
         this.units.value = units;
         this.up.value = up;
         this.showSize();
