@@ -150,7 +150,7 @@ $(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(arc
 	$(link)
 # Reads what strangers' programs wrote: neither the daemon nor plantcast-prep links it.
 $(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(out)/lib/match.a $(out)/lib/prep.a $(archives)
-	$(link) -lGLU
+	$(link) -lGLU -lminizip -lz
 by_occt := $(call objects,preprocess/import/readers/occt $(basename $(wildcard preprocess/import/readers/i*.cc)))
 by_reader := $(call objects,preprocess/import/encoding)
 $(by_occt): CXXFLAGS += -isystem $(occt)

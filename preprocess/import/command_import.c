@@ -44,7 +44,7 @@ static void print_usage(FILE *out)
         "them. Where FOLDER has a plant, these are new exports: assets and sensors follow what they are on, and a review says what was\n"
         "added, removed, moved or renamed, and which tags lost their place (IMPORT.md).\n"
         "  MODEL             .glb .gltf; .rvm (AVEVA PDMS, E3D, Marine), with its attributes beside it as .att or .txt of the same name;\n"
-        "                    .step .stp .iges .igs; .ifc; .obj .stl .ply .fbx .dae .3ds\n"
+        "                    .step .stp .stpz .iges .igs; .ifc .ifczip; .obj .stl .ply .fbx .dae .zae .3ds\n"
         "  --name NAME       of the plant; else the first model's file name\n"
         "  --dry-run         of a new export: only says what it would change\n"
         "  --undo            puts models, plant file, tag list and matches back as they were before the last new export\n"

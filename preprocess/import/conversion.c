@@ -22,6 +22,7 @@
 #include "preprocess/import/formats.h"
 #include "preprocess/import/gltf_pack.h"
 #include "preprocess/import/rvm.h"
+#include "preprocess/import/unpack.h"
 #include "preprocess/model/gltf_shim.h"
 
 static const size_t max_bytes = (size_t)4 << 30;
@@ -159,6 +160,8 @@ static int check(void *arg)
     struct gltf_model model;
     char why[MODEL_WHY_BYTES] = "";
     bool good = model_source_open(&source, reading->output, why) && gltf_load(&model, &source, why);
+    for (uint32_t i = 0; good && i < model.left_out_textures; i++)
+        printf("left out: %s\n", model.left_out[i]);
     if (good && model.node_count == 0)
         good = wrong(why, "there is nothing in it");
     if (!good)
@@ -183,6 +186,36 @@ static bool run(const struct reading *reading, struct child_params *child, struc
     child_paths_finish(paths);
     mem_free(name);
     return good;
+}
+
+/* In the child: unpacks the model to the path that its reader is given next. */
+static int unpack_model(void *arg)
+{
+    const struct reading *reading = arg;
+    char why[CONVERSION_WHY_BYTES] = "";
+    bool good = unpack(reading->path, reading->output, why, sizeof(why));
+    if (!good)
+        fprintf(stderr, "%s\n", why);
+    return good ? 0 : 1;
+}
+
+/* Returns the path of the unpacked model in the reading's folder, to be freed with mem_free; NULL with the reason in why. */
+static char *unpacked(const struct reading *packed, char why[CONVERSION_WHY_BYTES])
+{
+    struct child_paths paths = { 0 };
+    struct text said = { 0 };
+    char *stem = file_name_stem(packed->path), *path = mem_printf("%s/%s%s", packed->folder, stem, unpack_ending(packed->path));
+    struct reading unpacking = *packed;
+    unpacking.output = path;
+    child_paths_add(&paths, packed->path, CONFINE_READ);
+    child_paths_add(&paths, packed->folder, CONFINE_WRITE);
+    if (!run(packed, &(struct child_params){ .call = unpack_model, .arg = &unpacking }, &paths, &said, why)) {
+        mem_free(path);
+        path = NULL;
+    }
+    text_finish(&said);
+    mem_free(stem);
+    return path;
 }
 
 /* In the child. For readers that cannot find the encoding themselves. */
@@ -288,7 +321,7 @@ static bool run_program(const struct reading *reading, struct child_paths *paths
 }
 
 /* A reader may leave anything under that name, such as a symlink to a file of the daemon's. */
-static bool take_output(const struct reading *reading, const char *glb, char why[CONVERSION_WHY_BYTES])
+static bool take_output(const struct reading *reading, const char *glb, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     struct stat st;
     if (lstat(reading->output, &st) != 0)
@@ -296,10 +329,8 @@ static bool take_output(const struct reading *reading, const char *glb, char why
     if (!S_ISREG(st.st_mode) || st.st_nlink != 1)
         return fail(why, "the %s reader wrote something that is not a file", reading->format->name);
     struct child_paths paths = { 0 };
-    struct text said = { 0 };
     child_paths_add(&paths, reading->output, CONFINE_READ);
-    bool good = run(reading, &(struct child_params){ .call = check, .arg = (void *)(uintptr_t)reading }, &paths, &said, why);
-    text_finish(&said);
+    bool good = run(reading, &(struct child_params){ .call = check, .arg = (void *)(uintptr_t)reading }, &paths, said, why);
     if (good && rename(reading->output, glb) != 0)
         good = fail(why, "%s", strerror(errno));
     return good;
@@ -312,24 +343,31 @@ static bool read_model(const struct import_format *format, const char *path, con
     char *own = mem_printf("%s/reading", folder), *output = mem_printf("%s/output.glb", own), *input = realpath(path, NULL);
     bool made = mkdir(own, 0700) == 0;
     char *attributes = input && format->reader == FORMAT_RVM ? attributes_beside(input) : NULL;
-    const struct reading reading = {
+    struct reading reading = {
         .format = format, .path = input, .attributes = attributes, .output = output, .folder = own, .params = params
     };
-    struct child_params ourselves = { .call = read_ourselves, .arg = (void *)(uintptr_t)&reading };
+    struct child_params ourselves = { .call = read_ourselves, .arg = &reading };
     struct child_paths paths = { 0 };
-    child_paths_add(&paths, input, CONFINE_READ);
+    bool packed = input && unpack_ending(input), good = made && input;
+    char *inner = good && packed ? unpacked(&reading, why) : NULL;
+    if (!good)
+        fail(why, "%s", strerror(errno));
+    good = good && (inner || !packed);
+    if (inner)
+        reading.path = inner;
+    child_paths_add(&paths, inner ? inner : input, CONFINE_READ);
     child_paths_add(&paths, attributes, CONFINE_READ);
     child_paths_add(&paths, own, CONFINE_WRITE);
     if (input && format->beside)
         child_paths_add_beside(&paths, input, format->beside);
-    bool good = !made || !input ? fail(why, "%s", strerror(errno))
-                : format->reader == FORMAT_PROGRAM ? run_program(&reading, &paths, said, why)
-                                                   : run(&reading, &ourselves, &paths, said, why);
-    good = good && take_output(&reading, glb, why);
+    if (good)
+        good = format->reader == FORMAT_PROGRAM ? run_program(&reading, &paths, said, why) : run(&reading, &ourselves, &paths, said, why);
+    good = good && take_output(&reading, glb, said, why);
     child_paths_finish(&paths);
     work_folder_remove(own);
     free(input);
     mem_free(own);
+    mem_free(inner);
     mem_free(output);
     mem_free(attributes);
     return good;

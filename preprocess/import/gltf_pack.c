@@ -55,6 +55,11 @@ static bool take_buffers(struct pack *pack)
         char uri_why[MODEL_WHY_BYTES];
         const char *uri = uri_of(json_array_get(list, i));
         size_t size = pack->binary.size;
+        bool standin = !uri && model_json_is_standin(pack->root, i);
+        if (standin) {
+            pack->offsets[i] = 0; /* its views are decoded from another buffer */
+            continue;
+        }
         if (!uri && (i > 0 || !pack->binary.at))
             return wrong(pack->why, "buffer %zu has no bytes of its own: pack the model into a GLB file by the program that made it", i);
         unsigned char *own = uri ? model_uri_read(pack->source->folder, uri, &size, uri_why) : NULL;
@@ -94,6 +99,8 @@ static const char *image_type(const unsigned char *bytes, size_t size)
 {
     if (size > 12 && !memcmp(bytes + 8, "WEBP", 4))
         return "image/webp";
+    if (size > 12 && !memcmp(bytes, "\xabKTX", 4))
+        return "image/ktx2";
     return size > 4 && !memcmp(bytes, "\x89PNG", 4) ? "image/png" : "image/jpeg";
 }
 
@@ -108,8 +115,8 @@ static bool take_images(struct pack *pack)
         if (!uri)
             continue;
         unsigned char *bytes = model_uri_read(pack->source->folder, uri, &size, uri_why);
-        if (!bytes)
-            return wrong(pack->why, "image %zu: %s", i, uri_why);
+        if (!bytes) /* whoever reads the model says that this texture is missing */
+            continue;
         json_array_append_new(views, json_pack("{s:i,s:I,s:I}", "buffer", 0, "byteOffset", append(pack, bytes, size), "byteLength",
                                                (json_int_t)size));
         json_object_set_new(image, "bufferView", json_integer((json_int_t)json_array_size(views) - 1));

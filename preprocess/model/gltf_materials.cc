@@ -2,7 +2,9 @@
 /* Materials, and which images their textures mean. */
 #include "preprocess/model/gltf_impl.hh"
 
+#include <array>
 #include <cmath>
+#include <cstring>
 
 namespace gltf
 {
@@ -67,13 +69,25 @@ int image_of(const tinygltf::Texture &texture)
     return static_cast<int>(number_in(webp->second, "source", 0, -1));
 }
 
-uint32_t texture_of(work *w, int texture, bool srgb, const std::string &what)
+bool is_readable(const document_bytes &image)
+{
+    const unsigned char *b = image.at;
+    return b && image.size > 12 && (memcmp(b, "\x89PNG", 4) == 0 || memcmp(b, "\xff\xd8\xff", 3) == 0 || memcmp(b + 8, "WEBP", 4) == 0);
+}
+
+/* Returns ASSET_NO_TEXTURE with the reason in *why where there is no image that can be read. */
+uint32_t texture_of(work *w, int texture, bool srgb, std::string *why)
 {
     gltf_model *model = w->model;
     const tinygltf::Texture &t = w->parsed.textures.at(static_cast<size_t>(texture));
     int image = image_of(t);
-    if (image < 0)
-        refuse("%s: texture %d: has no image in a format that can be read (PNG, JPEG, WebP)", what.c_str(), texture);
+    const document_image *from = image < 0 ? nullptr : &w->document->images[image];
+    if (from && from->missing)
+        *why = std::string("its image is missing: ") + from->missing;
+    else if (!from || !is_readable(from->bytes))
+        *why = "its image is in no format that can be read (PNG, JPEG, WebP)";
+    if (!why->empty())
+        return ASSET_NO_TEXTURE;
     bool repeat = t.sampler < 0 || w->parsed.samplers.at(static_cast<size_t>(t.sampler)).wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
     gltf_texture wanted = { static_cast<uint32_t>(image), srgb, repeat };
     for (uint32_t i = 0; i < model->texture_count; i++)
@@ -94,30 +108,42 @@ float finite(double value, double otherwise)
     return std::isfinite(out) ? out : static_cast<float>(otherwise);
 }
 
-void leave_out(work *w, const std::string &what, size_t number, int set)
+void leave_out(work *w, const std::string &text)
 {
-    static const char *const names[USE_COUNT] = { "base colour", "metallic-roughness", "normal", "occlusion", "emissive" };
-    std::string text =
-        what + ": its " + names[number] + " texture (TEXCOORD_" + std::to_string(set) + ") lies on the surface in a third way of its own";
     w->model->left_out[w->model->left_out_textures++] = mem_strdup(text.c_str());
+}
+
+std::string material_what(const work &w, int number)
+{
+    return "material " + std::to_string(number) + " '" + w.parsed.materials.at(static_cast<size_t>(number)).name.substr(0, 80) + "'";
+}
+
+const char *const use_names[USE_COUNT] = { "base colour", "metallic-roughness", "normal", "occlusion", "emissive" };
+
+/* The place of each use of a texture in a material. */
+std::array<uint32_t *, USE_COUNT> places_of(asset_material *m)
+{
+    return { &m->base_color_texture, &m->metallic_roughness_texture, &m->normal_texture, &m->occlusion_texture, &m->emissive_texture };
 }
 
 void read_textures(work *w, const tinygltf::Material &from, asset_material *to, int number, const std::string &what)
 {
-    uint32_t *const places[USE_COUNT] = { &to->base_color_texture, &to->metallic_roughness_texture, &to->normal_texture,
-                                          &to->occlusion_texture, &to->emissive_texture };
+    std::array<uint32_t *, USE_COUNT> places = places_of(to);
     std::vector<use> uses = uses_of(from);
     uv_lays lays = lays_of(w->parsed, number);
     for (size_t i = 0; i < USE_COUNT; i++) {
+        std::string why;
         *places[i] = ASSET_NO_TEXTURE;
         if (uses[i].texture < 0)
             continue;
-        if (lays.of[i] == 2) {
-            leave_out(w, what, i, transform_of(w->parsed, uses[i]).set);
-            continue;
-        }
-        *places[i] = texture_of(w, uses[i].texture, i == BASE_COLOR || i == EMISSIVE, what);
-        to->second |= static_cast<uint32_t>(lays.of[i]) << i;
+        if (lays.of[i] == 2)
+            why = "(TEXCOORD_" + std::to_string(transform_of(w->parsed, uses[i]).set) + ") lies on the surface in a third way of its own";
+        else
+            *places[i] = texture_of(w, uses[i].texture, i == BASE_COLOR || i == EMISSIVE, &why);
+        if (!why.empty())
+            leave_out(w, what + ": its " + use_names[i] + " texture" + (why[0] == '(' ? " " : ": ") + why);
+        else
+            to->second |= static_cast<uint32_t>(lays.of[i]) << i;
     }
 }
 
@@ -164,6 +190,19 @@ uv_lays lays_of(const tinygltf::Model &m, int material)
     return lays;
 }
 
+void leave_out_bounded(work *w, int material, size_t lay)
+{
+    std::vector<use> uses = uses_of(w->parsed.materials.at(static_cast<size_t>(material)));
+    uv_lays lays = lays_of(w->parsed, material);
+    std::array<uint32_t *, USE_COUNT> places = places_of(&w->model->materials[material]);
+    for (size_t i = 0; i < USE_COUNT; i++)
+        if (*places[i] != ASSET_NO_TEXTURE && lays.of[i] == lay && transform_of(w->parsed, uses[i]).bounded) {
+            *places[i] = ASSET_NO_TEXTURE;
+            leave_out(w, material_what(*w, material) + ": its " + use_names[i] +
+                             " texture: beyond 0..1 it is mirrored, or wrapped differently along u and v");
+        }
+}
+
 void read_materials(work *w)
 {
     gltf_model *model = w->model;
@@ -180,10 +219,12 @@ void read_materials(work *w)
     model->materials = new_array<asset_material>(w->parsed.materials.size() + 1);
     model->material_names = new_array<char *>(w->parsed.materials.size() + 1);
     model->textures = new_array<gltf_texture>(USE_COUNT * w->parsed.materials.size() + 1);
-    model->left_out = new_array<char *>(USE_COUNT * w->parsed.materials.size() + 1);
+    model->left_out = new_array<char *>(USE_COUNT * w->parsed.materials.size() + d->look_count + 1);
+    for (size_t i = 0; i < d->look_count; i++)
+        leave_out(w, std::string("the file requires ") + d->looks[i] + ", which only changes how it looks");
     for (const tinygltf::Material &material : w->parsed.materials) {
         int number = static_cast<int>(model->material_count);
-        std::string what = "material " + std::to_string(number) + " '" + material.name.substr(0, 80) + "'";
+        std::string what = material_what(*w, number);
         model->material_names[model->material_count++] = mem_strdup(material.name.c_str());
         read_material(w, material, &model->materials[number], number, what);
     }

@@ -136,12 +136,13 @@ float (*read_vectors(const attribute_reader &reader, const std::string &name))[3
     return out;
 }
 
-/* None where the primitive has no such set. */
-void read_texcoords(const attribute_reader &reader, const uv_transform &uv, float (**out)[2])
+/* None where the primitive has no such set. Returns whether some lie beyond 0..1 of textures that are right only inside. */
+bool read_texcoords(const attribute_reader &reader, const uv_transform &uv, float (**out)[2])
 {
     std::string name = "TEXCOORD_" + std::to_string(uv.set);
+    bool beyond = false;
     if (!reader.has(name))
-        return;
+        return false;
     accessor from = reader.open(name, 2);
     float(*texcoords)[2] = *out = reinterpret_cast<float(*)[2]>(new_array<float>(2 * reader.used.size() + 1));
     double c = std::cos(uv.rotation), s = std::sin(uv.rotation), t[2];
@@ -150,10 +151,9 @@ void read_texcoords(const attribute_reader &reader, const uv_transform &uv, floa
         double u = t[0] * uv.scale[0], v = t[1] * uv.scale[1];
         texcoords[i][0] = narrow(c * u + s * v + uv.offset[0], reader.what);
         texcoords[i][1] = narrow(-s * u + c * v + uv.offset[1], reader.what);
-        if (uv.bounded && (std::fabs(texcoords[i][0] - 0.5f) > 0.501f || std::fabs(texcoords[i][1] - 0.5f) > 0.501f))
-            refuse("%s: %s: mirrored, or wrapped differently along u and v, which is not supported beyond 0..1", reader.what.c_str(),
-                   name.c_str());
+        beyond |= uv.bounded && (std::fabs(texcoords[i][0] - 0.5f) > 0.501f || std::fabs(texcoords[i][1] - 0.5f) > 0.501f);
     }
+    return beyond;
 }
 
 void read_colors(const attribute_reader &reader, gltf_primitive *out)
@@ -170,15 +170,16 @@ void read_colors(const attribute_reader &reader, gltf_primitive *out)
     }
 }
 
-void read_vertices(const attribute_reader &reader, gltf_primitive *out, int material)
+void read_vertices(work *w, const attribute_reader &reader, gltf_primitive *out, int material)
 {
     uv_lays lays = lays_of(reader.w.parsed, material);
     out->positions = read_vectors(reader, "POSITION");
     if (reader.has("NORMAL"))
         out->normals = read_vectors(reader, "NORMAL");
-    read_texcoords(reader, lays.at[0], &out->texcoords);
-    if (lays.count > 1)
-        read_texcoords(reader, lays.at[1], &out->second_texcoords);
+    if (read_texcoords(reader, lays.at[0], &out->texcoords))
+        leave_out_bounded(w, material, 0);
+    if (lays.count > 1 && read_texcoords(reader, lays.at[1], &out->second_texcoords))
+        leave_out_bounded(w, material, 1);
     if (reader.has("COLOR_0"))
         read_colors(reader, out);
 }
@@ -214,7 +215,7 @@ bool read_primitive(work *w, const tinygltf::Primitive &p, gltf_primitive *out, 
     out->indices = new_array<uint32_t>(indices.size());
     memcpy(out->indices, indices.data(), indices.size() * sizeof(uint32_t));
     mesh->index_count += indices.size();
-    read_vertices({ *w, p, used, vertices, what }, out, p.material);
+    read_vertices(w, { *w, p, used, vertices, what }, out, p.material);
     return true;
 }
 

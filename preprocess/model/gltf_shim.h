@@ -58,7 +58,7 @@ struct gltf_model {
     uint32_t primitive_count, mesh_count, node_count, material_count, texture_count, image_count;
     uint32_t skipped_lines, skipped_points; /* of all meshes */
     uint32_t scaled_rotations;              /* of nodes and instances: their length is not 1 */
-    char **left_out; /* a text for each use of a texture that lies on the surface in a third way: there is room for two */
+    char **left_out; /* a text for each use of a texture, and each extension, that is left out */
     uint32_t left_out_textures;
 };
 

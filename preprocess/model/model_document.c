@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "preprocess/model/model_json.h"
 #include "preprocess/model/model_rules.h"
 #include "preprocess/model/model_uri.h"
 
@@ -21,8 +22,7 @@ static bool load_buffer(struct document_work *work, size_t number, const json_t 
     char uri_why[MODEL_WHY_BYTES];
     const char *uri = json_string_value(json_object_get(buffer, "uri"));
     uint64_t length = document_number(buffer, "byteLength");
-    bool standin = /* of a compressed buffer, for programs that cannot read it */
-        json_is_true(json_object_get(json_object_get(json_object_get(buffer, "extensions"), "EXT_meshopt_compression"), "fallback"));
+    bool standin = model_json_is_standin(work->root, number);
     if (uri) {
         bytes.at = bytes.own = model_uri_read(work->source->folder, uri, &bytes.size, uri_why);
         if (!bytes.at)
@@ -138,7 +138,7 @@ static bool load_image(struct document_work *work, size_t number, const json_t *
     } else if (uri) {
         image->bytes.at = image->bytes.own = model_uri_read(work->source->folder, uri, &image->bytes.size, uri_why);
         if (!image->bytes.at)
-            return wrong(work->why, "image %zu: %s", number, uri_why);
+            image->missing = mem_strdup(uri_why);
     } else {
         return wrong(work->why, "image %zu: has neither a uri nor a bufferView", number);
     }
@@ -154,6 +154,19 @@ static bool load_images(struct document_work *work)
         if (!load_image(work, i, json_array_get(images, i), &d->images[d->image_count++]))
             return false;
     return true;
+}
+
+/* Extensions that are required and left out. */
+static void take_looks(struct document_work *work)
+{
+    const json_t *required = json_object_get(work->root, "extensionsRequired");
+    struct model_document *d = work->document;
+    d->looks = mem_array(json_array_size(required) + 1, sizeof(*d->looks));
+    for (size_t i = 0; i < json_array_size(required); i++) {
+        const char *name = json_string_value(json_array_get(required, i));
+        if (name && model_rules_look(name))
+            d->looks[d->look_count++] = mem_strdup(name);
+    }
 }
 
 /* --- the whole ----------------------------------------------------------------------------------------------------------- */
@@ -177,6 +190,7 @@ static bool make_plain(struct document_work *work)
     if (!model_rules_check(work->root, work->why) || !load_buffers(work) || !document_expand_meshopt(work) || !views_good(work) ||
         !document_expand_draco(work) || !fill_accessors(work) || !load_images(work))
         return false;
+    take_looks(work);
     strip(work->root);
     work->document->json = json_dumps(work->root, JSON_COMPACT);
     if (!work->document->json)
@@ -203,8 +217,12 @@ void model_document_finish(struct model_document *document)
         mem_free(document->buffers[i].own);
     for (size_t i = 0; i < document->image_count; i++) {
         mem_free(document->images[i].name);
+        mem_free(document->images[i].missing);
         mem_free(document->images[i].bytes.own);
     }
+    for (size_t i = 0; i < document->look_count; i++)
+        mem_free(document->looks[i]);
+    mem_free(document->looks);
     mem_free(document->buffers);
     mem_free(document->images);
     free(document->json);

@@ -16,7 +16,7 @@ struct document_bytes {
 };
 
 struct document_image {
-    char *name;
+    char *name, *missing;        /* missing: why it could not be read; NULL: it was */
     struct document_bytes bytes; /* as it lies in the file: PNG, JPEG, WebP */
 };
 
@@ -25,7 +25,8 @@ struct model_document {
     size_t json_bytes;
     struct document_bytes *buffers;
     struct document_image *images;
-    size_t buffer_count, image_count;
+    char **looks; /* extensions that the file requires and that are left out: they only change how it looks */
+    size_t buffer_count, image_count, look_count;
     size_t total_bytes; /* of the buffers, but for those that are all zeros */
 };
 

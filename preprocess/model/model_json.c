@@ -84,3 +84,25 @@ json_t *model_json_load(struct model_bytes file, struct model_bytes *binary, cha
     }
     return root;
 }
+
+static const json_t *meshopt_of(const json_t *object)
+{
+    return json_object_get(json_object_get(object, "extensions"), "EXT_meshopt_compression");
+}
+
+bool model_json_is_standin(const json_t *root, size_t buffer)
+{
+    const json_t *views = json_object_get(root, "bufferViews"), *one = json_array_get(json_object_get(root, "buffers"), buffer);
+    bool compressed = false, plain = false;
+    if (json_is_true(json_object_get(meshopt_of(one), "fallback")))
+        return true;
+    for (size_t i = 0; i < json_array_size(views); i++) {
+        const json_t *view = json_array_get(views, i), *number = json_object_get(view, "buffer");
+        const json_t *meshopt = meshopt_of(view), *source = json_object_get(meshopt, "buffer");
+        if (json_is_integer(number) && (size_t)json_integer_value(number) == buffer)
+            *(meshopt ? &compressed : &plain) = true;
+        if (json_is_integer(source) && (size_t)json_integer_value(source) == buffer)
+            plain = true;
+    }
+    return compressed && !plain;
+}

@@ -85,28 +85,18 @@ static const struct rule rules[] = { /* whether an accessor's views are there is
 };
 /* clang-format on */
 
-/* Extensions that a file may require: those that are done here, and those that change the look only. */
+/* Extensions that a file may require: those that are done here. */
 static const char *const known_extensions[] = {
-    "KHR_mesh_quantization",
-    "EXT_meshopt_compression",
-    "KHR_draco_mesh_compression",
-    "KHR_texture_transform",
-    "EXT_mesh_gpu_instancing",
+    "KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_texture_transform", "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
-    "KHR_lights_punctual",
-    "KHR_materials_unlit",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_specular",
-    "KHR_materials_clearcoat",
-    "KHR_materials_sheen",
-    "KHR_materials_transmission",
-    "KHR_materials_volume",
-    "KHR_materials_variants",
-    "KHR_materials_anisotropy",
-    "KHR_materials_iridescence",
-    "KHR_materials_dispersion",
-    "KHR_xmp_json_ld",
+};
+
+/* Beginnings of the names of extensions that change no shape and no place: they are left out. */
+static const char *const look_extensions[] = {
+    "KHR_materials_", "EXT_materials_",     "ADOBE_materials_",        "KHR_texture_", "EXT_texture_",           "MSFT_texture_",
+    "KHR_lights_",    "EXT_lights_",        "KHR_xmp",                 "KHR_audio",    "KHR_techniques_webgl",   "KHR_animation_pointer",
+    "EXT_mesh_feat",  "EXT_instance_feat",  "EXT_structural_metadata", "MSFT_packing", "FB_ngon_encoding",       "EXT_feature_metadata",
+    "AGI_",           "MAXAR_image_ortho",  "CESIUM_primitive_outline", "GODOT_single_root",
 };
 
 struct check { /* one object in hand */
@@ -309,6 +299,22 @@ static bool list_good(json_t *root, const char *list, char *why)
     return true;
 }
 
+static bool is_known(const char *name)
+{
+    bool known = false;
+    for (size_t i = 0; !known && i < sizeof(known_extensions) / sizeof(known_extensions[0]); i++)
+        known = strcmp(name, known_extensions[i]) == 0;
+    return known;
+}
+
+bool model_rules_look(const char *name)
+{
+    bool look = false;
+    for (size_t i = 0; !look && i < sizeof(look_extensions) / sizeof(look_extensions[0]); i++)
+        look = strncmp(name, look_extensions[i], strlen(look_extensions[i])) == 0;
+    return look && !is_known(name);
+}
+
 static bool head_good(json_t *root, char *why)
 {
     const json_t *asset = json_object_get(root, "asset"), *required = json_object_get(root, "extensionsRequired");
@@ -320,10 +326,7 @@ static bool head_good(json_t *root, char *why)
         return wrong(why, "extensionsRequired is not a list");
     for (size_t i = 0; i < json_array_size(required); i++) {
         const char *name = json_string_value(json_array_get(required, i));
-        bool known = false;
-        for (size_t k = 0; name && !known && k < sizeof(known_extensions) / sizeof(known_extensions[0]); k++)
-            known = strcmp(name, known_extensions[k]) == 0;
-        if (!known)
+        if (!name || (!is_known(name) && !model_rules_look(name)))
             return wrong(why, "requires the extension %.100s, which is not supported", name ? name : "without a name");
     }
     static const struct rule scene = { "", "scene", INDEX, MAY, "scenes", 0 };

@@ -20,6 +20,8 @@ static bool hash_uri(const struct model_source *source, const char *what, size_t
     if (!uri || model_uri_is_data(uri)) /* in the file, and so in the hash already */
         return true;
     unsigned char *bytes = model_uri_read(source->folder, uri, &size, uri_why);
+    if (!bytes && strcmp(what, "image") == 0) /* the model is drawn without it; once the image is there, the hash is another */
+        return true;
     if (!bytes)
         return wrong(why, "%s %zu: %s", what, number, uri_why);
     XXH3_64bits_update(hash, bytes, size);

@@ -7,6 +7,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include <utf8proc.h>
+
 #include "base/mem.h"
 #include "base/text.h"
 
@@ -57,10 +59,31 @@ static const char *find_inside(const char *folder, const char *name, char **real
     return NULL;
 }
 
-static unsigned char *read_inside(const char *folder, const char *name, size_t *size, char *why)
+/* Where the name is not there as it is written, the file may have it in another form: percent signs that are no escapes, accents joined
+ * with their letters or apart (macOS), or folders between backslashes. */
+static const char *find_any_form(const char *folder, const char *uri, const char *name, char **real)
+{
+    const utf8proc_uint8_t *bytes = (const utf8proc_uint8_t *)name;
+    char *slashes = mem_strdup(name), *joined = (char *)utf8proc_NFC(bytes), *apart = (char *)utf8proc_NFD(bytes);
+    for (char *at = slashes; (at = strchr(at, '\\'));)
+        *at = '/';
+    const char *const forms[] = { uri, slashes, joined, apart }, *first = find_inside(folder, name, real);
+    const char *reason = first;
+    for (size_t i = 0; reason && i < sizeof(forms) / sizeof(forms[0]); i++) {
+        free(*real);
+        *real = NULL;
+        reason = forms[i] ? find_inside(folder, forms[i], real) : reason;
+    }
+    mem_free(slashes);
+    free(joined);
+    free(apart);
+    return reason ? first : NULL;
+}
+
+static unsigned char *read_inside(const char *folder, const char *uri, const char *name, size_t *size, char *why)
 {
     char *real = NULL, *bytes = NULL;
-    const char *reason = find_inside(folder, name, &real);
+    const char *reason = find_any_form(folder, uri, name, &real);
     if (!reason) {
         bytes = text_read_file(real, MODEL_MAX_BYTES, size);
         reason = strerror(errno);
@@ -128,7 +151,7 @@ unsigned char *model_uri_read(const char *folder, const char *uri, size_t *size,
     char *name = mem_strdup(uri);
     unsigned char *bytes = NULL;
     if (percent_decode(name))
-        bytes = read_inside(folder, name, size, why);
+        bytes = read_inside(folder, uri, name, size, why);
     else
         wrong(why, "'%.120s' is not a readable file inside the model's folder: it holds a byte 0", uri);
     mem_free(name);

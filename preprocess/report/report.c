@@ -261,7 +261,7 @@ static void print_models(const struct text_report *report)
         if (model->scaled_rotations)
             fprintf(report->out, "; %u rotations whose length is not 1, taken as if it were", model->scaled_rotations);
         if (model->left_out_textures)
-            fprintf(report->out, "; left out: %u textures", model->left_out_textures);
+            fprintf(report->out, "; left out: %u textures or looks", model->left_out_textures);
         fprintf(report->out, "\n");
         for (size_t t = 0; t < model->left_out_textures && t < report->rows; t++)
             fprintf(report->out, "  left out: %s\n", model->left_out[t]);

@@ -57,12 +57,63 @@ for (const { name, bytes, named } of [
 test('units and axis are guessed and said, or given', { skip }, () => inFolder((folder) => {
     writeFileSync(join(folder, 'a.stl'), stl(1000));
     const said = plantcast('import', join(folder, 'a.stl'), '-o', join(folder, 'plant'));
-    assert.match(said.stdout, /does not say its units: mm is taken, for it is 2000 long; --units says otherwise/);
+    assert.match(said.stdout,
+        /does not say its units: mm is taken, because it is 2000 long, which is then 2 m\. Is that right\?.*--units says/);
     assert.match(said.stdout, /does not say which axis is up: z is taken/);
     const given = boxed(folder, 'b.stl', stl(10), '--units', 'ft', '--up', 'y');
     assert.ok(near(given.size, [6.096, 1.524, 3.048]), JSON.stringify(given.size));
     writeFileSync(join(folder, 'a.dae'), dae());
     assert.match(plantcast('nodes', join(folder, 'a.dae'), '--units', 'mm').stderr, /COLLADA says itself what its units are/);
+}));
+
+test('STL in capitals is read', { skip }, () => inFolder((folder) => {
+    const { size, list } = boxed(folder, 'a.stl', stl().replace(/.*/g, (line) => line.toUpperCase()));
+    assert.ok(near(size, [2, 1, 0.5]) && list.length > 0, JSON.stringify(size));
+}));
+
+// 100 in = 2.54 m. The geometry of the pump is moved 1 in x, its child stands 2 in x; neither moves the other.
+test('FBX: a geometric transform moves its own mesh and no child', { skip }, () => inFolder((folder) => {
+    const whole = fbx(2.54), moved = (x, y) => `"A",${x},0,0\n            P: "GeometricTranslation", "Vector3D", "Vector", "",${y}\n`;
+    const mesh = /Geometry: 100[\s\S]*?\n {4}\}\n/.exec(whole)[0], model = /Model: 200[\s\S]*?\n {4}\}\n/.exec(whole)[0];
+    const child = `    ${mesh.replace('100', '101')}    ${model.replace('200', '201').replace('Feed pump', 'Child')
+        .replace('"A",0,0,0\n', moved(200, '0,100,0'))}`;
+    const bytes = whole.replace('"A",0,0,0\n', moved(0, '100,0,0')).replace('}\nConnections:', `${child}}\nConnections:`)
+        .replace('C: "OO",100,200', 'C: "OO",100,200\n    C: "OO",201,200\n    C: "OO",101,201');
+    const { list } = boxed(folder, 'a.fbx', bytes);
+    assert.deepEqual(list.map(({ path }) => path), ['a', 'a/Feed pump', 'a/Feed pump/Child']);
+    assert.ok(near(list[2].centre, [1 + 5.08, 0.5 + 2.54, 0.25]), JSON.stringify(list[2]));
+    assert.ok(near(list[1].size, [4.54, 3.54, 0.5]), JSON.stringify(list[1])); /* from 2.54 to 7.08 */
+}));
+
+test('glTF: names of files with percent signs and accents, required looks, missing pictures', { skip }, () => inFolder((folder) => {
+    const bytes = Buffer.alloc(42);
+    [0, 0, 0, 1, 0, 0, 1, 1, 0].forEach((v, i) => bytes.writeFloatLE(v, 4 * i));
+    [0, 1, 2].forEach((v, i) => bytes.writeUInt16LE(v, 36 + 2 * i));
+    const gltf = (uri, more = {}) => JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }],
+        nodes: [{ mesh: 0, name: 'T-1' }], meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
+        buffers: [{ byteLength: 42, uri }], bufferViews: [{ buffer: 0, byteLength: 36 }, { buffer: 0, byteOffset: 36, byteLength: 6 }],
+        accessors: [{ bufferView: 0, componentType: 5126, count: 3, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 0] },
+            { bufferView: 1, componentType: 5123, count: 3, type: 'SCALAR' }], ...more });
+    const file = (name) => writeFileSync(join(folder, name), bytes);
+    for (const [name, uri] of [['tank 10%.bin', 'tank 10%.bin'], ['a+b#1.bin', 'a+b%231.bin'], ['50%25.bin', '50%25.bin'],
+        ['Behälter.bin'.normalize('NFD'), 'Behälter.bin'.normalize('NFC')],
+        ['Öl.bin'.normalize('NFC'), encodeURIComponent('Öl.bin'.normalize('NFD'))],
+        ['back.bin', '.\\back.bin']]) {
+        file(name);
+        assert.equal(boxed(folder, 'a.gltf', gltf(uri)).triangles, 1, uri);
+        rmSync(join(folder, name));
+    }
+    file('a.bin');
+    writeFileSync(join(folder, 'look.gltf'), gltf('a.bin', { extensionsRequired: ['KHR_texture_basisu'],
+        images: [{ uri: 'none.png' }], textures: [{ source: 0 }],
+        materials: [{ name: 'paint', pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }] }));
+    const { status, stdout, stderr } = plantcast('import', join(folder, 'look.gltf'), '-o', join(folder, 'plant'));
+    assert.equal(status, 0, stderr);
+    assert.match(stdout, /left out: the file requires KHR_texture_basisu, which only changes how it looks/);
+    assert.match(stdout, /left out: material 0 'paint': its base colour texture: its image is missing: 'none\.png'/);
+    writeFileSync(join(folder, 'r.gltf'), gltf('a.bin', { extensionsRequired: ['CESIUM_RTC'] }));
+    assert.match(plantcast('import', join(folder, 'r.gltf'), '-o', join(folder, 'other')).stderr,
+        /requires the extension CESIUM_RTC, which is not supported/);
 }));
 
 test('a signal ends it, and nothing is left behind', { skip }, () => inFolder(async (folder) => {

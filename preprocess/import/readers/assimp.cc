@@ -2,7 +2,9 @@
 /* `plantcast-import-assimp INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: OBJ, STL, PLY, FBX, COLLADA and 3DS by Assimp, in a process
  * of its own. UNITS, UP or ENCODING `-`: as the file says, else guessed, and said. Its last line on stderr says why it failed. */
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
@@ -84,6 +86,62 @@ std::string take_declared(std::string *text)
     return name;
 }
 
+/* A text begins with "solid", as some binary files do, too: they have 50 bytes for each triangle. */
+bool is_text_of_stl(const std::string &bytes)
+{
+    uint32_t triangles = 0;
+    if (bytes.size() >= 84)
+        memcpy(&triangles, &bytes[80], sizeof(triangles));
+    return bytes.size() > 5 && !strncasecmp(bytes.c_str(), "solid", 5) && bytes.size() != 84 + 50 * static_cast<uint64_t>(triangles);
+}
+
+/* Assimp knows the words of STL in small letters only. Names of solids stay. */
+std::string with_small_words(std::string text)
+{
+    bool blank = true, named = false; /* blank: only blanks before in this line */
+    for (size_t i = 0; i < text.size(); i++) {
+        bool space = isspace(static_cast<unsigned char>(text[i])) != 0;
+        if (text[i] == '\n' || text[i] == '\r') {
+            blank = true;
+            named = false;
+            continue;
+        }
+        if (blank && !space)
+            named = strncasecmp(&text[i], "solid", 5) == 0 || strncasecmp(&text[i], "endsolid", 8) == 0;
+        for (; blank && named && i < text.size() && !isspace(static_cast<unsigned char>(text[i])); i++)
+            text[i] = static_cast<char>(tolower(static_cast<unsigned char>(text[i])));
+        blank = blank && space;
+        if (!named && i < text.size())
+            text[i] = static_cast<char>(tolower(static_cast<unsigned char>(text[i])));
+        if (named && i < text.size() && (text[i] == '\n' || text[i] == '\r'))
+            i--;
+    }
+    return text;
+}
+
+Assimp::IOStream *of_text(const std::string &text)
+{
+    auto *copy = new uint8_t[text.size() + 1];
+    memcpy(copy, text.data(), text.size());
+    return new Assimp::MemoryIOStream(copy, text.size(), true);
+}
+
+/* Errors that Assimp logs, each text once. */
+struct errors : Assimp::LogStream {
+    std::map<std::string, size_t> &counts;
+
+    explicit errors(std::map<std::string, size_t> &into) : counts(into)
+    {
+    }
+    void write(const char *message) override
+    {
+        std::string text(message);
+        while (!text.empty() && isspace(static_cast<unsigned char>(text.back())))
+            text.pop_back();
+        counts[text]++;
+    }
+};
+
 /* Texts in UTF-8, and with names of OBJ files in one word. Materials are found by their names: the first file's encoding is that of all. */
 struct files : Assimp::DefaultIOSystem {
     text_encoding *encoding;
@@ -96,12 +154,14 @@ struct files : Assimp::DefaultIOSystem {
     {
         const char *dot = strrchr(path, '.');
         Assimp::IOStream *file = DefaultIOSystem::Open(path, mode);
-        bool obj = dot && !strcasecmp(dot, ".obj"), dae = dot && !strcasecmp(dot, ".dae");
-        if (!file || (!obj && !dae && !(dot && !strcasecmp(dot, ".mtl"))))
+        bool obj = dot && !strcasecmp(dot, ".obj"), stl = dot && !strcasecmp(dot, ".stl"), dae = dot && !strcasecmp(dot, ".dae");
+        if (!file || (!obj && !dae && !stl && !(dot && !strcasecmp(dot, ".mtl"))))
             return file;
         std::string text(file->FileSize(), 0);
         text.resize(text.empty() ? 0 : file->Read(&text[0], 1, text.size()));
         Close(file);
+        if (stl)
+            return of_text(is_text_of_stl(text) ? with_small_words(text) : text);
         std::string said = dae ? take_declared(&text) : "";
         if (encoding->choice.ascii) {
             encoding->choose(text, asked, said.c_str());
@@ -110,9 +170,7 @@ struct files : Assimp::DefaultIOSystem {
         text = encoding->utf8(text);
         if (obj)
             keep_blanks(&text[0], text.size());
-        auto *copy = new uint8_t[text.size() + 1];
-        memcpy(copy, text.data(), text.size());
-        return new Assimp::MemoryIOStream(copy, text.size(), true);
+        return of_text(text);
     }
 };
 
@@ -180,7 +238,9 @@ void root_matrix(const aiScene *scene, const format &from, const char *units, co
     if (!unit) {
         double longest = longest_side(scene);
         unit = longest > LONGEST_IN_METRES ? "mm" : "m";
-        printf("it does not say its units: %s is taken, for it is %.4g long; --units says otherwise\n", unit, longest);
+        printf("it does not say its units: %s is taken, because it is %.4g long, which is then %.4g m. Is that right? If not, --units "
+               "says otherwise (m, mm, cm, in, ft)\n",
+               unit, longest, longest * metres_of(unit));
     }
     const char *axis = strcmp(up, "-") != 0 ? up : from.up;
     if (!axis) {
@@ -308,11 +368,19 @@ void add_properties(reader *r, int to, const aiMetadata *data)
     }
 }
 
-void matrix_of(const aiNode *node, double matrix[16])
+using transform = aiMatrix4x4t<double>;
+
+transform transform_of(const aiNode *node)
+{
+    const aiMatrix4x4 &m = node->mTransformation;
+    return transform(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4);
+}
+
+void matrix_of(const aiNode *node, const transform &place, double matrix[16])
 {
     for (unsigned row = 0; row < 4; row++)
         for (unsigned column = 0; column < 4; column++) {
-            matrix[4 * column + row] = static_cast<double>(node->mTransformation[row][column]);
+            matrix[4 * column + row] = place[row][column];
             if (!std::isfinite(matrix[4 * column + row]))
                 refuse("node '%.80s' has a place that is not finite", node->mName.C_Str());
         }
@@ -334,21 +402,29 @@ void collect(const aiScene *scene, const aiNode *node, std::string *out)
         collect(scene, node->mChildren[i], out);
 }
 
-void add(reader *r, const aiNode *node, int parent, int depth)
+/* Assimp splits a node of FBX into a chain, one node for each step of its transform; those are joined again. */
+bool is_step(const aiNode *node)
+{
+    return strstr(node->mName.C_Str(), "_$AssimpFbx$_") != nullptr;
+}
+
+void add(reader *r, const aiNode *node, const transform &steps, int parent, int depth)
 {
     double matrix[16];
     bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity(); /* the node around all others */
+    bool step = is_step(node) && node->mNumMeshes == 0;
+    transform place = steps * transform_of(node);
     if (depth > MAX_DEPTH)
         refuse("its nodes are nested deeper than %d levels", MAX_DEPTH);
-    matrix_of(node, matrix);
+    matrix_of(node, place, matrix);
     int number = parent;
-    if (!made_up) {
+    if (!made_up && !step) {
         number = glb_scene_add_node(r->out, parent, name_of(r, node->mName).c_str(), mesh_of(r, node),
-                                    node->mTransformation.IsIdentity() ? nullptr : matrix);
+                                    place.IsIdentity() ? nullptr : matrix);
         add_properties(r, number, node->mMetaData);
     }
     for (unsigned i = 0; i < node->mNumChildren; i++)
-        add(r, node->mChildren[i], number, depth + 1);
+        add(r, node->mChildren[i], step ? place : transform(), number, depth + !step);
 }
 
 const format &format_of(const char *path)
@@ -372,7 +448,7 @@ void check_end_of_stl(const char *path)
         rewind(file);
     read += fread(tail, 1, sizeof(tail) - 1, file);
     fclose(file);
-    if (read > 0 && !strncmp(head, "solid", 5) && strstr(head, "facet") && !strstr(tail, "endsolid"))
+    if (read > 0 && !strncasecmp(head, "solid", 5) && strcasestr(head, "facet") && !strcasestr(tail, "endsolid"))
         refuse("it is cut off: it does not end with endsolid");
 }
 
@@ -401,12 +477,18 @@ void convert(const char *input, const char *output, const char *units, const cha
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_LINE | aiPrimitiveType_POINT);
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true); /* else children inherit GeometricTranslation */
     text_encoding of_file; /* of formats that are text and are decoded before Assimp reads them */
     importer.SetIOHandler(new files(&of_file, asked)); /* and owns it */
+    std::map<std::string, size_t> logged;
+    Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+    Assimp::DefaultLogger::get()->attachStream(new errors(logged), Assimp::Logger::Err); /* which owns it */
     const aiScene *scene = importer.ReadFile(input, steps | (from.own_normals ? 0U : static_cast<unsigned>(aiProcess_RemoveComponent)));
     if (!scene || !scene->mRootNode)
         refuse("%.250s", strcmp(importer.GetErrorString(), "std::bad_alloc") ? importer.GetErrorString() : "out of memory");
+    Assimp::DefaultLogger::kill();
+    for (const auto &entry : logged)
+        printf("Assimp, %zu times: %.300s\n", entry.second, entry.first.c_str());
     reader r = {};
     r.scene = scene;
     if (of_file.choice.ascii) {
@@ -421,7 +503,7 @@ void convert(const char *input, const char *output, const char *units, const cha
     double matrix[16];
     root_matrix(scene, from, units, up, matrix);
     int root = glb_scene_add_node(r.out, -1, std::string(base, strlen(base) - strlen(from.ending)).c_str(), -1, matrix);
-    add(&r, scene->mRootNode, root, 0);
+    add(&r, scene->mRootNode, transform(), root, 0);
     if (r.triangles == 0)
         refuse("there is no surface in it");
     write_scene(&r.out, output, "");
