@@ -14,6 +14,7 @@
 
 #define MAX_TRIANGLES 50000000ull /* of one asset */
 #define MAX_SIZE_M 1e7
+#define COARSE_SIZE_M 1e5 /* floats of a larger model have steps of millimetres at its ends */
 #define SAME_PLACE_M 1e-3 /* nodes of one name that are no farther apart are as good as one */
 #define SHOWN_NODES 6
 #define MIN_SIZE_M 1e-6 /* smaller is a wrong unit; and squares of squares of lengths have to be numbers */
@@ -143,6 +144,36 @@ static void box_add_primitive(struct box *box, const struct gltf_primitive *prim
     }
 }
 
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The median vertex: a model with a stray vertex at the origin of its coordinates keeps its precision where most of it is. */
+static void median_of(const struct node_primitives *parts, const struct geometry_params *params, double median_m[3])
+{
+    size_t count = 0, at = 0;
+    for (size_t i = 0; i < parts->count; i++)
+        count += parts->at[i].primitive->vertex_count;
+    double *places = mem_array(3 * count, sizeof(*places));
+    for (size_t i = 0; i < parts->count; i++) {
+        double world[16], place[3];
+        primitive_world(params, parts->at[i].node, world);
+        for (uint32_t v = 0; v < parts->at[i].primitive->vertex_count; v++, at++) {
+            const float *p = parts->at[i].primitive->positions[v];
+            transform_point(world, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] }, place);
+            for (int axis = 0; axis < 3; axis++)
+                places[(size_t)axis * count + at] = place[axis];
+        }
+    }
+    for (size_t axis = 0; axis < 3; axis++) {
+        qsort(places + axis * count, count, sizeof(*places), compare_doubles);
+        median_m[axis] = places[axis * count + count / 2];
+    }
+    mem_free(places);
+}
+
 static bool find_origin(struct geometry *geometry, const struct node_primitives *parts, const struct geometry_params *params, char *why)
 {
     struct box box = empty_box;
@@ -159,6 +190,8 @@ static bool find_origin(struct geometry *geometry, const struct node_primitives 
         if (!isfinite(geometry->origin_m[axis]) || side_m > MAX_SIZE_M)
             return wrong(why, "its size is %g m along axis %d, more than %g m", side_m, axis, MAX_SIZE_M);
     }
+    if (size_m > COARSE_SIZE_M)
+        median_of(parts, params, geometry->origin_m);
     return size_m >= MIN_SIZE_M || wrong(why, "its size is %g m, less than %g m: is its unit right?", size_m, MIN_SIZE_M);
 }
 

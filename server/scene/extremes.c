@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The vertex that lies farthest in each of many directions, spread evenly over the sphere. Coarse levels do: they err by centimetres. */
+/* The vertex that lies farthest in each of many directions, spread evenly over the sphere. */
 #include "scene/extremes.h"
 
 #include <math.h>
@@ -7,10 +7,13 @@
 
 #include "base/mem.h"
 #include "plant/transform.h"
+#include "scene/main_part.h"
 
 enum { DIRECTIONS = 96 };
 /* Ground has no sensor, is low for its size, lamps and kerbs on it included, and lies under most of the plant. */
 static const double GROUND_HEIGHT = 0.25, GROUND_PART = 0.8; /* of its larger side; of the plant's area */
+static const double GROUND_LEAST_M = 5;                      /* its larger side: a smaller plate is part of the equipment */
+static const double LEVEL_ERROR = 0.005;                     /* of an asset's size: coarser levels than that would be cropped */
 
 static double area_of(const double min_m[3], const double max_m[3], int up)
 {
@@ -22,15 +25,37 @@ static bool is_ground(const struct scene *scene, const struct scene_asset *asset
     int up = scene->plant->up == AXIS_Y ? 1 : 2, other = up == 1 ? 2 : 1;
     const double *min_m = asset->bounds_min_m, *max_m = asset->bounds_max_m;
     double side_m = fmax(max_m[0] - min_m[0], max_m[other] - min_m[other]);
-    return asset->sensor_count == 0 && max_m[up] - min_m[up] <= GROUND_HEIGHT * side_m &&
+    return asset->sensor_count == 0 && side_m >= GROUND_LEAST_M && max_m[up] - min_m[up] <= GROUND_HEIGHT * side_m &&
            area_of(min_m, max_m, up) >= GROUND_PART * area_of(scene->bounds_min_m, scene->bounds_max_m, up);
 }
 
-static void add_asset(const struct scene_asset *asset, const double (*directions)[3], double *most, double (*points)[3])
+static uint32_t level_vertices(const struct scene_asset *asset)
+{
+    const struct asset_view *view = &asset->file->view;
+    double size_m = 0;
+    uint32_t level = view->header->level_count - 1;
+    for (int i = 0; i < 3; i++)
+        size_m = fmax(size_m, (double)(view->header->bounds_max_m[i] - view->header->bounds_min_m[i]));
+    while (level > 0 && (double)view->levels[level].error_m > LEVEL_ERROR * size_m)
+        level--;
+    return view->levels[level].vertex_count;
+}
+
+static void add_asset(const struct scene *scene, const struct scene_asset *asset, const double (*directions)[3], double *most,
+                      double (*points)[3])
 {
     const struct asset_view *view = &asset->file->view;
     const double *m = asset->placement;
-    uint32_t count = view->levels[view->header->level_count - 1].vertex_count;
+    uint32_t count = level_vertices(asset);
+    char *held = NULL; /* of an asset that is partly outside the main part: by vertex */
+    if (asset->stray) {
+        held = mem_array(count, 1);
+        for (uint32_t v = 0; v < count; v++) {
+            double place[3] = { (double)view->positions_m[v][0], (double)view->positions_m[v][1], (double)view->positions_m[v][2] };
+            transform_point(m, place, place);
+            held[v] = main_part_holds(scene, place);
+        }
+    }
     for (int d = 0; d < DIRECTIONS; d++) {
         float local[3];
         uint32_t best = 0;
@@ -40,7 +65,7 @@ static void add_asset(const struct scene_asset *asset, const double (*directions
         for (uint32_t v = 0; v < count; v++) {
             const float *p = view->positions_m[v];
             float far = p[0] * local[0] + p[1] * local[1] + p[2] * local[2];
-            if (far > farthest) {
+            if (far > farthest && (!held || held[v])) {
                 farthest = far;
                 best = v;
             }
@@ -48,11 +73,12 @@ static void add_asset(const struct scene_asset *asset, const double (*directions
         double place[3] = { view->positions_m[best][0], view->positions_m[best][1], view->positions_m[best][2] };
         transform_point(asset->placement, place, place);
         double far = place[0] * directions[d][0] + place[1] * directions[d][1] + place[2] * directions[d][2];
-        if (count && far > most[d]) {
+        if (farthest > -INFINITY && far > most[d]) {
             most[d] = far;
             memcpy(points[d], place, sizeof(place));
         }
     }
+    mem_free(held);
 }
 
 void extremes_find(struct scene *scene)
@@ -67,7 +93,7 @@ void extremes_find(struct scene *scene)
         for (size_t i = 0; i < scene->asset_count; i++)
             if (!scene->assets[i].missing && (round > 0 || !is_ground(scene, &scene->assets[i])) &&
                 (round > 1 || scene->plant->assets[i].start != PLANT_START_HIDDEN))
-                add_asset(&scene->assets[i], (const double(*)[3])directions, most, points);
+                add_asset(scene, &scene->assets[i], (const double(*)[3])directions, most, points);
     scene->extremes_m = mem_array(DIRECTIONS, sizeof(*scene->extremes_m));
     scene->extreme_count = 0;
     for (int d = 0; d < DIRECTIONS; d++) {

@@ -15,9 +15,12 @@
 #include "plant/transform.h"
 #include "scene/coincident.h"
 #include "scene/extremes.h"
+#include "scene/main_part.h"
 #include "scene/manifest.h"
 
 #define SAME_PLACE_M 1e-4
+
+static const double FAR_OUTSIDE = 10; /* sizes of the main part: from there a camera looks at strays, too */
 
 /* --- does the file fit? ----------------------------------------------------------------------------------------------------- */
 
@@ -341,6 +344,9 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
         good = false;
     }
     if (good) {
+        memcpy(scene->whole_min_m, scene->bounds_min_m, sizeof(scene->whole_min_m));
+        memcpy(scene->whole_max_m, scene->bounds_max_m, sizeof(scene->whole_max_m));
+        main_part_find(log, scene);
         coincident_find(scene);
         extremes_find(scene);
     } else {
@@ -384,6 +390,18 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
     camera->fov_deg = view->fov_deg;
     if (!camera_valid(camera)) /* straight down: a plan, north above */
         memcpy(camera->up, scene->plant->up == AXIS_Y ? (double[]){ 0, 0, -1 } : (double[]){ 0, 1, 0 }, sizeof(camera->up));
+}
+
+void scene_depth_box(const struct scene *scene, const double eye_m[3], double min_m[3], double max_m[3])
+{
+    double size_m = 0, away_m = 0;
+    for (int c = 0; c < 3; c++) {
+        size_m = fmax(size_m, scene->bounds_max_m[c] - scene->bounds_min_m[c]);
+        away_m = fmax(away_m, fmax(scene->bounds_min_m[c] - eye_m[c], eye_m[c] - scene->bounds_max_m[c]));
+    }
+    bool whole = scene->outside.triangles > 0 && away_m > FAR_OUTSIDE * size_m;
+    memcpy(min_m, whole ? scene->whole_min_m : scene->bounds_min_m, 3 * sizeof(*min_m));
+    memcpy(max_m, whole ? scene->whole_max_m : scene->bounds_max_m, 3 * sizeof(*max_m));
 }
 
 bool scene_asset_mirrored(const struct scene_asset *asset)

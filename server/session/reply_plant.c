@@ -171,6 +171,10 @@ static json_t *plant_object(const struct session_context *context, const struct 
     for (size_t i = 0; i < context->scene->extreme_count; i++)
         json_array_append_new(outline, vector(context->scene->extremes_m[i]));
     json_object_set_new(object, "outline", outline);
+    if (context->scene->outside.triangles > 0)
+        json_object_set_new(object, "outside",
+                            json_pack("{s:I,s:i,s:o}", "triangles", (json_int_t)context->scene->outside.triangles, "assets",
+                                      context->scene->outside.assets, "away_m", number(context->scene->outside.away_m)));
     return object;
 }
 

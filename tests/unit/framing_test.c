@@ -11,8 +11,11 @@
 
 #include <cmocka.h>
 
+#include "scene/extremes.h"
+#include "scene/main_part.h"
 #include "scene/scene_create.h"
 #include "tests/support/small_scene.h"
+#include "tests/support/toy.h"
 
 /* The part of the picture, -1 to 1 each way, that a box takes. */
 static struct camera_window taken(const struct camera *camera, double aspect, const double min[3], const double max[3])
@@ -161,13 +164,108 @@ static void a_sensor_is_seen_from_outside(void **state)
     assert_true(away > 1 && away < 8);
 }
 
+/* --- the first view ---------------------------------------------------------------------------------------------------------- */
+
+static void add_box(struct toy *toy, const char *id, const double size_m[3], const double at_m[3])
+{
+    struct shape shape = { 0 };
+    shape_box(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, size_m);
+    toy_add(toy, id, &shape, at_m, NULL, 0);
+}
+
+/* Of a plant as it is loaded: its assets but stray ones fill the first view, and so many assets are said to be outside. */
+static void expect_framed(struct toy *toy, int outside)
+{
+    struct camera camera;
+    main_part_find(NULL, &toy->scene);
+    extremes_find(&toy->scene);
+    assert_int_equal(toy->scene.outside.assets, outside);
+    assert_true((toy->scene.outside.triangles > 0) == (outside > 0));
+    for (double aspect = 0.5; aspect < 3; aspect *= 1.7) {
+        double part = 0;
+        scene_home(&toy->scene, aspect, &camera);
+        assert_true(camera_valid(&camera));
+        for (size_t i = 0; i < toy->scene.asset_count; i++)
+            if (!toy->scene.assets[i].stray)
+                part = fmax(part, reach(&camera, aspect, toy->scene.assets[i].bounds_min_m, toy->scene.assets[i].bounds_max_m));
+        assert_true(part <= 1 && part > 0.9);
+    }
+    toy_destroy(&toy);
+}
+
+static void a_stray_piece_is_left_out(void **state)
+{
+    (void)state;
+    static const double sizes[] = { 0.001, 0.1, 1 }; /* a third of the area, if it is hopelessly far away */
+    for (int i = 0; i < 3; i++) {
+        struct toy *toy = toy_create();
+        double size = sizes[i];
+        add_box(toy, "P-101", (double[3]){ 1, 1, 1 }, (double[3]){ 260978, 7007098, 12 });
+        add_box(toy, "P-102", (double[3]){ 1, 1, 1 }, (double[3]){ 260980, 7007098, 12 });
+        add_box(toy, "STRAY", (double[3]){ size, size, size }, (double[3]){ 0, 0, 0 });
+        expect_framed(toy, 1);
+    }
+}
+
+static void a_stray_vertex_is_left_out(void **state)
+{
+    (void)state;
+    struct toy *toy = toy_create();
+    struct shape shape = { 0 };
+    shape_box(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ 4, 2, 1 });
+    shape_plate(&shape, TOY_STEEL, (double[3]){ 1, 1, 0.5 }, (double[3]){ 0.1, 0, 0 }, (double[3]){ 0, 0.1, 0 }, 1);
+    shape.positions[shape.vertex_count - 1][0] = -250000;
+    toy_add(toy, "A", &shape, (double[3]){ 0, 0, 0 }, NULL, 0);
+    struct camera camera;
+    main_part_find(NULL, &toy->scene);
+    extremes_find(&toy->scene);
+    assert_in_range(toy->scene.outside.triangles, 1, 2);
+    assert_true(toy->scene.outside.away_m > 249000 && toy->scene.assets[0].stray);
+    scene_home(&toy->scene, 1.5, &camera);
+    double part = reach(&camera, 1.5, (double[3]){ 0, 0, 0 }, (double[3]){ 4, 2, 1 });
+    assert_true(part <= 1 && part > 0.9);
+    toy_destroy(&toy);
+}
+
+static void small_and_long_ones_fill_the_picture(void **state)
+{
+    (void)state;
+    static const double sizes_m[][3] = { { 1e-3, 1e-3, 1e-3 }, { 5e-3, 2e-3, 1e-3 }, { 0.02, 0.02, 0.02 }, { 0.1, 0.05, 0.02 },
+                                         { 300, 0.2, 0.2 },    { 80, 60, 0.01 },     { 0.2, 0.2, 90 } };
+    for (size_t i = 0; i < sizeof(sizes_m) / sizeof(*sizes_m); i++) {
+        struct toy *toy = toy_create();
+        add_box(toy, "A", sizes_m[i], (double[3]){ 0, 0, 0 });
+        expect_framed(toy, 0);
+    }
+}
+
+/* A stack on its foot, units apart from each other, a plate with little on it: none of it is stray, nor the ground. */
+static void what_belongs_together_stays(void **state)
+{
+    (void)state;
+    struct toy *toy = toy_create();
+    add_box(toy, "PLANT", (double[3]){ 20, 20, 10 }, (double[3]){ 0, 0, 0 });
+    add_box(toy, "STACK", (double[3]){ 0.5, 0.5, 60 }, (double[3]){ 30, 10, 0 });
+    expect_framed(toy, 0);
+    toy = toy_create();
+    add_box(toy, "WEST", (double[3]){ 10, 10, 5 }, (double[3]){ 0, 0, 0 });
+    add_box(toy, "EAST", (double[3]){ 10, 10, 5 }, (double[3]){ 400, 0, 0 });
+    expect_framed(toy, 0);
+    toy = toy_create();
+    add_box(toy, "PLATE", (double[3]){ 0.18, 0.15, 0.02 }, (double[3]){ 0, 0, 0 });
+    add_box(toy, "BRACKET", (double[3]){ 0.05, 0.05, 0.08 }, (double[3]){ 0.06, 0.05, 0.02 });
+    expect_framed(toy, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_side_shows_all_of_it),    cmocka_unit_test(a_window_is_filled),
         cmocka_unit_test(sides_are_where_they_should_be),
         cmocka_unit_test(north_is_above_in_a_plan),      cmocka_unit_test(names_are_found),
-        cmocka_unit_test(a_sensor_is_seen_from_outside),
+        cmocka_unit_test(a_sensor_is_seen_from_outside), cmocka_unit_test(a_stray_piece_is_left_out),
+        cmocka_unit_test(a_stray_vertex_is_left_out),    cmocka_unit_test(small_and_long_ones_fill_the_picture),
+        cmocka_unit_test(what_belongs_together_stays),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

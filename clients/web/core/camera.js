@@ -88,7 +88,7 @@ function fitPoints(camera, points, aspect, { left = -1, right = 1, bottom = -1, 
         return { back: (least + most) / (to - from), shift: (back) => (most - least - back * (to + from)) / 2 };
     };
     const across = side(0, left, right, tall * aspect), up = side(1, bottom, top, tall);
-    const back = Math.max(across.back, up.back, MIN_DISTANCE_M - 1.001 * Math.min(...all.map((p) => p[2])));
+    const back = Math.max(across.back, up.back, -1.001 * Math.min(...all.map((p) => p[2])));
     const target = along(along(centre, axes.right, across.shift(back)), axes.up, up.shift(back));
     return { ...camera, eye: along(target, axes.forward, -back), target };
 }

@@ -28,6 +28,7 @@ encoding: Zeichensatz von Namen und Einheiten
 encoding.found: wie in den Dateien angegeben oder erkannt
 encoding.read: {file}: gelesen als {name}
 encoding.unsure: {file}: gelesen als {name}, vielleicht {other}
+outside: Weit außerhalb und nicht in der ersten Ansicht: {triangles} Dreiecke, bis {away_m} m entfernt.
 units: Einheit des Modells
 units.said: wie es sagt
 units.m: Meter

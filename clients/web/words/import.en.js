@@ -28,6 +28,7 @@ encoding: Letters of names and units
 encoding.found: as the files state or look
 encoding.read: {file}: read as {name}
 encoding.unsure: {file}: read as {name}, but it may be {other}
+outside: Far outside and not in the first view: {triangles} triangles, up to {away_m} m away.
 units: Units of the model
 units.said: as it says
 units.m: metres

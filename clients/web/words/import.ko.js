@@ -27,6 +27,7 @@ encoding: 이름과 단위의 문자 인코딩
 encoding.found: 파일에 적힌 대로 또는 자동 판별
 encoding.read: {file}: {name}(으)로 읽음
 encoding.unsure: {file}: {name}(으)로 읽음, {other}일 수 있음
+outside: 멀리 벗어나 첫 화면에 없음: 삼각형 {triangles}개, 최대 {away_m} m.
 units: 모델의 단위
 units.said: 파일대로
 units.m: 미터

@@ -30,7 +30,9 @@ void view_constants_init(struct view_constants *constants, const struct view *vi
     static const double reverse[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -0.5, 0, 0, 0, 0.5, 1 };
     double rotation[16], projection[16];
     double aspect = (double)view->width_px / view->height_px;
-    camera_matrices(&view->camera, aspect, scene->bounds_min_m, scene->bounds_max_m, rotation, projection);
+    double min_m[3], max_m[3];
+    scene_depth_box(scene, view->camera.eye_m, min_m, max_m);
+    camera_matrices(&view->camera, aspect, min_m, max_m, rotation, projection);
     double back[3] = { rotation[2], rotation[6], rotation[10] }, depth_m = -2 / projection[10];
     rotation[12] = rotation[13] = rotation[14] = 0;
     matrix_multiply(projection, rotation, projection);

@@ -240,7 +240,8 @@ export class Import {
         const times = this.units.value ? timesOf(this.known?.units || 'm', this.units.value) : 1;
         const sides = sizeOf(model.plant.bounds, times).map((m) => numberText(m, m < 10 ? 2 : m < 1000 ? 1 : 0));
         const [wide, deep, high] = sides;
-        setText(this.size, say('import.metres', { wide, deep, high }));
+        const size = say('import.metres', { wide, deep, high }), { outside } = model.plant;
+        setText(this.size, outside ? `${size} ${say('import.outside', outside)}` : size);
         this.showPerson();
     }
 

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The part of a plant that a first view frames: all of it, but for stray pieces that are so far away that the rest would be a dot. */
+#ifndef SCENE_MAIN_PART_H
+#define SCENE_MAIN_PART_H
+#include <stdbool.h>
+
+#include "base/log.h"
+#include "scene/scene.h"
+
+/* Sets the scene's bounds to the box of the main part, and asset->stray and scene->outside. Leaves out pieces behind a gap: of at
+   most 2 % of the triangles' area, if the gap is longer than the rest is large; larger ones, if it is 100 times as long. The pieces left
+   out are logged (log may be NULL). */
+void main_part_find(struct log *log, struct scene *scene);
+/* Returns whether a place lies in the scene's bounds, with a rim for rounding. */
+bool main_part_holds(const struct scene *scene, const double place_m[3]);
+
+#endif
