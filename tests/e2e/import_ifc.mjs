@@ -178,5 +178,5 @@ test('without Node.js it is refused by name', { skip }, () => inFolder((folder) 
     assert.equal(status, 1);
     assert.match(stderr, /a\.ifc: IFC is not read: it is read by Node\.js with web-ifc: install nodejs/);
     assert.deepEqual(readdirSync(folder), ['a.ifc']);
-    assert.match(plantcast(['import', '--formats'], { PATH: folder }).stdout, /^IFC +\.ifc +no: /m);
+    assert.match(plantcast(['import', '--formats'], { PATH: folder }).stdout, /^IFC +\.ifc \.ifczip +no: /m);
 }));
