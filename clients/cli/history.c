@@ -16,14 +16,14 @@
 #include "plant/number.h"
 
 struct history_options {
-    const char *plant, *folder, *csv, *tags, *from, *to, *start, *unit, *longest_gap;
+    const char *plant, *folder, *csv, *tags, *from, *to, *start, *unit, *longest_gap, *encoding;
     int points;
 };
 
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcast history import PLANT.yaml FILE.csv [--folder DIR] [--start INSTANT [--unit ms|s|min|h]]\n"
-          "                                [--longest-gap TIME]\n"
+          "                                [--longest-gap TIME] [--encoding NAME]\n"
           "       plantcast history export PLANT.yaml --tags A,B [--from INSTANT] [--to INSTANT] [--points N] [--folder DIR]\n"
           "\n"
           "import adds series to the plant's history, such as data from before Plantcast was installed. The daemon may be recording.\n"
@@ -40,6 +40,7 @@ static void print_usage(FILE *out)
           "  --points N       at most N points of each tag (20000); if there are more: lowest, highest and mean of intervals\n"
           "  --longest-gap TIME  a longer time between two samples has no data: 90s, 15min, 8h, 2d (default: the tag's Stale s if its row\n"
           "                   states it and the series is not slower, else ten times the median spacing of the series)\n"
+          "  --encoding NAME  encoding of the CSV file, such as GB18030 or Windows-1251 (default: found from its bytes)\n"
           "  INSTANT          2026-11-20T10:00:00Z, with an offset such as +01:00, seconds since 1970, or back from now: -8h\n",
           out);
 }
@@ -108,6 +109,11 @@ static void print_counts(const char *path, const struct import_counts *counts)
     print_span(counts->longest_us[1], most);
     printf("%s: %lld samples of %d tag%s from %s to %s: %lld points recorded\n", path, counts->samples, counts->tags,
            counts->tags == 1 ? "" : "s", from, to, counts->points);
+    if (!counts->encoding.ascii && strcmp(counts->encoding.name, "UTF-8") != 0) {
+        char *read_as = charset_describe(&counts->encoding);
+        printf("Encoding: %s\n", read_as);
+        mem_free(read_as);
+    }
     printf("Bad samples: %lld\nDuplicate times: %lld (the last row of each counts)\n", counts->bad, counts->duplicates);
     if (counts->samples)
         printf("Gaps without data: %lld (longer than %s%s%s)\n", counts->gaps, least, strcmp(least, most) ? " to " : "",
@@ -119,6 +125,7 @@ static int run_import(const struct history_options *options, const struct plant 
     struct import_params params = {
         .log = log, .plant = plant, .folder = folder, .path = options->csv, .start_us = INT64_MIN, .unit_us = US_PER_S
     };
+    char encoding[CHARSET_NAME_BYTES];
     struct import_counts counts;
     struct diag diag = { 0 };
     timestamp_use_zone(plant->time_zone);
@@ -129,6 +136,9 @@ static int run_import(const struct history_options *options, const struct plant 
         return wrong("--unit: expected ms, s, min or h, and --start, found", options->unit);
     if (options->longest_gap && !parse_span(options->longest_gap, &params.longest_gap_us))
         return wrong("--longest-gap: expected a time such as 90s, 15min, 8h or 2d, found", options->longest_gap);
+    if (options->encoding && !charset_resolve(options->encoding, encoding))
+        return wrong("--encoding: expected a name that iconv --list shows, found", options->encoding);
+    params.encoding = options->encoding ? encoding : NULL;
     bool good = history_import(&params, &diag, &counts);
     diag_print(&diag, stderr);
     if (good)
@@ -198,6 +208,7 @@ static int parse(int argc, char **argv, struct history_options *out)
         { "folder", required_argument, NULL, 'd' }, { "tags", required_argument, NULL, 't' },  { "from", required_argument, NULL, 'f' },
         { "to", required_argument, NULL, 'u' },     { "start", required_argument, NULL, 's' }, { "unit", required_argument, NULL, 'n' },
         { "points", required_argument, NULL, 'p' }, { "longest-gap", required_argument, NULL, 'g' },
+        { "encoding", required_argument, NULL, 'e' },
         { "help", no_argument, NULL, 'h' },         { NULL, 0, NULL, 0 },
     };
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
@@ -208,6 +219,7 @@ static int parse(int argc, char **argv, struct history_options *out)
         case 'u': out->to = optarg; break;
         case 's': out->start = optarg; break;
         case 'n': out->unit = optarg; break;
+        case 'e': out->encoding = optarg; break;
         case 'g': out->longest_gap = optarg; break;
         case 'p':
             out->points = atoi(optarg);

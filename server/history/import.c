@@ -221,7 +221,7 @@ static bool read_file(const struct import_params *params, struct diag *diag, str
     struct import import = { .params = params, .counts = counts, .series = series, .row_us = INT64_MIN };
     int errors = diag->errors;
     bool going = true;
-    if (!csv_open(&import.csv, params->path, diag))
+    if (!csv_open_foreign(&import.csv, params->path, params->encoding, diag, &counts->encoding))
         return false;
     for (size_t i = 0; i < params->plant->tag_count; i++)
         series[i].has_row = false;

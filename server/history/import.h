@@ -2,6 +2,7 @@
 /* Imports series from a CSV file into history, such as data from before Plantcast was installed. Works while a daemon is recording. */
 #ifndef HISTORY_IMPORT_H
 #define HISTORY_IMPORT_H
+#include "base/charset.h"
 #include "base/diag.h"
 #include "base/log.h"
 #include "plant/plant.h"
@@ -10,6 +11,7 @@ struct import_params {
     struct log *log;
     const struct plant *plant;
     const char *folder, *path;
+    const char *encoding; /* of the file; NULL: found from its bytes */
     int64_t start_us; /* times are numbers that count from here; INT64_MIN: they are timestamps */
     int64_t unit_us;  /* of such numbers */
     int64_t longest_gap_us; /* a longer time between two samples of a tag has no data; 0: derived from each series */
@@ -19,6 +21,7 @@ struct import_counts {
     long long samples, points; /* that were read; of these, recorded */
     long long bad, duplicates, gaps; /* samples without a usable value; replaced by a later row of the same time; times without data */
     int tags;
+    struct charset_choice encoding;
     bool exported;            /* the columns are those of `plantcast history export` */
     int64_t from_us, to_us;
     int64_t longest_us[2]; /* the longest gap that counts as data: the smallest and the largest of all series */

@@ -160,10 +160,11 @@ static void check_header(struct csv *csv)
     }
 }
 
-bool csv_open(struct csv *csv, const char *path, struct diag *diag)
+static const char WANTED[] = "a table (CSV)";
+
+/* Takes text; NULL: it could not be read. */
+static bool begin(struct csv *csv, const char *path, char *text, struct diag *diag)
 {
-    size_t bytes;
-    char *text = input_read(path, "a table (CSV)", diag, &bytes);
     if (!text)
         return false;
     *csv = (struct csv){ .path = mem_strdup(path), .diag = diag, .bytes = text, .at = text, .line = 1, .column = 1 };
@@ -175,6 +176,18 @@ bool csv_open(struct csv *csv, const char *path, struct diag *diag)
     }
     check_header(csv);
     return true;
+}
+
+bool csv_open(struct csv *csv, const char *path, struct diag *diag)
+{
+    size_t bytes;
+    return begin(csv, path, input_read(path, WANTED, diag, &bytes), diag);
+}
+
+bool csv_open_foreign(struct csv *csv, const char *path, const char *encoding, struct diag *diag, struct charset_choice *choice)
+{
+    size_t bytes;
+    return begin(csv, path, input_read_foreign(path, WANTED, encoding, diag, &bytes, choice), diag);
 }
 
 void csv_close(struct csv *csv)

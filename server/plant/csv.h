@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/charset.h"
 #include "base/diag.h"
 
 struct csv_cell {
@@ -30,6 +31,8 @@ struct csv { /* read only */
 /* Reads the file and its header row. Returns false on errors, which go to diag; csv_close() is not needed then. path is copied; diag must
    outlive csv. */
 bool csv_open(struct csv *csv, const char *path, struct diag *diag);
+/* As csv_open(), for a file of another program, in any encoding: see input_read_foreign(). */
+bool csv_open_foreign(struct csv *csv, const char *path, const char *encoding, struct diag *diag, struct charset_choice *choice);
 void csv_close(struct csv *csv);
 /* Reads the next row that is not blank. Returns false after the last one. Wrong quotes and wrong numbers of cells go to diag. */
 bool csv_next(struct csv *csv);

@@ -58,7 +58,8 @@ static bool is_blank(const char *text, size_t bytes)
     return true;
 }
 
-char *input_read(const char *path, const char *wanted, struct diag *diag, size_t *bytes)
+/* NULL: reported. */
+static char *read_bytes(const char *path, const char *wanted, struct diag *diag, size_t *bytes)
 {
     const char *kind = file_kind_of(path);
     if (kind) {
@@ -66,29 +67,56 @@ char *input_read(const char *path, const char *wanted, struct diag *diag, size_t
         return NULL;
     }
     char *text = text_read_file(path, INPUT_MAX_BYTES, bytes);
-    if (!text) {
-        if (errno == EFBIG)
-            diag_error(diag, path, 0, 0, "larger than %u MiB, which is the most that is read", INPUT_MAX_BYTES / (1024 * 1024));
-        else
-            diag_error(diag, path, 0, 0, "cannot be read: %s", strerror(errno));
+    if (!text && errno == EFBIG)
+        diag_error(diag, path, 0, 0, "larger than %u MiB, which is the most that is read", INPUT_MAX_BYTES / (1024 * 1024));
+    else if (!text)
+        diag_error(diag, path, 0, 0, "cannot be read: %s", strerror(errno));
+    return text;
+}
+
+/* Takes text. NULL: reported, and text is freed. */
+static char *check_text(char *text, size_t bytes, const char *path, const char *wanted, struct diag *diag)
+{
+    if (is_blank(text, bytes))
+        diag_error(diag, path, 1, 1, "is empty");
+    else if (check_characters(text, bytes, path, diag))
+        return text;
+    else
+        diag_error(diag, path, 0, 0, "is no text; %s is wanted", wanted);
+    mem_free(text);
+    return NULL;
+}
+
+char *input_read(const char *path, const char *wanted, struct diag *diag, size_t *bytes)
+{
+    char *text = read_bytes(path, wanted, diag, bytes);
+    if (!text)
         return NULL;
-    }
     if (starts_with(text, *bytes, "\xFF\xFE", 2) || starts_with(text, *bytes, "\xFE\xFF", 2)) {
         diag_error(diag, path, 1, 1, "is UTF-16; save the file as UTF-8");
-        goto error;
+        mem_free(text);
+        return NULL;
     }
     if (starts_with(text, *bytes, "\xEF\xBB\xBF", 3)) {
         *bytes -= 3;
         memmove(text, text + 3, *bytes + 1);
     }
-    if (is_blank(text, *bytes)) {
-        diag_error(diag, path, 1, 1, "is empty");
-        goto error;
-    }
-    if (check_characters(text, *bytes, path, diag))
-        return text;
-    diag_error(diag, path, 0, 0, "is no text; %s is wanted", wanted);
-error:
+    return check_text(text, *bytes, path, wanted, diag);
+}
+
+char *input_read_foreign(const char *path, const char *wanted, const char *encoding, struct diag *diag, size_t *bytes,
+                         struct charset_choice *choice)
+{
+    struct charset_text decoded;
+    char *text = read_bytes(path, wanted, diag, bytes);
+    if (!text)
+        return NULL;
+    charset_decode(text, *bytes, encoding, &decoded);
     mem_free(text);
-    return NULL;
+    *bytes = decoded.length;
+    *choice = decoded.encoding;
+    if (decoded.damaged)
+        diag_warning(diag, path, 0, 0, "%zu characters mean nothing in %s; --encoding names another encoding", decoded.damaged,
+                     choice->name);
+    return check_text(decoded.utf8, *bytes, path, wanted, diag);
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads text files that people wrote and checks that they are UTF-8. Thread: any. */
+/* Reads text files: those of a plant, which are UTF-8, and those of other programs, in any encoding. Thread: any. */
 #ifndef PLANT_INPUT_H
 #define PLANT_INPUT_H
 #include <stddef.h>
 
+#include "base/charset.h"
 #include "base/diag.h"
 
 #define INPUT_MAX_BYTES (64u * 1024 * 1024)
@@ -13,5 +14,9 @@
    the file is unreadable, empty, larger than INPUT_MAX_BYTES, UTF-16, or no text at all; `wanted` names what was expected, such as "a plant
    file (YAML)". */
 char *input_read(const char *path, const char *wanted, struct diag *diag, size_t *bytes);
+/* As input_read(), for a file of another program, in any encoding. encoding: a name that charset_resolve() knows; NULL: found from the
+   bytes. *choice receives the encoding. */
+char *input_read_foreign(const char *path, const char *wanted, const char *encoding, struct diag *diag, size_t *bytes,
+                         struct charset_choice *choice);
 
 #endif

@@ -8,7 +8,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { ifc } from './support/ifc_sample.mjs';
-import { BIN, missing } from './support/tiny_plant.mjs';
+import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing(), there = (name) => existsSync(join(BIN, name));
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
@@ -183,6 +183,23 @@ test('tag lists: names, units and groups', { skip: skip || (there('plantcast-imp
         const forced = plantcast('match', join(folder, 'Big5'), join(folder, 'tags.csv'), '--encoding', 'latin1', '--dry-run');
         assert.match(forced.stdout, /a list with a header, Windows-1252/);
     }));
+
+test('series that are imported into history: the columns are named by tags', { skip }, async (t) => {
+    const plant = await TinyPlant.create(), list = join(plant.folder, 'tags.csv'), tags = readFileSync(list, 'utf8');
+    t.after(() => plant.destroy());
+    for (const [name, [iconv, a]] of Object.entries({ ...ENCODINGS, 'UTF-16LE': ['UTF-16', '급수펌프'] })) {
+        const series = join(plant.folder, `${iconv}.csv`);
+        writeFileSync(list, tags.replace('TI-1', a));
+        writeFileSync(series, encode(`Time,${a}\n2026-11-20T10:00:00Z,21.5\n2026-11-20T10:00:10Z,22.5\n`, iconv));
+        const said = plantcast('history', 'import', plant.file, series, '--folder', join(plant.folder, iconv));
+        assert.equal(said.status, 0, `${name}: ${said.stderr}`);
+        assert.match(said.stdout, /: 2 samples of 1 tag /);
+        assert.match(said.stdout, name === 'UTF-8' ? /^(?!.*Encoding)/s : new RegExp(`^Encoding: read as ${name}`, 'm'));
+    }
+    const forced = plantcast('history', 'import', plant.file, join(plant.folder, 'BIG5.csv'), '--encoding', 'latin1');
+    assert.match(forced.stderr, /BIG5\.csv:1:6: /);
+    assert.equal(plantcast('history', 'import', plant.file, list, '--encoding', 'klingon').status, 2);
+});
 
 test('files that went wrong', { skip: skip || (existsSync(FOUND) ? false : 'no ../shared/data/found') }, () => inFolder((folder) => {
     for (const [file, ...names] of [['step_names/gb18030.stp', '泵组', '泵', '电机', '储罐V-201'],
