@@ -16,7 +16,7 @@ static const char replacement[] = "\xef\xbf\xbd";
 
 /* --- names ------------------------------------------------------------------------------------------------------------------ */
 
-/* Names as people write them, in lower case and without signs; the first encoding of each line is how we call it. */
+/* name: ours. iconv_name: iconv's. written: other names, in lower case and without punctuation, each between blanks. */
 static const struct {
     const char *name, *iconv_name, *written;
 } known[] = {
@@ -88,7 +88,18 @@ char *charset_describe(const struct charset_choice *choice)
 
 /* --- conversion ------------------------------------------------------------------------------------------------------------- */
 
-/* Bytes without a meaning become one U+FFFD each. */
+/* Appends what iconv wrote. Drops and counts zero bytes, which would end the text. */
+static void take_converted(struct text *out, const char *from, const char *to, size_t *damaged)
+{
+    for (; from < to; from++)
+        if (*from)
+            text_add_bytes(out, from, 1);
+        else
+            ++*damaged;
+}
+
+/* Bytes without a meaning become one U+FFFD each. The last call of iconv() fetches a letter that is kept back for an accent after it:
+   Windows-1258 and Windows-1255 write accents behind their letters. */
 static void convert(const char *bytes, size_t count, const char *encoding, struct text *out, size_t *damaged)
 {
     char buffer[4096], *from = (char *)bytes;
@@ -99,11 +110,7 @@ static void convert(const char *bytes, size_t count, const char *encoding, struc
         size_t room = sizeof(buffer);
         size_t status = converter == (iconv_t)-1 ? (size_t)-1 : iconv(converter, &from, &left, &to, &room);
         int error = converter == (iconv_t)-1 ? EILSEQ : errno;
-        for (const char *at = buffer; at < to; at++)
-            if (*at)
-                text_add_bytes(out, at, 1);
-            else
-                ++*damaged;
+        take_converted(out, buffer, to, damaged);
         if (status == (size_t)-1 && error != E2BIG) {
             text_add_bytes(out, replacement, sizeof(replacement) - 1);
             ++*damaged;
@@ -111,8 +118,13 @@ static void convert(const char *bytes, size_t count, const char *encoding, struc
             left--;
         }
     }
-    if (converter != (iconv_t)-1)
+    if (converter != (iconv_t)-1) {
+        char *to = buffer;
+        size_t room = sizeof(buffer);
+        iconv(converter, NULL, NULL, &to, &room);
+        take_converted(out, buffer, to, damaged);
         iconv_close(converter);
+    }
     text_add_bytes(out, "", 0);
 }
 

@@ -160,10 +160,33 @@ static void test_unsure(void **state)
     mem_free(said);
 }
 
+/* The encodings that write accents behind letters keep the last letter back: without it PT-10A would be PT-10, another tag. */
+static void test_last_letter(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *encoding, *bytes, *utf8;
+    } cases[] = {
+        { "CP1258", "PT-10A", "PT-10A" },
+        { "windows-1258", "PT-10A", "PT-10A" },
+        { "CP1258", "b\xec", "b\xcc\x81" },
+        { "CP1258", "to\xec", "t\xc3\xb3" }, /* o and an acute accent: ó */
+        { "CP1255", "\xf9", "\xd7\xa9" },
+        { "Windows-1251", "\xcd\xc0", "НА" },
+    };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        size_t damaged = 0;
+        char *text = charset_convert(cases[i].bytes, strlen(cases[i].bytes), cases[i].encoding, &damaged);
+        assert_string_equal(text, cases[i].utf8);
+        assert_int_equal(damaged, 0);
+        mem_free(text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_kinds), cmocka_unit_test(test_marks_and_damage), cmocka_unit_test(test_names),
-                                        cmocka_unit_test(test_unsure) };
+                                        cmocka_unit_test(test_unsure), cmocka_unit_test(test_last_letter) };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests_name("charset", tests, NULL, NULL);
 }
