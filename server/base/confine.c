@@ -180,9 +180,10 @@ int confine(const struct confine_params *params)
         return -errno;
     bool moves_files = params->role != CONFINE_READER; /* between folders, which the first version forbids */
     int status = version < 1 || (version < ABI_RENAME && moves_files) ? 0 : restrict_paths(params, version);
-    if (status == 0)
-        status = confine_calls(params->role, params->notifies);
-    return status == -ENOSYS || status == -EINVAL ? 0 : status;
+    if (status != 0)
+        return status;
+    status = confine_calls(params->role, params->notifies);
+    return status == -ENOSYS || status == -EINVAL ? 0 : status; /* a kernel without seccomp filters: confine_lacks() says so */
 }
 
 bool confine_lacks(char out[CONFINE_LACKS_BYTES])
@@ -191,6 +192,8 @@ bool confine_lacks(char out[CONFINE_LACKS_BYTES])
     bool calls = prctl(PR_GET_SECCOMP, 0, 0, 0, 0) >= 0;
     const char *landlock = version < 1            ? "no Landlock: programs that read uploaded files can read and write all files of "
                                                     "this user (needs Linux 6.12 with landlock in its list of LSMs)"
+                           : version < ABI_RENAME ? "the first Landlock (needs Linux 6.12): plantcast-import and plantcast-match "
+                                                    "can read and write all files of this user"
                            : version < ABI_SCOPES ? "an old Landlock (needs Linux 6.12): plantcast-import and plantcast-prep can signal "
                                                     "other processes of this user"
                                                   : "";
