@@ -35,7 +35,8 @@ static int ready(struct server_context *server, struct request *request)
 
 static const int64_t REFUSED_NS = 15 * NS_PER_S; /* the page asks why within seconds */
 
-/* Proxies take out Upgrade and Connection, which are for one hop, and leave the rest of a handshake. */
+/* Logs a request for the stream without Upgrade. Proxies remove Upgrade and Connection, which concern one hop, and keep the other headers
+   of a handshake. */
 static void log_without_upgrade(struct server_context *server, struct lws *wsi, int64_t now_ns)
 {
     char more[LOG_PACE_BYTES], via[100], shown[48];
@@ -183,6 +184,7 @@ static int serve(struct server_context *server, struct request *request, const c
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
     struct refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
+    request->sandboxed = false; /* the same struct serves all requests of a connection */
     counter_inc(server->counters.requests, 1);
     connection_set_answered(server, request->wsi, false);
     if (!get && !request->head && !post) {
