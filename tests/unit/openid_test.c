@@ -209,6 +209,23 @@ static void test_claims(void **state)
     expect(f, sign(f->key, "RS256", "k1", "{\"iss\":\"https://id.example\",\"iss\":\"https://id.example\"}"), "n1", NULL, "no JSON");
 }
 
+/* A core accepts the tokens of its renderers' people for the hours of a log-in, which may be more than a day. */
+static void test_older_tokens(void **state)
+{
+    struct fixture *f = *state;
+    struct id_token_expected expected = { .config = &f->config, .jwks = f->jwks, .sub = "s1", .now_s = NOW_S + 2 * 24 * 3600 };
+    char *token = sign(f->key, "RS256", "k1", CLAIMS);
+    for (int hours = 40; hours <= 72; hours += 32) {
+        const char *why = NULL;
+        json_t *claims;
+        expected.patience_s = hours * 3600;
+        enum id_token_fault fault = id_token_verify(token, &expected, &claims, &why);
+        assert_int_equal(fault, hours == 72 ? ID_TOKEN_GOOD : ID_TOKEN_BAD);
+        json_decref(claims);
+    }
+    mem_free(token);
+}
+
 static void test_roles_and_names(void **state)
 {
     struct fixture *f = *state;
@@ -368,6 +385,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_signatures, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_algorithms, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_claims, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_older_tokens, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_roles_and_names, set_up, tear_down),
         cmocka_unit_test(test_log_ins),
         cmocka_unit_test(test_return_paths),

@@ -112,7 +112,7 @@ static const char *fault_of(const json_t *claims, const struct id_token_expected
 {
     const char *iss = text_of(claims, "iss"), *sub = text_of(claims, "sub"), *nonce = text_of(claims, "nonce");
     const json_t *exp = json_object_get(claims, "exp"), *iat = json_object_get(claims, "iat"), *nbf = json_object_get(claims, "nbf");
-    double now_s = (double)expected->now_s;
+    double now_s = (double)expected->now_s, oldest_s = now_s - OLDEST_S - (double)expected->patience_s;
     if (!iss || strcmp(iss, expected->config->issuer) != 0)
         return "another issuer made it";
     if (!is_for_us(claims, expected->config->client_id))
@@ -121,7 +121,7 @@ static const char *fault_of(const json_t *claims, const struct id_token_expected
         return "it is about somebody else";
     if (!json_is_number(exp) || now_s >= json_number_value(exp) + ID_TOKEN_SKEW_S + (double)expected->patience_s)
         return "its time is over; do the clocks agree?";
-    if (!json_is_number(iat) || json_number_value(iat) > now_s + ID_TOKEN_SKEW_S || json_number_value(iat) < now_s - OLDEST_S ||
+    if (!json_is_number(iat) || json_number_value(iat) > now_s + ID_TOKEN_SKEW_S || json_number_value(iat) < oldest_s ||
         (nbf && !(json_number_value(nbf) <= now_s + ID_TOKEN_SKEW_S)))
         return "it was made at another time; do the clocks agree?";
     if (expected->nonce && (!nonce || strcmp(nonce, expected->nonce) != 0))
