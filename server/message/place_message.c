@@ -20,6 +20,13 @@ static const char *base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
+/* Returns the path of the tag list's file, through symlinks: saving replaces that file and keeps versions beside it. */
+static const char *list_path(const struct plant *plant, char real[PATH_MAX])
+{
+    const char *path = plant->tags_path ? realpath(plant->tags_path, real) : NULL;
+    return path ? path : plant->tags_path ? plant->tags_path : "";
+}
+
 /* --- what is said -------------------------------------------------------------------------------------------------------------- */
 
 static bool take_move(const struct plant *plant, const json_t *o, struct place_move *out, struct message_error *error)
@@ -72,7 +79,7 @@ bool save_tags_parse(const struct plant *plant, const json_t *o, struct message 
     return need_seq(o, &out->seq, error) && may_text(o, "confirm", out->confirm, sizeof(out->confirm), NULL, error);
 }
 
-/* Each run of stars multiplies what a glob may take on a long name. */
+/* Returns whether a glob is cheap: each star multiplies the time that matching a long name may take. */
 static bool is_simple(const char *pattern)
 {
     int stars = 0;
@@ -106,7 +113,8 @@ bool accept_places_parse(const struct plant *plant, const json_t *o, struct mess
 
 bool restore_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
-    const char *base = base_name(plant->tags_path ? plant->tags_path : "");
+    char real[PATH_MAX];
+    const char *base = base_name(list_path(plant, real));
     size_t n = strlen(base);
     if (!need_words(o, "kept", true, out->kept, sizeof(out->kept), error) || !save_tags_parse(plant, o, out, error))
         return false;
@@ -233,18 +241,17 @@ static char *conflict_text(const struct plant *plant, const struct message *mess
                      9);
 }
 
-/* A request to put `after` in force, if the message confirms its hash; else NULL. Takes after. */
+/* Returns a request to put `after` in force if the message confirms its hash, else NULL. Takes ownership of `after`. */
 static struct tag_save *order_of(const struct plant *plant, const char *before, char *after, const struct message *message, const char *who)
 {
-    char hash[17], real[PATH_MAX]; /* through links, so that they stay */
+    char hash[17], real[PATH_MAX];
     tag_file_hash(after, hash);
     if (!message->confirm[0] || strcmp(message->confirm, hash) != 0) {
         mem_free(after);
         return NULL;
     }
     struct tag_save *order = mem_new(sizeof(*order));
-    const char *path = realpath(plant->tags_path, real);
-    *order = (struct tag_save){ .path = mem_strdup(path ? path : plant->tags_path),
+    *order = (struct tag_save){ .path = mem_strdup(list_path(plant, real)),
                                 .before = mem_strdup(before),
                                 .after = after,
                                 .who = mem_strdup(who),
@@ -252,14 +259,15 @@ static struct tag_save *order_of(const struct plant *plant, const char *before, 
     return order;
 }
 
-/* The list as the message would have it. NULL: *why. */
+/* Returns the tag list that the message asks for (mem_free); NULL with the reason in *why. */
 static char *wanted_list(const struct scene *scene, const char *before, const struct place_set *set, const struct message *message,
                          uint8_t *outcome, char **why)
 {
     const struct plant *plant = scene->plant;
     if (message->type == MESSAGE_RESTORE_TAGS) {
-        const char *base = base_name(plant->tags_path);
-        char *path = mem_printf("%.*s%s", (int)(base - plant->tags_path), plant->tags_path, message->kept);
+        char real[PATH_MAX];
+        const char *list = list_path(plant, real);
+        char *path = mem_printf("%.*s%s", (int)(base_name(list) - list), list, message->kept);
         char *text = tag_file_read(path, why);
         mem_free(path);
         return text;

@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
-import { appendFileSync, existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { appendFileSync, existsSync, readdirSync, readFileSync, renameSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Client } from './conformance/client.mjs';
@@ -183,6 +183,24 @@ test('a list that somebody else changed meanwhile is not written over: what they
     assert.deepEqual(lines, [[6, null, 'TI-10,400009,Float,°C,theirs,temperature,,,,,1,']]);
     assert.equal(readFileSync(tagsFile, 'utf8'), theirs);
     writeFileSync(tagsFile, good);
+    engineer.close();
+});
+
+// Saving replaces the file behind a symlink and keeps versions beside that file, so that is where restoring has to look.
+test('a version of a list that is a symlink is found by the name that saving tells', options, async () => {
+    const engineer = await enter(), now = readFileSync(tagsFile, 'utf8'), real = join(plant.folder, 'lists-v1.csv');
+    const before = now.replace('TI-9', 'TI-8');
+    renameSync(tagsFile, real);
+    symlinkSync('lists-v1.csv', tagsFile);
+    writeFileSync(`${real}.1`, before);
+    engineer.say('restore_tags', { seq: ++seq, kept: 'lists-v1.csv.1' });
+    const { lines, conflict } = await engineer.text('tags_diff');
+    assert.equal(conflict, false);
+    assert.equal(lines.length, 1, JSON.stringify(lines));
+    assert.match(lines[0][2], /^TI-8,/);
+    rmSync(`${real}.1`);
+    rmSync(tagsFile);
+    renameSync(real, tagsFile);
     engineer.close();
 });
 
