@@ -100,7 +100,7 @@ static bool is_elsewhere(const struct pen *pen, const struct frame_marker *marke
     return pen->view.field.show == SHOW_DISTANCE && isnan(marker->value);
 }
 
-/* Of a reading that is Bad: its alarm stays as it was when the last value came. */
+/* Writes the label of a Bad reading: its alarm stays as it was when the last value came. A time of more than a day ago has its date. */
 static void format_bad(const struct pen *pen, const struct reading *reading, char out[64])
 {
     enum alarm_kind alarm = (enum alarm_kind)reading->alarm;
@@ -111,7 +111,8 @@ static void format_bad(const struct pen *pen, const struct reading *reading, cha
         snprintf(out, 64, "%s", pen_word(pen, WORD_BAD));
         return;
     }
-    strftime(clock, sizeof(clock), "%H:%M", &local);
+    bool days_ago = pen->snapshot->taken_utc_ns - reading->received_utc_ns >= INT64_C(86400000000000);
+    strftime(clock, sizeof(clock), days_ago ? "%m-%d %H:%M" : "%H:%M", &local);
     pen_say(pen, WORD_HELD_SINCE, clock, NULL, since, sizeof(since));
     snprintf(out, 64, "%s %s", alarm_kind_name(alarm), since);
 }
