@@ -157,7 +157,7 @@ static void add_option(struct arguments *list, const char *option, const char *v
     }
 }
 
-/* *remark: some of the models could not be read (mem_free). */
+/* *remark receives which models could not be read, if only some could (mem_free). */
 static char *read_models(struct import_job *job, const struct import_order *order, const struct export_list *exports, char **remark)
 {
     struct arguments list = { 0 };

@@ -11,7 +11,7 @@ struct sibling_params {
     bool (*stop)(void *arg);                  /* asked several times a second: the program shall end */
     void (*say)(void *arg, const char *text); /* takes what it prints, piece by piece; NULL: it goes where ours goes */
     void *arg;                                /* of both */
-    char **remark;                            /* on SIBLING_PARTLY: the last line that it wrote to stderr (mem_free); NULL: is a failure */
+    char **remark;                            /* receives its last line on stderr on SIBLING_PARTLY (mem_free); NULL: that is a failure */
     bool notifies;                            /* it may tell the service manager how far it is */
     int lent;                                 /* a descriptor that it has as SIBLING_LENT; 0: none */
 };

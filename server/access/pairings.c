@@ -189,8 +189,8 @@ static size_t count_from(const struct pairings *pairings, const uint8_t address[
     return from;
 }
 
-/* Where all places are taken, an address that would still have fewer takes one of the address that has most: its newest. So a few
-   addresses cannot keep others out. Returns false if no address has so many. */
+/* Frees a place when all are taken: the newest one of the address that has most, if that address has at least two more than the asking one
+   (which has `from`). So a few addresses cannot keep others out. Returns false if no address has that many. */
 static bool make_room(struct pairings *pairings, size_t from)
 {
     size_t most = from + 1, victim = pairings->count;

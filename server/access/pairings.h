@@ -13,8 +13,8 @@ enum {
     PAIRING_DIGITS = 6,
     PAIRING_S = 300,       /* digits are good for so long, */
     PAIRING_QUIET_S = 60,  /* and not once the device has not asked for so long */
-    PAIRINGS = 64,         /* wait at most, shared equally among addresses, */
-    PAIRINGS_FROM = 8,     /* and so many from one address */
+    PAIRINGS = 64,         /* devices that may wait, shared equally among addresses */
+    PAIRINGS_FROM = 8,     /* devices that may wait from one address */
     PAIRING_WRONG = 10,    /* digits that may be wrong within a minute */
     PAIRED_DEVICES = 256,
 };

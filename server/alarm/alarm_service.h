@@ -42,8 +42,8 @@ uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, vo
 /* Does what an operator asks for: acknowledges, shelves and so on. name: of a tag, or for ALARM_LINK of a device. Returns NULL, or why it
    was refused (static). */
 const char *alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act);
-/* Waits, for a second at most, until what was done is in the journal on disk. Returns 0, also where nothing is recorded, or -errno: it is
-   in force, and is lost if the daemon is killed now. */
+/* Waits up to a second until all alarm changes are in the journal on disk. Returns 0, also without a journal, or -errno: the changes are in
+   force, but are lost if the daemon is killed now. */
 int alarm_service_settle(struct alarm_service *service);
 /* Takes the states of alarms as a core has them, by name and kind, in that order; whole: all others are normal. For a service that mirrors.
    Returns NULL, or why it cannot (static); then nothing changed. */

@@ -59,7 +59,7 @@ static void add_bad(struct alarms *alarms, int tag)
     add_suppression(alarms, index);
 }
 
-/* The alarm of a device is as soon and as urgent as those of its tags: at the shortest delay, one level below the highest priority. */
+/* Adds or adjusts the LINK alarm of a device: it has the shortest delay of its tags, and one level below their highest priority. */
 static void add_link(struct alarms *alarms, struct device *device, int tag, int64_t least_on_ns)
 {
     const struct plant_alarm_settings *settings = &alarms->plant->tags[tag].alarm_settings;
@@ -94,8 +94,8 @@ static bool never_stale(const struct alarms *alarms, size_t tag)
     return alarms->plant->tags[tag].stale_s >= PLANT_NEVER_STALE_S;
 }
 
-/* Every device has an alarm. Tags that raise BAD alarms decide when it comes; where a device has none, all its tags do. A replay is a file:
-   it ends, and only then if somebody waits for its tags. */
+/* Gives every device a LINK alarm. Its delay comes from the tags with BAD alarms, or from all tags if none has one. A replay ends like any
+   file: it gets the alarm only if one of its tags has a BAD alarm. */
 static void add_links(struct alarms *alarms)
 {
     const struct plant *plant = alarms->plant;

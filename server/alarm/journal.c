@@ -37,7 +37,7 @@ struct journal {
     /* --- below: under thread.lock */
     struct entries waiting;
     bool asks;
-    bool urgent;              /* somebody waits for the rows to be on disk */
+    bool urgent;              /* a caller waits in journal_settle() */
     uint64_t queued, written; /* rows, since the start */
     uint64_t failures;
     int error;                /* of the last try */
@@ -71,7 +71,7 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
     return error;
 }
 
-/* Tells whoever waits in journal_settle(). */
+/* Wakes callers of journal_settle(). count: rows written by this try. */
 static void tell_settled(struct journal *journal, size_t count, int error)
 {
     pthread_mutex_lock(&journal->thread.lock);
@@ -82,7 +82,7 @@ static void tell_settled(struct journal *journal, size_t count, int error)
     pthread_mutex_unlock(&journal->thread.lock);
 }
 
-/* now: whatever failed just before. */
+/* now: tries even if the pause after a failure is not over. */
 static void try_to_write(struct journal *journal, bool now)
 {
     int64_t mono_ns = clock_mono_ns();
@@ -111,7 +111,7 @@ static void take(struct journal *journal)
     struct entries *taken = &journal->taken, *waiting = &journal->waiting;
     size_t room = WAITING_MAX - taken->count, count = waiting->count < room ? waiting->count : room;
     counter_inc(journal->counters.lost, (int64_t)(waiting->count - count));
-    journal->written += waiting->count - count; /* nobody waits for them any more */
+    journal->written += waiting->count - count; /* dropped rows do not hold up journal_settle() */
     mem_grow(&taken->at, &taken->capacity, taken->count + count, sizeof(*taken->at));
     if (count > 0)
         memcpy(taken->at + taken->count, waiting->at, count * sizeof(*waiting->at));
@@ -119,8 +119,8 @@ static void take(struct journal *journal)
     waiting->count = 0;
 }
 
-/* Waits for rows, and a moment more: what comes together is written together. Rows that somebody waits for are written at once, and
-   *urgent is set. */
+/* Waits for rows, then GATHER_NS more so that one transaction takes them together. Rows for which journal_settle() waits are not delayed:
+   then *urgent is set. */
 static bool wait_for_work(struct journal *journal, bool *urgent)
 {
     int64_t until_ns = clock_mono_ns() + GATHER_NS;

@@ -22,8 +22,8 @@ void journal_stop(struct journal **journal); /* writes what is pending and ends;
 void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag);
 int64_t journal_newest_utc_ns(const struct journal *journal); /* returns the time of the newest row that it had when it
    was opened, or got by journal_add_entry(). 0: none. Thread: that of the latter */
-/* Waits, for a second at most, until all that was queued is on disk; writes it at once, also where the last try has just failed. Returns 0
-   or -errno: then it is not, or not yet, and is tried again. */
+/* Waits up to a second until all queued rows are on disk. Has them written at once, even if the last try has just failed. Returns 0, or
+   -errno if some are not on disk yet; the journal goes on trying. */
 int journal_settle(struct journal *journal);
 /* Returns the row of a change; names are copied. */
 struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag);

@@ -125,7 +125,7 @@ static void say_written(struct audit *audit, const char *why)
     counter_set(audit->good, !audit->failing);
 }
 
-/* Returns 0, or -errno: it is not on the disk. */
+/* Returns 0, or -errno if the entry is not on disk. */
 static int write_entry(struct audit *audit, const struct audit_entry *entry, int64_t utc_us)
 {
     struct text line = { 0 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The audit trail: a thread writes what happened to the trail's file, the log and a syslog server. Whoever records waits for none of them,
-   but in audit_settle(). While the file cannot be written, entries wait in memory, and the log and the metrics say so. */
+/* The audit trail: a thread writes entries to the trail's file, the log and a syslog server. Only audit_settle() waits for the file. While
+   the file cannot be written, entries wait in memory, and the log and the metrics say so. */
 #ifndef AUDIT_AUDIT_H
 #define AUDIT_AUDIT_H
 #include "audit/audit_chain.h"
@@ -11,7 +11,7 @@ struct audit;
 struct audit *audit_start(const struct audit_params *params);
 /* Writes what waits, if it can be written, and ends. &NULL is fine; leaves NULL. */
 void audit_stop(struct audit **audit);
-/* Waits, for a second at most, until all that was recorded is on disk. Returns 0 or -errno; audit NULL: 0. Any thread. */
+/* Waits up to a second until all recorded entries are on disk. Returns 0 or -errno; audit NULL: 0. Any thread. */
 int audit_settle(struct audit *audit);
 /* Records an entry, which is copied. audit NULL: does nothing. Any thread. */
 void audit_say(struct audit *audit, const struct audit_entry *entry);

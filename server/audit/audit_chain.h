@@ -22,7 +22,7 @@ struct audit_entry {
     const char *who, *role;
     const char *from; /* the client's address */
     const char *how;  /* by which way or means */
-    const char *through; /* the daemon that handed it on, and its token */
+    const char *through; /* renderer that forwarded the action, and its token; NULL: none */
     const char *what; /* what was changed, or asked for */
     const char *why;  /* of a refusal */
 };

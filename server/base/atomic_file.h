@@ -23,8 +23,9 @@ void atomic_file_abandon(struct atomic_file *file); /* removes it; none is fine 
 
 /* Writes a whole file (mode 0666 less the umask) and commits it; not durable. Returns 0, or -errno. */
 int atomic_file_put(const char *path, const void *bytes, size_t count);
-int atomic_file_keep(const char *path, const void *bytes, size_t count); /* the same, durable: for what somebody is told is kept */
-/* Returns why something was not kept, by the error of a write (-errno): a sentence for whoever asked for it. Static. */
+/* The same with fsync, for data that the daemon confirms as kept. */
+int atomic_file_keep(const char *path, const void *bytes, size_t count);
+/* Translates the error of a write (-errno) into a sentence for the user whose change was not kept. Static. */
 const char *atomic_file_not_kept(int error);
 struct atomic_file_part {
     const void *bytes;

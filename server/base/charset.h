@@ -26,10 +26,10 @@ struct charset_choice charset_find(const char *bytes, size_t count);
 void charset_decode(const char *bytes, size_t count, const char *encoding, struct charset_text *out);
 /* Converts one string without looking for marks. Returns the UTF-8 text (mem_free); adds to *damaged, which may be NULL. */
 char *charset_convert(const char *bytes, size_t count, const char *encoding, size_t *damaged);
-/* Writes the name under which charset_convert() knows an encoding as people and programs write it: "Windows 1251", "GBK", "latin1".
-   Returns false if there is none. */
+/* Translates an encoding's name as people and programs write it ("Windows 1251", "GBK", "latin1") into the name that charset_convert()
+   takes. Returns false if there is no such encoding. */
 bool charset_resolve(const char *written, char name[CHARSET_NAME_BYTES]);
-/* Returns how many bytes of a text are valid UTF-8 beyond ASCII, as characters, and sets *invalid to the bytes that are not. */
+/* Returns the number of valid UTF-8 characters beyond ASCII, and sets *invalid to the number of bytes that are not valid UTF-8. */
 size_t charset_count_utf8(const char *bytes, size_t count, size_t *invalid);
 /* Returns whether all bytes mean something in an encoding. */
 bool charset_fits(const char *bytes, size_t count, const char *encoding);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which encoding a short text is in, by the likelihood of its bytes under a model of text in each encoding: common characters of tag lists
-   and drawings, the levels into which standards divide characters by frequency, and the letters around a character. uchardet has a vote. */
+/* Finds the encoding of a short text by the likelihood of its bytes under a model of each encoding: common characters of tag lists and
+   drawings, the frequency levels of the encodings' standards, and the letters around a character. uchardet adds to one score. */
 #include <ctype.h>
 #include <math.h>
 #include <stdint.h>
@@ -15,7 +15,8 @@ enum { SAMPLE_BYTES = 1 << 16, MOST_LINE = 512 };
 
 /* --- models of encodings with two bytes a character ------------------------------------------------------------------------- */
 
-/* Half of the characters of a text are among the first. Simplified and traditional Chinese, Japanese, Korean: words of process plants. */
+/* Frequent characters in words of process plants: simplified and traditional Chinese, Japanese, Korean. The models assume that they make up
+   half of a text. */
 static const char simplified[] =
     "℃温度压力流量液位泵阀门罐塔炉汽水油气管线进出口入电机轴承高低报警设备单"
     "元号说明名称地址标签描述位置类型工程值反应器换热冷却循环"
@@ -233,7 +234,7 @@ static bool is_letter(enum kind kind)
     return kind != ASCII_OTHER && kind != HIGH_SIGN && kind != HIGH_NONE;
 }
 
-/* What the bytes on both sides say against a high byte. */
+/* Returns the score that the bytes before and after a high byte add. */
 static double rate_around(const struct narrow_table *table, bool latin, const unsigned char *at, const unsigned char *from,
                           const unsigned char *to)
 {
@@ -294,7 +295,7 @@ static void add_frequent(void *data, const unsigned char *bytes, size_t count, i
     }
 }
 
-/* Characters of two bytes seldom stand among small ASCII letters: then each is a letter of its own. */
+/* Two-byte characters seldom stand next to small ASCII letters: there each byte probably is a letter of a one-byte encoding. */
 static double rate_beside(unsigned before, unsigned after)
 {
     return (islower(before) ? -2.5 : 0) + (islower(after) ? -2.5 : 0);

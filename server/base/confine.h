@@ -39,8 +39,8 @@ bool confine_lacks(char out[CONFINE_LACKS_BYTES]);
 /* Makes this process's memory, descriptors and environment unreadable for other processes of its user, and stops core dumps. */
 void confine_hide_memory(void);
 
-/* Returns a copy of the environment that holds only search path, language, time zone, folders and, with `notifies`, the service manager's
- * socket. The array and its strings are one block, freed with mem_free. NULL values of `home` keep HOME and TMPDIR as they are. */
+/* Returns a copy of the environment that holds only search path, language, time zone, HOME, TMPDIR and, with `notifies`, the service
+ * manager's socket. home: the value of HOME and TMPDIR; NULL keeps both. The array and its strings are one block (mem_free). */
 char **confine_environment(const char *home, bool notifies);
 
 #endif

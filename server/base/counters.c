@@ -14,7 +14,7 @@ struct entry {
     counter value;
     bool microseconds;           /* printed in seconds */
     struct histogram *histogram; /* NULL: a single value */
-    int64_t (*measure)(void *arg); /* NULL: it is set */
+    int64_t (*measure)(void *arg); /* NULL: the value is set by counter_set() and the like */
     void *arg;
     struct entry *next;
 };

@@ -15,11 +15,11 @@ void counters_destroy(struct counters **counters);
 counter *counters_add(struct counters *counters, const char *name, const char *type, const char *help);
 /* Likewise, of a number that is counted in microseconds and printed in seconds. */
 counter *counters_add_seconds(struct counters *counters, const char *name, const char *type, const char *help);
-/* Likewise, of a number that is measured whenever the metrics are printed: measure(arg), which must not use `counters`; a negative one is
-   not known, and the last one stays. */
+/* Adds a metric that measure(arg) measures whenever metrics are printed. measure() must not use `counters`, and must not block: it runs in
+   the loop thread. A negative result keeps the last value. */
 counter *counters_add_measured(struct counters *counters, const char *name, const char *type, const char *help,
                                int64_t (*measure)(void *arg), void *arg);
-/* Has arg not be used any more. */
+/* Stops measuring with `arg`; the metric keeps its last value. */
 void counters_forget_measured(struct counters *counters, const void *arg);
 /* Likewise, of durations (base/histogram.h); in seconds. */
 struct histogram *counters_add_histogram(struct counters *counters, const char *name, const char *help);

@@ -51,8 +51,8 @@ bool core_link_peer(struct core_link *link, struct core_peer *out);
 struct core_act {
     uint64_t client;          /* whose answer it will be */
     const char *from;         /* the person's address */
-    const char *token;        /* that the person gave here: the core verifies it. NULL: none */
-    const char *id_token;     /* of a person who is signed in here, of the identity provider. NULL: none */
+    const char *token;        /* token that the person gave here; the core verifies it. NULL: none */
+    const char *id_token;     /* ID token of a person who is signed in here. NULL: none */
     const char *text;         /* the client's message, JSON */
 };
 /* Sends what somebody does to the core. Returns false if there is no core now, or too much waits: nothing was sent. Any thread. */

@@ -150,7 +150,7 @@ static void split(struct sampler *sampler, const struct piece *piece, int begin,
     enqueue(sampler, &half);
 }
 
-/* The data end here, and the corners say that they do not. */
+/* Returns whether the data end at this point although the corners draw data there. */
 static bool hides_rim(const struct sampler *sampler, size_t point, const struct piece *piece, const float parts[3], bool *shown)
 {
     const uint32_t *corners = sampler->tris[piece->tri];
@@ -215,7 +215,8 @@ static void sample_group(struct sampler *sampler, float step)
 
 /* --- all of them ------------------------------------------------------------------------------------------------------------ */
 
-/* So small beside the way to the nearest sensor that nothing bends in it; or, in a coarser level, smaller than its pixels. */
+/* Returns whether a triangle needs no samples: it is small compared with the distance to the nearest sensor, or, in a coarse level,
+   smaller than the pixels of that level. */
 static bool is_straight(const struct job *job, const uint32_t corners[3])
 {
     const struct weights *weights = job->weights;

@@ -9,7 +9,7 @@
 #include "field/update.h"
 #include "plant/influence.h"
 
-/* As the picture interpolates it. */
+/* Interpolates the vertices, as the picture does. */
 static void point_drawn(const struct scalars *scalars, const struct field_place *place, struct field_point *out)
 {
     double value = 0, no_data = 0, uncertain = 0;
@@ -23,7 +23,7 @@ static void point_drawn(const struct scalars *scalars, const struct field_place 
     *out = (struct field_point){ .value = value, .no_data = no_data > 0.5, .uncertain = uncertain > 0.5 };
 }
 
-/* The largest of the triangles around the corners: whichever of them is drawn there. */
+/* Returns the largest error of the triangles around the corners: any level of detail may be drawn there. */
 static double error_near(const struct state *state, const struct field_place *place)
 {
     double most = 0;
@@ -61,7 +61,7 @@ static void point_distance(const struct state *state, const struct one *one, str
     out->value = out->no_data ? out->value : far_m;
 }
 
-/* Of the sensors as they are shown, by the arithmetic of the vertices. */
+/* Sums the sensors' weights at the point, with the arithmetic of the vertices and the readings that are shown. */
 static void point_sum(const struct state *state, const struct one *one, struct field_point *out)
 {
     const size_t sensors = one->layout.sensor_count;

@@ -223,8 +223,8 @@ void history_series_finish(struct history_series *series)
 
 /* --- one instant -------------------------------------------------------------------------------------------------------------- */
 
-/* A usable point that nothing follows is the newest sample of its tag. A daemon that was still running would have recorded that it got
-   stale. */
+/* Returns whether the tag has no value at t_us because its newest sample is older than its Stale s: a daemon that was still running would
+   have recorded a newer point. */
 static bool has_ended(const struct history_pair *pair, int64_t t_us, int64_t stale_us)
 {
     return pair->after.t_us == INT64_MIN && history_point_usable(&pair->before) && stale_us < INT64_MAX - HISTORY_SETTLED_US &&

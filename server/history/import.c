@@ -375,7 +375,8 @@ static bool was_end_of_line(struct import_series *series, int64_t t_us)
            is_end_of_line(&series->before.at[series->next]);
 }
 
-/* Records the pending sample, and what follows it until the next one: a line, or no data. */
+/* Records the pending sample, and the end of its line if the next sample is too far away. next_us: time of the next sample; INT64_MAX:
+   none. */
 static void record_pending(struct filling *filling, int tag, int64_t next_us)
 {
     struct import_series *series = &filling->series[tag];
@@ -408,7 +409,7 @@ static bool fill_sample(struct import *import, void *arg, int tag, const struct 
 
 /* --- what was recorded before -------------------------------------------------------------------------------------------------------- */
 
-/* The line that led to the time of the series is ended, or goes on where an end is not needed any more. */
+/* Ends the recorded line that leads to the first sample of a series, or removes its end if the gap counts as data now. */
 static void join_before(struct filling *filling, struct history_reader *reader, int tag)
 {
     struct import_series *series = &filling->series[tag];
@@ -451,7 +452,7 @@ static bool read_before(struct filling *filling)
     return good;
 }
 
-/* The last samples, each with what follows it in history. */
+/* Records the last sample of each series, joined to the recorded point that follows it. */
 static void record_last(struct filling *filling)
 {
     for (size_t i = 0; i < filling->params->plant->tag_count; i++) {

@@ -8,7 +8,7 @@
 enum role {
     ROLE_NOBODY, /* has yet to say who it is */
     ROLE_RENDERER, /* no person: another daemon, which may open /core and ask for history, and nothing else */
-    ROLE_STANDBY,  /* the same, of the core that takes this one's place */
+    ROLE_STANDBY,  /* the same for the core that takes over from this one */
     ROLE_OPEN,   /* anyone, under --open-viewers */
     ROLE_VIEWER,
     ROLE_OPERATOR,
@@ -26,8 +26,8 @@ extern const struct name names_role[]; /* ends with a NULL text */
 /* Returns whether a client of that role may send the message. If not, fills *error with the refusal to answer. */
 bool role_may_send(enum role role, const struct message *message, struct message_error *error);
 
-/* Returns the plant that names in a message of that role are looked up in. A role below viewer is told of no tag, and would learn from
-   refusals which tags there are: it gets *copy, the same plant without tags. copy shares all else with plant. */
+/* Returns the plant for looking up names in a message of that role. Below viewer it is *copy, the same plant without tags, so that
+   refusals do not tell which tags exist. *copy shares everything else with `plant`. */
 const struct plant *role_plant(enum role role, const struct plant *plant, struct plant *copy);
 
 /* Returns whether a renderer hands on messages of that type to its core: those that change what all share. */

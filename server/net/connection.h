@@ -30,8 +30,8 @@ struct refusal {
 };
 /* Reads the headers of a request and sets role, client and holder by them. Returns false with *refusal holding the answer. */
 bool connection_identify(struct server_context *server, struct lws *wsi, struct refusal *refusal);
-/* Journals and the audit trail name people by the identity provider, and others by their token or as `local`: gives a person whose name is
-   one of theirs a suffix. */
+/* Adds a suffix to the name of a person who is signed in if a token has the same name, or if it is `local`: journals and the audit trail
+   must tell them apart. */
 void connection_tell_apart(const struct server_context *server, struct token_holder *person);
 /* Returns the name of whoever made the last request, for journals and lists; "local" without one. */
 const char *connection_who(const struct connection *connection);

@@ -55,7 +55,7 @@ struct renderer {
     const char *close_text;  /* NULL: it stays */
 };
 
-/* Of this machine, where no token is wanted: whoever is here is an engineer. */
+/* Returns whether the peer is on this machine and needs no token; its role is engineer. */
 static bool is_local(const struct connection *connection)
 {
     return connection->role == ROLE_ENGINEER && !connection->holder.name[0];
@@ -390,7 +390,8 @@ static bool send_next(struct server_context *server, struct renderer *renderer)
 
 /* --- what comes --------------------------------------------------------------------------------------------------------------- */
 
-/* A renderer's token opens no standby's seat: whoever holds that is the core that takes over. */
+/* Returns why the peer's token has the wrong role, or NULL (mem_free). A renderer's token must not open the standby's seat, whose holder
+   takes over as core. */
 static char *role_refusal(const struct renderer *one)
 {
     const struct connection *connection = connection_of(one->wsi);
@@ -402,8 +403,8 @@ static char *role_refusal(const struct renderer *one)
                       name_of(names_role, (int)role), name_of(names_role, (int)role));
 }
 
-/* Two of one name, or two that follow, and nobody would know whose promise it is. matches: it has this core's version and files, so that it
-   takes the place of one that only votes. */
+/* Returns why `one` cannot stand by, or NULL (mem_free). Names are unique and there is one standby, so that each promise has one author.
+   matches: `one` has this core's version and files, and may replace a core that only votes. */
 static char *standby_refusal(const struct server_context *server, struct renderer *one, const char *id, bool matches)
 {
     if (!server->params.keeper)
@@ -432,7 +433,7 @@ static void say_refusal(struct server_context *server, const struct renderer *re
     memcpy(server->renderer_refused, said, sizeof(said));
 }
 
-/* A standby that matches is there: a core that only votes is ended. */
+/* Closes cores that only vote, once a standby with this version and these files has come. */
 static void end_voters(struct server_context *server)
 {
     for (struct renderer *one = server->renderers; one; one = one->next)
@@ -491,8 +492,8 @@ static void introduce(struct server_context *server, struct renderer *renderer, 
     count(server);
 }
 
-/* Verifies whose message it is: the renderer's own token lets nobody do anything. Returns NULL and the person in *out, or why not
-   (static). */
+/* Verifies who sent a message through a renderer. The renderer's own token grants no right to act. Returns NULL and the person in *out, or
+   the reason of the refusal (static). */
 static const char *verify_person(const struct server_context *server, const struct renderer *renderer, const json_t *message,
                                  struct token_holder *out)
 {

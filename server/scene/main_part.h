@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The part of a plant that a first view frames: all of it, but for stray pieces that are so far away that the rest would be a dot. */
+/* The part of a plant that a first view frames: everything except stray pieces so far away that the rest would be a dot. */
 #ifndef SCENE_MAIN_PART_H
 #define SCENE_MAIN_PART_H
 #include <stdbool.h>

@@ -57,7 +57,7 @@ static bool views_due(const struct session *session)
            named_views_number(session->context->named_views) > session->owed.views_sent;
 }
 
-/* A picture of the past has the notes of its instant. */
+/* Returns whether notes are to be sent: after changes, and when a session that shows the past moves to an instant with other notes. */
 static bool notes_due(const struct session *session)
 {
     const struct notes *notes = session->context->notes;

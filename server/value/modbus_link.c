@@ -308,7 +308,7 @@ static int ask_framed(struct modbus_link *link, const struct modbus_question *qu
         numbered.number = ++link->number;
         status = modbus_tcp_ask(link->slot_fd, link->stop_fd, clock_mono_ns() + timeout_ns, &numbered, words, &link->answered);
     } while (status == -ETIMEDOUT && link->answers == 0 && !link->answered.began && clock_mono_ns() < begin_ns + link->patience_ns);
-    if (link->answers == 0) /* each was sent a timeout after the one before */
+    if (link->answers == 0) /* repeated requests are one timeout apart */
         link->sent_ns = begin_ns + (uint16_t)(link->answered.number - numbered.oldest) * timeout_ns;
     return status;
 }

@@ -8,7 +8,7 @@
 
 enum { SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
 static const int64_t PAUSE_NS = 50 * NS_PER_MS;      /* before connecting again, doubled each time: some devices free a connection late */
-static const int64_t TOLERANCE_NS = 2 * NS_PER_S;    /* since the last answer: then the device is lost */
+static const int64_t TOLERANCE_NS = 2 * NS_PER_S;    /* after the last answer; later the device counts as lost */
 static const int64_t PATIENCE_NS = 3 * NS_PER_S;     /* for the first answer of the second connection without one; twice as long later */
 static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS; /* first delay that is tried where requests have no numbers */
 static const int64_t MOST_DELAY_NS = 8 * NS_PER_S;

@@ -20,7 +20,7 @@ struct modbus_question {
 struct modbus_answered {
     uint16_t number;
     uint8_t unit;
-    bool began; /* at least one byte of it came */
+    bool began; /* at least one byte of the response came */
 };
 
 /* Sends a request and receives its response; words as in modbus_link_read(). answered: the response's number and unit. Returns 0, a Modbus

@@ -51,7 +51,7 @@ static bool is_spreadsheet_error(const char *text)
     return *text == '#' && length > 2 && length < 12 && strchr("!?A", text[length - 1]);
 }
 
-/* Numbers of words such as "1.#QNAN" and the sign of "-nan" leave the word. */
+/* Reduces a text to letters and digits in lower case: "1.#QNAN" to "qnan", "-nan" to "nan". */
 static void normalize(const char *text, char word[LONGEST_WORD + 1])
 {
     size_t length = 0;

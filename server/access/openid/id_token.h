@@ -15,7 +15,7 @@ struct id_token_expected {
     const char *nonce;  /* NULL: of a refreshed token, which need not have one */
     const char *sub;    /* whose it is; NULL: not known yet */
     int64_t now_s;      /* UTC */
-    int64_t patience_s; /* for which a token is still good after its time */
+    int64_t patience_s; /* how long a token is accepted after its `exp` */
 };
 
 enum id_token_fault {

@@ -194,7 +194,7 @@ const char *openid_vouch(struct openid *openid, const char *id_token, struct tok
                                                 .patience_s = (int64_t)(openid->config->hours * 3600) };
     enum id_token_fault fault = keys ? id_token_verify(id_token, &expected, &claims, &why) : ID_TOKEN_NO_KEY;
     json_decref(keys);
-    if (fault == ID_TOKEN_NO_KEY) { /* the provider may have a new one: its keys are looked at now */
+    if (fault == ID_TOKEN_NO_KEY) { /* the provider may have a new key: the thread fetches its keys now */
         pthread_mutex_lock(&openid->lock);
         openid->discover_ns = clock_mono_ns();
         pthread_cond_broadcast(&openid->wake);

@@ -68,10 +68,11 @@ bool openid_take_changed(struct openid *openid);
 bool openid_find(struct openid *openid, const char *cookie, struct token_holder *out);
 /* Returns the role that a holder has now; ROLE_NOBODY: the person is not signed in (any more), or was none. */
 enum role openid_role(struct openid *openid, const struct token_holder *holder);
-/* Returns the newest ID token of a person who is signed in here, for a daemon that asks who it is (mem_free); NULL: there is none. */
+/* Returns the newest ID token of a person who is signed in here, for a core that verifies it (mem_free); NULL: there is none. */
 char *openid_id_token(struct openid *openid, const struct token_holder *holder);
-/* Verifies the ID token of a person who is signed in at another daemon of the same provider and client, by what is known here: nothing is
-   asked. It is good for `hours` from when it was made, as a log-in is. Returns NULL and the person in *out, or why not (static). */
+/* Verifies the ID token of a person who is signed in at another daemon of the same provider and client, with the keys that are known here:
+   no request is made. A token is good for `hours` from its `iat`, as a log-in is. Returns NULL and the person in *out, or the reason of
+   the refusal (static). */
 const char *openid_vouch(struct openid *openid, const char *id_token, struct token_holder *out);
 /* Notes that a person is at the page. */
 void openid_touch(struct openid *openid, const struct token_holder *holder, int64_t now_ns);

@@ -18,7 +18,7 @@ static const char BUSY[] = "another import is under way; wait for its end, or ca
 
 struct body {
     struct export_upload *upload;
-    int64_t left, bytes; /* that are to come; of the whole file */
+    int64_t left, bytes; /* bytes still to come; size of the whole file */
     int64_t begun_ns;
     char name[256];
     bool decides; /* its end is an order */
@@ -217,7 +217,7 @@ static int begin_decisions(struct server_context *server, struct request *reques
     return begin_body(server, request, plant_import_decisions(), true);
 }
 
-/* A file that comes more slowly than any link would keep its place for ever. One that stops altogether is closed by lws. */
+/* Returns whether an upload is slower than any real link, so that it would hold its place for ever. lws closes one that stalls. */
 static bool drips(const struct body *body)
 {
     int64_t taken_s = (clock_mono_ns() - body->begun_ns) / NS_PER_S;
