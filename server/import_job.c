@@ -169,7 +169,9 @@ static char *read_models(struct import_job *job, const struct import_order *orde
     add(&list, "-o");
     add(&list, job->folder);
     add_option(&list, "--units", order->units);
+    add_option(&list, "--mesh-units", order->mesh_units);
     add_option(&list, "--up", order->up);
+    add_option(&list, "--report", plant_import_report(job->params.import));
     add_option(&list, "--encoding", order->encoding);
     for (size_t i = 0; i < exports->count; i++)
         if (exports->at[i].kind == EXPORT_MODEL) {

@@ -20,7 +20,7 @@
 
 #include "base/mem.h"
 
-enum { MAX_OUTPUT = 1 << 20, PIPE_BYTES = 1 << 20 /* the most that a pipe may hold */, MAX_FILES = 512, EXIT_NOT_STARTED = 127 };
+enum { MAX_OUTPUT = 8 << 20, PIPE_BYTES = 1 << 20 /* the most that a pipe may hold */, MAX_FILES = 512, EXIT_NOT_STARTED = 127 };
 enum watched { OUTPUT, ERRORS, END, SIGNALS, WATCHED };
 
 struct child {

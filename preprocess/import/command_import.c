@@ -6,10 +6,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/atomic_file.h"
 #include "base/confine.h"
+#include "base/json_text.h"
 #include "base/mem.h"
 #include "preprocess/import/commands.h"
 #include "preprocess/import/file_name.h"
+#include "preprocess/import/findings.h"
 #include "preprocess/import/formats.h"
 #include "preprocess/import/options.h"
 #include "preprocess/import/plant_draft.h"
@@ -22,11 +25,13 @@ enum { RVM_ITEM_LEVEL = 3 }; /* the file, its sites, their zones, and what is in
 
 struct import {
     const char *folder, *name;
+    const char *report; /* file for findings; NULL: none */
     bool undo, force, dry_run;
     int lent; /* plant_folder.h */
     struct conversion_params conversion;
     struct work_folder work;
     char **paths;
+    json_t *findings; /* of each model that was read (findings.h) */
     struct plant_draft_model *models;
     int count, unread; /* unread: models that failed; the arrays hold only the others */
     bool anew, interrupted;
@@ -50,6 +55,7 @@ static void print_usage(FILE *out)
         "  --undo            puts models, plant file, tag list and matches back as they were before the last new export\n"
         "  --force           undoes it although people have changed these since; what they have now stays beside, as NAME.undone\n"
         "  --anew            plant.yaml and tags.csv are made anew; those that are there are kept as NAME.1, NAME.2, ...\n"
+        "  --report FILE     writes what was lost, left out, guessed and reported as an error, as JSON (IMPORT.md)\n"
         "  --serve           opens a page on this machine, where models and tag lists are dropped, tags matched and sensors placed\n"
         "  --port N          of that page (8080)\n",
         out);
@@ -92,7 +98,6 @@ static void convert(struct import *import, const char *path)
         struct text summary = { 0 };
         model_outline_summary(&model->outline, &summary);
         print_lines(path, summary.at);
-        print_lines(path, said.at ? said.at : "");
         text_finish(&summary);
         import->count++;
     } else {
@@ -102,6 +107,13 @@ static void convert(struct import *import, const char *path)
         import->unread++;
         import->interrupted = work_folder_interrupted() || !strcmp(why, "interrupted");
     }
+    struct text plain = { 0 };
+    const char *slash = strrchr(path, '/');
+    json_array_append_new(import->findings,
+                          findings_read(slash ? slash + 1 : path, said.at ? said.at : "", good ? NULL : why, &plain));
+    if (good)
+        print_lines(path, plain.at ? plain.at : "");
+    text_finish(&plain);
     text_finish(&said);
     mem_free(stem);
     mem_free(glb);
@@ -134,6 +146,16 @@ static int convert_all(struct import *import)
     if (import->unread > 0)
         fprintf(stderr, "plantcast import: %d of %d models could not be read; the others are imported\n", import->unread, count);
     return 0;
+}
+
+/* The report is not needed by the plant: the import goes on without it. */
+static void write_report(const struct import *import)
+{
+    char *text = json_text(json_pack("{s:O}", "models", import->findings), 0);
+    int status = import->report ? atomic_file_put(import->report, text, strlen(text)) : 0;
+    if (status != 0)
+        fprintf(stderr, "plantcast import: warning: %s: %s\n", import->report, strerror(-status));
+    mem_free(text);
 }
 
 static int move_all(const struct import *import)
@@ -183,9 +205,12 @@ static int run(struct import *import)
     else if (mkdir(import->work.path, 0700) != 0 && errno != EEXIST) /* who had the folder until now may have taken it for left over */
         status = fail_at(import->work.path, strerror(errno));
     mem_free(why);
+    import->findings = json_array();
     import->models = mem_array((size_t)import->count, sizeof(*import->models));
     if (status == 0)
         status = convert_all(import);
+    write_report(import);
+    json_decref(import->findings);
     if (status == 0)
         status = bring_in(import);
     for (int i = 0; i < import->count; i++) {
@@ -225,6 +250,7 @@ int command_import(int argc, char **argv)
                                              { "anew", no_argument, NULL, 'a' },
                                              { "serve", no_argument, NULL, 's' },
                                              { "port", required_argument, NULL, 'p' },
+                                             { "report", required_argument, NULL, 'r' },
                                              { "folder-lent", required_argument, NULL, 'l' },
                                              OPTIONS_OF_CONVERSION,
                                              { 0 } };
@@ -241,6 +267,7 @@ int command_import(int argc, char **argv)
         case 'a': import.anew = true; break;
         case 's': serves = true; break;
         case 'l': import.lent = atoi(optarg); break;
+        case 'r': import.report = optarg; break;
         case 'p': serve.port = optarg; break;
         case 'F': import_formats_print(stdout); return 0;
         case 'h': print_usage(stdout); return 0;

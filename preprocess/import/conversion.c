@@ -275,7 +275,7 @@ static void build_curved_solids(const struct reading *reading, struct text *said
     child_paths_add(&paths, reading->folder, CONFINE_WRITE);
     child_paths_add(&paths, program, CONFINE_EXECUTE);
     if (!run(reading, &(struct child_params){ .argv = argv }, &paths, said, why))
-        text_add(said, "pipes and curved solids are as web-ifc draws them: Open CASCADE failed: %s\n", why);
+        text_add(said, "error\t1\tOpen CASCADE: %s; pipes and curved solids are as web-ifc draws them\n", why);
     mem_free(output);
     mem_free(chord);
     mem_free(program);
@@ -299,6 +299,7 @@ static bool run_program(const struct reading *reading, struct child_paths *paths
     }
     if (!strcmp(format->name, "IFC"))
         build_curved_solids(reading, said);
+    const char *units = params->units ? params->units : format->unitless ? params->mesh_units : NULL;
     char *chord = mem_printf("%g", params->chord_m * 1000), *memory = mem_printf("--max-old-space-size=%zu", params->memory_bytes >> 20);
     const char *argv[11];
     int count = 0;
@@ -309,7 +310,7 @@ static bool run_program(const struct reading *reading, struct child_paths *paths
     }
     child_paths_add(paths, runtime ? runtime : program, CONFINE_EXECUTE);
     const char *const rest[] = {
-        program, reading->path, reading->output, chord, params->units ? params->units : "-", params->up ? params->up : "-", encoding, NULL
+        program, reading->path, reading->output, chord, units ? units : "-", params->up ? params->up : "-", encoding, NULL
     };
     memcpy(argv + count, rest, sizeof(rest));
     good = run(reading, &(struct child_params){ .argv = argv }, paths, said, why);

@@ -12,6 +12,7 @@ enum { CONVERSION_WHY_BYTES = 512 };
 struct conversion_params {
     double chord_m;
     const char *units, *up; /* of formats that do not say; NULL: guessed, and said */
+    const char *mesh_units; /* of OBJ, STL, PLY and 3DS, where `units` is NULL; NULL: guessed, and said */
     const char *encoding;   /* of names; NULL: as the file says, or as they look, and said */
     bool keep_covered;      /* RVM: faces that lie on each other stay */
     int timeout_s;          /* of a reader that is another program */

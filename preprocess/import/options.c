@@ -13,7 +13,8 @@ void options_print(FILE *out)
 {
     fputs("  --chord MM        how far a triangle may be from a round surface (1), where the model has true surfaces\n"
           "  --units UNIT      m, mm, cm, in or ft, of models that do not say\n"
-          "  --up AXIS         y or z, likewise\n"
+          "  --mesh-units UNIT the same, but only of OBJ, STL, PLY and 3DS: glTF stays in metres\n"
+          "  --up AXIS         y or z, of models that do not say\n"
           "  --encoding NAME   of names, such as GB18030, Shift-JIS, EUC-KR, Windows-1251; without it, the encoding that the model\n"
           "                    states or that its names look like is taken, and said\n"
           "  --keep-covered    RVM: keep faces that lie on a neighbour's face, which nobody can see\n"
@@ -58,6 +59,7 @@ bool options_take(struct conversion_params *params, const char *command, int opt
         params->memory_bytes = wanted ? 0 : (size_t)taken << 20;
         break;
     case 'u': name = "units", wanted = (params->units = one_of("m mm cm in ft", value)) ? NULL : "m, mm, cm, in or ft"; break;
+    case 'M': name = "mesh-units", wanted = (params->mesh_units = one_of("m mm cm in ft", value)) ? NULL : "m, mm, cm, in or ft"; break;
     case 'e':
         name = "encoding", wanted = charset_resolve(value, encoding) ? NULL : "unknown; iconv --list shows the names that are known";
         params->encoding = encoding;

@@ -10,7 +10,7 @@
 /* For the array of getopt_long. */
 #define OPTIONS_OF_CONVERSION                                                                                                              \
     { "chord", required_argument, NULL, 'c' }, { "units", required_argument, NULL, 'u' }, { "up", required_argument, NULL, 'U' },          \
-        { "encoding", required_argument, NULL, 'e' },                                                                                     \
+        { "encoding", required_argument, NULL, 'e' }, { "mesh-units", required_argument, NULL, 'M' },                                      \
         { "keep-covered", no_argument, NULL, 'k' }, { "timeout", required_argument, NULL, 't' },                                           \
         { "memory", required_argument, NULL, 'm' }, { "formats", no_argument, NULL, 'F' },                                                 \
     {                                                                                                                                      \

@@ -89,12 +89,17 @@ const char *export_folder_choice(void)
     return ".choice";
 }
 
+const char *export_folder_report(void)
+{
+    return ".report.json";
+}
+
 void export_folder_sweep(const char *folder)
 {
     DIR *dir = opendir(folder);
     for (const struct dirent *entry; dir && (entry = readdir(dir));)
         if (entry->d_name[0] == '.' && strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0 &&
-            strcmp(entry->d_name, export_folder_choice()) != 0)
+            strcmp(entry->d_name, export_folder_choice()) != 0 && strcmp(entry->d_name, export_folder_report()) != 0)
             unlinkat(dirfd(dir), entry->d_name, 0);
     if (dir)
         closedir(dir);

@@ -19,7 +19,7 @@
 enum { MOST_SAID_BYTES = 64 * 1024 };
 
 struct plant_import {
-    char *exports, *matches, *choice; /* choice: a file with units and axis, for the next start */
+    char *exports, *matches, *report, *choice; /* choice: a file with units and axis, for the next start */
     pthread_mutex_t lock;
     /* --- below: under lock */
     struct import_order order; /* the one under way, else the last */
@@ -31,22 +31,24 @@ struct plant_import {
     char *why; /* the last one failed; NULL: it did not */
 };
 
-/* The file is "UNITS/UP" or "UNITS/UP/ENCODING". */
+/* The file is "UNITS/UP/ENCODING/MESH_UNITS"; parts at its end may be missing. */
 static void read_choice(struct plant_import *import)
 {
-    size_t bytes;
     struct import_order order = { 0 };
-    char *text = text_read_file(import->choice, 100, &bytes), *up = text ? strchr(text, '/') : NULL;
-    char *encoding = up ? strchr(up + 1, '/') : NULL;
-    if (encoding)
-        *encoding++ = 0;
-    if (up && up - text < IMPORT_CHOICE_BYTES && strlen(up + 1) < IMPORT_CHOICE_BYTES) {
-        memcpy(order.units, text, (size_t)(up - text));
-        strcpy(order.up, up + 1);
-        snprintf(order.encoding, sizeof(order.encoding), "%s", encoding ? encoding : "");
-        if (import_order_good(&order))
-            import->read = order;
-    }
+    const struct {
+        char *at;
+        size_t size;
+    } parts[] = { { order.units, sizeof(order.units) },
+                  { order.up, sizeof(order.up) },
+                  { order.encoding, sizeof(order.encoding) },
+                  { order.mesh_units, sizeof(order.mesh_units) } };
+    size_t bytes;
+    char *text = text_read_file(import->choice, 100, &bytes), *rest = text, *part;
+    bool fits = text != NULL;
+    for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]) && (part = strsep(&rest, "/")); i++)
+        fits = snprintf(parts[i].at, parts[i].size, "%s", part) < (int)parts[i].size && fits;
+    if (fits && import_order_good(&order))
+        import->read = order;
     mem_free(text);
 }
 
@@ -57,6 +59,7 @@ struct plant_import *plant_import_create(const char *plant_path)
     import->exports = export_folder_of(folder);
     import->matches = mem_printf("%s/matches.csv", folder);
     import->choice = mem_printf("%s/%s", import->exports, export_folder_choice());
+    import->report = mem_printf("%s/%s", import->exports, export_folder_report());
     mem_free(folder);
     pthread_mutex_init(&import->lock, NULL);
     if (mkdir(import->exports, 0777) != 0 && errno != EEXIST) {
@@ -80,6 +83,7 @@ void plant_import_destroy(struct plant_import **pointer)
     mem_free(import->why);
     mem_free(import->matches);
     mem_free(import->choice);
+    mem_free(import->report);
     mem_free(import->exports);
     mem_free(import);
     *pointer = NULL;
@@ -95,6 +99,11 @@ const char *plant_import_exports(const struct plant_import *import)
 const char *plant_import_matches(const struct plant_import *import)
 {
     return import->matches;
+}
+
+const char *plant_import_report(const struct plant_import *import)
+{
+    return import->report;
 }
 
 const char *plant_import_decisions(void)
@@ -114,7 +123,7 @@ bool import_order_good(const struct import_order *order)
     static const char *const units[] = { "", "m", "mm", "cm", "in", "ft", NULL }, *const axes[] = { "", "y", "z", NULL };
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
     bool named = order->encoding[strspn(order->encoding, letters)] == 0 && *order->encoding != '-';
-    return named && is_one_of(order->units, units) && is_one_of(order->up, axes) &&
+    return named && is_one_of(order->units, units) && is_one_of(order->mesh_units, units) && is_one_of(order->up, axes) &&
            (!*order->source.host || import_source_good(&order->source));
 }
 
@@ -171,9 +180,9 @@ char *plant_import_text(struct plant_import *import, const struct import_source 
     static const char *const phases[] = { "idle", "reading", "matching", "preparing", "loading" };
     json_t *array = files(import->exports);
     pthread_mutex_lock(&import->lock);
-    json_t *object = json_pack("{s:s,s:i,s:s,s:s?,s:s,s:s,s:s,s:o}", "phase", phases[import->phase], "number", (int)import->number, "said",
-                               import->said.at ? import->said.at : "", "failed", import->why, "units", import->read.units, "up",
-                               import->read.up, "encoding", import->read.encoding, "files", array);
+    json_t *object = json_pack("{s:s,s:i,s:s,s:s?,s:s,s:s,s:s,s:s,s:o}", "phase", phases[import->phase], "number", (int)import->number,
+                               "said", import->said.at ? import->said.at : "", "failed", import->why, "units", import->read.units, "up",
+                               import->read.up, "encoding", import->read.encoding, "mesh_units", import->read.mesh_units, "files", array);
     pthread_mutex_unlock(&import->lock);
     json_object_set_new(object, "source", *source->host ? import_source_json(source) : json_null());
     return json_text(object, 0);
@@ -235,7 +244,8 @@ void plant_import_end(struct plant_import *import, bool in_force, const char *wh
         import->read = import->order;
     if (in_force)
         strcpy(import->read.encoding, import->order.encoding);
-    char *choice = mem_printf("%s/%s/%s", import->read.units, import->read.up, import->read.encoding);
+    char *choice = mem_printf("%s/%s/%s/%s", import->read.units, import->read.up, import->read.encoding,
+                              import->read.mesh_units);
     import->phase = IMPORT_IDLE;
     import->busy = false;
     mem_free(import->why);

@@ -15,6 +15,7 @@ struct import_order {
     bool decides;                    /* without models: the decisions that were uploaded are taken */
     char units[IMPORT_CHOICE_BYTES]; /* of models that do not say theirs: m, mm, cm, in, ft; "": what the reader takes them for */
     char up[IMPORT_CHOICE_BYTES];    /* likewise: y or z */
+    char mesh_units[IMPORT_CHOICE_BYTES]; /* as units, of OBJ, STL, PLY and 3DS alone */
     char encoding[IMPORT_ENCODING_BYTES]; /* of tag list and models, by its name; "": the one that they state or look like */
     struct import_source source;     /* of the tags; without a host: as it is */
 };
@@ -38,6 +39,8 @@ void plant_import_destroy(struct plant_import **import); /* &NULL is fine; leave
 const char *plant_import_exports(const struct plant_import *import);
 /* Returns the path of matches.csv, which plantcast match writes; likewise. */
 const char *plant_import_matches(const struct plant_import *import);
+/* Returns the path of the report that plantcast import writes; the file may be absent. Lives as long as `import`. */
+const char *plant_import_report(const struct plant_import *import);
 /* Returns the name, in the folder of exports, of the decisions that an order without models takes; static. */
 const char *plant_import_decisions(void);
 /* Takes an order. Returns false while another is carried out. */

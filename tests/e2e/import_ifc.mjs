@@ -102,9 +102,13 @@ test('an element whose shape is not built is named, with its class and the reaso
         "#903=IFCPIPESEGMENT('0$PlantcastKinds0000009',$,'LINE-1001',$,$,$,#902,$,$);\n" +
         "#904=IFCPIPESEGMENT('0$PlantcastKinds000000A',$,'LINE-1002',$,$,$,#999,$,$);\nENDSEC;\nEND-ISO");
     assert.ok(shape);
+    const report = join(folder, 'report.json');
     writeFileSync(join(folder, 'a.ifc'), missing);
-    const { status, stdout, stderr } = plantcast(['import', join(folder, 'a.ifc'), '-o', join(folder, 'plant')]);
+    const { status, stdout, stderr } = plantcast(['import', join(folder, 'a.ifc'), '-o', join(folder, 'plant'), '--report', report]);
     assert.equal(status, 0, stderr);
+    const [{ lost }] = JSON.parse(readFileSync(report)).models;
+    assert.deepEqual(lost[1], { id: '#904', name: 'LINE-1002', class: 'IfcPipeSegment', guid: '0$PlantcastKinds000000A',
+        why: 'its representation is empty' });
     assert.match(stdout, /IFC4: 1 elements with a shape, 2 lost,/);
     assert.match(stdout, /lost: #903 LINE-1001 \(IfcPipeSegment, 0\$PlantcastKinds0000009\): IfcSectionedSolidHorizontal/);
     assert.match(stdout, /lost: #904 LINE-1002 \(IfcPipeSegment, 0\$PlantcastKinds000000A\): its representation is empty/);

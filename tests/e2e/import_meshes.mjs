@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
-import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -69,6 +69,26 @@ test('units and axis are guessed and said, or given', { skip }, () => inFolder((
 test('STL in capitals is read', { skip }, () => inFolder((folder) => {
     const { size, list } = boxed(folder, 'a.stl', stl().replace(/.*/g, (line) => line.toUpperCase()));
     assert.ok(near(size, [2, 1, 0.5]) && list.length > 0, JSON.stringify(size));
+}));
+
+test('STL: the whole line is the name of a solid; the report says which unit was guessed', { skip }, () => inFolder((folder) => {
+    const bytes = stl().replaceAll('Wedge', 'P-101 A  (spare)'), report = join(folder, 'report.json');
+    assert.equal(boxed(folder, 'a.stl', bytes).list.at(-1).name, 'P-101 A  (spare)');
+    const models = (...args) => {
+        const { status, stderr } = plantcast('import', join(folder, 'a.stl'), '-o', join(folder, 'plant'), '--report', report, ...args);
+        assert.equal(status, 0, stderr);
+        return JSON.parse(readFileSync(report)).models;
+    };
+    assert.deepEqual(models(), [{ file: 'a.stl', lost_count: 0, lost: [], errors: [], left_out: [], unit: { taken: 'm', length: 2 },
+        failed: null }]);
+    assert.equal(models('--mesh-units', 'mm')[0].unit, null);
+}));
+
+test('OBJ: a material file in a folder with backslashes', { skip }, () => inFolder((folder) => {
+    mkdirSync(join(folder, 'looks'));
+    writeFileSync(join(folder, 'looks/wedge.mtl'), mtl);
+    const { triangles } = boxed(folder, 'a.obj', obj().replace(/mtllib .*/, 'mtllib .\\looks\\wedge.mtl'));
+    assert.equal(triangles, 8);
 }));
 
 // 100 in = 2.54 m. The geometry of the pump is moved 1 in x, its child stands 2 in x; neither moves the other.

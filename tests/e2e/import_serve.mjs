@@ -10,6 +10,8 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { arrive, drawnAt, land, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { ifcOf, KINDS } from './support/ifc_kinds.mjs';
+import { stl } from './support/mesh_samples.mjs';
 import { sweep } from './support/sweep.mjs';
 import { formats, makeTagList } from './support/tag_lists.mjs';
 import { freePort } from './support/ports.mjs';
@@ -667,6 +669,51 @@ test('letters: what a list is read as is shown, and another encoding is chosen',
         assert.doesNotMatch(own.read('tags.csv'), /泵/);
         await sheet.reload();
         await sheet.waitForFunction(() => document.querySelector('#import select')?.value === 'Windows-1251', null, { timeout: 60000 });
+    } finally {
+        await view.close();
+        await own.destroy();
+    }
+});
+
+const noReader = notBuilt || (['plantcast-import-assimp', 'plantcast-import-ifc/ifc.mjs'].every((name) => existsSync(join(BIN, name)))
+    ? false : 'built without Assimp or web-ifc');
+test('a guessed unit is a question that reads again; lost elements are counted and named', { ...options, skip: noReader }, async () => {
+    const own = await Served.start(), view = await openPage(`${own.url}?lang=en`, DESK), { page: sheet } = view;
+    const [, , lines, , type] = KINDS.find(([name]) => name === 'extrusion');
+    const lost = ['$', '#999'].map((shape, i) => `#90${3 + i}=IFCPIPESEGMENT('0$PlantcastKinds000000${i}',$,'LINE-100${i}',$,$,$,` +
+        `${i === 0 ? '#902' : shape},$,$);`).join('\n');
+    const ifc = ifcOf('IFC4', lines, type).replace('ENDSEC;\nEND-ISO', () => '#900=IFCSECTIONEDSOLIDHORIZONTAL($,$,$);\n' +
+        "#901=IFCSHAPEREPRESENTATION($,'Body','AdvancedSweptSolid',(#900));\n#902=IFCPRODUCTDEFINITIONSHAPE($,$,(#901));\n" +
+        `${lost}\nENDSEC;\nEND-ISO`);
+    const shown = (pattern) => sheet.waitForFunction((what) => !document.querySelector('#import.busy') &&
+        new RegExp(what).test(document.querySelector('#import .report').textContent), pattern, { timeout: 120000 });
+    try {
+        await choose(sheet, [{ name: 'skid.stl', text: stl() }, { name: 'lines.ifc', text: ifc }]);
+        await shown('skid.stl does not say its unit. Taken as metres: the model is 2 m long');
+        await shown('2 elements have no triangles');
+        await sheet.locator('#import [data-kind=lost] summary').click();
+        const items = await sheet.locator('#import [data-kind=lost] li').allTextContents();
+        assert.match(items[0], /^LINE-1000 #903 · IfcPipeSegment · 0\$PlantcastKinds0000000 · lines\.ifc.*IfcSectionedSolidHorizontal/);
+        assert.match(items[1], /^LINE-1001 #904 .*its representation is empty/);
+        await settle(sheet);
+        await shoot(sheet, 'import-11-report');
+        for (const [language, words] of [['ko', '삼각형이 없는 요소 2개'], ['de', '2 Elemente haben keine Dreiecke']]) {
+            await sheet.goto(`${own.url}?lang=${language}`);
+            await sheet.getByText(words).waitFor({ state: 'attached' });
+        }
+        await sheet.goto(`${own.url}?lang=en`);
+        await waitForPicture(sheet);
+        await sheet.evaluate(() => globalThis.plantcast.modules.there('import')?.open || document.getElementById('import-toggle').click());
+        await sheet.locator('#import .unit [data-unit=mm]').click();
+        await sheet.waitForFunction(() => document.querySelector('#import .report') && !document.querySelector('#import .unit'), null,
+            { timeout: 120000 });
+        await shown('^2 elements have no triangles');
+        const { models } = await (await own.api('/report')).json(), state = await own.idle();
+        assert.deepEqual([state.units, state.mesh_units, state.failed], ['', 'mm', null]);
+        assert.deepEqual(models.map(({ file, unit, lost_count: count }) => [file, unit, count]),
+            [['lines.ifc', null, 2], ['skid.stl', null, 0]]);
+        const { list } = JSON.parse(spawnSync(join(BIN, 'plantcast'), ['nodes', join(own.folder, 'skid.glb'), '--json']).stdout);
+        assert.ok(Math.abs(Math.max(...list[0].size) - 0.002) < 1e-6, 'the STL is in millimetres');
     } finally {
         await view.close();
         await own.destroy();

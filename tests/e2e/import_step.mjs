@@ -146,7 +146,7 @@ test('broken files are one line each, and leave nothing behind', { skip }, () =>
             name === 'nan.step' ? '2' : '8'); // Open CASCADE would look for its end for hours
         console.log(`# ${name}: ${status === 0 ? stdout.split('\n')[0].replace(/.*: /, 'read: ') : stderr.trim().replace(/.*: /, '')}`);
         if (name === 'nan.igs')
-            assert.match(`${stdout}${stderr}`, /damaged: \d+ of its \d+ entities could not be read/);
+            assert.match(`${stdout}${stderr}`, /\d+ of its \d+ entities could not be read/);
         if (status === 0) {
             rmSync(join(folder, 'plant'), { recursive: true });
         } else {

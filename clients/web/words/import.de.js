@@ -29,6 +29,15 @@ encoding.found: wie in den Dateien angegeben oder erkannt
 encoding.read: {file}: gelesen als {name}
 encoding.unsure: {file}: gelesen als {name}, vielleicht {other}
 outside: Weit außerhalb und nicht in der ersten Ansicht: {triangles} Dreiecke, bis {away_m} m entfernt.
+report.lost(one): {count} Element hat keine Dreiecke
+report.lost(other): {count} Elemente haben keine Dreiecke
+report.errors(one): {count} Fehler beim Lesen
+report.errors(other): {count} Fehler beim Lesen
+report.left(one): {count} Teil eines Modells ist weggelassen
+report.left(other): {count} Teile von Modellen sind weggelassen
+unit.ask: {file} nennt keine Einheit. Angenommen: {unit}. Das Modell ist dann {length} m lang. Welche Einheit stimmt?
+unit.all: Die Antwort gilt für alle diese Dateien.
+unit.length: {length} m lang
 units: Einheit des Modells
 units.said: wie es sagt
 units.m: Meter

@@ -29,6 +29,15 @@ encoding.found: as the files state or look
 encoding.read: {file}: read as {name}
 encoding.unsure: {file}: read as {name}, but it may be {other}
 outside: Far outside and not in the first view: {triangles} triangles, up to {away_m} m away.
+report.lost(one): {count} element has no triangles
+report.lost(other): {count} elements have no triangles
+report.errors(one): {count} error while reading
+report.errors(other): {count} errors while reading
+report.left(one): {count} part of a model is left out
+report.left(other): {count} parts of models are left out
+unit.ask: {file} does not say its unit. Taken as {unit}: the model is {length} m long. Which unit is right?
+unit.all: The answer holds for all of these files.
+unit.length: {length} m long
 units: Units of the model
 units.said: as it says
 units.m: metres

@@ -52,20 +52,22 @@ struct reader {
 
 /* --- files ---------------------------------------------------------------------------------------------------- */
 
-constexpr char BLANK = 0x1f; /* a blank within a name of an OBJ file, which Assimp would end there */
+constexpr char BLANK = 0x1f; /* a blank within a name of an OBJ or STL file, which Assimp would end there */
 
-/* In lines `o NAME` and `g NAME`. */
-void keep_blanks(char *bytes, size_t count)
+/* In lines `o NAME` and `g NAME` of OBJ, `solid NAME` of STL. */
+void keep_blanks(char *bytes, size_t count, bool stl)
 {
+    const size_t word = stl ? 5 : 1;
     for (size_t i = 0; i < count; i++) {
         size_t end = i;
         while (end < count && bytes[end] != '\n' && bytes[end] != '\r')
             end++;
-        bool named = end - i > 2 && (bytes[i] == 'o' || bytes[i] == 'g') && bytes[i + 1] == ' ';
+        bool known = stl ? end - i > word && !strncmp(bytes + i, "solid", word) : bytes[i] == 'o' || bytes[i] == 'g';
+        bool named = known && end - i > word + 1 && bytes[i + word] == ' ';
         size_t last = end;
         while (named && last > i && bytes[last - 1] == ' ')
             last--;
-        for (size_t k = i + 2; named && k < last; k++)
+        for (size_t k = i + word + 1; named && k < last; k++)
             if (bytes[k] == ' ' && bytes[k - 1] != ' ')
                 bytes[k] = BLANK;
         i = end;
@@ -160,8 +162,13 @@ struct files : Assimp::DefaultIOSystem {
         std::string text(file->FileSize(), 0);
         text.resize(text.empty() ? 0 : file->Read(&text[0], 1, text.size()));
         Close(file);
-        if (stl)
-            return of_text(is_text_of_stl(text) ? with_small_words(text) : text);
+        if (stl) {
+            if (is_text_of_stl(text)) {
+                text = with_small_words(text);
+                keep_blanks(&text[0], text.size(), true);
+            }
+            return of_text(text);
+        }
         std::string said = dae ? take_declared(&text) : "";
         if (encoding->choice.ascii) {
             encoding->choose(text, asked, said.c_str());
@@ -169,7 +176,7 @@ struct files : Assimp::DefaultIOSystem {
         }
         text = encoding->utf8(text);
         if (obj)
-            keep_blanks(&text[0], text.size());
+            keep_blanks(&text[0], text.size(), false);
         return of_text(text);
     }
 };
@@ -241,6 +248,7 @@ void root_matrix(const aiScene *scene, const format &from, const char *units, co
         printf("it does not say its units: %s is taken, because it is %.4g long, which is then %.4g m. Is that right? If not, --units "
                "says otherwise (m, mm, cm, in, ft)\n",
                unit, longest, longest * metres_of(unit));
+        printf("unit\t%s\t%.9g\n", unit, longest);
     }
     const char *axis = strcmp(up, "-") != 0 ? up : from.up;
     if (!axis) {
@@ -488,7 +496,7 @@ void convert(const char *input, const char *output, const char *units, const cha
         refuse("%.250s", strcmp(importer.GetErrorString(), "std::bad_alloc") ? importer.GetErrorString() : "out of memory");
     Assimp::DefaultLogger::kill();
     for (const auto &entry : logged)
-        printf("Assimp, %zu times: %.300s\n", entry.second, entry.first.c_str());
+        printf("error\t%zu\tAssimp: %.300s\n", entry.second, entry.first.c_str());
     reader r = {};
     r.scene = scene;
     if (of_file.choice.ascii) {

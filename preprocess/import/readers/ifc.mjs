@@ -221,13 +221,15 @@ async function main([input, output, , , , encoding]) {
     const { drawn, storeys } = addTree(glb, model, geometry, root), said = errors(model, solids);
     const isShown = (element) => drawn.has(element) || NOT_SHOWN.has(model.classOf(element));
     const { lost, lines } = findLosses(model, webIfc.IFCPRODUCT, isShown, solids.failed);
-    if (drawn.size === 0)
-        throw new Error(`there is no surface in it${lost.length > 0 ? `; ${lost[0]}` : ''}`);
-    writeFileSync(output, glb.finished());
+    if (drawn.size > 0)
+        writeFileSync(output, glb.finished());
     const openings = [...model.ofType(webIfc.IFCRELVOIDSELEMENT)].length;
     process.stdout.write([`${schema}: ${drawn.size} elements with a shape, ${lost.length} lost, ${storeys} storeys, ${openings} openings ` +
         `cut; ${solids.elements.size} elements by Open CASCADE; of the others circles have ${CORNERS} corners (--chord does not apply)`,
     ...lines > 0 ? [`not shown: ${lines} elements that are only lines or points`] : [], ...lost, ...said, ''].join('\n'));
+    if (drawn.size === 0)
+        throw new Error(`there is no surface in it${lost.length > 0 ? `: ${lost.length} elements have no triangles, such as ` +
+            lost[0].split('\t').slice(1).join(', ') : ''}`);
 }
 
 main(process.argv.slice(2)).catch((error) => {

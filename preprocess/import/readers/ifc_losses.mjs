@@ -2,6 +2,8 @@
 // What of an IFC file is not shown: elements with a shape that became no triangles, and the errors that web-ifc logs.
 const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|GeometricSet|BoundingBox|Vertex|Edge|Alignment/;
 const REFERENCE = 5; // as web-ifc numbers kinds of values
+// A line of findings.h.
+const fields = (...values) => values.map((value) => String(value).replace(/\s+/g, ' ').trim()).join('\t');
 const MOST_IDS = 20; // of one kind of error that are named
 
 // Returns the numbers of all statements that these refer to, themselves among them.
@@ -29,14 +31,14 @@ export function collectErrors() {
                 found.set(text, [...found.get(text) ?? [], ...id ? [`#${id}`] : []]);
         }
     };
-    return (model, solids) => {
+    return (model, solids) => { // lines as findings.h takes them
         Object.assign(console, { log, error });
         const built = found.size > 0 ? [...solids.elements.values()].flatMap(({ parts }) => parts.map(({ item }) => item)) : [];
         const instead = reached(model, built), left = [...found].map(([text, ids]) =>
             [text, ids.filter((id) => !instead.has(Number(id.slice(1)))), ids.length > 0]);
         return left.filter(([, ids, numbered]) => ids.length > 0 || !numbered).map(([text, ids]) =>
-            `web-ifc error: ${text}${ids.length > 0 ? `, ${ids.length} times: ` : ''}` +
-            [...ids.slice(0, MOST_IDS), ...ids.length > MOST_IDS ? ['...'] : []].join(' '));
+            fields('error', Math.max(ids.length, 1), `web-ifc: ${text} ${
+                [...ids.slice(0, MOST_IDS), ...ids.length > MOST_IDS ? ['...'] : []].join(' ')}`));
     };
 }
 
@@ -56,7 +58,7 @@ function itemsOf(model, shape) {
     return items;
 }
 
-// Returns { lost, lines }: elements with a shape that is not shown, each as a line to print; how many are only lines and points.
+// Returns { lost, lines }: elements with a shape that is not shown, each as a line of findings.h; how many are only lines and points.
 export function findLosses(model, product, isShown, failed) {
     const lost = [];
     let lines = 0;
@@ -71,8 +73,7 @@ export function findLosses(model, product, isShown, failed) {
         }
         const reason = [id, ...items].map((item) => failed.get(item)).find(Boolean);
         const why = items.length === 0 ? 'its representation is empty' : kinds.join(', ') + (reason ? `: ${reason}` : '');
-        const name = [model.nameOf(id), `(${model.classOf(id)}, ${line.GlobalId?.value ?? 'no GUID'})`].filter(Boolean).join(' ');
-        lost.push(`lost: #${id} ${name}: ${why}`);
+        lost.push(fields('lost', `#${id}`, model.nameOf(id) ?? '', model.classOf(id), line.GlobalId?.value ?? 'no GUID', why));
     }
     return { lost, lines };
 }

@@ -141,7 +141,7 @@ TopoDS_Shape along_curve(const model &in, const entity &item)
     }
     std::vector<piece> pieces = trimmed(pieces_of(in, in.statements.get(item[2])), item[3], item[4], &whole);
     if (whole)
-        printf("#%d: its parameters are outside of its curve: the whole curve is taken\n", item.id);
+        printf("error\t1\tOpen CASCADE: #%d: its parameters are outside of its curve: the whole curve is taken\n", item.id);
     return placed(in, item[1], swept(profile_of(in, in.statements.get(item[0])), pieces, up));
 }
 

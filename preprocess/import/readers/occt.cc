@@ -24,6 +24,7 @@
 #include <XSControl_WorkSession.hxx>
 
 #include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -225,6 +226,10 @@ part part_of(reader *r, const TDF_Label &label, const XCAFPrs_Style &style)
         write_groups(r, groups, made);
     } else {
         r->empty_parts++;
+        std::string name = name_of(label);
+        std::replace_if(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
+        printf("lost\t%s\t%s\tpart\t\t%s\n",
+               entry.ToCString(), name.c_str(), shape.IsNull() ? "it has no shape" : "its shape has no faces");
     }
     r->parts[id] = made;
     return made;
@@ -283,7 +288,8 @@ void say_damaged(const Handle(Interface_InterfaceModel) & model)
             first = first ? first : i;
         }
     if (damaged > 0)
-        printf("damaged: %d of its %d entities could not be read, the first one is number %d\n", damaged, model->NbEntities(), first);
+        printf("error\t1\tOpen CASCADE: %d of its %d entities could not be read, the first one is number %d\n",
+               damaged, model->NbEntities(), first);
 }
 
 /* Appends NAME_END to each string with characters beyond ASCII, as bytes or as escapes. */
@@ -418,7 +424,7 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
     if (r.skipped_faces > 0)
         printf("left out: %zu faces that could not be tessellated\n", r.skipped_faces);
     if (r.empty_parts > 0)
-        printf("left out: %zu parts without a surface\n", r.empty_parts);
+        printf("%zu parts have no triangles\n", r.empty_parts);
 }
 
 /* OCCT throws what is no std::exception. */

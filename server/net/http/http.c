@@ -112,6 +112,7 @@ static const struct {
     { CORE_INSTANT_PATH, ask_instant, ROLE_ENGINEER, NODE },
     { "/api/v1/devices", api_devices, ROLE_ENGINEER, 0 },
     { "/api/v1/import", api_import, ROLE_ENGINEER, 0 },
+    { "/api/v1/import/report", api_import_report, ROLE_ENGINEER, 0 },
     { "/api/v1/import/matches", api_import_matches, ROLE_ENGINEER, 0 },
 };
 static const char RELOAD_PATH[] = "/api/v1/reload", LOGOUT_PATH[] = "/logout"; /* POST */

@@ -109,6 +109,7 @@ int ask_logout(struct server_context *server, struct request *request);
 int api_me(struct server_context *server, struct request *request);
 int ask_reload(struct server_context *server, struct request *request);
 int api_import(struct server_context *server, struct request *request);
+int api_import_report(struct server_context *server, struct request *request);
 int api_import_matches(struct server_context *server, struct request *request);
 int api_alarms(struct server_context *server, struct request *request);
 int api_plant(struct server_context *server, struct request *request);

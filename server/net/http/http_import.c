@@ -85,6 +85,15 @@ int api_import_matches(struct server_context *server, struct request *request)
     return request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text, strlen(text), NULL, NULL);
 }
 
+int api_import_report(struct server_context *server, struct request *request)
+{
+    size_t bytes;
+    char *text = server->params.import ? text_read_file(plant_import_report(server->params.import), MATCHES_BYTES, &bytes) : NULL;
+    if (!text)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "no models were read yet\n");
+    return request_answer(request, HTTP_STATUS_OK, "application/json", text, strlen(text), NULL, NULL);
+}
+
 /* --- orders ----------------------------------------------------------------------------------------------------------- */
 
 static int order(struct server_context *server, struct request *request, const struct import_order *order)
@@ -120,9 +129,10 @@ static int order_all(struct server_context *server, struct request *request, con
     wanted.anew = !strcmp(what, "anew");
     wanted.models = wanted.anew || !*what;
     if (!take_argument(args, "units", wanted.units, sizeof(wanted.units)) || !take_argument(args, "up", wanted.up, sizeof(wanted.up)) ||
+        !take_argument(args, "mesh_units", wanted.mesh_units, sizeof(wanted.mesh_units)) ||
         !take_argument(args, "encoding", wanted.encoding, sizeof(wanted.encoding)) || !import_order_good(&wanted))
         return refuse_with(request, HTTP_STATUS_BAD_REQUEST,
-                           "units are m, mm, cm, in or ft; up is y or z; encoding is a name such as GB18030\n");
+                           "units and mesh_units are m, mm, cm, in or ft; up is y or z; encoding is a name such as GB18030\n");
     return order(server, request, &wanted);
 }
 

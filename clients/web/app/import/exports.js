@@ -54,6 +54,10 @@ export class Exports {
         await this.look({ path, query });
     }
 
+    async report() {
+        return (await this.ask('/report')).json();
+    }
+
     async matches() {
         return (await this.ask('/matches')).text();
     }

@@ -7,6 +7,7 @@ import { byId, make, setText } from '../common/dom.js';
 import { closeButton, fill } from '../common/widgets.js';
 import { Exports } from './exports.js';
 import { Lit } from './lit.js';
+import { Report } from './report.js';
 import { Source } from './source.js';
 import { TagTable } from './tag_table.js';
 
@@ -39,6 +40,7 @@ export class Import {
             onEnd: (state, sent) => this.onEnd(state, sent) });
         this.table = new TagTable({ page, lit: this.lit, save: () => this.decide() });
         this.source = new Source({ session: page.session, connect: (source) => this.try(() => this.exports.order('/source', source)) });
+        this.report = new Report({ answer: (unit) => this.try(() => this.read({ what: 'anew', mesh_units: unit })) });
         this.build();
         page.session.greeted(() => this.greet());
         for (const name of ['dragover', 'drop'])
@@ -82,7 +84,7 @@ export class Import {
             make('div', { class: 'part' },
                 make('section', {}, this.drop, this.filesFold,
                     make('div', { class: 'line' }, this.phase, this.cancel, this.again), this.wrong),
-                this.measures, this.source.element, this.table.element));
+                this.report.element, this.measures, this.source.element, this.table.element));
         byId('viewport').parentElement.append(this.element);
     }
 
@@ -124,6 +126,16 @@ export class Import {
         this.showSize();
         this.exports.look();
         this.bringMatches();
+        this.bringReport();
+    }
+
+    async bringReport() {
+        try {
+            this.report.set((await this.exports.report()).models);
+        } catch (error) {
+            if (error.status === 404) // no model was read yet; other errors leave the report as it is
+                this.report.set([]);
+        }
     }
 
     async bringMatches() {
@@ -174,7 +186,8 @@ export class Import {
     }
 
     read(query = {}) {
-        return this.exports.order('/run', { ...query, units: this.units.value, up: this.up.value, encoding: this.encoding.value });
+        return this.exports.order('/run', { units: this.units.value, up: this.up.value, encoding: this.encoding.value,
+            mesh_units: this.known?.mesh_units ?? '', ...query });
     }
 
     decide() {
@@ -212,12 +225,13 @@ export class Import {
     }
 
     // Of the models in force. What was chosen and is not applied stays until those change.
-    takeUnits({ units, up, encoding }) {
+    takeUnits({ units, up, encoding, mesh_units }) {
         if (this.known?.encoding !== encoding)
             this.encoding.value = encoding;
-        if (this.known?.units === units && this.known?.up === up && this.known?.encoding === encoding)
+        if (this.known?.units === units && this.known?.up === up && this.known?.encoding === encoding &&
+            this.known?.mesh_units === mesh_units)
             return;
-        this.known = { units, up, encoding };
+        this.known = { units, up, encoding, mesh_units };
         this.units.value = units;
         this.up.value = up;
         this.showSize();
@@ -228,6 +242,7 @@ export class Import {
         if (!state.failed && sent?.path === '/decide')
             this.table.settle(this.decided);
         this.bringMatches();
+        this.bringReport();
     }
 
     // --- size
