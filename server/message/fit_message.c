@@ -123,7 +123,7 @@ bool camera_parse(const json_t *o, struct camera *out, struct message_error *err
         !may_vector(o, "up", out->up, NULL, error) || !may_name(o, "projection", names_projection, &projection, &given, error) ||
         !may_number(o, "fov", 1, 120, &out->fov_deg, NULL, error))
         return false;
-    if (projection == PROJECTION_ORTHOGRAPHIC && !need_number(o, "height_m", 1e-3, PLANT_MAX_M, &out->height_m, error))
+    if (projection == PROJECTION_ORTHOGRAPHIC && !need_number(o, "height_m", 1e-5, PLANT_MAX_M, &out->height_m, error))
         return false;
     if (!camera_valid(out)) {
         message_fail(error, "bad_field", "eye, target, up: eye must be apart from target, and up not along the view");

@@ -11,7 +11,7 @@
 #define LEAST_BOX_M 1e-4     /* a smaller box, or one that is empty, is looked at as if it had this size */
 #define NEAR_TO_FAR 1e-4     /* never less, so that 24 bits of depth resolve what is near */
 #define LEAST_NEAR_M 1e-6
-#define LEAST_HEIGHT_M 1e-3  /* of an orthographic picture */
+#define LEAST_HEIGHT_M 1e-5  /* of an orthographic picture */
 
 /* --- which way it looks ----------------------------------------------------------------------------------------------------- */
 

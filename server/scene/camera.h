@@ -12,7 +12,7 @@ struct camera {
     double height_m; /* what an orthographic picture is high; 0: perspective */
 };
 
-/* Finite, eye apart from target, up not along the view, 1 <= fov <= 120, or 1e-3 <= height; nothing beyond PLANT_MAX_M. */
+/* Finite, eye apart from target, up not along the view, 1 <= fov <= 120, or 1e-5 <= height; nothing beyond PLANT_MAX_M. */
 bool camera_valid(const struct camera *camera);
 /* Looks at the whole box, filling the picture, from the plant's raised south-west corner: x is east; north is y in a Z-up frame and -z in
    a Y-up one. Sets every field. */

@@ -2,11 +2,11 @@
 // The camera's mathematics: what must stay put stays put, the horizon stays level, and what should fit fits.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { basis, besideLegend, home, MIN_DISTANCE_M, projector, same, valid } from '../../clients/web/core/camera.js';
+import { basis, besideLegend, home, LEAST_M, projector, same, valid } from '../../clients/web/core/camera.js';
 import { flight, FLIGHT_MS } from '../../clients/web/core/camera_flight.js';
 import {
     depthAt, depthOf, distance, elevation, enterBox, face, fit, lookAround, MAX_ELEVATION_DEG, orbit, pan, sight, toParallel,
-    toPerspective, zoom,
+    toPerspective, USUAL_LIMITS, wholeOf, zoom, zoomLimits,
 } from '../../clients/web/core/camera_moves.js';
 import { along, dot, length, subtract } from '../../clients/web/core/vector.js';
 
@@ -124,8 +124,29 @@ test('zoom never passes through the target', () => {
     let c = camera;
     for (let n = 0; n < 500; n++)
         c = zoom(c, 0.8, 804, 498, 1608, 996);
-    close(distance(c), MIN_DISTANCE_M, 1e-9);
+    close(distance(c), USUAL_LIMITS.near_m, 1e-9);
     assert.ok(valid(c));
+});
+
+test('a plant of 5 mm is zoomed to and framed; one with a stray piece 5,300 km away can be seen whole', () => {
+    const box = (...size) => ({ min: [0, 0, 0], max: size }), plant = (bounds, ...assets) => ({ plant: { bounds },
+        assets: [bounds, ...assets].map((one) => ({ bounds: one })) });
+    const small = plant(box(0.005, 0.004, 0.003)), limits = zoomLimits(small);
+    for (const one of [camera, toParallel(camera)]) {
+        let c = fit(one, small.plant.bounds, 1.6);
+        const project = projector(c, 1600, 1000);
+        const [x, y] = project([0.005, 0.004, 0.003]);
+        assert.ok(x > 0 && y > 0 && x < 1600 && y < 1000 && Math.hypot(x - 800, y - 500) > 100);
+        for (let n = 0; n < 100; n++)
+            c = zoom(c, 0.8, 800, 500, 1600, 1000, undefined, limits);
+        close(c.height_m ?? distance(c), limits.near_m, 1e-9);
+        assert.ok(valid(c) && limits.near_m < 0.0001 && limits.near_m >= LEAST_M);
+    }
+    const strays = plant(box(40, 20, 10), { min: [-2e5, 5e6, 0], max: [-2e5 + 1, 5.3e6, 1] }), whole = wholeOf(strays);
+    assert.deepEqual(whole, { min: [-2e5, 0, 0], max: [40, 5.3e6, 10] });
+    const seen = projector(fit(camera, whole, 1.6), 1600, 1000)([40, 0, 0]);
+    assert.ok(seen[0] >= 0 && seen[0] <= 1600 && seen[1] >= 0 && seen[1] <= 1000);
+    assert.ok(zoomLimits(strays).far_m > 9e6);
 });
 
 test('boxes: entered from outside, missed, started inside, parallel to a face', () => {

@@ -103,6 +103,8 @@ add('camera', 'same', [eye, flat], ENDS);
 add('camera', 'besideLegend', [640, 360, false, 14]);
 add('camera', 'home', [{ home: eye, outline: [[0, 0, 0], [1, 2, 3], [-1, 0, 2]] }, 640, 360, { right: 0.7 }],
     { call: (plant, w, h, window) => { const at = camera.home(plant, w, h, window); return at === plant.home ? null : at; } });
+add('camera_moves', 'wholeOf', [{ plant: { bounds: box }, assets: [{ bounds: box }] }], ENDS);
+add('camera_moves', 'zoomLimits', [{ plant: { bounds: box }, assets: [{ bounds: box }] }], ENDS);
 add('camera_moves', 'toParallel', [eye]);
 add('camera_moves', 'toPerspective', [flat]);
 add('camera_moves', 'enterBox', [origin, direction, box]);
@@ -136,6 +138,7 @@ add('section', 'showAsset', [{ hidden: [] }, 'hide', 'A'], ENDS);
 add('section', 'showAll', [{ hidden: ['A'] }], ENDS);
 add('measure', 'measure', [point, origin, [0, 0, 1]], ENDS);
 add('measure', 'metresText', [12], ENDS);
+add('measure', 'farText', [12000], ENDS);
 add('sun', 'towardsSun', [{ turn: 45, height: 30 }, false], ENDS);
 add('sun', 'sunOf', [[0.5, 0.5, 0.7], false], ENDS);
 

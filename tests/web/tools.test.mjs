@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { health, simulatedText } from '../../clients/web/core/health.js';
 import { shareLinks } from '../../clients/web/core/links.js';
-import { measure, metresText } from '../../clients/web/core/measure.js';
+import { farText, measure, metresText } from '../../clients/web/core/measure.js';
 import { Wake } from '../../clients/web/core/wake.js';
 import { LEAST, MINUTES, readWall, wallFit, wallScale } from '../../clients/web/core/wall.js';
 import { makeSession, vector } from './fixtures.mjs';
@@ -85,6 +85,7 @@ test('the wall: capitals of 16 minutes of arc and more, wherever the screen hang
 test('distances: straight, level and rise; as many figures as a tape has', () => {
     assert.deepEqual(measure([0, 0, 0], [3, 4, 12], [0, 0, 1]), { metres: 13, level: 5, rise: 12 });
     assert.deepEqual(measure([1, 1, 1], [1, 0, 1], [0, 1, 0]), { metres: 1, level: 0, rise: -1 });
+    assert.deepEqual([1.234, 123.4, 9999, 5300123].map(farText), ['1.23 m', '123 m', '9999 m', '5300 km']);
     assert.deepEqual([0.1234, 12.345, 123.45, -3.2].map(metresText), ['0.123', '12.35', '123.5', '−3.200']);
 });
 

@@ -28,6 +28,7 @@ const MODULES = {
     isolines: { file: 'viewport/isolines', type: 'Isolines' },
     measure: { file: 'measure/measure', type: 'Measure', styles: ['measure/measure', 'sharing/following'] },
     cameraController: { file: 'input/camera_controller', type: 'CameraController', wordless: true },
+    outside: { file: 'viewport/outside', type: 'Outside', styles: ['assets/shown', 'viewport/outside'] },
     picture: { file: 'picture/picture', type: 'Picture', styles: ['common/panel'], fills: 'picture-panel' },
     namedViews: { file: 'views/named_views', type: 'NamedViews', styles: ['common/panel', 'views/named_views'] },
     notes: { file: 'notes/notes', type: 'Notes', styles: ['common/panel', 'notes/notes'] },

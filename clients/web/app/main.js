@@ -138,6 +138,8 @@ session.on('welcome', () => {
     arrive();
     if (selection.tag)
         modules.get('card');
+    if (session.model.plant.outside)
+        modules.get('outside');
     viewport.invalidate();
 });
 session.on('status', () => status.show());

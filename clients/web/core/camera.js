@@ -5,10 +5,8 @@
 import { along, cross, dot, finite, length, middle, scale, subtract, unit } from './vector.js';
 
 export const RADIANS = Math.PI / 180;
-export const MIN_DISTANCE_M = 0.05;
-export const MAX_DISTANCE_M = 1e5;
-const MAX_COORDINATE_M = 1e7; // what the server accepts
-const MIN_HEIGHT_M = 1e-3;
+export const LEAST_M = 1e-5; // of a distance and of a picture's height: what the server accepts
+export const MAX_COORDINATE_M = 1e7;
 export const USUAL_FOV = 45;
 
 // Returns whether the server accepts the camera.
@@ -16,7 +14,7 @@ export function valid(camera) {
     if (!camera || !finite(camera.eye) || !finite(camera.target) || !finite(camera.up) || !Number.isFinite(camera.fov))
         return false;
     const lens = camera.height_m === undefined ? camera.fov >= 1 && camera.fov <= 120
-        : camera.height_m >= MIN_HEIGHT_M && camera.height_m <= MAX_COORDINATE_M;
+        : camera.height_m >= LEAST_M && camera.height_m <= MAX_COORDINATE_M;
     if (!lens || [...camera.eye, ...camera.target].some((m) => Math.abs(m) > MAX_COORDINATE_M))
         return false;
     const view = subtract(camera.target, camera.eye);

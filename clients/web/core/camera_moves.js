@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Camera moves: orbit, pan, zoom, look around, fit. Every function that moves returns a new camera, or the
 // one it was given if the move makes none that the server accepts. Positions in the picture are pixels from the top left.
-import { basis, heightAt, isParallel, MAX_DISTANCE_M, metresPerPixel, MIN_DISTANCE_M, RADIANS, USUAL_FOV, validOr } from './camera.js';
+import { basis, heightAt, isParallel, LEAST_M, MAX_COORDINATE_M, metresPerPixel, RADIANS, USUAL_FOV, validOr } from './camera.js';
 import { add, along, cross, dot, length, middle, scale, subtract, unit } from './vector.js';
 
+export const USUAL_LIMITS = { near_m: 0.05, far_m: 1e5 }; // of zooming
 export const MAX_ELEVATION_DEG = 89; // straight up or down the horizon has no direction, and the picture would spin
 
 // Rodrigues: v turned by `angle` radians about a unit axis, right-handed.
@@ -14,11 +15,24 @@ function turn(v, axis, angle) {
 
 const corners = (box) => [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? box.max[i] : box.min[i])));
 
+// Returns the box around all assets of a plant, those that its bounds leave out included.
+export const wholeOf = ({ assets, plant }) => ({
+    min: plant.bounds.min.map((m, i) => Math.min(m, ...assets.map(({ bounds }) => bounds.min[i]))),
+    max: plant.bounds.max.map((m, i) => Math.max(m, ...assets.map(({ bounds }) => bounds.max[i]))),
+});
+
+// Returns the nearest and the farthest distance that one may zoom to in a plant: the usual ones, or as its size asks for.
+export function zoomLimits(model) {
+    const size = ({ min, max }) => length(subtract(max, min));
+    return { near_m: Math.max(LEAST_M, Math.min(USUAL_LIMITS.near_m, size(model.plant.bounds) / 100)),
+        far_m: Math.max(USUAL_LIMITS.far_m, Math.min(MAX_COORDINATE_M, 4 * size(wholeOf(model)))) };
+}
+
 function fitParallel(camera, box, aspect, margin) {
     const { forward, right, up } = basis(camera);
     const half = scale(subtract(box.max, box.min), 0.5), centre = middle(box.min, box.max);
     const reach = (axis) => half.reduce((sum, m, i) => sum + Math.abs(m * axis[i]), 0);
-    const height_m = Math.max(MIN_DISTANCE_M, 2 * margin * Math.max(reach(up), reach(right) / aspect));
+    const height_m = Math.max(LEAST_M, 2 * margin * Math.max(reach(up), reach(right) / aspect));
     return validOr({ ...camera, height_m, eye: along(centre, forward, -(2 * reach(forward) + height_m)), target: centre }, camera);
 }
 
@@ -29,12 +43,13 @@ export function fit(camera, box, aspect, margin = 1.08) {
     if (isParallel(camera))
         return fitParallel(camera, box, aspect, margin);
     const tall = Math.tan((camera.fov * RADIANS) / 2) / margin, wide = tall * aspect;
-    let far = MIN_DISTANCE_M;
+    let far = LEAST_M;
     for (const corner of corners(box)) {
         const c = subtract(corner, centre);
         far = Math.max(far, Math.abs(dot(c, right)) / wide - dot(c, forward), Math.abs(dot(c, up)) / tall - dot(c, forward));
     }
-    return validOr({ ...camera, eye: along(centre, forward, -Math.min(far, MAX_DISTANCE_M)), target: centre }, camera);
+    const most = Math.min(...forward.map((x, i) => (MAX_COORDINATE_M + centre[i] * Math.sign(x)) / Math.max(1e-9, Math.abs(x))));
+    return validOr({ ...camera, eye: along(centre, forward, -Math.min(far, most)), target: centre }, camera);
 }
 
 // Returns the distance from the eye to the target.
@@ -76,7 +91,7 @@ export function toParallel(camera) {
 export function toPerspective(camera) {
     const { height_m, ...rest } = camera;
     const fov = rest.fov >= 1 ? rest.fov : USUAL_FOV;
-    const back = Math.max(MIN_DISTANCE_M, height_m / (2 * Math.tan((fov * RADIANS) / 2)));
+    const back = Math.max(LEAST_M, height_m / (2 * Math.tan((fov * RADIANS) / 2)));
     return validOr({ ...rest, fov, eye: along(rest.target, basis(camera).forward, -back) }, camera);
 }
 
@@ -98,8 +113,8 @@ export function sight(camera, xPx, yPx, widthPx, heightPx) {
     return { origin: camera.eye, direction: add(forward, aside) };
 }
 
-function zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx) {
-    const height_m = Math.max(MIN_DISTANCE_M, Math.min(MAX_DISTANCE_M, camera.height_m * factor));
+function zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx, { near_m, far_m }) {
+    const height_m = Math.max(near_m, Math.min(far_m, camera.height_m * factor));
     const zoomed = { ...camera, height_m };
     const move = subtract(sight(camera, xPx, yPx, widthPx, heightPx).origin, sight(zoomed, xPx, yPx, widthPx, heightPx).origin);
     return validOr({ ...zoomed, eye: add(camera.eye, move), target: add(camera.target, move) }, camera);
@@ -107,10 +122,10 @@ function zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx) {
 
 // Zooms; factor < 1 goes nearer. What is under (xPx, yPx) stays there; the target moves to its depth, so that the next orbit is about what
 // was looked at.
-export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distance(camera)) {
+export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distance(camera), limits = USUAL_LIMITS) {
     if (isParallel(camera))
-        return zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx);
-    const wanted = Math.max(MIN_DISTANCE_M, Math.min(MAX_DISTANCE_M, depth * factor));
+        return zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx, limits);
+    const wanted = Math.max(limits.near_m, Math.min(limits.far_m, depth * factor));
     const eye = along(camera.eye, sight(camera, xPx, yPx, widthPx, heightPx).direction, depth - wanted);
     return validOr({ ...camera, eye, target: along(eye, basis(camera).forward, wanted) }, camera);
 }
@@ -134,7 +149,7 @@ export function depthAt(camera, xPx, yPx, widthPx, heightPx, boxes) {
     let depth = Infinity;
     for (const box of boxes)
         depth = Math.min(depth, enterBox(origin, direction, box) ?? Infinity);
-    return Number.isFinite(depth) && depth > MIN_DISTANCE_M ? depth : null;
+    return Number.isFinite(depth) && depth > LEAST_M ? depth : null;
 }
 
 // Looks at a point of equipment from its side, slightly from above: along the normal of the ellipsoid in its bounding box.

@@ -12,3 +12,6 @@ export function measure(from, to, up) {
 
 // Formats metres; with millimetres for short distances only.
 export const metresText = (metres) => numberText(metres, Math.abs(metres) < 10 ? 3 : Math.abs(metres) < 100 ? 2 : 1);
+
+// Formats a long distance with its unit, in kilometres from 10 km.
+export const farText = (metres) => (metres < 1e4 ? `${numberText(metres, metres < 10 ? 2 : 0)} m` : `${numberText(metres / 1e3, 0)} km`);

@@ -323,6 +323,12 @@ title: Dies ist die Ansicht von Sitzung {session}
 gone: Sitzung {session} ist gegangen: dies ist ihre letzte Ansicht
 awaited: Sitzung {session} ist nicht da: es wird auf sie gewartet
 
+[outside]
+title: Nicht in dieser Ansicht, bis {far} entfernt: {names}
+more: {names} und {count} weitere
+all: Alles zeigen
+close: Hinweis schließen
+
 [alarms]
 close: Alarme schließen
 then: Gezeigt wird die Anlage von damals. Diese Alarme sind die von jetzt.

@@ -321,6 +321,12 @@ title: This is the view of session {session}
 gone: Session {session} has gone: this is its last view
 awaited: Session {session} is not there: waiting for it
 
+[outside]
+title: Not in this view, up to {far} away: {names}
+more: {names} and {count} more
+all: Show everything
+close: Close this notice
+
 [alarms]
 close: Close alarms
 then: The plant is shown as it was. These alarms are those of now.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hands to camera: pointers, wheel and keys over the viewport, and flights between views.
 // Loaded when hands first come near (input.js).
-import { MIN_DISTANCE_M, same } from '../../core/camera.js';
+import { LEAST_M, same } from '../../core/camera.js';
 import { flight, FLIGHT_MS } from '../../core/camera_flight.js';
 import { Gestures, wheelZoom } from '../../core/gestures.js';
 import { HeldKeys, keyMeaning } from '../../core/keys.js';
-import { depthAt, depthOf, elevation, fit, lookAround, orbit, pan, sight, zoom } from '../../core/camera_moves.js';
+import { depthAt, depthOf, elevation, fit, lookAround, orbit, pan, sight, zoom, zoomLimits } from '../../core/camera_moves.js';
 import { halfAt } from '../../core/nearest.js';
 import { askPick } from '../../core/requests.js';
 import { along, length, subtract } from '../../core/vector.js';
@@ -184,13 +184,14 @@ export class CameraController {
     zoomed(camera, factor, [x, y]) {
         const { anchor } = this, { half, at, depth } = this.under(camera, x, y);
         const known = anchor && Math.hypot(x - anchor.x, y - anchor.y) < ANCHOR_PX ? this.heldDepth(camera) : undefined;
-        return zoom(camera, factor, at, y, half.width, this.viewport.height, known ?? depth ?? undefined);
+        return zoom(camera, factor, at, y, half.width, this.viewport.height, known ?? depth ?? undefined,
+            this.session.model ? zoomLimits(this.session.model) : undefined);
     }
 
     // How far off that is which the hand holds; undefined: nothing.
     heldDepth(camera) {
         const depth = this.anchor?.point ? depthOf(camera, this.anchor.point) : 0;
-        return depth > MIN_DISTANCE_M ? depth : undefined;
+        return depth > LEAST_M ? depth : undefined;
     }
 
     // --- flights
