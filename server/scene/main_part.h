@@ -7,9 +7,8 @@
 #include "base/log.h"
 #include "scene/scene.h"
 
-/* Sets the scene's bounds to the box of the main part, and asset->stray and scene->outside. Leaves out pieces behind a gap: of at
-   most 2 % of the triangles' area, if the gap is longer than the rest is large; larger ones, if it is 100 times as long. The pieces left
-   out are logged (log may be NULL). */
+/* Sets the scene's bounds to the box of the main part by the rule of base/gap_split.h, and scene->outside and the assets' stray members.
+   Logs the stray pieces (log may be NULL). */
 void main_part_find(struct log *log, struct scene *scene);
 /* Returns whether a place lies in the scene's bounds, with a rim for rounding. */
 bool main_part_holds(const struct scene *scene, const double place_m[3]);

@@ -25,6 +25,7 @@ struct scene_asset {
     struct scene_sensor *sensors;            /* of every group, in the order of the tag list */
     size_t sensor_count;
     bool stray;    /* some of it is far from the main part (scene/main_part.h) */
+    double stray_at_m[3], stray_away_m; /* its farthest corner, and the distance to the main part; 0: none */
     char *missing; /* why it could not be prepared: it has no sensors, and nothing of it is seen; NULL: it is there */
     int front;     /* where faces of two assets coincide, the greater one is seen: scene/coincident.h */
 };

@@ -2,11 +2,12 @@
 // The first view of a plant whose file has none: what there is fills the picture, and none of it is under a legend.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { arrive, openPage, PHONE, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { startAlarmed } from './support/panels.mjs';
 import { sweep } from './support/sweep.mjs';
-import { missing } from './support/tiny_plant.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
@@ -58,3 +59,48 @@ for (const [name, screen] of Object.entries(SCREENS))
             await close();
         }
     });
+
+// A box at the origin of a plant that lies where its survey has it, as some models bring with them.
+test('a notice says what lies far outside, and shows everything', options, async () => {
+    const far = await TinyPlant.create(), at = [260978, 7007098, 12];
+    const text = readFileSync(far.file, 'utf8').replace('model: box.gltf,', `model: box.gltf, placement: { translate: [${at}] },`)
+        .replace('translate: [3, 0, 0]', `translate: [${at[0] + 3}, ${at[1]}, ${at[2]}]`);
+    writeFileSync(far.file, text.replace('groups:', '  - { id: STRAY, model: box.gltf }\ngroups:'));
+    try {
+        const tags = join(far.folder, 'tags.csv'), moved = (line, i) => line &&
+            line.split(',').map((cell, c) => (i > 0 && c >= 7 && c <= 9 ? Number(cell) + at[c - 7] : cell)).join(',');
+        writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map(moved).join('\n'));
+        assert.equal(far.prepare().code, 0);
+        assert.match(runProgram('plantcastd', ['--check', far.file]).err, /first view: STRAY: /);
+        await far.startSim();
+        await far.startDaemon();
+        for (const [language, screen, title, all] of [
+            ['en', SCREENS.desk, 'Not in this view, up to 7012 km away: STRAY', 'Show everything'],
+            ['de', SCREENS.desk, 'Nicht in dieser Ansicht, bis 7012 km entfernt: STRAY', 'Alles zeigen'],
+            ['ko', PHONE, '이 화면 밖, 최대 7012 km 거리: STRAY', '전체 보기']]) {
+            const { page, close, errors } = await openPage(`http://127.0.0.1:${far.port}/?lang=${language}`, screen);
+            try {
+                await waitForPicture(page);
+                const notice = page.locator('.chip.outside');
+                await notice.waitFor();
+                assert.equal(await notice.locator('span').textContent(), title);
+                await arrive(page);
+                await shoot(page, `outside-${language}`);
+                await notice.getByRole('button', { name: all }).click();
+                await page.waitForFunction(() => {
+                    const { session: { camera }, cameraController } = globalThis.plantcast;
+                    return cameraController && !cameraController.fly && Math.hypot(...camera.eye.map((m, i) => m - camera.target[i])) > 1e6;
+                });
+                await arrive(page);
+                await shoot(page, `outside-all-${language}`);
+                await notice.locator('button').last().click();
+                assert.equal(await notice.isVisible(), false);
+                assert.deepEqual(errors, []);
+            } finally {
+                await close();
+            }
+        }
+    } finally {
+        await far.destroy();
+    }
+});
