@@ -514,8 +514,11 @@ static bool begin(struct build *build)
                                      .skipped_points = g->skipped_points,
                                      .stocked = input->cache != NULL,
                                      .read_s = seconds_since(&since_ns) };
+    if (!input->cache)
+        stray_text(g, input->model, &input->geometry, report->stray);
     if (input->cache) {
         struct surface_report *surface = &report->surface;
+        memcpy(report->stray, input->cache->report.stray, sizeof(report->stray));
         report->repeated_triangles = input->cache->report.repeated_triangles;
         *surface = input->cache->report.surface;
         surface->weld_s = surface->bridge_s = surface->sample_s = surface->laplacian_s = surface->factor_s = surface->check_s = 0;

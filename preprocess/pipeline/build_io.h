@@ -4,6 +4,7 @@
 #define PREPROCESS_PIPELINE_BUILD_IO_H
 #include "plant/sensors.h"
 #include "preprocess/cache/folder.h"
+#include "preprocess/geometry/stray.h"
 #include "preprocess/influence/influence_file.h"
 #include "preprocess/levels/levels.h"
 #include "surface/surface.h"
@@ -41,6 +42,7 @@ struct build_report {
     size_t split_measured, split_kept; /* findings of the splitting: of this time, and of the last that still hold */
     struct bend_report bend;   /* of harmonic, fin and gp between corners; zero: no group asks for them */
     struct cloud_report cloud; /* of the heat method on a point cloud; zero: no group asks for it */
+    char stray[STRAY_TEXT_BYTES]; /* pieces far from the rest (geometry/stray.h); "": none */
     double read_s, surface_s, solve_s, levels_s, split_s;
 };
 

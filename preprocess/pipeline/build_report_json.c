@@ -3,6 +3,7 @@
 #include "preprocess/pipeline/build_report_json.h"
 
 #include <math.h>
+#include <stdio.h>
 
 enum kind { COUNT32, COUNT, WHOLE, METRES /* double; not a number: null */, SHARE /* float */ };
 
@@ -154,6 +155,8 @@ json_t *build_report_to_json(const struct build_report *report)
     for (size_t i = 0; i < report->level_count; i++)
         json_array_append_new(levels, all_to_json(level_numbers, &report->levels[i]));
     json_object_set_new(out, "levels", levels);
+    if (report->stray[0])
+        json_object_set_new(out, "stray", json_string(report->stray));
     if (report->bend.measured + report->bend.unmeasured > 0)
         json_object_set_new(out, "between_corners", all_to_json(bend_numbers, report));
     if (report->cloud.points > 0)
@@ -167,6 +170,8 @@ bool build_report_from_json(const json_t *numbers, struct build_report *report)
 {
     const json_t *levels = json_object_get(numbers, "levels"), *surface = json_object_get(numbers, "surface");
     *report = (struct build_report){ .level_count = json_array_size(levels) };
+    const char *stray = json_string_value(json_object_get(numbers, "stray"));
+    snprintf(report->stray, sizeof(report->stray), "%s", stray ? stray : "");
     if (report->level_count > LEVELS_MAX || !all_from_json(build_numbers, numbers, report) ||
         !all_from_json(second_numbers, json_object_get(numbers, "stage_seconds"), report))
         return false;

@@ -46,6 +46,8 @@ static void add_sensors(struct concerns *concerns, const struct prepare *prepare
 static void add_numbers(struct concerns *concerns, const struct prepare_asset *asset)
 {
     const struct build_report *r = &asset->report;
+    if (r->stray[0])
+        add(concerns, asset, 1e5, mem_strdup(r->stray));
     if (r->unreachable_vertices > r->surface.hidden_vertices) {
         double share = (double)r->unreachable_vertices / (double)(r->vertices ? r->vertices : 1);
         add(concerns, asset, 100 * (1 + share),
