@@ -32,18 +32,17 @@ static double away_from(const struct extent *main, const double place_m[3])
     return vec_length(away_m);
 }
 
-/* Returns the name of the innermost node whose box holds the place; "": no such node has a name. */
-static const char *node_at(const struct gltf_model *model, const struct geometry_params *params, const double place_m[3])
+/* Returns the name of the smallest node whose box, grown by the rounding of floats, holds the place; "": no such node has a name. */
+static const char *node_at(const struct gltf_model *model, const struct geometry_params *params, const double place_m[3],
+                           double rim_m)
 {
     double(*boxes)[2][3] = geometry_node_boxes(model, params);
     const char *name = "";
     double least_m = INFINITY;
     for (uint32_t i = 0; i < model->node_count; i++) {
         bool holds = true;
-        for (int axis = 0; axis < 3; axis++) {
-            double rim_m = 1e-6 * (1 + fabs(place_m[axis]));
+        for (int axis = 0; axis < 3; axis++)
             holds = holds && place_m[axis] >= boxes[i][0][axis] - rim_m && place_m[axis] <= boxes[i][1][axis] + rim_m;
-        }
         double size_m = vec_distance(boxes[i][0], boxes[i][1]);
         if (holds && size_m <= least_m && model->nodes[i].name[0]) {
             least_m = size_m;
@@ -71,6 +70,6 @@ void stray_text(const struct geometry *geometry, const struct gltf_model *model,
     if (most_m > 0)
         snprintf(text, STRAY_TEXT_BYTES,
                  "%zu of its triangles lie up to %.3g m from the rest, the farthest at %.7g, %.7g, %.7g (node '%.80s')", count - kept,
-                 most_m, at_m[0], at_m[1], at_m[2], node_at(model, params, at_m));
+                 most_m, at_m[0], at_m[1], at_m[2], node_at(model, params, at_m, 1e-6 * most_m));
     mem_free(tris);
 }

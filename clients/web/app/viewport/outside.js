@@ -10,7 +10,7 @@ const MOST_NAMES = 3;
 export class Outside {
     constructor({ session, modules }) {
         Object.assign(this, { session, modules });
-        this.element = make('div', { className: 'chip outside', role: 'status' });
+        this.element = make('div', { class: 'chip outside', role: 'status' });
         byId('viewport').append(this.element);
         session.on('welcome', () => this.show());
         this.show();
@@ -33,6 +33,6 @@ export class Outside {
         const frame = () => this.modules.use('cameraController', (controller) => controller.flyToBox(wholeOf(this.session.model)));
         element.replaceChildren(make('span', {}, say('outside.title', { names: this.names(), far: farText(outside.away_m) })),
             make('button', { type: 'button', onclick: frame }, say('outside.all')),
-            make('button', { type: 'button', onclick: close, title: say('outside.close'), ariaLabel: say('outside.close') }, '×'));
+            make('button', { type: 'button', onclick: close, title: say('outside.close'), 'aria-label': say('outside.close') }, '×'));
     }
 }
