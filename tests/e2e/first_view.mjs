@@ -75,9 +75,9 @@ test('a notice says what lies far outside, and shows everything', options, async
         await far.startSim();
         await far.startDaemon();
         for (const [language, screen, title, all] of [
-            ['en', SCREENS.desk, 'Not in this view, up to 7012 km away: STRAY', 'Show everything'],
-            ['de', SCREENS.desk, 'Nicht in dieser Ansicht, bis 7012 km entfernt: STRAY', 'Alles zeigen'],
-            ['ko', PHONE, '이 화면 밖, 최대 7012 km 거리: STRAY', '전체 보기']]) {
+            ['en', SCREENS.desk, 'Not in the first view, up to 7012 km away: STRAY', 'Show everything'],
+            ['de', SCREENS.desk, 'Nicht in der ersten Ansicht, bis 7012 km entfernt: STRAY', 'Alles zeigen'],
+            ['ko', PHONE, '첫 화면 밖, 최대 7012 km 거리: STRAY', '전체 보기']]) {
             const { page, close, errors } = await openPage(`http://127.0.0.1:${far.port}/?lang=${language}`, screen);
             try {
                 await waitForPicture(page);

@@ -324,7 +324,7 @@ gone: Sitzung {session} ist gegangen: dies ist ihre letzte Ansicht
 awaited: Sitzung {session} ist nicht da: es wird auf sie gewartet
 
 [outside]
-title: Nicht in dieser Ansicht, bis {far} entfernt: {names}
+title: Nicht in der ersten Ansicht, bis {far} entfernt: {names}
 more: {names} und {count} weitere
 all: Alles zeigen
 close: Hinweis schließen

@@ -322,7 +322,7 @@ gone: Session {session} has gone: this is its last view
 awaited: Session {session} is not there: waiting for it
 
 [outside]
-title: Not in this view, up to {far} away: {names}
+title: Not in the first view, up to {far} away: {names}
 more: {names} and {count} more
 all: Show everything
 close: Close this notice

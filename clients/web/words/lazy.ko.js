@@ -321,7 +321,7 @@ gone: 세션 {session}이(가) 나갔습니다: 마지막 화면입니다
 awaited: 세션 {session}이(가) 없어 기다리는 중입니다
 
 [outside]
-title: 이 화면 밖, 최대 {far} 거리: {names}
+title: 첫 화면 밖, 최대 {far} 거리: {names}
 more: {names} 외 {count}개
 all: 전체 보기
 close: 알림 닫기
