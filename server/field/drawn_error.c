@@ -311,13 +311,17 @@ static void measure_level(struct job *job, struct weights *weights, const struct
     mem_free(ones);
 }
 
-/* The weights bend no more than those that preparing cut the triangles for (preprocess/subdivision/linear_error.h). */
+/* The weights bend no more than those that preparing cut the triangles for (preprocess/subdivision/linear_error.h). Of fewer sensors they
+   may: where the field turns from one sensor to the next is then elsewhere, maybe in larger triangles. */
 static bool is_as_prepared(const struct weights *weights, const struct field_params *params)
 {
     const struct layout *layout = weights->layout;
     const struct plant_group *group = layout->group;
     if (layout->trial || params->override_count > 0 || params->distance == DISTANCE_HEAT || params->reach_m != group->reach_m)
         return false;
+    for (size_t i = 0; i < layout->sensor_count; i++)
+        if (weights->configured[i] && !weights->takes_part[i])
+            return false;
     if (params->interpolation == INTERPOLATION_SHEPARD)
         return params->power <= group->power;
     return params->strength == 1 && params->decay == 1 && params->radius_m == group->radius_m &&
@@ -325,7 +329,7 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
 }
 
 void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices,
-                         struct workers *workers)
+                         bool in_range, struct workers *workers)
 {
     const struct layout *layout = weights->layout;
     const struct asset_view *file = &layout->file->view;
@@ -336,9 +340,9 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     if (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 ||
         (weights->member_count == 1 && weights->interpolation == INTERPOLATION_SHEPARD))
         return;
-    weights->measured_levels |= bit;
-    if (layout->file->resolved_levels & bit && is_as_prepared(weights, params))
+    if (layout->file->resolved_levels & bit && in_range && is_as_prepared(weights, params))
         return;
+    weights->measured_levels |= bit;
     struct job job = { .weights = weights,
                        .params = params,
                        .usable = usable,

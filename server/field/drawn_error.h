@@ -9,9 +9,10 @@
 
 /* Measures the error in the triangles of the level of detail that needs `vertices` vertices, unless it is known, and adds it to
    weights->errors: by vertex, the largest of the triangles around it; for shepard in parts of the spread of the readings, for paper in
-   parts of the largest. params and usable are those of weights_create(). Adds nothing where preparing left no error for such parameters,
-   where the weights are prepared (linear in triangles by definition), or out of memory. */
+   parts of the largest. params and usable are those of weights_create(); in_range: the readings differ by no more than preparing assumed.
+   Adds nothing where preparing left no error for such parameters and all sensors are used, where the weights are prepared (linear in
+   triangles by definition), or out of memory. */
 void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices,
-                         struct workers *workers);
+                         bool in_range, struct workers *workers);
 
 #endif

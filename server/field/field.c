@@ -215,7 +215,7 @@ bool field_begin_update(struct field *field, struct state *state, const struct s
     }
     state_fill(state);
     struct weights *weights = state->weights;
-    drawn_error_measure(weights, &state->params, state->usable, count, field->workers);
+    drawn_error_measure(weights, &state->params, state->usable, count, update_is_in_range(state), field->workers);
     uint64_t previous = weights->used;
     weights->used = field->tick;
     if (!state_is_behind(state) && state->scalars.ready >= count)

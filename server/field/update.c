@@ -119,16 +119,27 @@ static double error_scale(const struct state *state)
     return unit * fmax(fabs(low), fabs(high));
 }
 
+/* What a step of colour is a part of. */
+static double error_range(const struct state *state)
+{
+    const struct plant_group *group = state->layout->group;
+    return state->params.show == SHOW_OPERATOR     ? 2 * LIMIT_PLACE_MOST
+           : state->params.show == SHOW_DIFFERENCE ? 0.5 * (group->max - group->min)
+                                                   : group->max - group->min;
+}
+
+bool update_is_in_range(const struct state *state)
+{
+    return error_scale(state) <= error_range(state);
+}
+
 /* Chooses the weights error above which vertices are marked. It stays as it is while that is safe and not much too strict, so that readings
    which hardly change do not rebuild all flags. Returns whether it changed in a way that can be seen. */
 static bool choose_error_limit(struct state *state)
 {
     const struct weights *weights = state->weights;
-    const struct plant_group *group = state->layout->group;
-    double range = state->params.show == SHOW_OPERATOR     ? 2 * LIMIT_PLACE_MOST
-                   : state->params.show == SHOW_DIFFERENCE ? 0.5 * (group->max - group->min)
-                                                           : group->max - group->min;
-    double scale = weights->errors ? error_scale(state) : 0, limit = scale > 0 ? DRAWN_ERROR * range / scale : INFINITY;
+    double scale = weights->errors ? error_scale(state) : 0;
+    double limit = scale > 0 ? DRAWN_ERROR * error_range(state) / scale : INFINITY;
     bool measured = state->errors_version != weights->errors_version;
     bool seen = measured || (double)weights->largest_error > fmin(limit, state->error_limit);
     state->errors_version = weights->errors_version;

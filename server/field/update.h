@@ -17,6 +17,8 @@ bool update_is_light(const struct state *state);
 void update_run(struct state *state);
 /* Completes an update_run(). Thread: the field's. */
 void update_end(struct state *state, uint64_t *versions);
+/* Returns whether the readings of state->now differ by no more than what a step of colour is a part of, as preparing takes it. */
+bool update_is_in_range(const struct state *state);
 /* Abandons the update, if one is under way. */
 void update_forget(struct state *state);
 

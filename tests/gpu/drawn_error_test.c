@@ -24,7 +24,7 @@
 #include "value/quality.h"
 
 #define FOUND "../shared/data/found/long_part/"
-enum { WIDTH_PX = 480, HEIGHT_PX = 270, PIXELS = WIDTH_PX * HEIGHT_PX, PICKS = 1500, NEEDLES = 60, SENSORS = 6 };
+enum { WIDTH_PX = 480, HEIGHT_PX = 270, PIXELS = WIDTH_PX * HEIGHT_PX, PICKS = 1500, NEEDLES = 60, CELLS = 90, SENSORS = 6 };
 static const double STEP = 1.0 / 255, SIDE_M = 4;
 static struct rig rig;
 static uint64_t random_state;
@@ -173,15 +173,18 @@ static void expect_truth(const char *name, const struct tally *tally)
 
 /* --- needles ---------------------------------------------------------------------------------------------------------------- */
 
-/* A plate of NEEDLES strips from side to side, each two triangles, and a small box for each sensor. */
-static void make_needles(struct shape *shape, double (*places)[3])
+/* A plate of NEEDLES strips from side to side up to x = end_m, each two triangles, from there on one of small triangles, and a small box
+   for each sensor. */
+static void make_plate(struct shape *shape, double end_m, double (*places)[3])
 {
     double low = 0;
     for (int i = 0; i < NEEDLES; i++) {
-        double high = i + 1 == NEEDLES ? SIDE_M : low + (SIDE_M - low) * between(0.2, 1.8) / (NEEDLES - i);
+        double high = i + 1 == NEEDLES ? end_m : low + (end_m - low) * between(0.2, 1.8) / (NEEDLES - i);
         shape_plate(shape, TOY_STEEL, (double[3]){ low, 0, 0 }, (double[3]){ high - low, 0, 0 }, (double[3]){ 0, SIDE_M, 0 }, 1);
         low = high;
     }
+    if (end_m < SIDE_M)
+        shape_plate(shape, TOY_STEEL, (double[3]){ end_m, 0, 0 }, (double[3]){ SIDE_M - end_m, 0, 0 }, (double[3]){ 0, SIDE_M, 0 }, CELLS);
     for (int i = 0; i < SENSORS; i++) {
         double x = between(0.2, SIDE_M - 0.2), y = between(0.2, SIDE_M - 0.2);
         memcpy(places[i], (double[3]){ x, y, between(0.01, 0.1) }, sizeof(places[i]));
@@ -196,27 +199,44 @@ static void fill(struct snapshot *snapshot, int round)
         toy_set(snapshot, i, between(0, 100), round % 3 == 2 && i == 1 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD);
 }
 
-static void test_needles(void **state)
+static void tally_plates(double end_m, struct tally *tally)
 {
-    (void)state;
-    struct tally tally = { .worst_beyond = -1 };
+    *tally = (struct tally){ .worst_beyond = -1 };
     random_state = sweep_seed();
     for (int round = 0; round < sweep(12, 3); round++) {
         struct toy *toy = toy_create();
         struct shape shape = { 0 };
         struct stand stand;
         double places[SENSORS][3];
-        make_needles(&shape, places);
-        toy_add(toy, "NEEDLES", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, SENSORS);
+        make_plate(&shape, end_m, places);
+        toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, SENSORS);
         toy->scene.assets[0].file->resolved_levels = 0;
         stand_init(&stand, &rig, toy);
         fill(stand.snapshot, round);
         struct site site = { &toy->scene, stand.field, stand.renderer, stand.snapshot };
-        compare(&site, &tally);
+        compare(&site, tally);
         stand_finish(&stand);
     }
+}
+
+static void test_needles(void **state)
+{
+    (void)state;
+    struct tally tally;
+    tally_plates(SIDE_M, &tally);
     expect_truth("needles", &tally);
     assert_true(tally.marked > tally.compared / 4 && tally.worst_marked > STEP); /* there is something to be marked */
+}
+
+/* What is right is left unmarked where triangles are small, beside needles that are marked. */
+static void test_half_of_needles(void **state)
+{
+    (void)state;
+    struct tally tally;
+    tally_plates(SIDE_M / 2, &tally);
+    expect_truth("half of needles", &tally);
+    assert_true(tally.compared - tally.marked > tally.compared / 4 && tally.marked > tally.compared / 4);
+    assert_true(tally.marked_right < tally.marked / 4);
 }
 
 /* The frame says how far it may be off, and nothing where readings are equal. */
@@ -229,8 +249,8 @@ static void test_equal_readings_mark_nothing(void **state)
     struct view view;
     double places[SENSORS][3];
     random_state = sweep_seed();
-    make_needles(&shape, places);
-    toy_add(toy, "NEEDLES", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, SENSORS);
+    make_plate(&shape, SIDE_M, places);
+    toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, SENSORS);
     toy->scene.assets[0].file->resolved_levels = 0;
     stand_init(&stand, &rig, toy);
     view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, &view);
@@ -240,6 +260,33 @@ static void test_equal_readings_mark_nothing(void **state)
             toy_set(stand.snapshot, i, 50 + (i % 2 ? spread : 0), QUALITY_GOOD);
         struct frame *frame = stand_draw(&stand, &view);
         assert_true(spread > 0 ? frame->drawn_error > 1 && frame->drawn_error <= 50 : frame->drawn_error == 0);
+        frame_unref(&frame);
+    }
+    stand_finish(&stand);
+}
+
+/* What preparing says of its triangles holds for all sensors, and readings in the range. */
+static void test_lost_sensors_and_wild_readings_are_measured(void **state)
+{
+    (void)state;
+    struct toy *toy = toy_create();
+    struct shape shape = { 0 };
+    struct stand stand;
+    struct view view;
+    double places[SENSORS][3];
+    random_state = sweep_seed();
+    make_plate(&shape, SIDE_M, places);
+    toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, SENSORS);
+    toy->scene.assets[0].file->resolved_levels = 1;
+    stand_init(&stand, &rig, toy);
+    view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, &view);
+    for (int way = 0; way < 3; way++) { /* as prepared, one lost, one far out of range */
+        for (int i = 0; i < SENSORS; i++)
+            toy_set(stand.snapshot, i, 20 + 10 * i, way == 1 && i == 1 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD);
+        if (way == 2)
+            toy_set(stand.snapshot, 2, 300, QUALITY_GOOD);
+        struct frame *frame = stand_draw(&stand, &view);
+        assert_true(way == 0 ? frame->drawn_error == 0 : frame->drawn_error > 0);
         frame_unref(&frame);
     }
     stand_finish(&stand);
@@ -287,7 +334,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_needles),
+        cmocka_unit_test(test_half_of_needles),
         cmocka_unit_test(test_equal_readings_mark_nothing),
+        cmocka_unit_test(test_lost_sensors_and_wild_readings_are_measured),
         cmocka_unit_test_setup_teardown(test_long_part, prep_case_set_up, prep_case_tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
