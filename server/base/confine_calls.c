@@ -55,7 +55,7 @@ static const int reader_calls[] = {
     SYS_restart_syscall, SYS_clock_gettime, SYS_clock_getres, SYS_clock_nanosleep, SYS_nanosleep, SYS_gettimeofday, SYS_timer_create,
     SYS_timer_settime, SYS_timer_gettime, SYS_timer_delete, SYS_setitimer, SYS_getitimer, SYS_timerfd_create, SYS_timerfd_settime,
     SYS_timerfd_gettime, SYS_getrandom, SYS_read, SYS_write, SYS_readv, SYS_writev, SYS_pread64, SYS_pwrite64, SYS_preadv, SYS_pwritev,
-    SYS_preadv2, SYS_pwritev2, SYS_openat, SYS_openat2, SYS_close, SYS_close_range, SYS_dup, SYS_dup3, SYS_lseek, SYS_fstat,
+    SYS_preadv2, SYS_pwritev2, SYS_openat, SYS_close, SYS_close_range, SYS_dup, SYS_dup3, SYS_lseek, SYS_fstat,
     SYS_newfstatat, SYS_statx, SYS_statfs, SYS_fstatfs, SYS_faccessat, SYS_faccessat2, SYS_readlinkat, SYS_getcwd, SYS_chdir, SYS_fchdir,
     SYS_getdents64, SYS_renameat, SYS_renameat2, SYS_unlinkat, SYS_mkdirat, SYS_ftruncate, SYS_fallocate, SYS_fsync, SYS_fdatasync,
     SYS_flock, SYS_fadvise64, SYS_umask, SYS_copy_file_range, SYS_sendfile, SYS_pipe2, SYS_ppoll, SYS_pselect6, SYS_epoll_create1,
@@ -124,6 +124,17 @@ static void decide(struct program *program, int call, int argument, unsigned tes
     answer(program, allowed ? SECCOMP_RET_ERRNO | EPERM : SECCOMP_RET_ALLOW);
 }
 
+/* Refuses to empty a file that is opened for reading only, which Landlock allows before its third version. */
+static void refuse_emptying(struct program *program, int call, int flags_argument)
+{
+    add(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, 5);
+    add(program, BPF_LD | BPF_W | BPF_ABS, (uint32_t)(offsetof(struct seccomp_data, args) + 8 * (size_t)flags_argument), 0, 0);
+    add(program, BPF_ALU | BPF_AND | BPF_K, O_TRUNC | O_ACCMODE, 0, 0);
+    add(program, BPF_JMP | BPF_JEQ | BPF_K, O_TRUNC | O_RDONLY, 0, 1);
+    refuse(program);
+    answer(program, SECCOMP_RET_ALLOW);
+}
+
 static void decide_by_arguments(struct program *program, enum confine_role role, bool notifies)
 {
     /* no injection of input into a terminal (TIOCSTI), no device controls */
@@ -162,8 +173,13 @@ int confine_calls(enum confine_role role, bool notifies)
     add(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr), 0, 0);
     add(&program, BPF_JMP | BPF_JGE | BPF_K, FIRST_NEWER_CALL, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
-    add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 0, 1); /* its flags are in memory, where a filter does not see them */
+    add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 1, 0); /* their flags are in memory, where a filter does not see them */
+    add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_openat2, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
+    refuse_emptying(&program, SYS_openat, 2);
+#ifdef __x86_64__
+    refuse_emptying(&program, SYS_open, 1);
+#endif
     allow(&program, reader_calls, sizeof(reader_calls) / sizeof(reader_calls[0]));
     if (role != CONFINE_READER)
         allow(&program, launcher_calls, sizeof(launcher_calls) / sizeof(launcher_calls[0]));

@@ -59,6 +59,20 @@ static bool opens(const char *file, int flags)
     return good;
 }
 
+/* Of a file that is opened for reading only; a file of its own, so that nothing is lost. */
+static bool empties(void)
+{
+    int fd = open("emptied", O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    bool written = fd >= 0 && write(fd, "x", 1) == 1;
+    if (fd >= 0)
+        close(fd);
+    bool good = written && opens("emptied", O_RDONLY | O_TRUNC);
+    int cause = errno;
+    unlink("emptied");
+    errno = cause;
+    return good;
+}
+
 static const char *beside_state(const char *name)
 {
     snprintf(path, sizeof(path), "%s/%s", folder, name);
@@ -88,6 +102,7 @@ static void try_files(void)
     result("list-folder-of-secret", opens(folder, O_RDONLY | O_DIRECTORY));
     result("read-etc-passwd", opens("/etc/passwd", O_RDONLY));
     result("list-root", opens("/", O_RDONLY | O_DIRECTORY));
+    result("empty-by-reading", empties());
     result("append-to-state", opens(state, O_WRONLY | O_APPEND));
     result("truncate-state", stat(state, &st) == 0 && truncate(state, st.st_size) == 0);
     result("chmod-state", stat(state, &st) == 0 && chmod(state, st.st_mode & 07777) == 0);
