@@ -294,7 +294,8 @@ static void what_was_recorded_is_shown_in_the_unit_of_now(void **state)
     char *taken = mem_printf(rows, "taken"), *converted = mem_printf(rows, "temp"), *folder = temp_path(c->folder, "h");
     char *path = temp_write_text(c->folder, "s.csv", "Tag,Time,Value\nF,2026-10-25T00:00:01Z,212\nF,2026-10-25T01:00:00Z,212\n");
     plant_case_load(c, yaml, taken);
-    assert_true(history_import(&(struct import_params){ log, c->plant, folder, path, INT64_MIN, 0, 0 }, &diag, &counts));
+    struct import_params params = { .log = log, .plant = c->plant, .folder = folder, .path = path, .start_us = INT64_MIN };
+    assert_true(history_import(&params, &diag, &counts));
     plant_case_load(c, yaml, converted);
     for (int pass = 0; pass < 2; pass++) {
         struct history_reader *reader = history_reader_create(log, folder);
@@ -315,7 +316,8 @@ static void what_was_recorded_is_shown_in_the_unit_of_now(void **state)
         history_reader_destroy(&reader);
         mem_free(tags);
         mem_free(temp_write_text(c->folder, "s.csv", "Tag,Time,Value\nF,2026-10-25T02:00:00Z,50\n"));
-        assert_true(pass || history_import(&(struct import_params){ log, c->plant, folder, path, INT64_MIN, 0, 0 }, &diag, &counts));
+        params.plant = c->plant;
+        assert_true(pass || history_import(&params, &diag, &counts));
     }
     mem_free(taken);
     mem_free(converted);
