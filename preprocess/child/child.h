@@ -24,10 +24,10 @@ struct child_params {
     const struct confine_path *paths; /* files and folders that it may use; the folder too only if it is among them */
     size_t path_count;
     int result;               /* a descriptor that it keeps, besides stdin (/dev/null), stdout and stderr; 0: none */
-    struct text *errors;      /* receives all that it wrote to stderr, at most 1 MB; then `why` stays empty where it ended by itself */
+    struct text *errors;      /* receives all that it wrote to stderr, at most 8 MB; then `why` stays empty where it ended by itself */
 };
 
-/* Runs the program to its end and appends what it printed, at most 1 MB, to out. Returns whether it exited with status 0. Otherwise `why`
+/* Runs the program to its end and appends what it printed, at most 8 MB, to out. Returns whether it exited with status 0. Otherwise `why`
  * holds one line: the limit or signal that ended it, or the last line that it wrote to stderr. SIGINT and SIGTERM end it, and are then
  * taken as answered. */
 bool child_run(const struct child_params *params, struct text *out, char why[CHILD_WHY_BYTES]);
