@@ -313,7 +313,7 @@ context: Kein Sensor dieser Messgröße daran
 equipment: Ein Sensor steht für das Ganze: sein Ort ist angenommen
 inside: Inneres des Aufgeschnittenen
 uncertain: {state}, unsicher
-drawn: Hier berechnet. Das Bild ringsum weicht um bis zu {value} ab
+drawn: Für diesen Punkt berechnet. Das Bild ringsum kann um bis zu {value} abweichen
 hide: Ausblenden
 ghost: Durchsichtig
 only: Nur dies
@@ -645,18 +645,19 @@ asset: Anlagenteil
 all: alle ({count})
 tags: Messstellen
 pattern: Name oder Beschreibung; * und ? in Namen
-within: Höchstens m neben der Fläche
-confidence: Mindestens Sicherheit, 0 bis 1
+within: Abstand zur Fläche, höchstens (m)
+confidence: Sicherheit, mindestens (0 bis 1)
 count(one): {count} Platz würde bestätigt. Er ist im Bild blau umringt.
 count(other): {count} Plätze würden bestätigt. Sie sind im Bild blau umringt.
 none: Kein Platz würde bestätigt.
-nowhere: {count} nicht: weder Knoten noch Position in der Liste
-missing: {count} nicht: das Anlagenteil hat kein Modell
-far: {count} nicht: weiter neben der Fläche
-unsure: {count} nicht: weniger Sicherheit, oder keine bekannt
+nowhere: {count} ausgelassen: weder Knoten noch Position in der Liste
+missing: {count} ausgelassen: das Anlagenteil hat kein Modell
+far: {count} ausgelassen: weiter von der Fläche entfernt
+unsure: {count} ausgelassen: geringere oder keine bekannte Sicherheit
 go: {count} bestätigen
-saved(one): {count} Platz bestätigt. Die Liste davor ist {kept}.
-saved(other): {count} Plätze bestätigt. Die Liste davor ist {kept}.
+saved(one): {count} Platz bestätigt. Die vorige Liste ist als {kept} aufgehoben.
+saved(other): {count} Plätze bestätigt. Die vorige Liste ist als {kept} aufgehoben.
 undo: Zurück zu {kept} …
+changed: Nichts wurde bestätigt: die Liste hat sich geändert. Bitte die Zahl prüfen und noch einmal bestätigen.
 undone: Zurückgenommen. {kept} gilt wieder.
 `;

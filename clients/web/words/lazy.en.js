@@ -311,7 +311,7 @@ context: No sensor of this quantity on it
 equipment: One sensor stands for all of it: its place is assumed
 inside: Inside of what is cut open
 uncertain: {state}, uncertain
-drawn: Computed here. Pictures around it err by up to {value}
+drawn: Computed for this point. The picture around it may be off by up to {value}
 hide: Hide
 ghost: Ghost
 only: Only
@@ -643,18 +643,19 @@ asset: Equipment
 all: all ({count})
 tags: Tags
 pattern: Name or description; * and ? in names
-within: Most m off the surface
-confidence: Least confidence, 0 to 1
+within: Distance from surface, at most (m)
+confidence: Confidence, at least (0 to 1)
 count(one): {count} place would be accepted. It is ringed blue in the picture.
 count(other): {count} places would be accepted. They are ringed blue in the picture.
 none: No place would be accepted.
-nowhere: {count} not: no node and no position in the list
-missing: {count} not: the equipment has no model
-far: {count} not: farther off the surface
-unsure: {count} not: less confidence, or none known
+nowhere: {count} left out: no node and no position in the list
+missing: {count} left out: the equipment has no model
+far: {count} left out: farther from the surface
+unsure: {count} left out: lower confidence, or none known
 go: Accept {count}
-saved(one): {count} place accepted. The list before it is {kept}.
-saved(other): {count} places accepted. The list before it is {kept}.
+saved(one): {count} place accepted. The previous list is kept as {kept}.
+saved(other): {count} places accepted. The previous list is kept as {kept}.
 undo: Undo: back to {kept} …
+changed: Nothing was accepted: the list has changed. Check the count and accept again.
 undone: Undone. {kept} is in force again.
 `;

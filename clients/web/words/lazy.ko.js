@@ -310,7 +310,7 @@ context: 이 측정량의 센서가 없는 설비
 equipment: 센서 하나가 설비 전체를 나타냄: 위치는 추정
 inside: 잘린 설비의 내부
 uncertain: {state}, 불확실
-drawn: 이 값은 계산한 값. 주변 그림의 오차는 최대 {value}
+drawn: 이 지점의 값을 직접 계산함. 주변 그림의 오차는 최대 {value}
 hide: 숨기기
 ghost: 투명
 only: 이것만
@@ -614,7 +614,7 @@ diff.more: … 그 밖에 {count}행
 cancel: 취소
 confirm: 저장하고 적용
 saving: 준비 중입니다. 모두에게는 아직 이전의 설비가 보입니다.
-saved: 적용되었습니다. 이전 목록은 {kept}입니다.
+saved: 적용되었습니다. 이전 목록은 {kept}(으)로 보관됩니다.
 unsaved: 저장하지 않음: {text}
 device: 장치
 proven: {count}개 중 {done}개 확인됨
@@ -650,7 +650,8 @@ missing: {count}곳 제외: 설비에 모델이 없음
 far: {count}곳 제외: 표면에서 더 멂
 unsure: {count}곳 제외: 신뢰도가 낮거나 알 수 없음
 go: {count}곳 확정
-saved(other): {count}곳을 확정했습니다. 이전 목록은 {kept}입니다.
+saved(other): {count}곳을 확정했습니다. 이전 목록은 {kept}(으)로 보관됩니다.
 undo: 되돌리기: {kept} …
+changed: 확정되지 않았습니다. 목록이 바뀌었습니다. 개수를 확인하고 다시 확정하십시오.
 undone: 되돌렸습니다. {kept}이(가) 다시 적용됩니다.
 `;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many assumed places are accepted at once: by equipment, name, distance from the surface and confidence of the match. What would be
-// accepted is counted and marked on the model first, and the list as it was can be put back.
+// Accepts many assumed places at once, filtered by equipment, name, distance from the surface and confidence of the match. The places are
+// counted and marked on the model first, and the previous list can be restored.
 import { tellAsEngineer } from '../../core/requests.js';
 import { refusalText } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
@@ -63,14 +63,23 @@ export class Accepting {
 
     ask() {
         clearTimeout(this.timer);
+        if (this.sent)
+            return; // end() or onSaved() asks
         this.onFound(null);
         if (this.element.open && [this.within, this.confidence].every((field) => field.validity.valid))
             this.timer = setTimeout(() => { this.asked = tellAsEngineer(this.session, 'accept_places', this.filter); }, ASK_MS);
     }
 
+    // The server answers an acceptance with `places_accepted`, too: with the same hash if the list is being put in force, with another
+    // one if the list has changed since.
     onFound(message) {
-        if (this.sent || (message && message.seq !== this.asked))
+        if (message && message.seq !== this.asked)
             return;
+        if (this.sent) {
+            if (message.hash !== this.confirmed)
+                this.end(say('accept.changed'));
+            return;
+        }
         this.found = message;
         this.names = new Set(message?.tags);
         const count = message?.count ?? 0;
@@ -87,24 +96,36 @@ export class Accepting {
         this.send('accept', 'accept_places', { ...this.filter, confirm: this.found.hash });
     }
 
+    // Ends a request that put no list in force.
+    end(text) {
+        if (this.sent) {
+            this.sent = null;
+            setText(this.note, text);
+            this.ask();
+        }
+    }
+
     restore() {
         this.restores = true;
         tellAsEngineer(this.session, 'restore_tags', { kept: this.kept });
     }
 
     confirmRestore(hash) {
-        this.restores = false;
         this.send('restore', 'restore_tags', { kept: this.kept, confirm: hash });
     }
 
     send(what, type, fields) {
+        clearTimeout(this.timer);
         this.sent = what;
+        this.confirmed = fields.confirm;
         this.go.disabled = true;
         setText(this.note, say('eng.saving'));
-        tellAsEngineer(this.session, type, fields);
+        this.asked = tellAsEngineer(this.session, type, fields);
+        if (!this.asked) // no connection
+            this.end('');
     }
 
-    // Returns whether the list that was saved is one that this part had put in force.
+    // Returns whether `tags_saved` answers a request of this part.
     onSaved({ saved, kept, errors }) {
         const { sent } = this;
         if (!sent)

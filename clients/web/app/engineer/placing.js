@@ -9,6 +9,7 @@ import { fill } from '../common/widgets.js';
 import { Accepting } from './accepting.js';
 
 const SHOWN_TAGS = 60, GRAB_PX = { mouse: 14, pen: 18, touch: 26 };
+const SAVING = ['save_tags', 'accept_places', 'restore_tags']; // messages
 const metres = (m) => numberText(m, m < 1 ? 3 : 2);
 const along = ({ along: state = 'waiting' } = {}) => say(`eng.${state}`);
 const percent = (share) => numberText(100 * share, share > 0 && share < 0.1 ? 1 : 0);
@@ -35,7 +36,10 @@ export class Placing {
         this.none = make('p', { class: 'quiet' }, say('eng.nomoves'));
         this.undo = button('eng.undo', () => this.step());
         this.back = button('eng.back', () => this.move([]));
-        this.save = button('eng.save', () => tellAsEngineer(this.session, 'save_tags'));
+        this.save = button('eng.save', () => {
+            this.accepting.restores = false;
+            tellAsEngineer(this.session, 'save_tags');
+        });
         this.gaps = make('div', { class: 'gaps' });
         this.note = make('p', { class: 'note', role: 'status' });
         this.dialog = make('dialog', { class: 'help diff', 'aria-label': say('eng.save') });
@@ -53,6 +57,8 @@ export class Placing {
         session.on('tags_diff', (message) => this.showDiff(message));
         session.on('tags_saved', (message) => this.onSaved(message));
         session.on('error', ({ about }) => { if (about === 'place') this.step(); }); // it stays where it was
+        session.on('error', ({ about }) => { if (SAVING.includes(about)) this.stopSaving(); });
+        session.on('hello', () => this.stopSaving()); // the answer went to the connection that was lost
         session.on('welcome', () => this.onWelcome());
         session.on('params', () => this.show());
         const on = (name, f) => this.viewport.element.addEventListener(name, f, { capture: true });
@@ -211,12 +217,10 @@ export class Placing {
     // --- saving
 
     showDiff({ file, conflict, hash, lines, more }) {
-        if (this.saving)
-            return; // of the one that was confirmed
-        const close = () => {
-            this.accepting.restores = false;
-            this.dialog.close();
-        };
+        if (hash !== null && hash === this.confirmed)
+            return; // the list that is being put in force
+        this.stopSaving();
+        const close = () => this.dialog.close();
         const change = ([number, before, after]) => make('div', { class: 'change' }, make('span', {}, say('eng.diff.line', { n: number })),
             before === null ? null : make('pre', { class: 'before', 'aria-label': say('eng.diff.before') }, before),
             after === null ? null : make('pre', { class: 'after', 'aria-label': say('eng.diff.after') }, after));
@@ -229,11 +233,22 @@ export class Placing {
             more > 0 ? make('p', {}, say('eng.diff.more', { count: more })) : null,
             make('div', { class: 'line' }, make('button', { type: 'button', onclick: close }, say('eng.cancel')),
                 conflict ? null : confirm));
-        this.dialog.showModal();
+        if (!this.dialog.open)
+            this.dialog.showModal();
+    }
+
+    // Ends saving a list that was not put in force.
+    stopSaving() {
+        if (this.saving)
+            setText(this.note, '');
+        this.saving = false;
+        this.confirmed = null;
+        this.accepting.end('');
     }
 
     confirm(hash) {
         this.dialog.close();
+        this.confirmed = hash;
         if (this.accepting.restores)
             return this.accepting.confirmRestore(hash);
         this.saving = true;
@@ -243,6 +258,7 @@ export class Placing {
 
     onSaved(message) {
         const { saved, kept, errors } = message;
+        this.confirmed = null;
         if (this.accepting.onSaved(message))
             return this.show();
         this.saving = false;
