@@ -56,6 +56,17 @@ static const char *copy(const struct reading *from, FILE *to, size_t most)
     return total > 0 ? NULL : "its archive is empty";
 }
 
+/* Closes an archive. Returns whether all that was read has the checksum of the archive and is not cut off. */
+static bool finish(const struct reading *from)
+{
+    bool good = true;
+    if (from->zip) {
+        good = unzCloseCurrentFile(from->zip) == UNZ_OK;
+        unzClose(from->zip);
+    }
+    return (!from->gzip || gzclose(from->gzip) == Z_OK) && good;
+}
+
 /* Opens the first file with this ending. Returns whether there is one. */
 static bool find_file(unzFile zip, const char *ending)
 {
@@ -85,10 +96,8 @@ bool unpack(const char *path, const char *output, char *why, size_t why_bytes)
         reason = to ? copy(&from, to, most) : strerror(errno);
     if (to && fclose(to) != 0 && !reason)
         reason = strerror(errno);
-    if (from.zip)
-        unzClose(from.zip);
-    if (from.gzip)
-        gzclose(from.gzip);
+    if (!finish(&from) && !reason)
+        reason = "its archive is broken: it is cut off, or its checksum is wrong";
     if (reason)
         snprintf(why, why_bytes, "%s", reason);
     return !reason;

@@ -6,7 +6,7 @@ import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSy
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { crc32 } from 'node:zlib';
+import { crc32, gzipSync } from 'node:zlib';
 import { ifcOf, KINDS } from './support/ifc_kinds.mjs';
 import { ifc } from './support/ifc_sample.mjs';
 import { volumeOf } from './support/glb_volume.mjs';
@@ -132,13 +132,15 @@ function zip(name, text) {
     return Buffer.concat([local, entry, end]);
 }
 
-test('.ifczip is unpacked; an archive without a model is refused', { skip }, () => inFolder((folder) => {
+test('.ifczip is unpacked; an archive without a model, or with a damaged one, is refused', { skip }, () => inFolder((folder) => {
     writeFileSync(join(folder, 'house.ifczip'), zip('inner/house.ifc', ifc()));
     const good = plantcast(['import', join(folder, 'house.ifczip'), '-o', join(folder, 'plant')]);
     assert.equal(good.status, 0, good.stderr);
     assert.match(good.stdout, /3 elements with a shape, 0 lost/);
+    const changed = Buffer.from(zip('a.ifc', ifc()).toString('latin1').replace('2000.0', '3000.0'), 'latin1');
     for (const [name, bytes, why] of [['a', zip('a.txt', 'hello'), 'its archive holds no model'],
-        ['b', ifc(), 'it is neither a ZIP nor a gzip file']]) {
+        ['b', ifc(), 'it is neither a ZIP nor a gzip file'], ['c', changed, 'its checksum is wrong'],
+        ['d', gzipSync(ifc()).subarray(0, -20), 'it is cut off']]) {
         writeFileSync(join(folder, `${name}.ifczip`), bytes);
         const { status, stderr } = plantcast(['import', join(folder, `${name}.ifczip`), '-o', join(folder, name)]);
         assert.ok(status === 1 && stderr.includes(why), stderr);
