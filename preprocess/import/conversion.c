@@ -237,7 +237,7 @@ static int find_encoding(void *arg)
     return 0;
 }
 
-/* Takes what the child left in `shared` if it can be the name of an encoding. */
+/* Detects the encoding in a child, and copies its name if it has only letters that such names have. */
 static bool ask_encoding(const struct reading *reading, char encoding[CHARSET_NAME_BYTES], struct text *said,
                          char why[CONVERSION_WHY_BYTES])
 {
@@ -260,13 +260,14 @@ static bool ask_encoding(const struct reading *reading, char encoding[CHARSET_NA
     return good;
 }
 
-/* Open CASCADE builds the solids of an IFC file that web-ifc does not, for ifc.mjs, which finds them beside its output. */
-static void build_curved_solids(const struct reading *reading, struct text *said)
+/* Has Open CASCADE build the solids of an IFC file that web-ifc does not build. ifc.mjs finds them in the folder of its output. Returns
+ * false only if the user interrupted it: without these solids the model is still read. */
+static bool build_curved_solids(const struct reading *reading, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
-    char why[CONVERSION_WHY_BYTES], *program = import_format_program(import_format_of("x.step"));
+    char *program = import_format_program(import_format_of("x.step"));
     if (!program) {
         text_add(said, "this Plantcast was built without Open CASCADE: pipes and curved solids are as web-ifc draws them\n");
-        return;
+        return true;
     }
     struct child_paths paths = { 0 };
     char *output = mem_printf("%s/solids.glb", reading->folder), *chord = mem_printf("%g", reading->params->chord_m * 1000);
@@ -274,11 +275,14 @@ static void build_curved_solids(const struct reading *reading, struct text *said
     child_paths_add(&paths, reading->path, CONFINE_READ);
     child_paths_add(&paths, reading->folder, CONFINE_WRITE);
     child_paths_add(&paths, program, CONFINE_EXECUTE);
-    if (!run(reading, &(struct child_params){ .argv = argv }, &paths, said, why))
+    bool built = run(reading, &(struct child_params){ .argv = argv }, &paths, said, why);
+    bool interrupted = !built && !strcmp(why, "interrupted");
+    if (!built && !interrupted)
         text_add(said, "error\t1\tOpen CASCADE: %s; pipes and curved solids are as web-ifc draws them\n", why);
     mem_free(output);
     mem_free(chord);
     mem_free(program);
+    return !interrupted;
 }
 
 static bool run_program(const struct reading *reading, struct child_paths *paths, struct text *said, char why[CONVERSION_WHY_BYTES])
@@ -291,14 +295,14 @@ static bool run_program(const struct reading *reading, struct child_paths *paths
         snprintf(encoding, sizeof(encoding), "%s", params->encoding);
     if (good && !program)
         good = fail(why, "%s is not read: %s", format->name, format->missing);
+    if (good && !strcmp(format->name, "IFC"))
+        good = build_curved_solids(reading, said, why);
     if (!good) {
         child_paths_finish(paths);
         mem_free(program);
         mem_free(runtime);
         return false;
     }
-    if (!strcmp(format->name, "IFC"))
-        build_curved_solids(reading, said);
     const char *units = params->units ? params->units : format->unitless ? params->mesh_units : NULL;
     char *chord = mem_printf("%g", params->chord_m * 1000), *memory = mem_printf("--max-old-space-size=%zu", params->memory_bytes >> 20);
     const char *argv[11];
