@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Watches the page's main thread from a worker. When the thread has been silent for 10 s, the worker says so over the page; a wall is
-// reloaded besides, by a frame that runs in a process of its own (keeper/; so it is in Chromium, elsewhere the words stay).
+// Watches the page's main thread from a worker. When the thread has been silent for 10 s, the worker draws a warning over the page. In
+// Chromium, a frame that runs in a process of its own (keeper/) also reloads a wall.
 import { learnWords, say } from '../../core/words.js';
 import { make } from './dom.js';
 
 const BEAT_MS = 1000, BAND_PX = 92;
 
-// scale: how much larger than on a desk the words are. reloads: whether a wall hangs there, which nobody reloads.
+// scale: returns the size of the words relative to a desk. reloads: true for a wall, where nobody is there to reload the page.
 export async function watchMainThread({ scale = () => 1, reloads = false } = {}) {
     if (!('transferControlToOffscreen' in HTMLCanvasElement.prototype))
         return;

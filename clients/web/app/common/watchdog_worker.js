@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Worker of watchdog.js: says over the page that it does not answer, also while its main thread hangs, and has a wall reloaded.
+// Worker of watchdog.js. When the page's main thread hangs, it draws a warning over the page, and tells the keeper to reload a wall.
 // Messages: { veil, band (canvases), words, keeper } once; { width, height, scale } of the band; 'beat'; 'rest' (the page is hidden, where
 // timers are slow).
 'use strict';
@@ -15,9 +15,10 @@ onmessage = ({ data }) => {
         ({ scale } = data);
         [band.width, band.height] = [data.width, data.height];
     }
-    rests = data === 'rest';
+    if (typeof data === 'string') // a hidden page may also change its size
+        rests = data === 'rest';
     silent = 0;
-    // Wipes it; and in the beginning: the first picture of a canvas, its size and its font take the main thread.
+    // Wipes the warning. Also draws once at the start: a canvas's first picture, its size and its font need the main thread.
     if (isSaid || data.width)
         draw();
     if (data.width)
@@ -33,7 +34,7 @@ setInterval(() => {
     draw();
 }, TICK_MS);
 
-// A veil over the whole page, so that what stands still does not look live, and a band with the words.
+// Draws a veil over the whole page, so that a frozen picture does not look live, and a band with the words.
 function draw() {
     const { width, height } = band, shade = veil.getContext('2d'), c = band.getContext('2d');
     isSaid = silent >= SILENT_TICKS;
