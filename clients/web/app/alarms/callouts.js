@@ -23,7 +23,8 @@ export class Callouts {
         const nowUs = time.atUs ?? session.clockUs();
         if (kind === 'BAD' || ageMs === null || nowUs === null)
             return null;
-        const since = zoneClock(model.plant.time_zone)(nowUs / 1000 - ageMs).time.slice(0, 5);
+        const clock = zoneClock(model.plant.time_zone), then = clock(nowUs / 1000 - ageMs), minute = then.time.slice(0, 5);
+        const since = then.date === clock(nowUs / 1000).date ? minute : `${then.day} ${minute}`;
         return [[kind, 700, null], [say('callout.held', { time: since }), 400, INK_2]];
     }
 
