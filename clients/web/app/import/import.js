@@ -27,7 +27,7 @@ const megabytes = (bytes) => say('import.bytes', { mb: numberText(bytes / 1e6, b
 // Of what the programs printed: where files are is known.
 const plain = (text) => text.replace(/\S*\/exports\//g, '');
 
-// Which letters were taken for which, of all that was printed: "tags.csv: Windows-1251", and a second encoding that is as likely.
+// Returns the encoding of each file, found in what the programs printed: "tags.csv: read as Windows-1251", and a second likely one.
 const readAs = (said) => [...new Set([...plain(said).matchAll(/^(.*): read as ([^,\n]+)(?:, but it may be ([^:\n]+))?/gm)]
     .map(([, file, name, other]) => say(other ? 'import.encoding.unsure' : 'import.encoding.read', { file, name, other })))].join(' · ');
 
@@ -226,8 +226,11 @@ export class Import {
 
     // Of the models in force. What was chosen and is not applied stays until those change.
     takeUnits({ units, up, encoding, mesh_units }) {
-        if (this.known?.encoding !== encoding)
+        if (this.known?.encoding !== encoding) {
+            if (encoding && ![...this.encoding.options].some(({ value }) => value === encoding))
+                this.encoding.append(make('option', { value: encoding }, encoding));
             this.encoding.value = encoding;
+        }
         if (this.known?.units === units && this.known?.up === up && this.known?.encoding === encoding &&
             this.known?.mesh_units === mesh_units)
             return;
