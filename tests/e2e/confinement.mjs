@@ -10,6 +10,7 @@ import { deflateRawSync } from 'node:zlib';
 import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const ESCAPE = resolve(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/escape');
+const ENDLESS_S = 200; // each step of a reader is ended after --timeout, 10 s here: longer than this, no limit held, whatever the load
 const absent = [...missing(), ...['plantcast-import', 'plantcast-match'].filter((name) => !existsSync(join(BIN, name)))];
 if (!existsSync(ESCAPE))
     absent.push(ESCAPE);
@@ -186,7 +187,7 @@ test('a model that crashes, hangs or swells is one line, and the other models ar
         console.log(`# ${name}: ${seconds.toFixed(1)} s: ${status === 0 ? 'read' : said.join(' | ').replace(model, '').slice(0, 180)}`);
         assert.equal(signal, null);
         assert.ok(status === 0 || status === 3, `${name}: ${stderr}`);
-        assert.ok(seconds < 40, name);
+        assert.ok(seconds < ENDLESS_S, name);
         assert.ok(existsSync(join(plant, 'good.glb')), name);
         if (status === 3) {
             assert.equal(said.length, 1, `${name}: ${stderr}`);
@@ -287,7 +288,7 @@ test('a tag list that swells is one line or is read, and changes nothing else', 
                 : lines.join(' | ').replace(list, '').slice(0, 200)}`);
             assert.equal(signal, null);
             assert.ok(status === 0 || lines.length === 1, `${name}: ${stderr.slice(0, 1000)}`);
-            assert.ok(seconds < 30, name);
+            assert.ok(seconds < ENDLESS_S, name);
             assert.equal(readFileSync(plant.file, 'utf8'), before);
             const kind = kindOf(status, lines[0]);
             table[kind] = (table[kind] ?? 0) + 1;
