@@ -7,7 +7,7 @@
 
 #include "access/login_throttle.h"
 
-/* Takes as long whichever letter differs. */
+/* Compares in constant time, so that the time does not tell which letter differs. */
 static bool is_same(const char *said, const char *expected)
 {
     gsize count = strlen(expected);
@@ -17,7 +17,7 @@ static bool is_same(const char *said, const char *expected)
     return !differs;
 }
 
-/* Writes the address of the reader, IPv4 as in IPv6, and as text. */
+/* Writes the reader's address as bytes (IPv4 mapped into IPv6) and as text. */
 static void find_address(SoupServerMessage *message, uint8_t bytes[16], char text[64])
 {
     GSocketAddress *peer = soup_server_message_get_remote_address(message);

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* In which encoding the names of a model are: as a person says, as the file says, or as they look. Thread: any. */
+/* Encoding of the names of a model: given by the user, stated by the file, or detected. Thread: any. */
 #ifndef PREPROCESS_IMPORT_ENCODING_H
 #define PREPROCESS_IMPORT_ENCODING_H
 #include "base/charset.h"
 #include "base/text.h"
 
-/* Chooses the encoding of a text. asked: by a person, NULL: nobody has; it is taken. said: what the file calls its encoding, NULL or "":
-   nothing; it is taken if all bytes fit, unless the text is UTF-8. */
+/* Chooses the encoding of a text. asked: the user's choice, which is always taken; NULL: none. said: the encoding that the file states,
+   which is taken if all bytes fit and the text is not UTF-8; NULL or "": none. Otherwise the encoding is detected. */
 struct charset_choice encoding_choose(const char *text, size_t length, const char *asked, const char *said);
-/* Appends a line that says how `what`, such as "names", are read. Says nothing where that is ASCII or UTF-8. */
+/* Appends a line with the encoding of `what`, such as "names"; nothing for ASCII and UTF-8. */
 void encoding_say(struct text *out, const char *what, const struct charset_choice *choice);
 
 #endif

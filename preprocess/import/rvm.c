@@ -281,7 +281,7 @@ static bool read_chunks(struct reader *r)
     return true;
 }
 
-/* One encoding for all names: short ones do not tell theirs. */
+/* Decodes all names in one encoding: a single short name has too few letters to detect it. */
 static void decode_names(struct reader *r, size_t first, const char *asked)
 {
     struct text all = { 0 };

@@ -664,7 +664,7 @@ test('letters: what a list is read as is shown, and another encoding is chosen',
         await unfold();
         await settle(sheet);
         await shoot(sheet, 'import-9-letters');
-        await sheet.getByLabel('Letters of names and units').selectOption('Windows-1251');
+        await sheet.getByLabel('Character encoding of names and units').selectOption('Windows-1251');
         await readAs('^tags.csv: read as Windows-1251$');
         assert.doesNotMatch(own.read('tags.csv'), /泵/);
         await sheet.reload();

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Why no WebSocket opens though the page was loaded from the same server: most often a proxy in between, which is named with what it needs.
+// Finds out why no WebSocket opens although the page was loaded from the same server. Usually a proxy in between is set up without
+// WebSockets: the message names the proxy and the settings that it needs.
 import { put } from './refusals.js';
 import { say } from './words.js';
 
 const ANSWER_MS = 5000;
 const NGINX = 'proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection "upgrade";';
 
-// By the headers of an answer, which the server itself sends without any of these.
+// Returns the proxy's name from the headers of an answer; our server sends none of these headers.
 const proxyOf = (headers) => headers.get('server')?.split(/[/ ]/)[0] || /^\S+ ([^ ,]+)/.exec(headers.get('via') ?? '')?.[1] || '';
 
-// url: of the WebSocket. '': the server does not answer over HTTP either.
+// url: of the WebSocket. Returns the reason; '' if the server does not answer over HTTP either.
 async function whyBlocked(url) {
     const address = new URL(url.replace(/^ws/, 'http'));
     address.search = '?why'; // the server logs others that ask without a WebSocket

@@ -16,8 +16,8 @@ const CLOSE_REASONS = {
 
 export class Connection {
     // open(url, protocol): a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers: onState(connection),
-    // onOpen(), onText(string), onBytes(ArrayBuffer). onUnopened(): not for the first time
-    // in a row, a WebSocket did not open; blocked is what to say of it.
+    // onOpen(), onText(string), onBytes(ArrayBuffer). onUnopened(): a WebSocket did not open, for
+    // at least the second time in a row; `blocked` holds the reason to show.
     // spreadMs, to be set: up to so much is added to each wait.
     constructor({ url, open, clock, random = Math.random }) {
         Object.assign(this, { url, openSocket: open, clock, random, spreadMs: 0, unopened: 0, blocked: '' });

@@ -108,7 +108,7 @@ glossy: Glänzend: Licht ändert die Farben. Keine Werte ablesen.
 nolimits: Ohne Grenzwerte
 nodata: Keine Daten
 uncertain: Unsicher
-drawn: Punkte: mit bis zu {off} Fehler gezeichnet.
+drawn: Punkte: Fehler bis {off}.
 
 [following]
 own: Eigene Ansicht

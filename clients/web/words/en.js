@@ -108,7 +108,7 @@ glossy: Glossy look: light changes the colours. Do not read values.
 nolimits: No limits
 nodata: No data
 uncertain: Uncertain
-drawn: Dots: drawn with up to {off} of error.
+drawn: Dots: error up to {off}.
 
 [following]
 own: Own view

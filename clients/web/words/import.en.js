@@ -24,8 +24,8 @@ again: Read again
 details: What was found
 size: Size
 metres: {wide} × {deep} × {high} m
-encoding: Letters of names and units
-encoding.found: as the files state or look
+encoding: Character encoding of names and units
+encoding.found: as the files state, or as detected
 encoding.read: {file}: read as {name}
 encoding.unsure: {file}: read as {name}, but it may be {other}
 outside: Far outside and not in the first view: {triangles} triangles, up to {away_m} m away.

@@ -28,7 +28,7 @@ shelf: ein Alarm kann höchstens eine Woche zurückgestellt werden
 tolerance: der Wert liegt außerhalb der Toleranz
 reading: der Messwert ist nicht gut
 failed: als durchgefallen gemeldet
-disk: nicht gespeichert: der Datenträger des Servers nimmt es nicht an
+disk: nicht gespeichert: der Server kann nicht auf seinen Datenträger schreiben
 disk_full: nicht gespeichert: der Datenträger des Servers ist voll
 disk_locked: nicht gespeichert: der Datenträger des Servers ist schreibgeschützt
 unkept: In Kraft, aber nach einem Neustart des Servers verloren ({text})

@@ -28,9 +28,9 @@ shelf: an alarm can be shelved for a week at most
 tolerance: the value is beyond the tolerance
 reading: the reading is not good
 failed: said to have failed
-disk: not kept: the server’s disk does not take it
-disk_full: not kept: the server’s disk is full
-disk_locked: not kept: the server’s disk is read-only
+disk: not saved: the server cannot write to its disk
+disk_full: not saved: the server’s disk is full
+disk_locked: not saved: the server’s disk is read-only
 unkept: In force, but lost if the server restarts ({text})
 unaudited: Done, but missing in the audit trail ({text})
 fixed: this view is in the plant file, and is changed there

@@ -2,6 +2,6 @@
 // Words over a page whose main thread hangs, in German.
 export default `
 hangs: Diese Seite antwortet nicht
-hangs.reload: Ihr Bild steht seit {n} s still. Bitte neu laden.
-hangs.reloads: Ihr Bild steht seit {n} s still. Sie wird neu geladen.
+hangs.reload: Das Bild steht seit {n} s still. Bitte neu laden.
+hangs.reloads: Das Bild steht seit {n} s still. Sie wird neu geladen.
 `;

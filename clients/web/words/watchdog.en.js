@@ -2,6 +2,6 @@
 // Words over a page whose main thread hangs, in English.
 export default `
 hangs: This page does not answer
-hangs.reload: What it shows stopped {n} s ago. Reload it.
-hangs.reloads: What it shows stopped {n} s ago. It is being reloaded.
+hangs.reload: The picture stopped {n} s ago. Reload it.
+hangs.reloads: The picture stopped {n} s ago. It is being reloaded.
 `;

@@ -8,8 +8,8 @@ export const badge = (priority, hollow = false) => make('span', {
     class: `priority p${priority}${hollow ? ' hollow' : ''}`, title: say(hollow ? 'alarms.gone' : 'alarms.priority', { priority }),
 }, String(priority));
 
-// The value at which an alarm was raised, the present value, and the limit, in words; empty for an alarm without a limit. fresh: the server
-// speaks to us. Else, or while the past is shown, the present value is a dash.
+// The value at which an alarm was raised, the present value, and the limit, in words; empty for an alarm without a limit. fresh: messages
+// of the server arrive. If they do not, or while the past is shown, the present value is a dash.
 export function limitText({ model, time }, { tag, value, limit }, fresh) {
     if (value === null || limit === null)
         return '';
