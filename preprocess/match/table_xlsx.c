@@ -188,7 +188,10 @@ static int read_part(struct sheet *sheet, unzFile zip, const char *part, XML_Sta
         snprintf(why, why_bytes, "%s, line %lu: %s", part, current_line(parser),
                  count < 0 ? "cannot be unpacked" : XML_ErrorString(XML_GetErrorCode(parser)));
     XML_ParserFree(parser);
-    unzCloseCurrentFile(zip);
+    if (unzCloseCurrentFile(zip) == UNZ_CRCERROR && good == 1) {
+        snprintf(why, why_bytes, "%s is damaged: its checksum is wrong", part);
+        good = -1;
+    }
     return good;
 }
 

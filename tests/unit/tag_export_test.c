@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 #include <cmocka.h>
 
@@ -481,6 +482,29 @@ static void test_spreadsheet(void **state)
 #define CELL(at, text) "<c r=\"" at "\" t=\"inlineStr\"><is><t>" text "</t></is></c>"
 #define SHEET(rows) "<worksheet><sheetData>" rows "</sheetData></worksheet>"
 
+static void test_checksum(void **state)
+{
+    static const char sheet[] = SHEET("<row>" CELL("A1", "Tag Name") "</row><row>" CELL("A2", "TT-1") "</row>");
+    struct tag_export list = { 0 };
+    size_t length;
+    char *path = temp_path(folder, "changed.xlsx");
+    zipFile zip = zipOpen(path, APPEND_STATUS_CREATE);
+    (void)state;
+    assert_int_equal(zipOpenNewFileInZip(zip, "xl/worksheets/sheet1.xml", NULL, NULL, 0, NULL, 0, NULL, 0, 0), ZIP_OK); /* stored */
+    assert_int_equal(zipWriteInFileInZip(zip, sheet, sizeof(sheet) - 1), ZIP_OK);
+    assert_int_equal(zipCloseFileInZip(zip), ZIP_OK);
+    zipClose(zip, NULL);
+    char *bytes = text_read_file(path, 10000, &length), *name = memmem(bytes, length, "TT-1", 4);
+    name[3] = '7';
+    FILE *file = fopen(path, "wb");
+    assert_int_equal(fwrite(bytes, 1, length, file), length);
+    fclose(file);
+    assert_false(tag_export_read(&list, path, NULL, why, sizeof(why)));
+    assert_non_null(strstr(why, "sheet1.xml is damaged: its checksum is wrong"));
+    mem_free(bytes);
+    mem_free(path);
+}
+
 /* A cover, a hidden sheet and a list, in a workbook whose parts have names of their own. */
 static void test_sheets(void **state)
 {
@@ -551,7 +575,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_kepware),     cmocka_unit_test(test_ignition),
                                         cmocka_unit_test(test_udt_kinds),   cmocka_unit_test(test_header_kinds),
-                                        cmocka_unit_test(test_alike),       cmocka_unit_test(test_sheets),
+                                        cmocka_unit_test(test_alike),       cmocka_unit_test(test_checksum),
+                                        cmocka_unit_test(test_sheets),
                                         cmocka_unit_test(test_aveva),       cmocka_unit_test(test_lists),
                                         cmocka_unit_test(test_encodings),   cmocka_unit_test(test_repeated),
                                         cmocka_unit_test(test_spreadsheet), cmocka_unit_test(test_refused) };
