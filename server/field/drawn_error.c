@@ -275,9 +275,28 @@ static float accepted_of(const struct weights *weights)
     return PAPER_ACCEPTED;
 }
 
+static void add_areas(const struct asset_view *file, uint32_t first_index, uint32_t index_count, const float *errors, double erring[],
+                      double *all)
+{
+    for (uint32_t i = first_index; i < first_index + index_count; i += 3) {
+        const float(*at)[3] = file->positions_m;
+        double normal[3];
+        vecf_normal(at[file->indices[i]], at[file->indices[i + 1]], at[file->indices[i + 2]], normal);
+        double area = vec_length(normal);
+        *all += area;
+        for (int b = 0; b < WEIGHTS_ERRING; b++)
+            erring[b] += errors[i / 3] >= ldexpf(1, -b) ? area : 0;
+    }
+}
+
 static void spread(struct weights *weights, const float *errors, const struct asset_level *level)
 {
     const struct asset_view *file = &weights->layout->file->view;
+    double erring[WEIGHTS_ERRING] = { 0 }, all = 0;
+    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++)
+        add_areas(file, file->primitives[p].first_index, file->primitives[p].index_count, errors, erring, &all);
+    for (int b = 0; b < WEIGHTS_ERRING && all > 0; b++)
+        weights->erring[b] = fmaxf(weights->erring[b], (float)(erring[b] / all));
     for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++)
         for (uint32_t i = file->primitives[p].first_index; i < file->primitives[p].first_index + file->primitives[p].index_count; i++) {
             float *error = &weights->errors[file->indices[i]];

@@ -23,8 +23,9 @@ struct scalars {
     size_t ready;           /* so many of the first vertices are up to date: what the levels asked for need */
     uint64_t grown;         /* counts how often more became ready than was before */
     const struct scalar *at;
-    double drawn_error;    /* bound on how far triangles may show another value than the field has, in the unit of values; 0: all of them
-                              are right to 1/255 of the range. Vertices of others are marked uncertain */
+    double drawn_error;    /* bound on how far triangles may show another value than the field has, in the unit of values, where a
+                              large part of the surface errs by more than 1/255 of the range; else 0. Vertices that err are
+                              marked uncertain in either case */
     int64_t oldest_age_ns; /* of the readings that take part; INT64_MAX: none does */
 };
 

@@ -33,6 +33,8 @@ struct weights_key { /* what G depends on, as bytes */
     uint64_t hash;
 };
 
+enum { WEIGHTS_ERRING = 9 }; /* 2^-8 is a step of colour */
+
 struct weights {
     struct weights_key key;
     const struct layout *layout;
@@ -59,6 +61,7 @@ struct weights {
     float deviation;             /* gp: that of the prior */
     float *errors;               /* by vertex: linear interpolation error of the triangles around it (drawn_error.h); NULL: not measured */
     float largest_error;         /* the largest of them */
+    float erring[WEIGHTS_ERRING]; /* [b]: share of a level's surface whose error is at least 2^-b; of the level that has most */
     uint64_t measured_levels;    /* levels of detail that are in them, by bits */
     unsigned errors_version;     /* counts their changes */
     float *beyond_m;             /* fin, gp, by vertex: how far beyond the rim of what sensors know; else NULL */
