@@ -247,7 +247,7 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
     bool notifies = getenv("NOTIFY_SOCKET") != NULL;
     mkdir(folder, 0777); /* a failure shows when the first file is written */
     child_paths_add(&paths, "/proc/self/exe", CONFINE_EXECUTE);
-    child_paths_add_folder_of(&paths, "/proc/self/exe", CONFINE_READ); /* modules */
+    child_paths_add_modules(&paths);
     child_paths_add(&paths, folder, CONFINE_WRITE);
     child_paths_add(&paths, plant->tags_path, CONFINE_READ);
     child_paths_add_beside(&paths, plant->path, beside);

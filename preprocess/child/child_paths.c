@@ -126,6 +126,19 @@ void child_paths_add_command(struct child_paths *paths, const char *command)
     add_absolute(paths, command, " \t\n\"'`;|&<>()=$", false);
 }
 
+void child_paths_add_modules(struct child_paths *paths)
+{
+    char *program = realpath("/proc/self/exe", NULL), *slash = program ? strrchr(program, '/') : NULL;
+    if (slash) {
+        *slash = 0;
+        char *library = mem_printf("%s/../lib/plantcast", program);
+        child_paths_add(paths, program, CONFINE_READ);
+        child_paths_add(paths, library, CONFINE_READ);
+        mem_free(library);
+    }
+    free(program);
+}
+
 void child_paths_finish(struct child_paths *paths)
 {
     for (size_t i = 0; i < paths->count; i++)

@@ -19,6 +19,8 @@ void child_paths_add_beside(struct child_paths *paths, const char *input, const 
 /* Adds what a shell command of the site needs: installed programs, the folders of PATH, settings in /etc other than Plantcast's, and the
  * files and folders that the command names by absolute paths. */
 void child_paths_add_command(struct child_paths *paths, const char *command);
+/* Adds the folders where modules of this program lie (base/module.h): its own, and ../lib/plantcast. */
+void child_paths_add_modules(struct child_paths *paths);
 void child_paths_finish(struct child_paths *paths);
 
 #endif
