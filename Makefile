@@ -110,8 +110,7 @@ no_player := $(if $(filter h264,$(CODECS)),,H.264) \
 player    := $(if $(strip $(no_player)),,$(bin)/plantcast-wall)
 
 # Video for who has no browser (clients/video), where its libraries are; else the build says what it lacks.
-video_packages := gstreamer-app-1.0 gstreamer-rtsp-server-1.0 libsoup-3.0 pangocairo jansson gstreamer-webrtc-1.0 \
-    gstreamer-sdp-1.0
+video_packages := gio-2.0 gstreamer-app-1.0 gstreamer-rtsp-server-1.0 pangocairo jansson
 video_missing := $(if $(filter h264,$(CODECS)),,H.264) \
     $(foreach p,$(video_packages),$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p)))
 video := $(if $(strip $(video_missing)),,$(bin)/plantcast-video)
@@ -178,7 +177,6 @@ $(bin)/plantcast-film: $(call objects,$(wildcard clients/film/*.c)) $(out)/lib/c
 	$(link)
 player_sources := $(wildcard clients/wall/*.c)
 $(call objects,$(player_sources)): CFLAGS += $(shell pkg-config --cflags sdl2 pangocairo 2>/dev/null)
-# What draws a wall, for its window and for video.
 $(out)/lib/player.a: $(call objects,$(filter-out %/main.c %/screen.c,$(player_sources)))
 $(bin)/plantcast-wall: $(call objects,$(addprefix clients/wall/,main.c screen.c) $(lazy)) $(out)/lib/player.a \
     $(out)/lib/link.a $(archives)
@@ -186,7 +184,7 @@ $(bin)/plantcast-wall: $(call objects,$(addprefix clients/wall/,main.c screen.c)
 # Neither the daemon nor another program links its libraries.
 video_objects := $(call objects,$(if $(video),$(wildcard clients/video/*.c)))
 $(video_objects) $(patsubst %,$(out)/obj/%.alone,$(wildcard clients/video/*.h)): CFLAGS += $(video_cflags)
-$(bin)/plantcast-video: $(video_objects) $(call objects,$(lazy)) $(out)/lib/player.a $(out)/lib/link.a $(archives)
+$(bin)/plantcast-video: $(video_objects) $(call objects,$(lazy)) $(out)/lib/link.a $(archives)
 	$(link) $(shell pkg-config --libs $(video_packages))
 $(bin)/plantcast-sim: $(call objects,$(sim_sources)) $(archives)
 	$(link)
@@ -304,7 +302,6 @@ $(out)/tests/validation/compare: ldflags += -Wl,--wrap=field_scalars_of
 $(out)/tests/faults/libEGL.so.1: $(out)/obj/tests/faults/gl_faults.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
 # Kills a program where the test says; sets its clock wrong.
-$(out)/obj/tests/faults/slow_answer.pic.o: CFLAGS += $(video_cflags)
 # Preloaded into programs of others, too, which have no sanitizer.
 $(out)/obj/tests/faults/%.pic.o: CFLAGS += -fno-sanitize=all
 $(out)/tests/faults/%: ldflags += -fno-sanitize=all

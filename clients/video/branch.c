@@ -16,8 +16,6 @@ static void drop(struct branch *branch)
     gst_element_set_state(branch->pipeline, GST_STATE_NULL);
     gst_clear_object(&branch->pipeline);
     g_atomic_int_set(&branch->readers, 0);
-    if (branch->clear)
-        branch->clear(branch);
 }
 
 /* Prints what it said, if it is an error. */
@@ -73,7 +71,7 @@ void branch_look(struct branch *branch)
     } else if (branch->text && !branch->pipeline && now_us > branch->again_us) {
         branch->again_us = now_us + WAIT_US;
         if (branch_begin(branch))
-            fprintf(stderr, "plantcast-video: %s: begun anew\n", branch->name);
+            fprintf(stderr, "plantcast-video: %s: started again\n", branch->name);
     }
 }
 

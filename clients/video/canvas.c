@@ -3,10 +3,8 @@
 #include "canvas.h"
 
 #include <math.h>
-#include <string.h>
 
-#include "clients/wall/brush.h"
-#include "clients/wall/words.h"
+#include "brush.h"
 #include "video_words.h"
 
 static const double CARD_RGB[3] = { 0.10, 0.11, 0.13 }, ALARM_RGB[3] = { 0.66, 0.12, 0.10 }, STRIP_RGB[3] = { 0.13, 0.15, 0.18 };
@@ -31,10 +29,10 @@ static void colour(cairo_t *cairo, const double rgb[3])
 /* As large as it may be, and smaller where it would not fit, its letters' foot at y. */
 static void centred(cairo_t *cairo, const char *text, double px, bool bold, double width, double y)
 {
-    double wide = brush_measure(cairo, px, bold, text).width;
+    double wide = brush_width(cairo, px, bold, text);
     px = wide > 0.92 * width ? px * 0.92 * width / wide : px;
-    struct box box = { 0, y - ASCENT * px, width, px };
-    brush_text(cairo, &box, px, bold, WHITE, ALIGN_CENTRE, false, text);
+    struct brush_box box = { 0, y - ASCENT * px, width, px };
+    brush_text(cairo, &box, px, bold, BRUSH_CENTRE, text);
 }
 
 static char *time_text(const struct shown *look, gint64 utc_us, const char *format)
@@ -58,7 +56,7 @@ static void draw_card(cairo_t *cairo, const struct canvas *canvas, const struct 
     cairo_fill(cairo);
     centred(cairo, look->headline, px, true, width, 0.5 * height - 0.8 * px);
     if (look->since_us) {
-        char *time = time_text(look, look->since_us, "%Y-%m-%d %H:%M:%S %Z"), *text = video_say(words_language(), VIDEO_SINCE, time, NULL);
+        char *time = time_text(look, look->since_us, "%Y-%m-%d %H:%M:%S %Z"), *text = video_say(video_language(), VIDEO_SINCE, time, NULL);
         centred(cairo, text, 0.8 * px, false, width, 0.5 * height + 1.0 * px);
         g_free(text);
         g_free(time);
@@ -69,13 +67,13 @@ static void draw_card(cairo_t *cairo, const struct canvas *canvas, const struct 
 static char *age_text(const struct shown *look)
 {
     if (!look->picture)
-        return video_say(words_language(), VIDEO_NO_PICTURE, NULL, NULL);
+        return video_say(video_language(), VIDEO_NO_PICTURE, NULL, NULL);
     if (look->age_ms < 0)
         return g_strdup("");
     double age_s = (double)look->age_ms / 1000;
     char number[32];
     g_snprintf(number, sizeof(number), "%.0f", ceil(age_s < 120 ? age_s : age_s / 60));
-    return video_say(words_language(), age_s < 120 ? VIDEO_AGE_S : VIDEO_AGE_MIN, number, NULL);
+    return video_say(video_language(), age_s < 120 ? VIDEO_AGE_S : VIDEO_AGE_MIN, number, NULL);
 }
 
 /* Clock and age at the right, where they have room in any case; the title has the rest. */
@@ -86,33 +84,18 @@ static void draw_strip(cairo_t *cairo, const struct canvas *canvas, const struct
     colour(cairo, look->picture ? STRIP_RGB : ALARM_RGB);
     cairo_rectangle(cairo, 0, y, canvas->width_px, height);
     cairo_fill(cairo);
-    double clock_px = brush_measure(cairo, px, true, clock).width, age_px = brush_measure(cairo, px, false, age).width;
-    struct box box = { pad, y + 0.5 * (height - HIGH * px), canvas->width_px - 2 * pad, HIGH * px };
-    brush_text(cairo, &box, px, true, WHITE, ALIGN_RIGHT, false, clock);
+    double clock_px = brush_width(cairo, px, true, clock), age_px = brush_width(cairo, px, false, age);
+    struct brush_box box = { pad, y + 0.5 * (height - HIGH * px), canvas->width_px - 2 * pad, HIGH * px };
+    brush_text(cairo, &box, px, true, BRUSH_RIGHT, clock);
     box.width -= clock_px + 1.5 * pad;
     if (age_px < box.width) {
-        brush_text(cairo, &box, px, false, WHITE, ALIGN_RIGHT, false, age);
+        brush_text(cairo, &box, px, false, BRUSH_RIGHT, age);
         box.width -= age_px + pad;
     }
     if (box.width > 2 * px)
-        brush_text(cairo, &box, px, false, WHITE, ALIGN_LEFT, false, look->title);
+        brush_text(cairo, &box, px, false, BRUSH_LEFT, look->title);
     g_free(clock);
     g_free(age);
-}
-
-/* In the upper right corner: that a stream stands still is to be seen in each tile. */
-static void draw_clock(cairo_t *cairo, const struct canvas *canvas, const struct shown *look, gint64 utc_us)
-{
-    double px = 0.55 * strip_px(canvas->height_px), pad = 0.5 * px;
-    char *clock = time_text(look, utc_us, "%H:%M:%S");
-    struct box box = { 0, 0, brush_measure(cairo, px, true, clock).width + 2 * pad, HIGH * px + pad };
-    box.x = canvas->width_px - box.width;
-    colour(cairo, STRIP_RGB);
-    cairo_rectangle(cairo, box.x, box.y, box.width, box.height);
-    cairo_fill(cairo);
-    box.y = 0.5 * pad;
-    brush_text(cairo, &box, px, true, WHITE, ALIGN_CENTRE, false, clock);
-    g_free(clock);
 }
 
 /* --- time code --------------------------------------------------------------------------------------------------------------- */
@@ -135,34 +118,19 @@ static void draw_code(cairo_t *cairo, const struct canvas *canvas, guint64 code)
     }
 }
 
-static void draw_picture(cairo_t *cairo, const struct canvas *canvas, const struct shown *look, double height)
-{
-    if (look->shift_x || look->shift_y)
-        brush_fill(cairo, &(struct box){ 0, 0, canvas->width_px, height }, GROUND);
-    cairo_set_source_surface(cairo, look->picture, look->shift_x, look->shift_y);
-    cairo_paint(cairo);
-    if (look->dim > 0) {
-        cairo_set_source_rgba(cairo, 0, 0, 0, look->dim);
-        cairo_paint(cairo);
-    }
-}
-
 void canvas_draw(const struct canvas *canvas, guint8 *bgrx, int stride_bytes, const struct shown *look, gint64 utc_us)
 {
     cairo_surface_t *surface =
         cairo_image_surface_create_for_data(bgrx, CAIRO_FORMAT_RGB24, canvas->width_px, canvas->height_px, stride_bytes);
     cairo_t *cairo = cairo_create(surface);
     double height = canvas_picture_px(canvas->height_px);
-    if (look->picture && look->whole) {
-        draw_picture(cairo, canvas, look, canvas->height_px);
-        draw_clock(cairo, canvas, look, utc_us);
+    if (look->picture) {
+        cairo_set_source_surface(cairo, look->picture, 0, 0);
+        cairo_paint(cairo);
     } else {
-        if (look->picture)
-            draw_picture(cairo, canvas, look, height);
-        else
-            draw_card(cairo, canvas, look, height);
-        draw_strip(cairo, canvas, look, utc_us, height);
+        draw_card(cairo, canvas, look, height);
     }
+    draw_strip(cairo, canvas, look, utc_us, height);
     if (canvas->time_code)
         draw_code(cairo, canvas, code_of(look, utc_us));
     cairo_destroy(cairo);

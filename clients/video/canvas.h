@@ -12,11 +12,8 @@ struct shown {                /* what is to be seen now; all belongs to who says
     const char *headline, *detail;
     gint64 since_us; /* UTC, since when there is a card; 0: it does not matter */
     const char *title;
-    gint64 age_ms;        /* of the oldest value; -1: none takes part */
-    GTimeZone *zone;      /* of the plant */
-    int shift_x, shift_y; /* of the picture */
-    double dim;           /* 0: as bright as it is; 1: black */
-    bool whole;           /* the picture is as large as the video: a tile, which has a small clock in place of the strip */
+    gint64 age_ms;   /* of the oldest value; -1: none takes part */
+    GTimeZone *zone; /* of the plant */
 };
 
 struct canvas {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-video`: a view of a daemon, or a display of a wall, as video. Draws a frame at each tick, whatever there is to be seen, and
-   has it encoded once. */
+/* `plantcast-video`: a view of a daemon as video. Draws a frame at each tick, a picture or a card, and has it encoded once. */
 #include <glib-unix.h>
 #include <locale.h>
 #include <signal.h>
@@ -8,26 +7,22 @@
 
 #include "base/service_manager.h"
 #include "branch.h"
-#include "clients/wall/words.h"
 #include "encoder.h"
-#include "http.h"
+#include "metrics.h"
 #include "rtsp.h"
 #include "source.h"
-#include "wall_source.h"
-#include "whep.h"
+#include "video_words.h"
 
 struct program {
     struct options options;
     GMainLoop *loop;
     struct canvas canvas;
-    struct source *source;           /* of a view; NULL: */
-    struct wall_source *wall_source; /* of a display of a wall */
+    struct source *source;
     struct outputs *outputs;
     struct encoder *encoder;
     struct rtsp *rtsp;
-    struct branch srt, hls;
-    struct whep *whep; /* NULL: off */
-    struct http *http;
+    struct branch srt;
+    struct metrics *metrics; /* NULL: off */
     bool card; /* in the newest frame */
     GSource *ticks;
     gint64 begin_us, alive_us;
@@ -36,6 +31,32 @@ struct program {
     int code;
 };
 
+/* --- counters ------------------------------------------------------------------------------------------------------------------------ */
+
+static void add_metric(GString *out, const char *name, const char *type, const char *help, guint64 value)
+{
+    g_string_append_printf(out, "# HELP %s %s\n# TYPE %s %s\n%s %" G_GUINT64_FORMAT "\n", name, help, name, type, name, value);
+}
+
+static void tell_metrics(struct program *program)
+{
+    GString *out = g_string_new("");
+    struct outputs_counts counts;
+    outputs_count(program->outputs, &counts);
+    add_metric(out, "plantcast_video_frames_total", "counter", "Frames that were encoded, once for all who watch.", counts.units);
+    add_metric(out, "plantcast_video_key_frames_total", "counter", "Key frames among them.", counts.key_units);
+    add_metric(out, "plantcast_video_bytes_total", "counter", "Bytes of them.", counts.bytes);
+    add_metric(out, "plantcast_video_late_frames_total", "counter", "Frames left out since drawing or encoding was behind.", program->late);
+    add_metric(out, "plantcast_video_dropped_frames_total", "counter", "Frames that an output did not take, or not yet.", counts.dropped);
+    add_metric(out, "plantcast_video_pictures_total", "counter", "Pictures from the server.", source_pictures(program->source));
+    add_metric(out, "plantcast_video_card", "gauge", "1: a card is shown in place of a picture.", program->card);
+    g_string_append_printf(out,
+                           "# HELP plantcast_video_readers Who watches.\n# TYPE plantcast_video_readers gauge\n"
+                           "plantcast_video_readers{output=\"rtsp\"} %u\nplantcast_video_readers{output=\"srt\"} %d\n",
+                           rtsp_readers(program->rtsp), g_atomic_int_get(&program->srt.readers));
+    metrics_set(program->metrics, g_string_free(out, FALSE));
+}
+
 /* --- frames ------------------------------------------------------------------------------------------------------------------------ */
 
 static void draw(struct program *program, guint64 index)
@@ -43,10 +64,7 @@ static void draw(struct program *program, guint64 index)
     int stride_bytes = program->options.width_px * 4;
     struct shown look;
     GstMapInfo map;
-    if (program->wall_source)
-        wall_source_look(program->wall_source, &look);
-    else
-        source_look(program->source, &look);
+    source_look(program->source, &look);
     program->card = !look.picture;
     if (!encoder_is_ready(program->encoder)) {
         program->late++;
@@ -78,14 +96,14 @@ static gboolean on_tick(gpointer data)
         index = program->next;
     program->late += index - program->next;
     draw(program, index);
-    whep_look(program->whep);
+    if (program->metrics)
+        tell_metrics(program);
     program->next = index + 1;
     g_source_set_ready_time(program->ticks, time_of(program, program->next));
     if (now_us - program->alive_us > G_USEC_PER_SEC) {
         program->alive_us = now_us;
         service_notify("WATCHDOG=1");
         branch_look(&program->srt);
-        branch_look(&program->hls);
         if (!encoder_is_good(program->encoder)) {
             program->code = 1;
             g_main_loop_quit(program->loop);
@@ -111,33 +129,6 @@ static void begin_ticks(struct program *program)
     g_source_attach(program->ticks, NULL);
 }
 
-/* --- counters ------------------------------------------------------------------------------------------------------------------------ */
-
-static void add_metric(GString *out, const char *name, const char *type, const char *help, guint64 value)
-{
-    g_string_append_printf(out, "# HELP %s %s\n# TYPE %s %s\n%s %" G_GUINT64_FORMAT "\n", name, help, name, type, name, value);
-}
-
-static void write_metrics(GString *out, void *data)
-{
-    struct program *program = data;
-    struct outputs_counts counts;
-    outputs_count(program->outputs, &counts);
-    add_metric(out, "plantcast_video_frames_total", "counter", "Frames that were encoded, once for all who watch.", counts.units);
-    add_metric(out, "plantcast_video_key_frames_total", "counter", "Key frames among them.", counts.key_units);
-    add_metric(out, "plantcast_video_bytes_total", "counter", "Bytes of them.", counts.bytes);
-    add_metric(out, "plantcast_video_late_frames_total", "counter", "Frames left out since drawing or encoding was behind.", program->late);
-    add_metric(out, "plantcast_video_dropped_frames_total", "counter", "Frames that an output did not take, or not yet.", counts.dropped);
-    add_metric(out, "plantcast_video_pictures_total", "counter", "Pictures from the server.",
-               program->wall_source ? wall_source_pictures(program->wall_source) : source_pictures(program->source));
-    add_metric(out, "plantcast_video_card", "gauge", "1: a card is shown in place of a picture.", program->card);
-    g_string_append_printf(out,
-                           "# HELP plantcast_video_readers Who watches.\n# TYPE plantcast_video_readers gauge\n"
-                           "plantcast_video_readers{output=\"rtsp\"} %u\nplantcast_video_readers{output=\"srt\"} %d\n"
-                           "plantcast_video_readers{output=\"whep\"} %u\n",
-                           rtsp_readers(program->rtsp), g_atomic_int_get(&program->srt.readers), whep_readers(program->whep));
-}
-
 /* --- life ---------------------------------------------------------------------------------------------------------------------------- */
 
 static gboolean on_signal(gpointer data)
@@ -153,16 +144,10 @@ static bool begin(struct program *program)
     program->outputs = outputs_create();
     if (options->srt_port)
         srt_init(&program->srt, options, program->outputs);
-    if (options->whep)
-        program->whep = whep_create(options, program->outputs);
-    if (options->hls_path)
-        hls_init(&program->hls, options, program->outputs);
-    bool sourced =
-        options->wall ? (program->wall_source = wall_source_create(options)) != NULL : (program->source = source_create(options)) != NULL;
-    return sourced && (program->encoder = encoder_create(options, program->outputs)) &&
+    return (program->source = source_create(options)) && (program->encoder = encoder_create(options, program->outputs)) &&
            (!options->rtsp_port || (program->rtsp = rtsp_create(options, program->outputs))) &&
-           (!options->srt_port || branch_begin(&program->srt)) && (!options->hls_path || branch_begin(&program->hls)) &&
-           (!options->http_port || (program->http = http_create(options, program->whep, write_metrics, program)));
+           (!options->srt_port || branch_begin(&program->srt)) &&
+           (!options->http_port || (program->metrics = metrics_create(options->http_port)));
 }
 
 static void end(struct program *program)
@@ -171,14 +156,11 @@ static void end(struct program *program)
         g_source_destroy(program->ticks);
         g_source_unref(program->ticks);
     }
-    whep_destroy(&program->whep);
-    http_destroy(&program->http);
+    metrics_destroy(&program->metrics);
     rtsp_destroy(&program->rtsp);
     branch_end(&program->srt);
-    branch_end(&program->hls);
     encoder_destroy(&program->encoder);
     source_destroy(&program->source);
-    wall_source_destroy(&program->wall_source);
     outputs_destroy(&program->outputs);
     g_main_loop_unref(program->loop);
 }
@@ -208,7 +190,7 @@ int main(int argc, char **argv)
     signal(SIGPIPE, SIG_IGN);
     int code = options_read(&program.options, &argc, &argv);
     if (code < 0) {
-        words_choose(program.options.language);
+        video_choose_language(program.options.language);
         gst_init(NULL, NULL);
         code = run(&program);
     }

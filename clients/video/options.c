@@ -15,21 +15,17 @@ enum {
     LEAST_FPS = 5,
     MOST_FPS = 30,
     SRT_LEAST_CHARS = 10,
-    SRT_MOST_CHARS = 79,
-    MOST_DISPLAYS = 16
+    SRT_MOST_CHARS = 79
 };
 
 static const char SUMMARY[] =
-    "Shows a view of a Plantcast daemon, or a display of a wall, as video: RTSP, HLS, SRT and WebRTC (WHEP), of one\n"
-    "H.264 encoder. Markers, legend, clock and the age of the values are in the picture. If the server is gone, or\n"
-    "tells no value, a card says so within 3 s.";
+    "Shows a view of a Plantcast daemon as video, by RTSP and SRT, from one H.264 encoder. Markers, legend, clock and\n"
+    "the age of the values are in the picture. If the server is gone, or tells no value, a card says so within 3 s.";
 static const char DETAIL[] = "Outputs are off unless asked for. They listen on 127.0.0.1 unless --listen says otherwise, which takes "
                              "--readers-file or --open-readers:\n"
                              "  RTSP  rtsp://HOST:PORT/plantcast (user and password)\n"
-                             "  HLS   http://HOST:PORT/hls/index.m3u8 with --http (likewise), or the files of --hls by another web server\n"
                              "  SRT   srt://HOST:PORT, as caller (passphrase: the password)\n"
-                             "  WHEP  http://HOST:PORT/whep with --http (bearer token: the password); media goes by UDP\n"
-                             "http://HOST:PORT/metrics has counters in Prometheus' text form. Only SRT and media by WebRTC are encrypted.\n"
+                             "Only SRT is encrypted. With --http, http://127.0.0.1:PORT/metrics has counters in Prometheus' text form.\n"
                              "Exit status: 2 wrong usage, 1 anything else.";
 
 static int wrong(const char *fmt, ...) G_GNUC_PRINTF(1, 2);
@@ -123,7 +119,7 @@ static int check_numbers(const struct options *options)
     } numbers[] = { { "--fps", options->fps, LEAST_FPS, MOST_FPS }, { "--kbps", options->kbps, 100, 100000 },
                     { "--every", options->every_ms, 200, 1000 },    { "--most-readers", options->most_readers, 1, OPTIONS_MOST_READERS },
                     { "--rtsp", options->rtsp_port, 0, 65535 },     { "--http", options->http_port, 0, 65535 },
-                    { "--srt", options->srt_port, 0, 65535 },       { "--display", options->display, 1, MOST_DISPLAYS } };
+                    { "--srt", options->srt_port, 0, 65535 } };
     int code = -1;
     for (size_t i = 0; i < G_N_ELEMENTS(numbers) && code < 0; i++)
         code = check_number(numbers[i].name, numbers[i].value, numbers[i].least, numbers[i].most);
@@ -141,21 +137,15 @@ static int check_together(const struct options *options, bool open_readers)
     unsigned char address[16];
     if (options->view && options->query)
         return wrong("--view and --query do not go together");
-    if (options->wall && (options->view || options->query))
-        return wrong("--wall goes with neither --view nor --query");
     if (strcmp(options->language, "en") != 0 && strcmp(options->language, "ko") != 0 && strcmp(options->language, "de") != 0)
         return wrong("--language %s: expected en, ko or de", options->language);
-    if (!options->rtsp_port && !options->srt_port && !options->hls_path && !options->whep)
-        return wrong("no output was asked for: --rtsp, --srt, --hls or --whep");
-    if (options->whep && !options->http_port)
-        return wrong("--whep is served by --http PORT");
+    if (!options->rtsp_port && !options->srt_port)
+        return wrong("no output was asked for: --rtsp or --srt");
     if (inet_pton(AF_INET, options->listen, address) != 1 && inet_pton(AF_INET6, options->listen, address) != 1)
         return wrong("--listen %s: expected an address, as 0.0.0.0 or ::", options->listen);
     if (!is_loopback(options->listen) && !options->user && !open_readers)
         return wrong("--listen %s: whoever gets there would see the plant; --readers-file names who may, --open-readers lets anyone",
                      options->listen);
-    if (options->hls_path && !g_file_test(options->hls_path, G_FILE_TEST_IS_DIR))
-        return wrong("--hls %s: there is no such folder", options->hls_path);
     if (options->user && open_readers)
         return wrong("--readers-file and --open-readers do not go together");
     return -1;
@@ -164,15 +154,13 @@ static int check_together(const struct options *options, bool open_readers)
 int options_read(struct options *options, int *argc, char ***argv)
 {
     char *size = NULL, *readers_path = NULL;
-    gboolean open_readers = FALSE, time_code = FALSE, whep = FALSE, version = FALSE;
-    *options = (struct options){ .width_px = 1280, .height_px = 720, .fps = 10, .kbps = 4000, .every_ms = 1000, .display = 1 };
+    gboolean open_readers = FALSE, time_code = FALSE, version = FALSE;
+    *options = (struct options){ .width_px = 1280, .height_px = 720, .fps = 10, .kbps = 4000, .every_ms = 1000 };
     options->most_readers = 64;
     const GOptionEntry entries[] = {
         { "view", 0, 0, G_OPTION_ARG_STRING, &options->view, "a view with a name, of the plant file or saved in the page", "ID" },
         { "query", 0, 0, G_OPTION_ARG_STRING, &options->query, "a view as /snapshot.png takes it: group=temperature&camera=...", "TEXT" },
-        { "wall", 0, 0, G_OPTION_ARG_STRING, &options->wall, "a display of that wall, in place of a view", "NAME" },
-        { "display", 0, 0, G_OPTION_ARG_INT, &options->display, "which of its displays, from 1 (1)", "N" },
-        { "language", 0, 0, G_OPTION_ARG_STRING, &options->language, "of what it says, and legend and labels: en, ko or de (en)", "L" },
+        { "language", 0, 0, G_OPTION_ARG_STRING, &options->language, "of cards, strip, legend and labels: en, ko or de (en)", "L" },
         { "title", 0, 0, G_OPTION_ARG_STRING, &options->title, "what the picture is called (the view's title)", "TEXT" },
         { "token-file", 0, 0, G_OPTION_ARG_FILENAME, &options->token_path, "its first line is a viewer's token (plantcast token)", "FILE" },
         { "ca", 0, 0, G_OPTION_ARG_FILENAME, &options->ca_path, "certificates (PEM) that are trusted, in place of this machine's", "FILE" },
@@ -183,9 +171,7 @@ int options_read(struct options *options, int *argc, char ***argv)
         { "listen", 0, 0, G_OPTION_ARG_STRING, &options->listen, "address of all outputs (127.0.0.1)", "ADDRESS" },
         { "rtsp", 0, 0, G_OPTION_ARG_INT, &options->rtsp_port, "serve RTSP", "PORT" },
         { "srt", 0, 0, G_OPTION_ARG_INT, &options->srt_port, "listen for callers by SRT", "PORT" },
-        { "hls", 0, 0, G_OPTION_ARG_FILENAME, &options->hls_path, "write HLS into this folder, which is for nothing else", "FOLDER" },
-        { "http", 0, 0, G_OPTION_ARG_INT, &options->http_port, "serve that folder, WHEP, and /metrics", "PORT" },
-        { "whep", 0, 0, G_OPTION_ARG_NONE, &whep, "serve WebRTC to browsers, by WHEP at --http", NULL },
+        { "http", 0, 0, G_OPTION_ARG_INT, &options->http_port, "serve /metrics on 127.0.0.1", "PORT" },
         { "readers-file", 0, 0, G_OPTION_ARG_FILENAME, &readers_path, "its first line, USER:PASSWORD, lets in those who watch", "FILE" },
         { "open-readers", 0, 0, G_OPTION_ARG_NONE, &open_readers, "whoever reaches the address may watch", NULL },
         { "most-readers", 0, 0, G_OPTION_ARG_INT, &options->most_readers, "of each output at once (64)", "N" },
@@ -206,7 +192,6 @@ int options_read(struct options *options, int *argc, char ***argv)
         code = 0;
     }
     options->time_code = time_code;
-    options->whep = whep;
     if (!options->listen)
         options->listen = g_strdup("127.0.0.1");
     if (!options->language)
@@ -230,9 +215,8 @@ int options_read(struct options *options, int *argc, char ***argv)
 
 void options_finish(struct options *options)
 {
-    char *const texts[] = { options->url,        options->view,   options->query,    options->title, options->token,
-                            options->ca_path,    options->listen, options->hls_path, options->wall,  options->language,
-                            options->token_path, options->user,   options->password };
+    char *const texts[] = { options->url,    options->view,     options->query,      options->title, options->token,   options->ca_path,
+                            options->listen, options->language, options->token_path, options->user,  options->password };
     for (size_t i = 0; i < G_N_ELEMENTS(texts); i++)
         g_free(texts[i]);
     *options = (struct options){ 0 };

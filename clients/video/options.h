@@ -10,17 +10,14 @@ enum { OPTIONS_MOST_READERS = 512 };
 struct options {
     char *url;             /* of the daemon, with a slash at its end */
     char *view, *query;    /* id of a view with a name; or names and values as /snapshot.png takes them; both NULL: the whole plant */
-    char *wall, *language; /* id of a wall, in place of a view; NULL: a view. Of what it says: en, ko or de */
-    int display;           /* which of its displays, from 1 */
+    char *language;        /* of cards, strip and legend: en, ko or de */
     char *title;           /* in the strip; NULL: what the view is called */
     char *token, *ca_path, *token_path; /* NULL: none */
     char *listen;                       /* address of all outputs */
     int width_px, height_px, fps, kbps, every_ms;
     int rtsp_port, http_port, srt_port; /* 0: off */
-    char *hls_path;                     /* folder of the segments; NULL: off */
     char *user, *password;              /* of those who watch; NULL: nobody is asked */
     int most_readers;                   /* of each output */
-    bool whep;                          /* by http_port */
     bool time_code;
 };
 

@@ -2,13 +2,15 @@
 /* One request at a time to the daemon: its time zone, the views with names, and pictures. */
 #include "source.h"
 
+#include <errno.h>
+#include <gio/gio.h>
 #include <jansson.h>
-#include <libsoup/soup.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "base/http_request.h"
 #include "clients/link/png.h"
-#include "clients/wall/words.h"
 #include "message/view_address.h"
 #include "video_words.h"
 
@@ -16,17 +18,18 @@
    received within SLOWEST; so it is never older than OLDEST. */
 static const gint64 OLDEST_US = 2700000, SLOWEST_US = 1300000, OTHERS_US = 1200000, VIEWS_US = 5000000, LIMITED_US = 600000000,
                     DENIED_US = 8000000;
+enum { MOST_BYTES = 128 << 20 }; /* of an answer */
 
 enum ask { ASK_PLANT, ASK_VIEWS, ASK_PICTURE, ASK_COUNT };
 
 struct source {
     const struct options *options;
-    SoupSession *session;
-    GCancellable *cancel; /* of the request under way; NULL: none */
-    SoupMessage *message;
+    struct http_request http; /* while `asking`, a thread of its own has it */
+    CURLcode code;            /* how the request ended */
+    bool asking;
+    _Atomic bool ended;
     enum ask asked;
     gint64 asked_us, asked_utc_us, due_us[ASK_COUNT], wait_until_us; /* monotonic, but for utc */
-    bool overdue;
 
     GTimeZone *zone;
     char *view, *view_query, *view_title; /* of the view with a name, as it is kept and as a query; NULL: not known yet, or there is none */
@@ -39,7 +42,6 @@ struct source {
     bool barred;        /* its right is gone, or the view: dark at once */
     bool limited;       /* the token may not read views, and may be for pictures of this one: it is asked for by its id */
     guint64 pictures;
-    bool ended;
 };
 
 /* --- what is wrong ------------------------------------------------------------------------------------------ */
@@ -61,8 +63,8 @@ static void keep(char *said, char *out, gsize size)
 static void fail(struct source *source, enum video_word headline, enum video_word detail, const char *a, const char *b)
 {
     char said[sizeof(source->said)];
-    keep(video_say(words_language(), headline, NULL, NULL), source->headline, sizeof(source->headline));
-    keep(video_say(words_language(), detail, a, b), source->detail, sizeof(source->detail));
+    keep(video_say(video_language(), headline, NULL, NULL), source->headline, sizeof(source->headline));
+    keep(video_say(video_language(), detail, a, b), source->detail, sizeof(source->detail));
     keep(video_say(LANGUAGE_EN, detail, a, b), said, sizeof(said));
     if (strcmp(source->said, said) != 0)
         fprintf(stderr, "plantcast-video: %s: %s\n", source->options->url, said);
@@ -76,11 +78,10 @@ static void bar(struct source *source)
     g_clear_pointer(&source->picture, cairo_surface_destroy);
 }
 
-static void refuse(struct source *source, guint status, GBytes *body)
+static void refuse(struct source *source, long status)
 {
-    gsize count = 0;
-    const char *text = body ? g_bytes_get_data(body, &count) : NULL;
-    char *words = g_strndup(text ? text : "", MIN(count, 160));
+    const struct text *body = &source->http.answer;
+    char *words = g_strndup(body->at ? body->at : "", MIN(body->length, 160));
     if (status == 401 || status == 403) {
         fail(source, VIDEO_NOT_LET_IN, VIDEO_TOKEN, words, NULL);
         bar(source);
@@ -93,7 +94,7 @@ static void refuse(struct source *source, guint status, GBytes *body)
         bar(source);
     } else {
         char number[16];
-        g_snprintf(number, sizeof(number), "%u", status);
+        g_snprintf(number, sizeof(number), "%ld", status);
         fail(source, VIDEO_NO_PICTURE, VIDEO_ANSWERS, number, words);
     }
     g_free(words);
@@ -174,7 +175,7 @@ static void take_views(struct source *source, const json_t *o)
     }
     if (!found) {
         g_clear_pointer(&source->view, g_free);
-        char *none = video_say(words_language(), VIDEO_NONE, NULL, NULL);
+        char *none = video_say(video_language(), VIDEO_NONE, NULL, NULL);
         fail(source, VIDEO_NO_VIEW, VIDEO_VIEWS, source->options->view, names->len ? names->str : none);
         g_free(none);
         bar(source);
@@ -187,21 +188,21 @@ static guint32 big_endian(const guint8 *at)
     return (guint32)at[0] << 24 | (guint32)at[1] << 16 | (guint32)at[2] << 8 | at[3];
 }
 
-/* Of the size that was asked for, and none else. */
-static cairo_surface_t *decode(const struct options *options, GBytes *body)
+/* Returns the picture; NULL if the answer is none, or has another size than was asked for. */
+static cairo_surface_t *decode(const struct options *options, const struct text *body)
 {
-    gsize count;
-    const guint8 *at = g_bytes_get_data(body, &count);
-    if (count < 24 || big_endian(at + 16) != (guint32)options->width_px ||
+    const guint8 *at = (const guint8 *)body->at;
+    if (body->length < 24 || big_endian(at + 16) != (guint32)options->width_px ||
         big_endian(at + 20) != (guint32)canvas_picture_px(options->height_px))
         return NULL;
-    return png_read(at, count);
+    return png_read(at, body->length);
 }
 
-static void take_picture(struct source *source, SoupMessage *message, GBytes *body)
+static void take_picture(struct source *source)
 {
-    const char *header = soup_message_headers_get_one(soup_message_get_response_headers(message), "Plantcast-Frame");
-    const char *age = header ? strstr(header, "oldest_age_ms=") : NULL;
+    struct curl_header *header = NULL;
+    CURLHcode found = curl_easy_header(source->http.handle, "Plantcast-Frame", 0, CURLH_HEADER, -1, &header);
+    const char *age = found == CURLHE_OK ? strstr(header->value, "oldest_age_ms=") : NULL;
     gint64 took_us = g_get_monotonic_time() - source->asked_us;
     cairo_surface_t *picture = NULL;
     char number[32], other[32];
@@ -211,7 +212,7 @@ static void take_picture(struct source *source, SoupMessage *message, GBytes *bo
         fail(source, VIDEO_TOO_SLOW, VIDEO_TOOK, number, other);
     } else if (!age) {
         fail(source, VIDEO_NO_PICTURE, VIDEO_EARLIER, NULL, NULL);
-    } else if (!(picture = decode(source->options, body))) {
+    } else if (!(picture = decode(source->options, &source->http.answer))) {
         g_snprintf(number, sizeof(number), "%d", source->options->width_px);
         g_snprintf(other, sizeof(other), "%d", canvas_picture_px(source->options->height_px));
         fail(source, VIDEO_NO_PICTURE, VIDEO_NO_PNG, number, other);
@@ -227,16 +228,16 @@ static void take_picture(struct source *source, SoupMessage *message, GBytes *bo
     source->pictures++;
 }
 
-static void on_body(struct source *source, GBytes *body, const GError *error)
+static void on_answer(struct source *source)
 {
-    gsize count = 0;
-    const char *at = body ? g_bytes_get_data(body, &count) : NULL;
-    guint status = soup_message_get_status(source->message);
-    if (error) {
-        if (source->overdue)
-            fail(source, VIDEO_SILENT, VIDEO_NO_ANSWER, NULL, NULL);
-        else
-            fail(source, VIDEO_NO_CONNECTION, VIDEO_SAID, error->message, NULL);
+    long status = 0;
+    curl_easy_getinfo(source->http.handle, CURLINFO_RESPONSE_CODE, &status);
+    if (source->code == CURLE_OPERATION_TIMEDOUT) {
+        fail(source, VIDEO_SILENT, VIDEO_NO_ANSWER, NULL, NULL);
+        return;
+    }
+    if (source->code != CURLE_OK) {
+        fail(source, VIDEO_NO_CONNECTION, VIDEO_SAID, http_request_why(&source->http, source->code), NULL);
         return;
     }
     if (source->asked == ASK_VIEWS && (status == 403 || status == 200))
@@ -248,32 +249,42 @@ static void on_body(struct source *source, GBytes *body, const GError *error)
     if (status != 200) {
         if (source->asked == ASK_PLANT && status != 401 && status != 403) /* tokens are the business of pictures */
             return;
-        refuse(source, status, body);
+        refuse(source, status);
         return;
     }
-    json_t *o = source->asked == ASK_PICTURE ? NULL : json_loadb(at, count, 0, NULL);
+    if (source->asked == ASK_PICTURE) {
+        take_picture(source);
+        return;
+    }
+    json_t *o = json_loadb(source->http.answer.at ? source->http.answer.at : "", source->http.answer.length, 0, NULL);
     if (source->asked == ASK_PLANT)
         take_plant(source, o);
-    else if (source->asked == ASK_VIEWS)
-        take_views(source, o);
     else
-        take_picture(source, source->message, body);
+        take_views(source, o);
     json_decref(o);
 }
 
 /* --- asking ------------------------------------------------------------------------------------------ */
 
-static void on_answer(GObject *session, GAsyncResult *result, gpointer data)
+/* In a thread of the request's own: the main loop goes on drawing frames. */
+static void perform(GTask *task, gpointer object, gpointer data, GCancellable *cancel)
 {
     struct source *source = data;
-    GError *error = NULL;
-    GBytes *body = soup_session_send_and_read_finish(SOUP_SESSION(session), result, &error);
+    (void)object;
+    (void)cancel;
+    source->code = curl_easy_perform(source->http.handle);
+    g_task_return_boolean(task, TRUE);
+}
+
+static void on_performed(GObject *object, GAsyncResult *result, gpointer data)
+{
+    struct source *source = data;
+    (void)object;
+    (void)result;
+    source->asking = false;
     if (!source->ended)
-        on_body(source, body, error);
-    g_clear_error(&error);
-    g_clear_pointer(&body, g_bytes_unref);
-    g_clear_object(&source->message);
-    g_clear_object(&source->cancel);
+        on_answer(source);
+    text_finish(&source->http.answer);
 }
 
 static char *url_of(const struct source *source, enum ask ask)
@@ -303,37 +314,29 @@ static void ask(struct source *source, enum ask what, gint64 now_us)
     source->asked = what;
     source->asked_us = now_us;
     source->asked_utc_us = g_get_real_time();
-    source->overdue = false;
     source->due_us[what] = now_us + (what == ASK_PICTURE ? source->options->every_ms * 1000 : again_us[what]);
     if (what == ASK_PICTURE)
         source->valued = strstr(url, "&split=") || (!strstr(url, "&look=materials") && !strstr(url, "&show=distance"));
-    source->message = soup_message_new("GET", url);
+    gint64 most_us = what == ASK_PICTURE ? OLDEST_US : OTHERS_US;
+    CURLcode good = curl_easy_setopt(source->http.handle, CURLOPT_URL, url); /* which it copies */
+    curl_easy_setopt(source->http.handle, CURLOPT_TIMEOUT_MS, (long)(most_us / 1000));
     g_free(url);
-    if (!source->message) {
+    if (good != CURLE_OK) {
         fail(source, VIDEO_NO_VIEW, VIDEO_NO_URL, NULL, NULL);
         return;
     }
-    soup_message_add_flags(source->message, SOUP_MESSAGE_NO_REDIRECT); /* the token is for this server */
-    if (source->options->token) {
-        char *bearer = g_strconcat("Bearer ", source->options->token, NULL);
-        soup_message_headers_replace(soup_message_get_request_headers(source->message), "Authorization", bearer);
-        g_free(bearer);
-    }
-    source->cancel = g_cancellable_new();
-    soup_session_send_and_read_async(source->session, source->message, G_PRIORITY_DEFAULT, source->cancel, on_answer, source);
+    source->http.error[0] = 0;
+    source->asking = true;
+    GTask *task = g_task_new(NULL, NULL, on_performed, source);
+    g_task_set_task_data(task, source, NULL);
+    g_task_run_in_thread(task, perform);
+    g_object_unref(task);
 }
 
 /* Pictures go before all but the view that they are of. */
 static void go_on(struct source *source, gint64 now_us)
 {
-    if (source->cancel) {
-        gint64 most_us = source->asked == ASK_PICTURE ? OLDEST_US : OTHERS_US;
-        source->overdue = source->overdue || now_us - source->asked_us > most_us;
-        if (source->overdue)
-            g_cancellable_cancel(source->cancel);
-        return;
-    }
-    if (now_us < source->wait_until_us)
+    if (source->asking || now_us < source->wait_until_us)
         return;
     bool nameless = source->options->view && !source->view && !source->limited;
     if (nameless && now_us >= MIN(source->due_us[ASK_VIEWS], source->asked_us + G_USEC_PER_SEC))
@@ -386,23 +389,22 @@ guint64 source_pictures(const struct source *source)
 
 struct source *source_create(const struct options *options)
 {
-    GError *error = NULL;
-    GTlsDatabase *database = options->ca_path ? g_tls_file_database_new(options->ca_path, &error) : NULL;
-    if (error) {
-        fprintf(stderr, "plantcast-video: %s: %s\n", options->ca_path, error->message);
-        g_error_free(error);
+    if (options->ca_path && access(options->ca_path, R_OK) != 0) {
+        fprintf(stderr, "plantcast-video: %s: %s\n", options->ca_path, g_strerror(errno));
         return NULL;
     }
     struct source *source = g_new0(struct source, 1);
     source->options = options;
     source->zone = g_time_zone_new_local();
-    source->session = soup_session_new_with_options("max-conns", 1, "timeout", 0, "idle-timeout", 30, NULL);
-    if (database) {
-        soup_session_set_tls_database(source->session, database);
-        g_object_unref(database);
+    source->http = (struct http_request){ .most_bytes = MOST_BYTES, .stop = &source->ended };
+    if (!http_request_make(&source->http, "plantcast-video", options->ca_path)) {
+        source_destroy(&source);
+        return NULL;
     }
-    keep(video_say(words_language(), VIDEO_STARTING, NULL, NULL), source->headline, sizeof(source->headline));
-    keep(video_say(words_language(), VIDEO_NOTHING_YET, NULL, NULL), source->detail, sizeof(source->detail));
+    if (options->token)
+        http_request_authorize(&source->http, "Bearer ", options->token);
+    keep(video_say(video_language(), VIDEO_STARTING, NULL, NULL), source->headline, sizeof(source->headline));
+    keep(video_say(video_language(), VIDEO_NOTHING_YET, NULL, NULL), source->detail, sizeof(source->detail));
     return source;
 }
 
@@ -413,12 +415,10 @@ void source_destroy(struct source **pointer)
         return;
     *pointer = NULL;
     source->ended = true;
-    if (source->cancel)
-        g_cancellable_cancel(source->cancel);
-    while (source->cancel)
+    while (source->asking)
         g_main_context_iteration(NULL, TRUE);
     g_clear_pointer(&source->picture, cairo_surface_destroy);
-    g_object_unref(source->session);
+    http_request_finish(&source->http);
     g_time_zone_unref(source->zone);
     g_free(source->view);
     g_free(source->view_query);

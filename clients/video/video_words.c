@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "video_words.h"
 
+#include <stdio.h>
 #include <string.h>
+
+#include "render/overlay/overlay_words.h"
+#include "render/overlay/text_face.h"
 
 static const char *const words[][3] = {
     [VIDEO_STARTING] = { "STARTING", "시작하는 중", "STARTET" },
@@ -42,6 +46,20 @@ static const char *const words[][3] = {
     [VIDEO_AGE_MIN] = { "values up to {} min old", "값의 경과 시간 최대 {}분", "Werte bis zu {} min alt" },
 };
 G_STATIC_ASSERT(G_N_ELEMENTS(words) == VIDEO_WORDS && LANGUAGE_EN == 0 && LANGUAGE_KO == 1 && LANGUAGE_DE == 2);
+
+static enum language chosen;
+
+void video_choose_language(const char *language)
+{
+    overlay_language_find(language, &chosen);
+    if (!text_face_has(overlay_word(chosen, WORD_NO_DATA)))
+        fprintf(stderr, "no installed font has the letters of --language %s: boxes stand in their place (package fonts-nanum)\n", language);
+}
+
+enum language video_language(void)
+{
+    return chosen;
+}
 
 char *video_say(enum language language, enum video_word word, const char *a, const char *b)
 {

@@ -37,6 +37,10 @@ enum video_word {
     VIDEO_WORDS
 };
 
+/* Chooses the language of cards and strip: en, ko or de. Says so if no installed font has its letters. Before any other call. */
+void video_choose_language(const char *language);
+enum language video_language(void); /* English until one is chosen */
+
 /* Returns a text with values put in, in this order; NULL where it has none, or one. g_free. */
 char *video_say(enum language language, enum video_word word, const char *a, const char *b);
 

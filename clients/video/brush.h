@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Draws white text into a frame, by Pango, which finds a font for each script. Thread: one. */
+#ifndef VIDEO_BRUSH_H
+#define VIDEO_BRUSH_H
+#include <cairo.h>
+#include <stdbool.h>
+
+struct brush_box {
+    double x, y, width, height;
+};
+
+enum brush_align { BRUSH_LEFT, BRUSH_CENTRE, BRUSH_RIGHT };
+/* Draws one line at the top of a box, cut to its width with an ellipsis. */
+void brush_text(cairo_t *cairo, const struct brush_box *box, double size_px, bool bold, enum brush_align align, const char *text);
+/* Returns the width of a text in one line. */
+double brush_width(cairo_t *cairo, double size_px, bool bold, const char *text);
+
+#endif

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One answer per connection, each in a thread of its own: reads a request up to its blank line, answers, and closes. */
+#include "metrics.h"
+
+#include <gio/gio.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MOST_REQUEST_BYTES = 4096, IDLE_S = 5, MOST_CONNECTIONS = 8 };
+
+struct metrics {
+    GSocketService *service;
+    gint connections; /* that are open; atomic */
+    GMutex lock;
+    /* --- below: under lock */
+    char *text;
+};
+
+struct request {
+    struct metrics *metrics;
+    GSocketConnection *connection;
+};
+
+static void metrics_clear(gpointer data)
+{
+    struct metrics *metrics = data;
+    g_free(metrics->text);
+    g_mutex_clear(&metrics->lock);
+}
+
+/* Threads that answer may outlive metrics_destroy(): the last that lets go frees. */
+static void metrics_unref(struct metrics *metrics)
+{
+    g_atomic_rc_box_release_full(metrics, metrics_clear);
+}
+
+static bool read_request(GInputStream *in, char request[MOST_REQUEST_BYTES + 1])
+{
+    gsize n = 0;
+    request[0] = 0;
+    while (n < MOST_REQUEST_BYTES && !strstr(request, "\r\n\r\n")) {
+        gssize count = g_input_stream_read(in, request + n, MOST_REQUEST_BYTES - n, NULL, NULL);
+        if (count <= 0)
+            return false;
+        n += (gsize)count;
+        request[n] = 0;
+    }
+    return true;
+}
+
+static void answer(struct metrics *metrics, GOutputStream *out, bool known)
+{
+    g_mutex_lock(&metrics->lock);
+    char *body = g_strdup(known ? metrics->text : "GET /metrics is expected\n");
+    g_mutex_unlock(&metrics->lock);
+    g_output_stream_printf(out, NULL, NULL, NULL,
+                           "HTTP/1.1 %s\r\nContent-Type: text/plain; charset=utf-8\r\nContent-Length: %zu\r\n"
+                           "Cache-Control: no-store\r\nConnection: close\r\n\r\n%s",
+                           known ? "200 OK" : "404 Not Found", strlen(body), body);
+    g_free(body);
+}
+
+static gpointer serve(gpointer data)
+{
+    struct request *request = data;
+    GIOStream *stream = G_IO_STREAM(request->connection);
+    char text[MOST_REQUEST_BYTES + 1];
+    if (read_request(g_io_stream_get_input_stream(stream), text))
+        answer(request->metrics, g_io_stream_get_output_stream(stream), g_str_has_prefix(text, "GET /metrics "));
+    g_io_stream_close(stream, NULL, NULL);
+    g_object_unref(stream);
+    g_atomic_int_add(&request->metrics->connections, -1);
+    metrics_unref(request->metrics);
+    g_free(request);
+    return NULL;
+}
+
+/* A GThreadedSocketService would do the same, but that of GLib 2.74 crashes when it has as many connections as it may. */
+static gboolean on_connection(GSocketService *service, GSocketConnection *connection, GObject *from, gpointer data)
+{
+    struct metrics *metrics = data;
+    (void)service;
+    (void)from;
+    if (g_atomic_int_get(&metrics->connections) >= MOST_CONNECTIONS)
+        return TRUE; /* it is closed */
+    g_socket_set_timeout(g_socket_connection_get_socket(connection), IDLE_S);
+    struct request *request = g_new(struct request, 1);
+    *request = (struct request){ .metrics = g_atomic_rc_box_acquire(metrics), .connection = g_object_ref(connection) };
+    g_atomic_int_inc(&metrics->connections);
+    g_thread_unref(g_thread_new("metrics", serve, request));
+    return TRUE;
+}
+
+struct metrics *metrics_create(int port)
+{
+    GError *error = NULL;
+    GSocketAddress *address = g_inet_socket_address_new_from_string("127.0.0.1", (guint)port);
+    struct metrics *metrics = g_atomic_rc_box_new0(struct metrics);
+    g_mutex_init(&metrics->lock);
+    metrics->text = g_strdup("");
+    metrics->service = g_socket_service_new();
+    g_signal_connect(metrics->service, "incoming", G_CALLBACK(on_connection), metrics);
+    if (!g_socket_listener_add_address(G_SOCKET_LISTENER(metrics->service), address, G_SOCKET_TYPE_STREAM, G_SOCKET_PROTOCOL_TCP, NULL,
+                                       NULL, &error)) {
+        fprintf(stderr, "plantcast-video: --http %d: %s\n", port, error->message);
+        g_error_free(error);
+        metrics_destroy(&metrics);
+    }
+    g_object_unref(address);
+    return metrics;
+}
+
+void metrics_destroy(struct metrics **pointer)
+{
+    struct metrics *metrics = *pointer;
+    if (!metrics)
+        return;
+    *pointer = NULL;
+    g_socket_service_stop(metrics->service);
+    g_socket_listener_close(G_SOCKET_LISTENER(metrics->service));
+    g_signal_handlers_disconnect_by_data(metrics->service, metrics);
+    g_object_unref(metrics->service);
+    metrics_unref(metrics);
+}
+
+void metrics_set(struct metrics *metrics, char *text)
+{
+    g_mutex_lock(&metrics->lock);
+    char *earlier = metrics->text;
+    metrics->text = text;
+    g_mutex_unlock(&metrics->lock);
+    g_free(earlier);
+}
