@@ -104,12 +104,7 @@ occt_libs := $(patsubst %,-lTK%,$(occt_libs) XSBase RWMesh XCAF LCAF CAF CDF Mes
     GeomBase BRep G3d G2d Math ernel)
 assimp   := $(wildcard /usr/include/assimp/Importer.hpp)
 readers  := $(if $(occt),$(bin)/plantcast-import-occt) $(if $(assimp),$(bin)/plantcast-import-assimp)
-# The player of a wall's displays, likewise.
-no_player := $(if $(filter h264,$(CODECS)),,H.264) \
-             $(foreach p,sdl2 pangocairo,$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p)))
-player    := $(if $(strip $(no_player)),,$(bin)/plantcast-wall)
-
-# Video for who has no browser (clients/video), where its libraries are; else the build says what it lacks.
+# Views as video (clients/video), where its libraries are; else the build says which are missing.
 video_packages := gio-2.0 gstreamer-app-1.0 gstreamer-rtsp-server-1.0 pangocairo jansson
 video_missing := $(if $(filter h264,$(CODECS)),,H.264) \
     $(foreach p,$(video_packages),$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p)))
@@ -117,7 +112,7 @@ video := $(if $(strip $(video_missing)),,$(bin)/plantcast-video)
 video_cflags := $(if $(video),$(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(video_packages))))
 
 .PHONY: all programs run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
-all: $(programs) $(or $(player),no-player) $(or $(video),no-video) $(bin)/plantcast-init $(modules) $(readers) \
+all: $(programs) $(or $(video),no-video) $(bin)/plantcast-init $(modules) $(readers) \
     $(if $(PACKED),,$(bin)/plantcast-import-ifc/ifc.mjs) clients/web/vendor/uPlot.js clients/web/made/version.js
 # The page's charts. Without them nothing is built.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
@@ -131,9 +126,6 @@ page := $(filter-out clients/web/made/%,$(wildcard clients/web/*.* clients/web/*
 clients/web/made/version.js: deploy/stamp $(page) clients/web/vendor/uPlot.js shaders/constants.glsl
 	@echo "  WEB  $(@D)"; deploy/stamp clients/web shaders/constants.glsl
 programs: all
-no-player:
-	@echo "  without plantcast-wall, the player of a wall's displays: no $(strip $(no_player))"
-.PHONY: no-player
 no-video:
 	@echo "  without plantcast-video, a view as video: no $(strip $(video_missing))"
 .PHONY: no-video
@@ -175,12 +167,6 @@ $(bin)/plantcast: $(call objects,clients/cli/main.c $(link_lazy)) $(out)/lib/cli
 # Films: no other program links libavformat.
 $(bin)/plantcast-film: $(call objects,$(wildcard clients/film/*.c)) $(out)/lib/cli.a $(out)/lib/link.a $(archives)
 	$(link)
-player_sources := $(wildcard clients/wall/*.c)
-$(call objects,$(player_sources)): CFLAGS += $(shell pkg-config --cflags sdl2 pangocairo 2>/dev/null)
-$(out)/lib/player.a: $(call objects,$(filter-out %/main.c %/screen.c,$(player_sources)))
-$(bin)/plantcast-wall: $(call objects,$(addprefix clients/wall/,main.c screen.c) $(lazy)) $(out)/lib/player.a \
-    $(out)/lib/link.a $(archives)
-	$(link) $(shell pkg-config --libs sdl2 pangocairo 2>/dev/null)
 # Neither the daemon nor another program links its libraries.
 video_objects := $(call objects,$(if $(video),$(wildcard clients/video/*.c)))
 $(video_objects) $(patsubst %,$(out)/obj/%.alone,$(wildcard clients/video/*.h)): CFLAGS += $(video_cflags)
@@ -256,8 +242,7 @@ $(shell mkdir -p $(gen); echo '#define PLANTCAST_COMMIT "$(COMMIT)"' | cmp -s - 
         echo '#define PLANTCAST_COMMIT "$(COMMIT)"' >$(gen)/commit.h)
 
 # Shaders and colour maps, as C strings found by name (server/base/embedded.h).
-embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl shaders/maps/*.csv clients/fleet/*) \
-                  $(foreach l,en ko de,clients/web/words/$(l).js clients/web/words/lazy.$(l).js)
+embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl shaders/maps/*.csv clients/fleet/*)
 $(gen)/embedded.c: deploy/embed $(embedded_files)
 	@mkdir -p $(@D); deploy/embed $(embedded_files) >$@.new && mv $@.new $@
 
@@ -274,12 +259,6 @@ $(out)/tests/unit/rvm_test $(out)/tests/unit/rvm_fuzz_test: $(out)/lib/import.a
 $(out)/tests/unit/revision_test: $(out)/lib/import.a $(out)/lib/match.a
 $(out)/tests/unit/rvm_test $(out)/tests/unit/rvm_fuzz_test $(out)/tests/unit/revision_test: pkg_libs += -lGLU
 $(out)/tests/unit/revision_test: pkg_libs += -lminizip -lexpat
-$(out)/tests/unit/wall_rules_test: $(call objects,clients/wall/rules.c clients/wall/view_address.c clients/wall/approach.c)
-$(out)/tests/unit/wall_tile_test: $(call objects,clients/wall/view_tile.c)
-$(out)/tests/unit/wall_link_test: $(call objects,clients/wall/link.c) $(out)/lib/link.a
-$(out)/tests/unit/wall_sight_test: $(call objects,$(addprefix clients/wall/,view_sight.c view_address.c approach.c link.c)) \
-    $(out)/lib/link.a
-$(out)/tests/unit/wall_model_test: $(call objects,clients/wall/model.c clients/wall/model_plant.c)
 match_tests := $(foreach t,match tag_export,$(out)/tests/unit/$(t)_test)
 $(match_tests): $(out)/lib/match.a
 $(match_tests): pkg_libs += -lminizip -lexpat

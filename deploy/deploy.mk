@@ -23,14 +23,13 @@ prefix ?= /usr/local
 root   := $(DESTDIR)$(prefix)
 units  := $(wildcard deploy/systemd/*.service deploy/systemd/*.socket deploy/systemd/*.timer)
 units  := $(if $(video),$(units),$(filter-out %/plantcast-video@.service,$(units)))
-units  := $(if $(player),$(units),$(filter-out %/plantcast-wall@.service,$(units)))
 only_demo := $(bin)/plantcast-sim $(bin)/plantcast-demo
 install: all
 	install -d $(root)/bin $(root)/lib/plantcast $(root)/libexec/plantcast $(root)/share/plantcast $(root)/share/doc/plantcast
-	install -m 755 $(filter-out $(only_demo),$(programs)) $(player) $(root)/bin
+	install -m 755 $(filter-out $(only_demo),$(programs)) $(root)/bin
 	$(if $(video),install -m 755 $(video) $(root)/bin)
 	install -m 755 deploy/init $(root)/bin/plantcast-init
-	install -m 755 $(modules) deploy/systemd/certbot-hook $(root)/lib/plantcast
+	install -m 755 $(modules) deploy/systemd/certbot-hook deploy/systemd/kiosk $(root)/lib/plantcast
 	$(if $(readers),install -m 755 $(readers) $(root)/libexec/plantcast)
 	[ ! -d $(bin)/plantcast-import-ifc ] || cp -r $(bin)/plantcast-import-ifc $(root)/libexec/plantcast/
 	cp -r clients/web $(root)/share/plantcast/
@@ -38,12 +37,12 @@ install: all
 	cp -r deploy/prometheus deploy/grafana deploy/proxy deploy/ansible $(root)/share/doc/plantcast
 	install -d $(root)/lib/systemd/system $(root)/lib/sysusers.d $(root)/lib/tmpfiles.d $(root)/share/bash-completion/completions
 	for unit in $(units); do \
-	    sed 's|/usr/bin/plantcast|$(prefix)/bin/plantcast|g' $$unit >$(root)/lib/systemd/system/$${unit##*/} || exit 1; \
+	    sed 's|/usr/bin/plantcast|$(prefix)/bin/plantcast|g; s|/usr/lib/plantcast|$(prefix)/lib/plantcast|g' $$unit \
+	        >$(root)/lib/systemd/system/$${unit##*/} || exit 1; \
 	done
 	install -m 644 deploy/systemd/sysusers.conf $(root)/lib/sysusers.d/plantcast.conf
 	install -m 644 deploy/systemd/tmpfiles.conf $(root)/lib/tmpfiles.d/plantcast.conf
 	install -m 644 deploy/completion $(root)/share/bash-completion/completions/plantcast
-	$(if $(player),install -m 644 deploy/completion $(root)/share/bash-completion/completions/plantcast-wall)
 # The simulator and the demo plant, for who wants to try it.
 install-demo: all
 	install -d $(root)/bin
@@ -51,17 +50,14 @@ install-demo: all
 # Debian packages, of what is committed.
 deb: clients/web/vendor/uPlot.js
 	@deploy/deb $(build)/deb "$(COMMIT)"
-# One archive that installs them without a network (SIGN=KEY.pem signs it), one for displays of walls, and a container image. All need root
-# and Debian's mirror.
+# One archive that installs them without a network (SIGN=KEY.pem signs it), and a container image. Both need root and Debian's mirror.
 suite := $(shell . /etc/os-release && echo $$VERSION_CODENAME)
 debs  := $(build)/deb
 bundle:
 	@deploy/bundle $(debs) $(build)/plantcast-bundle-$(suite).tar $(suite) $(SIGN)
-	@deploy/bundle --wall $(debs) $(build)/plantcast-wall-bundle-$(suite).tar $(suite) $(SIGN)
 image:
 	@deploy/image $(debs) $(build)/plantcast-image-$(suite).tar $(suite)
 # Of what these made, in chroots without a network.
 test-deploy:
-	@deploy/test/run $(debs) $(build)/plantcast-bundle-$(suite).tar $(build)/plantcast-image-$(suite).tar $(suite) \
-	    $(build)/plantcast-wall-bundle-$(suite).tar
+	@deploy/test/run $(debs) $(build)/plantcast-bundle-$(suite).tar $(build)/plantcast-image-$(suite).tar $(suite)
 .PHONY: install-demo deb bundle image test-deploy

@@ -15,42 +15,20 @@ enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
 static char authorization[TOKEN_MAX_CHARS + 16]; /* "": none */
 static const char *ca_path, *token_path;
 
-void daemon_set_token(const char *token)
-{
-    snprintf(authorization, sizeof(authorization), token[0] ? "Bearer %s" : "%s", token);
-}
-
-int daemon_token_in(const char *path, char token[TOKEN_MAX_CHARS + 1])
+/* Reads the first line of the file of --token-file. Returns false with the reason printed. */
+static bool read_token(void)
 {
     size_t count;
-    char *text = text_read_file(path, 4096, &count);
-    int error = text ? 0 : -errno;
+    char *text = text_read_file(token_path, 4096, &count);
+    int error = text ? 0 : errno;
     size_t n = text ? strcspn(text, " \t\r\n") : 0;
-    if (text && (n == 0 || n > TOKEN_MAX_CHARS))
-        error = -EBADMSG;
-    snprintf(token, TOKEN_MAX_CHARS + 1, "%.*s", error ? 0 : (int)n, text ? text : "");
-    secret_forget(text);
-    return error;
-}
-
-bool daemon_read_token(void)
-{
-    char token[TOKEN_MAX_CHARS + 1];
-    if (!token_path)
-        return true;
-    int error = daemon_token_in(token_path, token);
-    if (!error)
-        daemon_set_token(token);
+    bool good = n > 0 && n <= TOKEN_MAX_CHARS;
+    if (good)
+        snprintf(authorization, sizeof(authorization), "Bearer %.*s", (int)n, text);
     else
-        fprintf(stderr, "plantcast: %s: %s\n", token_path, error == -EBADMSG ? "its first line is no token" : strerror(-error));
-    return !error;
-}
-
-bool daemon_set_options(const char *token_file, const char *ca_file)
-{
-    token_path = token_file;
-    ca_path = ca_file;
-    return daemon_read_token();
+        fprintf(stderr, "plantcast: %s: %s\n", token_path, error ? strerror(error) : "its first line is no token");
+    secret_forget(text);
+    return good;
 }
 
 /* The value of --NAME VALUE or --NAME=VALUE at *i; NULL: it is another option, or has none. */
@@ -72,7 +50,7 @@ bool daemon_take_options(int *argc, char **argv)
         const char *ca = token ? NULL : value_of("--ca", *argc, argv, &i);
         if (token)
             token_path = token;
-        if (token && !daemon_read_token())
+        if (token && !read_token())
             return false;
         if (ca)
             ca_path = ca;

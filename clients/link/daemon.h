@@ -18,21 +18,9 @@ struct daemon_url {
 /* Removes --token-file and --ca, which all commands share, from the command line and remembers them. Returns false with the reason printed.
    Before any thread starts. */
 bool daemon_take_options(int *argc, char **argv);
-/* Likewise for a program that reads its command line itself; NULL: none. The paths stay the caller's. */
-bool daemon_set_options(const char *token_file, const char *ca_file);
 /* Returns the command line with these options put back, as another program is to be given it, NULL at its end. The caller frees it
    (mem_free), but not its words. */
 char **daemon_command_line(int argc, char **argv);
-/* Reads the file of --token-file anew, if there was one. Returns false with the reason printed; the token then stays what it was. No
-   request may be under way. */
-bool daemon_read_token(void);
-
-/* Reads the token in the first line of a file. Returns 0, or -errno, -EBADMSG if that line is none, and then the token is "". */
-int daemon_token_in(const char *path, char token[TOKEN_MAX_CHARS + 1]);
-
-/* Sets the token of requests from now on; "": none. No request may be under way. */
-void daemon_set_token(const char *token);
-
 /* Parses http://HOST[:PORT][/BASE][/] or https:// (also ws://, wss://). Returns false with the reason printed. */
 bool daemon_url_parse(const char *text, struct daemon_url *url);
 /* Requests GET path and appends the response body to *body (zero-initialised; free with text_finish()). Returns the HTTP status, or 0 if

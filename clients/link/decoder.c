@@ -99,24 +99,10 @@ static bool decode_h264(struct decoder *decoder, const struct wire_frame *frame,
         return false;
     if (p.width_px < frame->width_px || p.height_px < frame->height_px || !reserve(decoder, frame->width_px, frame->height_px))
         return false;
-    if (p.interleaved)
-        return NV12ToARGBMatrix(p.at[0], p.pitches[0], p.at[1], p.pitches[1], decoder->pixels, frame->width_px * 4, &kYuvJPEGConstants,
-                                frame->width_px, frame->height_px) == 0;
     return J420ToARGB(p.at[0], p.pitches[0], p.at[1], p.pitches[1], p.at[2], p.pitches[2], decoder->pixels, frame->width_px * 4,
                       frame->width_px, frame->height_px) == 0;
 }
 #endif
-
-bool decoder_use_hardware(struct decoder *decoder)
-{
-#ifdef PLANTCAST_H264
-    char why[DECODER_WHY_BYTES];
-    return open_h264(decoder, why) && decoder->functions->use_hardware(decoder->h264);
-#else
-    (void)decoder;
-    return false;
-#endif
-}
 
 const uint8_t *decoder_pixels(const struct decoder *decoder)
 {

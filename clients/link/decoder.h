@@ -14,8 +14,6 @@ struct decoder;
 struct decoder *decoder_create(void);
 /* Frees the decoder. &NULL is fine; leaves NULL. */
 void decoder_destroy(struct decoder **decoder);
-/* Has pictures decoded by VA-API from the next key frame on, where this machine has it. Returns whether it has. */
-bool decoder_use_hardware(struct decoder *decoder);
 /* Decodes one frame. Returns false if its bytes are not valid or its codec is not in this build. */
 bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload);
 /* Returns the pixels of the frame that was decoded last, BGRX, its rows one after another: they belong to the decoder, until the next

@@ -3,7 +3,6 @@
 #include "h264_decoder.h"
 
 #include <libavcodec/avcodec.h>
-#include <libavutil/hwcontext.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -17,17 +16,8 @@ struct h264_decoder {
     const AVCodec *codec;
     AVCodecContext *context; /* NULL: not begun */
     AVPacket *packet;
-    AVFrame *picture, *copy; /* copy: of a picture that lies in a GPU */
-    AVBufferRef *hardware;   /* NULL: decoded by the processor */
+    AVFrame *picture;
 };
-
-static enum AVPixelFormat choose_format(AVCodecContext *context, const enum AVPixelFormat *offered)
-{
-    for (const enum AVPixelFormat *format = offered; *format != AV_PIX_FMT_NONE; format++)
-        if (*format == AV_PIX_FMT_VAAPI && context->hw_device_ctx)
-            return *format;
-    return avcodec_default_get_format(context, offered);
-}
 
 static bool begin(struct h264_decoder *decoder)
 {
@@ -39,32 +29,19 @@ static bool begin(struct h264_decoder *decoder)
     decoder->context = avcodec_alloc_context3(decoder->codec);
     if (!decoder->packet || !decoder->picture || !decoder->context)
         return false;
-    decoder->copy = av_frame_alloc();
-    if (decoder->hardware && decoder->copy) {
-        decoder->context->hw_device_ctx = av_buffer_ref(decoder->hardware);
-        decoder->context->get_format = choose_format;
-    }
     decoder->context->flags |= AV_CODEC_FLAG_LOW_DELAY;
     decoder->context->thread_type = FF_THREAD_SLICE;
     decoder->context->thread_count = cores >= MANY_CORES ? SLICE_THREADS : 1;
     return avcodec_open2(decoder->context, NULL, NULL) == 0;
 }
 
-static bool take_picture(struct h264_decoder *decoder, struct h264_decoded *out)
+static void take_picture(const struct h264_decoder *decoder, struct h264_decoded *out)
 {
     const AVFrame *p = decoder->picture;
-    if (p->format == AV_PIX_FMT_VAAPI) {
-        av_frame_unref(decoder->copy);
-        if (av_hwframe_transfer_data(decoder->copy, p, 0) != 0)
-            return false;
-        p = decoder->copy;
-    }
     *out = (struct h264_decoded){ .at = { p->data[0], p->data[1], p->data[2] },
                                   .pitches = { p->linesize[0], p->linesize[1], p->linesize[2] },
                                   .width_px = p->width,
-                                  .height_px = p->height,
-                                  .interleaved = p->format == AV_PIX_FMT_NV12 };
-    return true;
+                                  .height_px = p->height };
 }
 
 static bool decode(struct h264_decoder *decoder, const uint8_t *bytes, size_t count, struct h264_decoded *out)
@@ -74,12 +51,10 @@ static bool decode(struct h264_decoder *decoder, const uint8_t *bytes, size_t co
     memcpy(decoder->packet->data, bytes, count);
     int status = avcodec_send_packet(decoder->context, decoder->packet);
     av_packet_unref(decoder->packet);
-    return status == 0 && avcodec_receive_frame(decoder->context, decoder->picture) == 0 && take_picture(decoder, out);
-}
-
-static bool use_hardware(struct h264_decoder *decoder)
-{
-    return decoder->hardware || av_hwdevice_ctx_create(&decoder->hardware, AV_HWDEVICE_TYPE_VAAPI, NULL, NULL, 0) == 0;
+    if (status != 0 || avcodec_receive_frame(decoder->context, decoder->picture) != 0)
+        return false;
+    take_picture(decoder, out);
+    return true;
 }
 
 static struct h264_decoder *create(char why[H264_DECODER_WHY_BYTES])
@@ -101,17 +76,13 @@ static void destroy(struct h264_decoder **pointer)
     avcodec_free_context(&decoder->context);
     av_packet_free(&decoder->packet);
     av_frame_free(&decoder->picture);
-    av_frame_free(&decoder->copy);
-    av_buffer_unref(&decoder->hardware);
     mem_free(decoder);
     *pointer = NULL;
 }
 
 const struct h264_decoder_functions *h264_decoder_functions(char why[H264_DECODER_WHY_BYTES])
 {
-    static const struct h264_decoder_functions functions = {
-        .create = create, .destroy = destroy, .use_hardware = use_hardware, .decode = decode
-    };
+    static const struct h264_decoder_functions functions = { .create = create, .destroy = destroy, .decode = decode };
     (void)why;
     return &functions;
 }

@@ -11,18 +11,15 @@
 
 struct h264_decoder;
 struct h264_decoded { /* YUV 4:2:0 at full range; the decoder's own, until its next call */
-    const uint8_t *at[3]; /* interleaved: both of chroma are in the second */
+    const uint8_t *at[3];
     int pitches[3];
     int width_px, height_px;
-    bool interleaved;
 };
 
 struct h264_decoder_functions {
     /* Returns NULL, with the reason, if libavcodec decodes no H.264. */
     struct h264_decoder *(*create)(char why[H264_DECODER_WHY_BYTES]);
     void (*destroy)(struct h264_decoder **decoder); /* &NULL is fine; leaves NULL */
-    /* Has pictures decoded by VA-API from the next key frame on. Returns whether this machine has it. */
-    bool (*use_hardware)(struct h264_decoder *decoder);
     /* Decodes one access unit. Returns false if it is not valid. */
     bool (*decode)(struct h264_decoder *decoder, const uint8_t *bytes, size_t count, struct h264_decoded *out);
 };

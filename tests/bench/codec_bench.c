@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Encoding the demo plant at 1920x1080: time and size of a moving picture, and size of what changes under a still camera when 60
-   tags change together once a second; and decoding both by what the player of walls decodes with. One JSON line per row. */
+   tags change together once a second; and decoding both by what the command line decodes with. One JSON line per row. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -119,7 +119,7 @@ static double cpu_ms(void)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
 }
 
-/* As the player does it: one part after the other. */
+/* One part after the other. */
 static void decode(struct measured *m, const struct packet *packet, const struct frame *frame)
 {
     double began_ms = cpu_ms();

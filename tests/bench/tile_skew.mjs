@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two tiles on two screens, in two browsers and in two players: how far apart in time they show the same picture, by a number in the
+// Two tiles on two screens, in two browsers: how far apart in time they show the same picture, by a number in the
 // pixels. Boxes that are hidden or not are the digits of that number; both tiles have it. Screens are looked at, not what programs say.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
-import { existsSync, writeFileSync } from 'node:fs';
+import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 import { browserOn, SCREENSHOTS } from '../e2e/support/browser.mjs';
 import { PlainClient } from '../e2e/support/plain_client.mjs';
-import { BIN, missing, TinyPlant } from '../e2e/support/tiny_plant.mjs';
+import { missing, TinyPlant } from '../e2e/support/tiny_plant.mjs';
 import { missingDisplay, savePng, startDisplay } from '../e2e/support/x_display.mjs';
 
-const PLAYER = join(BIN, 'plantcast-wall'), absent = missing();
+const absent = missing();
 const why = (absent.length > 0 ? `not built: ${absent.join(', ')}` : null) ?? missingDisplay();
 const options = { skip: why ?? false, timeout: 240000 };
 const [WIDTH, HEIGHT] = [640, 360], SPAN_M = 20, BITS = 5, PLACES_M = [1.2, 2.7, 4.2, 5.7, 7.2];
@@ -159,17 +158,4 @@ test('two browsers, one with a clock that is 5 s off', options, async () => {
         return { x: screenX + outerWidth - innerWidth, y: screenY + outerHeight - innerHeight, width: innerWidth, height: innerHeight };
     })));
     judge('browsers', await watch('browsers', client, areas, 10), 10);
-});
-
-test('two players', { ...options, skip: options.skip || (existsSync(PLAYER) ? false : 'not built: plantcast-wall') }, async () => {
-    const client = await driver(), area = { x: 0, y: 0, width: WIDTH, height: HEIGHT };
-    const players = screens.map((screen, i) => spawn(PLAYER,
-        [`http://127.0.0.1:${plant.port}/`, '--wall', 'wall', '--display', String(i + 1), '--software'],
-        { env: screen.env, stdio: 'ignore' }));
-    ending.push(...players.map((player) => async () => {
-        const gone = new Promise((done) => { player.once('exit', done); });
-        player.kill();
-        await gone;
-    }));
-    judge('players', await watch('players', client, [area, area], 10), 10);
 });

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One picture over the displays of a wall, whose camera moves (wall_tiles.mjs); the player of a display, and chromium (wall_player.mjs)."""
+"""One picture over the displays of a wall, whose camera moves (wall_tiles.mjs)."""
 
 import json
 import os
@@ -23,4 +23,3 @@ def script_rows(bin_folder, name, script, *args):
 def wall_rows(bin_folder):
     for codec in ("h264", "jpeg"):
         yield from script_rows(bin_folder, "wall_3x2_1080p_%s" % codec, "wall_tiles.mjs", codec)
-    yield from script_rows(bin_folder, "wall_1080p60", "wall_player.mjs")

@@ -1,27 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pane of a wall that shows another plant: by two daemons, in the page and in the player; what is said where there is no picture of it,
+// A pane of a wall that shows another plant: by two daemons; what is said where there is no picture of it,
 // whatever its server does instead of sending one.
 import assert from 'node:assert/strict';
-import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { appendFileSync, chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { once } from 'node:events';
 import { createServer } from 'node:http';
 import { request } from 'node:https';
 import { join } from 'node:path';
-import { spawn } from 'node:child_process';
 import { after, before, test } from 'node:test';
-import { openPage, SCREENSHOTS, shoot } from './support/browser.mjs';
+import { openPage, shoot } from './support/browser.mjs';
 import { freePort } from './support/ports.mjs';
 import { makeCertificate } from './support/receivers.mjs';
-import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
-import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
-const PLAYER = join(BIN, 'plantcast-wall'), none = missing();
+const none = missing();
 const options = { skip: none.length > 0 ? `not built: ${none}` : false, timeout: 240000 };
-const noPlayer = (existsSync(PLAYER) ? null : 'not built: plantcast-wall') ?? missingDisplay();
 const SIZE = [1280, 720], LARGE_BYTES = 9 << 20, NAME = 'Zwei Kästen, 탱크 2';
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const tokens = {};
-let plant, other, otherArgs, fake, fakePort, picture, small, display, player;
+let plant, other, otherArgs, fake, fakePort, picture, small;
 
 // What servers do instead of sending a picture; told by the first part of the path.
 const FRAME = { 'plantcast-frame': 'data_time_us=1, oldest_age_ms=1500, plant=Fake%20plant', 'content-type': 'image/png' };
@@ -55,7 +52,7 @@ async function until(look, what, ms = 90000) {
         const found = await look();
         if (found)
             return found;
-        assert.ok(performance.now() < end, `${what}\n${plant.daemon.said}\n${player?.said ?? ''}`);
+        assert.ok(performance.now() < end, `${what}\n${plant.daemon.said}`);
     }
 }
 
@@ -135,9 +132,6 @@ before(async () => {
     await startPlant();
 });
 after(async () => {
-    player?.child.kill();
-    await player?.ended;
-    await display?.stop();
     fake?.closeAllConnections();
     fake?.close();
     await plant?.destroy();
@@ -170,41 +164,7 @@ test('a paired display asks for what it shows, and for nothing else', options, a
     assert.equal((await get('api/v1/other_plants?id=tanks', 'nonsense')).status, 401);
 });
 
-// --- in the page and in the player at once
-
-const grabbed = ([left, top, right, bottom]) => {
-    const { at } = display.grab(), count = { black: 0, white: 0, coloured: 0 };
-    let all = 0;
-    for (let y = top; y < bottom; y += 3) {
-        for (let x = left; x < right; x += 3, all++) {
-            const [r, g, b] = at(x, y);
-            count.black += Math.max(r, g, b) < 8;
-            count.white += Math.min(r, g, b) > 247;
-            count.coloured += Math.max(r, g, b) - Math.min(r, g, b) > 60;
-        }
-    }
-    return Object.fromEntries(Object.entries(count).map(([name, n]) => [name, n / all]));
-};
-const MAIN = [12, 60, 840, 700];
-const playerShows = (look) => (player ? until(() => look(grabbed(MAIN)), `the player ${look}`) : null);
-const keep = (name) => process.env.PLANTCAST_SHOTS === '1' && player && savePng(display.grab(), join(SCREENSHOTS, `${name}.png`));
-
-async function startPlayer() {
-    const file = join(plant.folder, 'display.token');
-    writeFileSync(file, tokens.display);
-    display = await startDisplay(...SIZE);
-    const child = spawn(PLAYER, [`http://127.0.0.1:${plant.port}/`, '--wall', 'room', '--token-file', file],
-        { env: display.env });
-    player = { child, said: '', ended: once(child, 'exit') };
-    for (const pipe of [child.stdout, child.stderr])
-        pipe.on('data', (text) => { player.said += text; });
-}
-
-test('its picture, its name and the age of its readings; a server that is gone and since when; and back', options, async (t) => {
-    if (noPlayer)
-        t.diagnostic(`without the player: ${noPlayer}`);
-    else
-        await startPlayer();
+test('its picture, its name and the age of its readings; a server that is gone and since when; and back', options, async () => {
     const screen = { viewport: { width: SIZE[0], height: SIZE[1] } };
     const { page, close, errors } = await openPage(`http://127.0.0.1:${plant.port}/wall.html?wall=room`, screen,
         `top === window && sessionStorage.setItem('plantcast.token', '${tokens.display}')`); // frames of the page are sandboxed
@@ -216,9 +176,7 @@ test('its picture, its name and the age of its readings; a server that is gone a
     await page.locator('.pane.snapshot .gone', { hasText: 'Its server sends no picture' }).waitFor();
     const first = await image.getAttribute('src');
     await page.waitForFunction((src) => document.querySelector('.pane.snapshot img').getAttribute('src') !== src, first);
-    await playerShows(({ coloured, black }) => coloured > 0.005 && black < 0.05);
     await shoot(page, 'wall-other-plant');
-    keep('wall-player-other-plant');
 
     await other.daemon.stop('SIGKILL');
     const killed = performance.now();
@@ -226,16 +184,13 @@ test('its picture, its name and the age of its readings; a server that is gone a
     assert.ok(await image.isHidden());
     assert.ok(performance.now() - killed < 20000, `${performance.now() - killed} ms`);
     assert.doesNotMatch(await title(), /old/);
-    await playerShows(({ coloured, black, white }) => coloured < 0.001 && black > 0.5 && white > 0.01);
     await shoot(page, 'wall-other-plant-gone');
-    keep('wall-player-other-plant-gone');
 
     writeFileSync(join(plant.folder, 'other.token'), 'pc_nonsense\n'); // it is read anew for each request
     await other.startDaemon(...otherArgs);
     await card.filter({ hasText: 'Its server does not accept the token' }).waitFor();
     writeFileSync(join(plant.folder, 'other.token'), `${tokens.other}\n`);
     await image.waitFor();
-    await playerShows(({ coloured, black }) => coloured > 0.005 && black < 0.05);
     assert.deepEqual(errors, []);
     assert.ok(!(await page.content()).includes(tokens.other));
     await close();

@@ -1,29 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Displays beside each other, as they are seen: the picture goes on from one to the next, though it is moved so that nothing burns in;
-// and halves of one display, which show all of the plant each.
+// Displays beside each other, as people see them: the picture goes on from one to the next, though it is moved so that nothing burns in.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
-import { appendFileSync, existsSync } from 'node:fs';
+import { appendFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { burnShift } from '../../clients/web/core/wall.js';
 import { openPage, SCREENSHOTS, shoot } from './support/browser.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { pixelsOf } from './support/png_pixels.mjs';
-import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
-import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { savePng } from './support/x_display.mjs';
 
-const absent = missing(), PLAYER = join(BIN, 'plantcast-wall');
+const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 240000 };
-const noPlayer = (existsSync(PLAYER) ? null : 'not built: plantcast-wall') ?? missingDisplay();
 const [WIDTH, HEIGHT] = [640, 360], SCREEN = { viewport: { width: WIDTH, height: HEIGHT } }, MARGIN = 3, STILL = 2;
 const WALLS = `
 views:
 - { id: all, title: All, view: "group=temperature&camera=3.5,-7,1,1.5,0,0,0,0,1,30" }
-- { id: halves, view: "group=temperature&split=look:flat" }
 walls:
 - { id: wide, tile: { columns: 2, rows: 1, views: all } }
-- { id: split, displays: [{ grid: [main], panes: [{ area: main, views: halves }] }] }
 `;
 const CAMERA = { type: 'camera', seq: 1, eye: [3.5, -7, 1], target: [1.5, 0, 0], up: [0, 0, 1], fov: 30 };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms)), shiftNow = () => burnShift(Date.now() * 1000);
@@ -103,53 +98,4 @@ test('pages: no line between them', options, async () => {
     for (const [i, { page }] of pages.entries())
         await shoot(page, `wall-seam-${i + 1}`);
     await Promise.all(pages.map(({ close }) => close()));
-});
-
-test('players: likewise', { ...options, skip: options.skip || (noPlayer ?? false) }, async () => {
-    const screens = [await startDisplay(WIDTH, HEIGHT), await startDisplay(WIDTH, HEIGHT)];
-    const url = `http://127.0.0.1:${plant.port}/`;
-    const players = screens.map((screen, i) => spawn(PLAYER, [url, '--wall', 'wide', '--display', String(i + 1)],
-        { env: screen.env, stdio: 'ignore' }));
-    try {
-        await expectOnePicture(() => screens.map((screen) => screen.grab()), 'player');
-    } finally {
-        for (const player of players) {
-            const gone = new Promise((done) => player.once('exit', done));
-            player.kill();
-            await gone;
-        }
-        for (const screen of screens)
-            await screen.stop();
-    }
-});
-
-// How many pixels of columns are in colours, as the field is.
-function countColoured({ at }, left, right) {
-    let count = 0;
-    for (let y = 40; y < HEIGHT - 8; y++) {
-        for (let x = left; x < right; x++)
-            count += Math.max(...at(x, y)) - Math.min(...at(x, y)) > 60;
-    }
-    return count;
-}
-
-test('the player: each half of a split view has all of the plant', { ...options, skip: options.skip || (noPlayer ?? false) }, async () => {
-    const screen = await startDisplay(WIDTH, HEIGHT), HALF = WIDTH / 2, FRAME = 5; // what is around panes, and between halves
-    const player = spawn(PLAYER, [`http://127.0.0.1:${plant.port}/`, '--wall', 'split'],
-        { env: screen.env, stdio: 'ignore' });
-    const gone = new Promise((done) => { player.once('exit', done); });
-    try {
-        const lefts = () => [0, HALF].map((x) => x + FRAME + shiftNow()[0]);
-        const countAt = (wide) => lefts().map((x) => countColoured(screen.grab(), x, x + wide));
-        for (const end = performance.now() + 60000; Math.min(...countAt(HALF / 2)) < 500; await sleep(100))
-            assert.ok(performance.now() < end, `${countAt(HALF / 2)} pixels of the field`);
-        const cut = countAt(2);
-        if (process.env.PLANTCAST_SHOTS === '1')
-            savePng(screen.grab(), join(SCREENSHOTS, 'wall-halves.png'));
-        assert.deepEqual(cut, [0, 0], 'nothing is cut off');
-    } finally {
-        player.kill();
-        await gone;
-        await screen.stop();
-    }
 });

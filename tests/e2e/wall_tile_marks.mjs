@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is said on a picture over two displays, by the page and by the player: alarms wherever they are, notes, where a desk points, and a
-// title of what is shown, whoever came first.
+// What stands on a picture over two displays: alarms wherever they are, notes, where a desk points, and the title of the view, whichever
+// display came first.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
-import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, afterEach, before, beforeEach, test } from 'node:test';
-import { openPage, SCREENSHOTS, shoot } from './support/browser.mjs';
+import { openPage, shoot } from './support/browser.mjs';
 import { PlainClient } from './support/plain_client.mjs';
-import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
-import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing(), PLAYER = join(BIN, 'plantcast-wall');
+const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 240000 };
-const noPlayer = (existsSync(PLAYER) ? null : 'not built: plantcast-wall') ?? missingDisplay();
 const [WIDTH, HEIGHT] = [640, 360], SCREEN = { viewport: { width: WIDTH, height: HEIGHT } }, FAR = [1.5, -20, 0];
 // TI-2 is on the far side of E-101, on display 1; PI-1 on P-101A, on display 2.
 const WALLS = `
@@ -127,71 +124,4 @@ test('notes and where a desk points stand where they are', options, async () => 
     await sleep(500);
     assert.equal(await count(0, '.marks .pointer') + await count(1, '.marks .pointer'), 0);
     await Promise.all(pages.map(({ close }) => close()));
-});
-
-// Of one colour on a screen: how many of its pixels, and where in the middle.
-const near = (...wanted) => (...rgb) => rgb.every((value, i) => Math.abs(value - wanted[i]) <= 2);
-function find(screen, isWanted) {
-    const { at } = screen.grab(), found = [];
-    for (let y = 0; y < HEIGHT; y++) {
-        for (let x = 0; x < WIDTH; x++) {
-            if (isWanted(...at(x, y)))
-                found.push([x, y]);
-        }
-    }
-    const middle = [0, 1].map((k) => found.reduce((sum, place) => sum + place[k], 0) / found.length);
-    return { count: found.length, middle };
-}
-
-async function until(screens, i, colour, expected, what, ms = 120000) {
-    for (const end = performance.now() + ms; ; await sleep(50)) {
-        const found = find(screens[i], colour);
-        if (expected(found))
-            return found;
-        if (performance.now() > end) {
-            screens.forEach((screen, k) => savePng(screen.grab(), join(SCREENSHOTS, `wall-tile-player-failed-${k + 1}.png`)));
-            assert.fail(`${what}: ${JSON.stringify(found)}`);
-        }
-    }
-}
-
-test('the player: the same', { ...options, skip: options.skip || (noPlayer ?? false) }, async () => {
-    const PAPER = near(0xff, 0xf7, 0xd6), RING = near(0xc7, 0x0d, 0x99);
-    const PRIORITY_3 = (r, g, b) => r > 225 && g > 165 && g < 205 && b < 40, hot = (r, g, b) => r > 200 && g > 120 && g < 190 && b < 110;
-    const screens = [await startDisplay(WIDTH, HEIGHT), await startDisplay(WIDTH, HEIGHT)];
-    const url = `http://127.0.0.1:${plant.port}/`;
-    const players = screens.map((screen, i) => spawn(PLAYER, [url, '--wall', 'wide', '--display', String(i + 1)],
-        { env: screen.env, stdio: 'ignore' }));
-    const shot = (name) => process.env.PLANTCAST_SHOTS === '1' && screens.forEach((screen, i) =>
-        savePng(screen.grab(), join(SCREENSHOTS, `wall-tile-player-${name}-${i + 1}.png`)));
-    try {
-        for (const i of [0, 1])
-            await until(screens, i, near(0xf4, 0xf5, 0xf6), ({ count: n }) => n > 0, 'a title, a legend');
-        note('Manhole open', { asset: 'P-101A' });
-        await until(screens, 1, PAPER, ({ count: n }) => n > 50, 'the note');
-        await plant.tell('set TI-2 95');
-        await plant.tell('set PI-1 95');
-        for (const i of [0, 1])
-            await until(screens, i, PRIORITY_3, ({ count: n }) => n > 10, 'the ring of an alarm');
-        await until(screens, 0, hot, ({ count: n }) => n > 300, 'a hot side');
-        shot('alarms');
-        const again = setInterval(() => point([0, 0, 0.5]), 1000); // it is shown for 4 s
-        const { middle: [x] } = await until(screens, 0, RING, ({ count: n }) => n > 20, 'where the desk points');
-        clearInterval(again);
-        assert.ok(x > 0.3 * WIDTH && x < WIDTH, `${x}: on E-101`);
-        shot('pointer');
-        await until(screens, 0, RING, ({ count: n }) => n === 0, 'nowhere any more');
-        for (let i = 0; i < 10; i++, await sleep(100)) {
-            point([0, 0, 0.5], 'other');
-            assert.equal(find(screens[0], RING).count, 0, 'what is pointed at on another wall');
-        }
-    } finally {
-        for (const player of players) {
-            const gone = new Promise((done) => player.once('exit', done));
-            player.kill();
-            await gone;
-        }
-        for (const screen of screens)
-            await screen.stop();
-    }
 });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rules of a wall, by the cases that plantcast-wall is tested with too (tests/unit/wall_rules_test.c).
+// The rules of a wall, by the cases of protocol/vectors/wall.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';

@@ -16,7 +16,7 @@ export function approachDistance({ min, max }) {
     return PART * middle < MOST_M ? Math.max(LEAST_M, PART * middle) : MOST_M;
 }
 
-// Returns the cameras that a first one becomes, turned about a point. clients/wall/approach.c does the same.
+// Returns the cameras that a first one becomes, turned about a point.
 export const sidesOf = (first, point) => TURNS.map(([azimuth, rise]) => orbit(first, azimuth, rise, point));
 
 // Returns the cameras for a point of equipment with these bounds.

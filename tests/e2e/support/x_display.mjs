@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An X display without a screen, by Xvfb, and what is seen on it.
 import { spawn } from 'node:child_process';
-import { closeSync, existsSync, mkdirSync, mkdtempSync, openSync, readFileSync, readSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { deflateSync } from 'node:zlib';
@@ -10,8 +10,7 @@ import { crc } from './png_chunks.mjs';
 const PROGRAM = '/usr/bin/Xvfb';
 export const missingDisplay = () => (existsSync(PROGRAM) ? null : 'no Xvfb');
 
-// { name, pid, env: of programs that show on it, grab(): { width, height, at(x, y): [r, g, b] }, row(y): its bytes, B, G, R and one more,
-// until the next call; stop }.
+// { name, pid, env: of programs that show on it, grab(): { width, height, at(x, y): [r, g, b] }; stop }.
 export async function startDisplay(width, height, more = []) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-display-'));
     const args = ['-displayfd', '3', '-screen', '0', `${width}x${height}x24`, '-fbdir', folder, '-nolisten', 'tcp', ...more];
@@ -20,20 +19,13 @@ export async function startDisplay(width, height, more = []) {
         child.stdio[3].once('data', (text) => done(Number(text)));
         child.once('exit', (code) => fail(new Error(`Xvfb ended with ${code}`)));
     });
-    const path = join(folder, 'Xvfb_screen0'), file = openSync(path, 'r'), head = Buffer.alloc(80);
-    readSync(file, head, 0, head.length, 0);
-    const { from, stride } = layoutOf(head), bytes = Buffer.alloc(4 * width);
+    const path = join(folder, 'Xvfb_screen0');
     return {
         name: `:${number}`,
         pid: child.pid,
-        env: { ...process.env, DISPLAY: `:${number}`, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' },
+        env: { ...process.env, DISPLAY: `:${number}`, LIBGL_ALWAYS_SOFTWARE: '1' },
         grab: () => readXwd(readFileSync(path)),
-        row: (y) => {
-            readSync(file, bytes, 0, bytes.length, from + y * stride);
-            return bytes;
-        },
         async stop() {
-            closeSync(file);
             const gone = new Promise((done) => child.once('exit', done));
             child.kill();
             await gone;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Brings a tag into sight: from a side where nothing stands before it; else what stands there becomes a ghost for as long as one looks
-// at the tag. clients/wall/view_sight.c does the same for the player of a wall.
+// at the tag.
 import { approaches } from '../../core/approach.js';
 import { halfAt } from '../../core/nearest.js';
 import { askPick } from '../../core/requests.js';

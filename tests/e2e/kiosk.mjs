@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The kiosk's supervisor (deploy/systemd/kiosk) with the real Chromium, below a service manager: it feeds the watchdog while the page
+// answers, and only then; what the page keeps outlives a restart. systemd accepts its units.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { chownSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+import { SCREENSHOTS } from './support/browser.mjs';
+import { freePort } from './support/ports.mjs';
+import { family } from './support/processes.mjs';
+import { missing, startTiny } from './support/tiny_plant.mjs';
+import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
+
+const CHROMIUM = '/usr/bin/chromium';
+const FLAGS = ['--kiosk', '--no-sandbox', '--no-first-run', '--noerrdialogs', '--disable-gpu', '--ozone-platform=x11'];
+const why = missingDisplay() ?? (existsSync(CHROMIUM) ? false : 'no chromium');
+const options = { skip: why, timeout: 240000 }, WATCHDOG_S = 8, PATIENCE_MS = 120000, [WIDTH, HEIGHT] = [960, 540];
+const PAGE = `<!DOCTYPE html><title>display</title><script>
+localStorage.secret ??= Math.random();
+setInterval(async () => {
+    if (await (await fetch('/beat?' + localStorage.secret)).text() === 'hang')
+        for (;;);
+}, 200);
+</script>`;
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+let display, server, port, state, kiosk, beats, answer;
+
+function serve() {
+    server = createServer((request, response) => {
+        const [path, secret] = request.url.split('?');
+        if (path === '/beat')
+            beats.push(secret);
+        response.writeHead(200, { 'Content-Type': 'text/html' }).end(path === '/beat' ? answer : PAGE);
+    });
+    return new Promise((done) => server.listen(port, '127.0.0.1', done));
+}
+
+async function until(what, is) {
+    for (const end = performance.now() + PATIENCE_MS; !await is(); await sleep(50)) {
+        if (performance.now() > end) {
+            savePng(display.grab(), join(SCREENSHOTS, 'kiosk-failed.png'));
+            assert.fail(`${what}:\n${kiosk?.said}`);
+        }
+    }
+}
+
+// before: what the program is started by; around: what the browser is.
+function startKiosk(url, { before: starter = [], around = [], env = display.env } = {}) {
+    const [program, ...args] = [...starter, 'tests/support/service_manager.py',
+        '--watchdog', String(WATCHDOG_S), 'deploy/systemd/kiosk', url, ...around, CHROMIUM,
+        ...FLAGS, `--window-size=${WIDTH},${HEIGHT}`, '--window-position=0,0'];
+    const child = spawn(program, args, { stdio: 'pipe', env: { ...env, STATE_DIRECTORY: state, HOME: state } });
+    kiosk = { child, said: '', code: null, pid: () => Number([...kiosk.said.matchAll(/^started: (\d+)$/mg)].at(-1)?.[1]),
+        fed: () => kiosk.said.split('notify: WATCHDOG=1').length - 1 };
+    for (const pipe of [child.stdout, child.stderr])
+        pipe.on('data', (text) => { kiosk.said += text; });
+    kiosk.ended = new Promise((done) => child.once('exit', (code) => { kiosk.code = code; done(code); }));
+}
+
+before(async () => {
+    if (why)
+        return;
+    display = await startDisplay(WIDTH, HEIGHT);
+    state = mkdtempSync(join(tmpdir(), 'plantcast-kiosk-'));
+    port = await freePort();
+    [beats, answer] = [[], ''];
+    await serve();
+});
+// As systemd ends all of a service's processes.
+function endAll(pids) {
+    for (const pid of pids) {
+        try {
+            process.kill(pid, 'SIGKILL');
+        } catch {
+            // it has ended
+        }
+    }
+}
+afterEach(async () => {
+    if (!kiosk)
+        return;
+    const pids = kiosk.pids ?? (kiosk.pid() ? family(kiosk.pid()) : []);
+    kiosk.child.kill('SIGTERM');
+    await Promise.race([kiosk.ended, sleep(20000)]);
+    endAll(pids);
+    kiosk = null;
+});
+after(async () => {
+    server?.closeAllConnections();
+    server?.close();
+    await display?.stop();
+    rmSync(state ?? '', { recursive: true, force: true });
+});
+
+test('it feeds the watchdog while the page answers; what the page keeps outlives a restart', options, async () => {
+    startKiosk(`http://127.0.0.1:${port}/`);
+    await until('it is ready, and is fed', () => /notify: READY=1/.test(kiosk.said) && kiosk.fed() > 2 && beats.length > 0);
+    const [secret] = beats;
+    assert.ok(Number(secret) > 0, secret);
+    kiosk.child.stdin.write('again\n');
+    await until('it has started again', () => kiosk.said.split('notify: READY=1').length === 3);
+    beats.length = 0;
+    await until('its page', () => beats.length > 0);
+    assert.equal(beats[0], secret);
+    kiosk.child.kill('SIGTERM');
+    assert.equal(await kiosk.ended, 0);
+});
+
+test('a page whose main thread hangs does not feed it: the service is started again', options, async () => {
+    startKiosk(`http://127.0.0.1:${port}/`);
+    beats.length = 0;
+    await until('it is fed', () => kiosk.fed() > 1 && beats.length > 0);
+    kiosk.pids = family(kiosk.pid());
+    answer = 'hang';
+    assert.equal(await kiosk.ended, 99, kiosk.said); // the manager's watchdog
+    answer = '';
+});
+
+test('nor does a browser that stands still', options, async () => {
+    startKiosk(`http://127.0.0.1:${port}/`);
+    await until('it is fed', () => kiosk.fed() > 1);
+    kiosk.pids = family(kiosk.pid());
+    for (const pid of kiosk.pids.filter((one) => one !== kiosk.pid()))
+        process.kill(pid, 'SIGSTOP');
+    assert.equal(await kiosk.ended, 99, kiosk.said);
+});
+
+test('while the server is away it is not started again, and shows the page once the server is there', options, async () => {
+    server.closeAllConnections();
+    await new Promise((done) => server.close(done));
+    startKiosk(`http://127.0.0.1:${port}/`);
+    await until('it is fed', () => kiosk.fed() > 4);
+    beats.length = 0;
+    await serve();
+    await until('its page', () => beats.length > 0);
+    assert.equal(kiosk.code, null);
+});
+
+test('a browser that ends ends the service', options, async () => {
+    startKiosk(`http://127.0.0.1:${port}/`);
+    await until('it is fed', () => kiosk.fed() > 1);
+    kiosk.pids = family(kiosk.pid());
+    endAll(kiosk.pids.filter((pid) => pid !== kiosk.pid()));
+    assert.equal(await kiosk.ended, 1, kiosk.said);
+});
+
+const NOBODY = 65534, lacks = ['/usr/bin/cage', '/usr/bin/Xwayland'].filter((path) => !existsSync(path));
+const noCage = why || (lacks.length > 0 && `not here: ${lacks.join(', ')}`) || (process.getuid() !== 0 && 'needs root, to become nobody');
+test('in cage, which draws into memory here, as on a monitor', { ...options, skip: noCage }, async () => {
+    const own = state;
+    state = mkdtempSync(join(tmpdir(), 'plantcast-cage-'));
+    chownSync(state, NOBODY, NOBODY); // cage refuses root
+    beats.length = 0;
+    try {
+        const { DISPLAY: _, ...env } = display.env;
+        startKiosk(`http://127.0.0.1:${port}/`, { before: ['setpriv', `--reuid=${NOBODY}`, `--regid=${NOBODY}`, '--clear-groups'],
+            around: ['cage', '--'], env: { ...env, XDG_RUNTIME_DIR: state, WLR_BACKENDS: 'headless', WLR_RENDERER: 'pixman',
+                WLR_LIBINPUT_NO_DEVICES: '1' } });
+        await until('its page, and that it is fed', () => beats.length > 10 && kiosk.fed() > 4);
+        kiosk.child.kill('SIGTERM');
+        assert.equal(await kiosk.ended, 0, kiosk.said);
+    } finally {
+        rmSync(state, { recursive: true, force: true });
+        state = own;
+    }
+});
+
+const absent = missing();
+const noPlant = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+test('it shows a wall of a plant', { ...options, skip: why || noPlant }, async () => {
+    const plant = await startTiny(`
+views: [{ id: whole, title: Whole unit, view: "group=temperature" }]
+walls: [{ id: room, displays: [{ grid: [main main time], panes: [{ area: main, views: [whole] }, { area: time, clock: yes }] }] }]
+`);
+    try {
+        startKiosk(`${plant.url}?wall=room&display=1`);
+        const metrics = async () => (await fetch(`${plant.url}metrics`)).text();
+        await until('a picture', async () => /^plantcast_wall_frame_age_seconds\{wall="room",display="1"\}/m.test(await metrics()));
+        await until('it is fed', () => kiosk.fed() > 2);
+        const coloured = () => {
+            const { at } = display.grab();
+            let count = 0;
+            for (let x = 0; x < WIDTH; x += 8)
+                for (let y = 0; y < HEIGHT; y += 8)
+                    count += Math.max(...at(x, y)) - Math.min(...at(x, y)) > 60;
+            return count;
+        };
+        await until('the field', () => coloured() > 50);
+        savePng(display.grab(), join(SCREENSHOTS, 'kiosk.png'));
+    } finally {
+        await plant.stop();
+    }
+});
+
+const noAnalyze = spawnSync('systemd-analyze', ['--version']).error ? 'no systemd-analyze' : false;
+test('systemd finds nothing wrong with its units', { skip: noAnalyze }, () => {
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-units-')), names = ['.service', '-restart.service', '-restart.timer'];
+    try {
+        for (const name of names) // what they start is not installed here
+            writeFileSync(join(folder, `plantcast-kiosk${name}`), readFileSync(`deploy/systemd/plantcast-kiosk${name}`, 'utf8')
+                .replace('/usr/lib/plantcast/kiosk', '/bin/true'));
+        writeFileSync(join(folder, 'seatd.service'), '[Service]\nExecStart=/bin/true\n');
+        const { status, stderr } = spawnSync('systemd-analyze', ['verify', '--man=no', ...names.map((name) =>
+            join(folder, `plantcast-kiosk${name}`))], { encoding: 'utf8' });
+        assert.deepEqual(stderr.split('\n').filter((line) => /plantcast-kiosk/.test(line)), []);
+        assert.equal(status, 0, stderr);
+    } finally {
+        rmSync(folder, { recursive: true });
+    }
+});
