@@ -422,8 +422,8 @@ static void a_mail_says_what_and_since_when(void **state)
         assert_true(end - line <= 78);
     char *subject = decoded(strstr(mail.at, "?B?") + 3), *body = decoded(strstr(mail.at, "\r\n\r\n"));
     assert_int_equal(strncmp(subject, "[Werk Süd] P1 T0000 high high", strlen("[Werk Süd] P1 T0000 high high")), 0);
-    assert_non_null(strstr(body, "P1  2026-11-18 12:06:40  T0000 high high, Kessel 1, heiß: 95.5 degC (limit 90 degC); E-1, Tank "
-                                 "farm\r\n"));
+    assert_non_null(strstr(body, "P1  2026-11-18 12:06:40  T0000 high high, Kessel 1, heiß: raised at 95.5 degC (limit 90 degC); E-1, "
+                                 "Tank farm\r\n"));
     assert_non_null(strstr(body, "Times are of Europe/Berlin. https://p.example/\r\n"));
     char *json = notify_webhook_text(f->c->plant, &f->c->plant->notify->recipients[BOSS], &message);
     assert_non_null(strstr(json, "\"plant\":\"Werk Süd\""));
