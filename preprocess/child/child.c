@@ -61,7 +61,7 @@ static void limit_all(const struct child_params *params)
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, MAX_FILES);
     limit(RLIMIT_FSIZE, (rlim_t)8 << 30);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* whose shadow counts as data */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* their shadow memory counts as data */
     limit(RLIMIT_DATA, params->memory_bytes); /* not address space, of which WebAssembly reserves much more than it uses */
 #else
     (void)params;

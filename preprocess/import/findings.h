@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a reader reports about a model, as JSON for programs and as lines for people. Thread: one per object.
+/* Findings of a reader about a model, as JSON for programs and as lines for people. Thread: one per object.
  *
  * A reader prints plain lines, and lines of fields that tabs separate:
  *   lost ID NAME CLASS GUID REASON   an element with a shape that has no triangles

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What an exported tag list says of a tag. */
+/* The fields that an exported tag list has of a tag. */
 #ifndef PREPROCESS_MATCH_EXPORT_FIELD_H
 #define PREPROCESS_MATCH_EXPORT_FIELD_H
 

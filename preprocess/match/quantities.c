@@ -87,8 +87,8 @@ static bool is_tuning(const struct export_tag *tag, const struct isa_name *isa, 
     return (unit && !strcmp(unit, "time")) || (kind < 0 && !described);
 }
 
-/* What it measures: "" for states and settings, and where nothing tells. The unit decides, then the description, then words of the name,
-   then its letters; none of them against the unit. */
+/* Names the quantity that a tag measures; "" for states and settings, and where nothing tells. The unit decides, then the description,
+   then words of the tag's name, then its letters. None of them contradicts the unit. */
 static void name_of(const struct export_tag *tag, char name[NAME_BYTES])
 {
     struct isa_name isa;

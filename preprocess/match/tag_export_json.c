@@ -31,7 +31,7 @@ static const struct property {
     { "opcServer", EXPORT_DEVICE },
 };
 
-/* What is said of many tags: how many, and the first by their paths. */
+/* A remark about many tags: their number, and the paths of the first. */
 struct complaint {
     size_t count;
     struct text paths;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What exports call their columns, in English, German, French, Spanish, Portuguese, Italian, Korean, Chinese, Japanese and Russian. */
+/* Column names of exported tag lists in English, German, French, Spanish, Portuguese, Italian, Korean, Chinese, Japanese and Russian. */
 #include "preprocess/match/tag_header.h"
 
 #include <string.h>

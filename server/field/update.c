@@ -119,7 +119,7 @@ static double error_scale(const struct state *state)
     return unit * fmax(fabs(low), fabs(high));
 }
 
-/* What a step of colour is a part of. */
+/* The range of which a step of colour is a part. */
 static double error_range(const struct state *state)
 {
     const struct plant_group *group = state->layout->group;

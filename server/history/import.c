@@ -34,7 +34,7 @@ struct import_series {
     int64_t longest_us;            /* a longer time between two samples has no data */
     bool has_pending;              /* second pass: the newest sample, until the next one has another time */
     struct history_point pending;
-    struct history_points before;  /* what history had of this time before the import */
+    struct history_points before;  /* points of this time that history had before the import */
     size_t next;                   /* in `before` */
 };
 

@@ -35,7 +35,7 @@ void export_folder_list(const char *folder, struct export_list *list);
 void export_list_finish(struct export_list *list);
 /* Returns the name, in the folder, of a hidden file that stays: how models were read. Static. */
 const char *export_folder_choice(void);
-/* Likewise: what plantcast import reported about the models. */
+/* Returns the name of the hidden file with the report of plantcast import. Static. */
 const char *export_folder_report(void);
 /* Removes what uploads left that never ended. */
 void export_folder_sweep(const char *folder);

@@ -181,7 +181,7 @@ bool png_is_plain(const uint8_t *png, size_t count, const char *const *keywords,
     while (next_chunk(png, count, &at, &chunk)) {
         bool is_text = memcmp(chunk.type, "zTXt", 4) == 0;
         if (is_text && (texts == keyword_count || next > 0 || !has_keyword(chunk.data, chunk.length, keywords[texts])))
-            return FAIL("its chunk zTXt is there once more, or in another order than in our pictures");
+            return FAIL("its chunk zTXt is there twice, or in another order than in our pictures");
         texts += is_text;
         if (!is_text && texts < keyword_count)
             return FAIL("there is no %s in it, or not behind its header", keywords[texts]);

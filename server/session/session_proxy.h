@@ -4,7 +4,7 @@
 #define SESSION_SESSION_PROXY_H
 #include "session/session.h"
 
-struct session_person {                /* whose message it is */
+struct session_person {                /* the person who sent the message */
     const struct token_holder *holder; /* as this daemon verified */
     const char *refusal;               /* why nobody could be verified; NULL: somebody was */
     const char *from;                  /* the address, as the other daemon says */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the files of a Modbus source share: its thread (modbus.c), which units answer (modbus_units.c), how the device wants its
+/* Shared by the files of a Modbus source: its thread (modbus.c), which units answer (modbus_units.c), how the device wants its
    connections (modbus_manners.c), and what is done with a response (modbus_answers.c). Thread: the source's own. */
 #ifndef VALUE_MODBUS_IMPL_H
 #define VALUE_MODBUS_IMPL_H
@@ -52,7 +52,7 @@ struct modbus_source {
     struct log_pace unit_pace; /* of answers that name another unit */
     bool *refused;             /* by index in plant->tags: the device refuses to read it */
     struct sample *samples;    /* room for all tags */
-    int *lost;                 /* likewise */
+    int *lost;                 /* room for the numbers of all tags */
 };
 
 /* Returns the unit that a block is read from. */

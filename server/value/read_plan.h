@@ -16,10 +16,11 @@ struct read_plan_block { /* one request; each tag is in one block, gaps between 
     int first, count;          /* registers or bits */
     size_t first_tag, tag_count; /* in read_plan.tags */
     int64_t due_ns;            /* for the reader; 0 in a new plan, copied by read_plan_split() */
-    int busy_count;            /* likewise: answers in a row that said "busy" */
-    int refused_count;         /* likewise: how often in a row a block of one tag was refused */
-    int silent_count;          /* likewise: how often in a row it was not answered while other blocks of the unit were */
-    bool answered;             /* likewise: the last request was answered */
+    /* Also kept by the reader: 0 in a new plan, copied by read_plan_split(). */
+    int busy_count;            /* answers in a row that said "busy" */
+    int refused_count;         /* refusals in a row of a block of one tag */
+    int silent_count;          /* requests in a row without an answer, while other blocks of the unit were answered */
+    bool answered;             /* the last request was answered */
 };
 
 struct read_plan { /* zero-initialise */

@@ -67,7 +67,7 @@ const alarm = async () => (await fetched('/api/v1/alarms')).alarms.find(({ tag, 
 const listed = async (where) => (await ask(where)).text();
 const trail = () => readFileSync(path('audit.log'), 'utf8').trim().split('\n').map((line) => JSON.parse(line));
 
-// What another program leaves of the disk: nothing.
+// Another program fills the disk.
 const fill = () => assert.notEqual(spawnSync('dd', ['if=/dev/zero', `of=${path('full')}`, 'bs=4k']).status, 0);
 const free = () => rmSync(path('full'), { force: true });
 

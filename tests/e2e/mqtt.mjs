@@ -125,7 +125,7 @@ test('JSON: by path, with the time and the quality that it states', options, asy
     assert.ok((await until('TI-2', { ...good, value: 21 })).age_ms < 9000);
 });
 
-// What Kepware's IoT Gateway publishes: an array of the tags that have changed, in any order.
+// Kepware's IoT Gateway publishes an array of the tags that have changed, in any order.
 test('a gateway that publishes what has changed: no tag gets the value of another', options, async () => {
     const paths = { A2: 'values[1].v', A3: 'values[2].v', F1: "values[?@.id=='G.A1'].v", F2: "$.values[?id=='G.A2'].v",
         F9: "values[?id=='G.A9'].v" };

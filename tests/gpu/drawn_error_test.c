@@ -228,7 +228,7 @@ static void test_needles(void **state)
     assert_true(tally.marked > tally.compared / 4 && tally.worst_marked > STEP); /* there is something to be marked */
 }
 
-/* What is right is left unmarked where triangles are small, beside needles that are marked. */
+/* Small triangles, which are right, stay unmarked beside needles that are marked. */
 static void test_half_of_needles(void **state)
 {
     (void)state;
@@ -265,7 +265,7 @@ static void test_equal_readings_mark_nothing(void **state)
     stand_finish(&stand);
 }
 
-/* What preparing says of its triangles holds for all sensors, and readings in the range. */
+/* The bound that preparing gives holds for all sensors, and for readings in the range. */
 static void test_lost_sensors_and_wild_readings_are_measured(void **state)
 {
     (void)state;

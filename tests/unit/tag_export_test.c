@@ -109,7 +109,7 @@ static void test_ignition(void **state)
     TYPE("Pump", "'parameters':{'Dev':{'dataType':'String','value':'PLC1'},'No':{'dataType':'Integer','value':0}},'tags':[" MEMBER(        \
                      "T", ",'engUnit':'°C','engHigh':120,'opcItemPath':" BOUND("[{Dev}]HR{No}")) "]")
 
-/* What a member has that its instance says nothing of, or something else. */
+/* Fields of a member that its instance leaves out, or overrides. */
 static void test_udt_kinds(void **state)
 {
     static const struct {

@@ -65,7 +65,7 @@ const sight = { origin, direction }, shown = { carried: { range: [1, 2], clip },
 const recent = [{ picture, decodeMs: 2, hereUs: 6e6 }, { picture, decodeMs: 3, hereUs: 7e6 }];
 const marks = [{ us: 1e6, priority: 2 }, { us: 2e6, priority: 1 }];
 
-// What an overlay draws: labels, call-outs, markers.
+// Items of an overlay: labels, call-outs, markers.
 add('callouts', 'placeRings', [rings, area, 1, { width: 90, height: 36 }], { call: (order, where, unit, size) =>
     callouts.placeRings(order, { area: where, unit, taken: free, measure: () => size }).map(({ box: at, slot }) => ({ at, slot })) });
 add('labels', 'placeLabels', [rings, area, 1, [{ left: 0, top: 0, right: 40, bottom: 20 }], { width: 90, height: 36 }], { call: placed });

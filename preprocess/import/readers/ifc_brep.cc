@@ -46,7 +46,7 @@ const char *const names[][2] = { { "IFCADVANCEDBREP", "MANIFOLD_SOLID_BREP" },
                                  { "IFCVECTOR", "VECTOR" },
                                  { "IFCVERTEXPOINT", "VERTEX_POINT" } };
 
-/* What every STEP file says: units, which are set to the file's, and the schema. The numbers 1 to 9 are its own; #ID becomes #(ID+9). */
+/* Head of every STEP file: its units, set to those of the IFC file, and its schema. The numbers 1 to 9 are its own; #ID becomes #(ID+9). */
 constexpr int SHIFT = 9;
 
 class step_writer

@@ -45,7 +45,7 @@ class file
     explicit file(const char *path);
     /* Returns a statement. Throws unsupported if it is missing or damaged. */
     entity get(int id) const;
-    /* Returns the statement that a value refers to, likewise. */
+    /* Returns the statement that a value refers to. Throws as above, also where the value is no reference. */
     entity get(const value &reference) const;
     /* Returns the number that a value is, also within a measure such as IFCPARAMETERVALUE(1.). Throws unsupported if it is none. */
     static double number(const value &from);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of an IFC file is not shown: elements with a shape that became no triangles, and the errors that web-ifc logs.
+// Losses of an IFC file: elements with a shape that became no triangles, and the errors that web-ifc logs.
 const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|GeometricSet|BoundingBox|Vertex|Edge|Alignment/;
 const REFERENCE = 5; // as web-ifc numbers kinds of values
 // A line of findings.h.

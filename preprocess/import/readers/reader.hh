@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the readers in C++ share: how one refuses a file, decodes its names, writes its scene, and ends. Thread: one. */
+/* Shared by the readers in C++: refusing a file, decoding its names, writing its scene, ending. Thread: one. */
 #ifndef PREPROCESS_IMPORT_READERS_READER_HH
 #define PREPROCESS_IMPORT_READERS_READER_HH
 #include <cerrno>

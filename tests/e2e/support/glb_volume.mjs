@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the triangles of a GLB file enclose: { volume (m3), area (m2), size (m: x, y, z with Z up) }.
+// Volume, area and size of the triangles of a GLB file: { volume (m3), area (m2), size (m: x, y, z with Z up) }.
 import { readFileSync } from 'node:fs';
 
 const HEAD = 20, CHUNK_HEAD = 8, TYPES = { 5126: Float32Array, 5125: Uint32Array, 5123: Uint16Array };

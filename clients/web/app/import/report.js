@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What readers lost, left out, logged as errors, and guessed: lists that open, and a question for each guessed unit.
+// The report of an import: lists of lost and left-out elements and of errors, and a question for each guessed unit.
 import { shortNumberText } from '../../core/format.js';
 import { timesOf } from '../../core/matches.js';
 import { say } from '../../core/words.js';

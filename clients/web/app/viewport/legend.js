@@ -63,7 +63,7 @@ function at(element, place) {
 
 // By `show`, of the quantity's name and the parameters: title, what stands behind it, a note. Of rarer ones: coverage.js.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
-// What depends on no reading is never uncertain. Its least value, in parts of the range; blind: 5 % and rounding.
+// A picture that depends on no reading is never uncertain. Its least value, in parts of the range; blind: 5 % and rounding.
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
