@@ -170,7 +170,7 @@ test('a plant that is brought in: each file and each order, by whom, and what be
         'import done engineer-1 decisions about tags were taken',
         'import failed engineer-1 a source was stated: plantcast match: .*: somebody wrote its source otherwise.*',
         'reload done engineer-1 configuration .* is in force', 'import done engineer-1 the plant was made anew from its exports',
-        'import failed engineer-1 /api/v1/import/run: units are .*', 'import done engineer-1 /api/v1/import/cancel',
+        'import failed engineer-1 /api/v1/import/run: units and mesh_units are .*', 'import done engineer-1 /api/v1/import/cancel',
         'import refused engineer-1 /api/v1/import/run: pages of other sites may not do this'];
     const is = told();
     is.forEach((line, i) => assert.match(line, new RegExp(`^${want[i] ?? 'nothing more'}$`)));
