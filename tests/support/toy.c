@@ -69,6 +69,7 @@ void toy_destroy(struct toy **toy_ptr)
     mem_free(plant->tags);
     mem_free(toy->scene.assets);
     mem_free(toy->scene.folder);
+    mem_free(toy->scene.extremes_m);
     mem_free(toy);
     *toy_ptr = NULL;
 }
