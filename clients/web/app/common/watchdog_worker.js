@@ -4,7 +4,9 @@
 // timers are slow).
 'use strict';
 
-const TICK_MS = 1000, SILENT_TICKS = 10; // ticks, not a clock: while the machine sleeps, neither this worker nor the page runs
+// Ticks, not a clock: while the machine sleeps, neither this worker nor the page runs. The warning stands for some ticks before the reload,
+// which may otherwise come before anybody has seen it.
+const TICK_MS = 1000, SILENT_TICKS = 10, RELOAD_TICKS = 13;
 let veil = null, band = null, words = null, keeper = null, scale = 1;
 let silent = 0, rests = false, isSaid = false;
 
@@ -29,7 +31,7 @@ setInterval(() => {
     silent++;
     if (rests || silent < SILENT_TICKS)
         return;
-    if (silent === SILENT_TICKS)
+    if (silent === RELOAD_TICKS)
         keeper?.postMessage('reload');
     draw();
 }, TICK_MS);
