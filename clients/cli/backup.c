@@ -77,12 +77,6 @@ static const char *as_written(const struct plant *plant, const char *path)
     return !strncmp(path, plant->folder, n) && path[n] == '/' ? path + n + 1 : path;
 }
 
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* What people make beside the history. */
 static const char *const lists[] = { NAMED_VIEWS_FILE, NOTES_FILE, WALL_REMOTE_FILE, PAIRINGS_FILE };
 enum { LISTS = sizeof(lists) / sizeof(lists[0]) };
@@ -194,7 +188,7 @@ static void leave_stamp(const char *history)
 /* The folder has its name once all is in it. */
 static bool back_up(struct job *job, const struct plant *plant, const char *out)
 {
-    const char *tags = base_name(plant->tags_path);
+    const char *tags = text_base_name(plant->tags_path);
     char *history = history_folder(job, plant), *part = mem_printf("%s.part", out);
     bool good = false;
     job->folder = part;
@@ -281,8 +275,8 @@ static char *place_of(const char *name, const char *plant_path, const char *hist
         return mem_strdup(plant_path);
     if (is_ours(name))
         return mem_printf("%s/%s", history, name);
-    const char *path = tags && !strcmp(base_name(tags), name) ? tags : name;
-    return *path == '/' ? mem_strdup(path) : mem_printf("%.*s%s", (int)(base_name(plant_path) - plant_path), plant_path, path);
+    const char *path = tags && !strcmp(text_base_name(tags), name) ? tags : name;
+    return *path == '/' ? mem_strdup(path) : mem_printf("%.*s%s", (int)(text_base_name(plant_path) - plant_path), plant_path, path);
 }
 
 /* A folder, and no link to one; a new one belongs to whom the one around it belongs to. */

@@ -70,7 +70,7 @@ static bool add_attributes(struct cad_model *model, const char *path, const stru
     if (counts.elements == 0)
         return fail(why, "%s: no elements (NEW ... END): this is no attribute file; give one of the two another name", path);
     text_add(said, "attributes of %s: %zu elements, %zu of them in the model; %zu values\n",
-             strrchr(path, '/') ? strrchr(path, '/') + 1 : path, counts.elements, counts.matched, counts.attributes);
+             text_base_name(path), counts.elements, counts.matched, counts.attributes);
     encoding_say(said, "attributes", &counts.encoding);
     return true;
 }

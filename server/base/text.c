@@ -82,6 +82,12 @@ void text_finish(struct text *text)
     *text = (struct text){ 0 };
 }
 
+const char *text_base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 char *text_read_file(const char *path, size_t max_bytes, size_t *out_bytes)
 {
     struct stat st;

@@ -23,6 +23,8 @@ const char *text_cell_read(const char *cell);
 void text_add_escaped(struct text *text, const char *part); /* as a part of an address: what is not unreserved in RFC 3986, as %XX */
 void text_finish(struct text *text); /* frees; leaves it empty */
 
+/* Returns the last part of a path, within it. */
+const char *text_base_name(const char *path);
 /* Reads a whole file of at most max_bytes and returns its content, followed by a 0 byte; free with mem_free(). Returns NULL on failure,
    with errno (EFBIG: too large). */
 char *text_read_file(const char *path, size_t max_bytes, size_t *out_bytes);

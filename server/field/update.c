@@ -249,7 +249,7 @@ float update_blind(const struct plant_group *group, float near_m)
     return (float)fmin(PLANT_SEEN_PART * (group->max - group->min) * exp(far * far / 2), most);
 }
 
-/* What depends on which sensors are good, and not on their readings. */
+/* Fills the map of coverage, which depends on which sensors are good, and not on their readings. */
 static bool map_block(const struct update *update, size_t begin, size_t count, float *values)
 {
     const struct state *state = update->state;

@@ -365,7 +365,7 @@ static int64_t measure_free(void *arg)
     return statvfs(historian->folder, &disk) == 0 ? (int64_t)(disk.f_bavail * disk.f_frsize) : -1;
 }
 
-/* What others have done: when `plantcast backup` was here. A reserve that was used is made again. */
+/* Notes when `plantcast backup` last ran, and fills up a reserve that was used. */
 static void look_around(struct historian *historian)
 {
     struct stat backup;

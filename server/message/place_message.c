@@ -14,12 +14,6 @@
 #include "plant/transform.h"
 #include "scene/far_sensors.h"
 
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* Returns the path of the tag list's file, through symlinks: saving replaces that file and keeps versions beside it. */
 static const char *list_path(const struct plant *plant, char real[PATH_MAX])
 {
@@ -114,7 +108,7 @@ bool accept_places_parse(const struct plant *plant, const json_t *o, struct mess
 bool restore_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     char real[PATH_MAX];
-    const char *base = base_name(list_path(plant, real));
+    const char *base = text_base_name(list_path(plant, real));
     size_t n = strlen(base);
     if (!need_words(o, "kept", true, out->kept, sizeof(out->kept), error) || !save_tags_parse(plant, o, out, error))
         return false;
@@ -237,7 +231,7 @@ static char *conflict_text(const struct plant *plant, const struct message *mess
     size_t more;
     json_t *lines = lines_of(before, now, &more);
     return json_text(json_pack("{s:s,s:I,s:s,s:b,s:n,s:o,s:I}", "type", "tags_diff", "seq", (json_int_t)message->seq, "file",
-                               base_name(plant->tags_path), "conflict", true, "hash", "lines", lines, "more", (json_int_t)more),
+                               text_base_name(plant->tags_path), "conflict", true, "hash", "lines", lines, "more", (json_int_t)more),
                      9);
 }
 
@@ -267,7 +261,7 @@ static char *wanted_list(const struct scene *scene, const char *before, const st
     if (message->type == MESSAGE_RESTORE_TAGS) {
         char real[PATH_MAX];
         const char *list = list_path(plant, real);
-        char *path = mem_printf("%.*s%s", (int)(base_name(list) - list), list, message->kept);
+        char *path = mem_printf("%.*s%s", (int)(text_base_name(list) - list), list, message->kept);
         char *text = tag_file_read(path, why);
         mem_free(path);
         return text;
@@ -285,7 +279,7 @@ static char *diff_text(const struct plant *plant, const struct message *message,
     json_t *lines = lines_of(before, after, &more);
     tag_file_hash(after, hash);
     return json_text(json_pack("{s:s,s:I,s:s,s:b,s:s,s:o,s:I}", "type", "tags_diff", "seq", (json_int_t)message->seq, "file",
-                               base_name(plant->tags_path), "conflict", false, "hash", hash, "lines", lines, "more", (json_int_t)more),
+                               text_base_name(plant->tags_path), "conflict", false, "hash", hash, "lines", lines, "more", (json_int_t)more),
                      9);
 }
 
@@ -318,7 +312,8 @@ static char *accepted_text(const struct plant *plant, const struct message *mess
     }
     json_t *names = names_of(plant, outcome, ASSUMED_ACCEPTED, ACCEPTED_NAMES, &count);
     return json_text(json_pack("{s:s,s:I,s:s,s:I,s:o,s:o,s:s}", "type", "places_accepted", "seq", (json_int_t)message->seq, "file",
-                               base_name(plant->tags_path), "count", (json_int_t)count, "tags", names, "refused", refused, "hash", hash),
+                               text_base_name(plant->tags_path), "count", (json_int_t)count, "tags", names, "refused", refused, "hash",
+                               hash),
                      0);
 }
 

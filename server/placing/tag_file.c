@@ -28,17 +28,11 @@ void tag_save_free(struct tag_save *save)
     mem_free(save);
 }
 
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 char *tag_file_read(const char *path, char **why)
 {
     size_t bytes;
     char *text = text_read_file(path, MOST_BYTES, &bytes);
-    *why = text ? NULL : mem_printf("%s cannot be read: %s", base_name(path), strerror(errno));
+    *why = text ? NULL : mem_printf("%s cannot be read: %s", text_base_name(path), strerror(errno));
     return text;
 }
 
@@ -58,10 +52,10 @@ char *tag_file_keep(const char *path, char **why)
         mem_free(name);
         if (error == EEXIST)
             continue;
-        *why = mem_printf("the list as it is cannot be kept as %s.%d: %s", base_name(path), n, strerror(error));
+        *why = mem_printf("the list as it is cannot be kept as %s.%d: %s", text_base_name(path), n, strerror(error));
         return NULL;
     }
-    *why = mem_printf("there are %d versions beside %s", MOST_VERSIONS, base_name(path));
+    *why = mem_printf("there are %d versions beside %s", MOST_VERSIONS, text_base_name(path));
     return NULL;
 }
 
@@ -90,14 +84,14 @@ bool tag_file_put(const struct tag_save *save, char **kept, char **why)
     char *now = tag_file_read(save->path, why);
     bool same = now && !strcmp(now, save->before);
     if (now && !same)
-        *why = mem_printf("%s was changed by somebody else meanwhile", base_name(save->path));
+        *why = mem_printf("%s was changed by somebody else meanwhile", text_base_name(save->path));
     mem_free(now);
     char *name = same ? tag_file_keep(save->path, why) : NULL;
     if (!name)
         return false;
     int error = replace(save);
     if (error) {
-        *why = mem_printf("%s cannot be written: %s", base_name(save->path), strerror(-error));
+        *why = mem_printf("%s cannot be written: %s", text_base_name(save->path), strerror(-error));
         unlink(name);
         mem_free(name);
         return false;
@@ -110,6 +104,6 @@ bool tag_file_put_back(const struct tag_save *save, const char *kept, char **why
 {
     if (rename(kept, save->path) == 0)
         return true;
-    *why = mem_printf("%s cannot be put back from %s: %s", base_name(save->path), base_name(kept), strerror(errno));
+    *why = mem_printf("%s cannot be put back from %s: %s", text_base_name(save->path), text_base_name(kept), strerror(errno));
     return false;
 }

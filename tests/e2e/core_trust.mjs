@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a renderer may have its core do: what the person at it may, whom the core itself verifies, and nothing more. Somebody who has a
-// renderer's token speaks to /core here as a renderer would.
+// A core does for a renderer only what the core's own check of the person at the renderer allows. The tests speak to /core as a renderer
+// would, with a renderer's token.
 import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

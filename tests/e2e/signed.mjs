@@ -157,7 +157,7 @@ test('no file that would show something else is good: the chunk is named', { ski
     const only = (...unwanted) => chunks.filter((chunk) => !unwanted.includes(chunk));
     const more = 'a chunk that none of our pictures has: ';
     assert.deepEqual(chunks.map(({ type }) => type).filter((type) => type !== 'IDAT'), ['IHDR', 'zTXt', 'zTXt', 'sRGB', 'IEND']);
-    assert.match(verify(put('gAMA', '0000b18f')).out, /signature is good/, 'what sRGB says, said once more');
+    assert.match(verify(put('gAMA', '0000b18f')).out, /signature is good/, 'the gamma that sRGB implies');
     assert.match(verify(put('cHRM', SRGB)).out, /signature is good/);
     const cases = [
         ['another gamma', put('gAMA', '000186a0'), 'its chunk gAMA says something else'],

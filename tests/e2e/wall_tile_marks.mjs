@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands on a picture over two displays: alarms wherever they are, notes, where a desk points, and the title of the view, whichever
-// display came first.
+// Marks on a picture over two displays: alarms on either display, notes, the desk's pointer, and the title of the view, in either order in
+// which the displays came.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

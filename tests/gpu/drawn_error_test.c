@@ -239,21 +239,27 @@ static void test_half_of_needles(void **state)
     assert_true(tally.marked_right < tally.marked / 4);
 }
 
-/* The frame says how far it may be off, and nothing where readings are equal. */
-static void test_equal_readings_mark_nothing(void **state)
+/* Sets up a plate of needles. resolved_levels: as if preparing had left no error in them. */
+static void stand_on_plate(struct stand *stand, struct view *view, uint64_t resolved_levels)
 {
-    (void)state;
     struct toy *toy = toy_create();
     struct shape shape = { 0 };
-    struct stand stand;
-    struct view view;
     double places[SENSORS][3];
     random_state = sweep_seed();
     make_plate(&shape, SIDE_M, places);
     toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, SENSORS);
-    toy->scene.assets[0].file->resolved_levels = 0;
-    stand_init(&stand, &rig, toy);
-    view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, &view);
+    toy->scene.assets[0].file->resolved_levels = resolved_levels;
+    stand_init(stand, &rig, toy);
+    view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, view);
+}
+
+/* The frame says how far it may be off, and nothing where readings are equal. */
+static void test_equal_readings_mark_nothing(void **state)
+{
+    (void)state;
+    struct stand stand;
+    struct view view;
+    stand_on_plate(&stand, &view, 0);
     view.field.distance = DISTANCE_EUCLIDEAN;
     for (int spread = 40; spread >= 0; spread -= 40) {
         for (int i = 0; i < SENSORS; i++)
@@ -269,17 +275,9 @@ static void test_equal_readings_mark_nothing(void **state)
 static void test_lost_sensors_and_wild_readings_are_measured(void **state)
 {
     (void)state;
-    struct toy *toy = toy_create();
-    struct shape shape = { 0 };
     struct stand stand;
     struct view view;
-    double places[SENSORS][3];
-    random_state = sweep_seed();
-    make_plate(&shape, SIDE_M, places);
-    toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, SENSORS);
-    toy->scene.assets[0].file->resolved_levels = 1;
-    stand_init(&stand, &rig, toy);
-    view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, &view);
+    stand_on_plate(&stand, &view, 1);
     for (int way = 0; way < 3; way++) { /* as prepared, one lost, one far out of range */
         for (int i = 0; i < SENSORS; i++)
             toy_set(stand.snapshot, i, 20 + 10 * i, way == 1 && i == 1 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD);

@@ -171,8 +171,8 @@ static void refuse(struct device_thread *t, const uint8_t *request, int code)
     modbus_reply_exception(t->modbus, request, (unsigned)code);
 }
 
-/* What a device does because of how old its connection is. Returns whether it answers. */
-static bool is_in_the_mood(struct device_thread *t, size_t index)
+/* Applies the behaviour that depends on the age of a connection. Returns whether the device answers. */
+static bool answers_at_its_age(struct device_thread *t, size_t index)
 {
     struct device *device = t->device;
     int64_t now_ns = clock_mono_ns();
@@ -237,7 +237,7 @@ static void serve(struct device_thread *t, size_t index)
         drop_client(t, index, false);
     else if (bytes > 0) {
         t->of[index].heard_ns = clock_mono_ns();
-        bool answers = is_in_the_mood(t, index), last = t->of[index].answers == t->device->answers_per_connection;
+        bool answers = answers_at_its_age(t, index), last = t->of[index].answers == t->device->answers_per_connection;
         if (!answers)
             note_request(t, request);
         else if (!answer(t, t->clients[index], request, bytes))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands before a tag from all sides becomes a ghost, by the cases of protocol/vectors/wall/sights.json.
+// Assets that hide a tag from all sides become ghosts, by the cases of protocol/vectors/wall/sights.json.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';

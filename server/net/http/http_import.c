@@ -76,22 +76,26 @@ int api_import(struct server_context *server, struct request *request)
     return request_answer_json(request, plant_import_text(server->params.import, &source));
 }
 
-int api_import_matches(struct server_context *server, struct request *request)
+/* path NULL: there is no import. missing: the answer while there is no such file. */
+static int answer_file(struct request *request, const char *path, const char *type, const char *missing)
 {
     size_t bytes;
-    char *text = server->params.import ? text_read_file(plant_import_matches(server->params.import), MATCHES_BYTES, &bytes) : NULL;
+    char *text = path ? text_read_file(path, MATCHES_BYTES, &bytes) : NULL;
     if (!text)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "no tags were matched yet\n");
-    return request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text, strlen(text), NULL, NULL);
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, missing);
+    return request_answer(request, HTTP_STATUS_OK, type, text, bytes, NULL, NULL);
+}
+
+int api_import_matches(struct server_context *server, struct request *request)
+{
+    const struct plant_import *import = server->params.import;
+    return answer_file(request, import ? plant_import_matches(import) : NULL, "text/csv; charset=utf-8", "no tags were matched yet\n");
 }
 
 int api_import_report(struct server_context *server, struct request *request)
 {
-    size_t bytes;
-    char *text = server->params.import ? text_read_file(plant_import_report(server->params.import), MATCHES_BYTES, &bytes) : NULL;
-    if (!text)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "no models were read yet\n");
-    return request_answer(request, HTTP_STATUS_OK, "application/json", text, strlen(text), NULL, NULL);
+    const struct plant_import *import = server->params.import;
+    return answer_file(request, import ? plant_import_report(import) : NULL, "application/json", "no models were read yet\n");
 }
 
 /* --- orders ----------------------------------------------------------------------------------------------------------- */
