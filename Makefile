@@ -74,7 +74,7 @@ ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDF
 layers   := base audit plant surface value history alarm notify loopcheck views corelink scene field placing importing gpu render encode \
             provenance message service access session net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
-lazy     := server/base/image_lazy.c $(if $(filter h264,$(CODECS)),server/encode/h264_lazy.c)
+lazy     := server/base/image/image_lazy.c $(if $(filter h264,$(CODECS)),server/encode/h264_lazy.c)
 without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*)) $(lazy) \
             $(if $(opcua_libs),,$(wildcard server/value/opcua/*))
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a
@@ -154,14 +154,14 @@ $(bin)/plantcast-import-assimp: $(call objects,preprocess/import/readers/assimp)
 	@$(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lassimp -luchardet -ljansson -lm
 $(bin)/plantcast-match: $(call objects,preprocess/match/main.c) $(out)/lib/match.a $(out)/lib/prep.a $(archives)
 	$(link) -lminizip -lexpat
-$(bin)/plantcast-images.so: $(patsubst %,$(out)/obj/server/base/%.pic.o,image_shim mem)
+$(bin)/plantcast-images.so: $(patsubst %,$(out)/obj/server/base/%.pic.o,image/image_shim mem)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -shared -o $@ $^ $(pkg_libs)
 $(bin)/plantcast-h264.so: $(patsubst %,$(out)/obj/%.pic.o,$(addprefix server/encode/h264_,codec upload) clients/link/h264_decoder \
     server/base/mem)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -shared -o $@ $^ $(pkg_libs)
 link_lazy := $(if $(filter h264,$(CODECS)),clients/link/h264_decoder_lazy.c)
 $(out)/lib/link.a: $(call objects,$(filter-out $(if $(link_lazy),%_lazy.c,clients/link/h264%),$(wildcard clients/link/*.c)))
-$(out)/lib/cli.a: $(call objects,$(filter-out %/main.c,$(wildcard clients/cli/*.c)))
+$(out)/lib/cli.a: $(call objects,$(filter-out %/main.c,$(wildcard clients/cli/*.c clients/cli/*/*.c)))
 $(bin)/plantcast: $(call objects,clients/cli/main.c $(link_lazy)) $(out)/lib/cli.a $(out)/lib/link.a $(archives)
 	$(link)
 # Films: no other program links libavformat.
@@ -241,7 +241,7 @@ COMMIT ?= $(or $(shell git rev-parse --short=12 HEAD 2>/dev/null),unknown)
 $(shell mkdir -p $(gen); echo '#define PLANTCAST_COMMIT "$(COMMIT)"' | cmp -s - $(gen)/commit.h || \
         echo '#define PLANTCAST_COMMIT "$(COMMIT)"' >$(gen)/commit.h)
 
-# Shaders and colour maps, as C strings found by name (server/base/embedded.h).
+# Shaders and colour maps, as C strings found by name (server/base/text/embedded.h).
 embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl shaders/maps/*.csv clients/fleet/*)
 $(gen)/embedded.c: deploy/embed $(embedded_files)
 	@mkdir -p $(@D); deploy/embed $(embedded_files) >$@.new && mv $@.new $@

@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "base/mem.h"
-#include "base/service_manager.h"
-#include "plant/model_check.h"
+#include "base/system/service_manager.h"
+#include "plant/models/model_check.h"
 #include "preprocess/child/child_self.h"
 #include "preprocess/convert/convert.h"
 #include "preprocess/debug/debug_views.h"

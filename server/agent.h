@@ -5,7 +5,7 @@
 #define AGENT_H
 #include <stdbool.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 
 struct agent_state {
     int busy_percent; /* of the render thread's time */

@@ -8,7 +8,7 @@
 #include <strings.h>
 #include <unistd.h>
 
-#include "base/service_manager.h"
+#include "base/system/service_manager.h"
 #include "net/handed_socket.h"
 #include "server.h"
 #include "version.h"

@@ -9,10 +9,10 @@
 #include <unistd.h>
 
 #include "access/tokens.h"
-#include "base/atomic_file.h"
 #include "base/clock.h"
-#include "base/json_text.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "base/thread.h"
 #include "import_job.h"
 #include "plant/plant_diff.h"

@@ -7,7 +7,7 @@
 
 #include "access/access.h"
 #include "audit/audit.h"
-#include "base/log.h"
+#include "base/log/log.h"
 #include "corelink/core_link.h"
 #include "gpu/gl.h"
 

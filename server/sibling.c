@@ -14,9 +14,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/confine.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/system/confine.h"
+#include "base/text/text.h"
 
 enum { STDOUT, STDERR, PIPES, LOOK_MS = 50, MOST_STDERR_BYTES = 64 * 1024 };
 

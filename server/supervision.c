@@ -7,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/atomic_file.h"
 #include "base/clock.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
-#include "base/service_manager.h"
+#include "base/system/service_manager.h"
 #include "commit.h"
 #include "version.h"
 

@@ -2,8 +2,8 @@
 /* Supervision: what the daemon says of its state to the service manager and in /metrics, and what came of a reload in a file. */
 #ifndef SUPERVISION_H
 #define SUPERVISION_H
-#include "base/counters.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/metrics/counters.h"
 #include "net/net_params.h"
 
 struct supervision;

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "clients/cli/offline_renderer.h"
+#include "clients/cli/picture/offline_renderer.h"
 #include "clients/link/daemon.h"
 #include "commands.h"
 #include "message/views_message.h"

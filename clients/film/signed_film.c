@@ -11,8 +11,8 @@
 #include <zlib.h>
 
 #include "base/mem.h"
-#include "base/text.h"
-#include "base/timestamp.h"
+#include "base/text/text.h"
+#include "base/text/timestamp.h"
 #include "film_boxes.h"
 
 #define FILM_KEY "plantcast_statements"

@@ -3,7 +3,7 @@
    are those that were signed (SIGNED.md). Thread: one. */
 #ifndef FILM_SIGNED_FILM_H
 #define FILM_SIGNED_FILM_H
-#include "clients/cli/redraw.h"
+#include "clients/cli/picture/redraw.h"
 #include "video.h"
 
 struct film_statements;

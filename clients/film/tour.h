@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "clients/cli/snapshot.h"
+#include "clients/cli/picture/snapshot.h"
 
 /* Finds a tour in an answer of /api/v1/walls. Returns its stops, which the caller releases (json_decref), or NULL with the reason printed.
    from: who answered. */

@@ -2,7 +2,7 @@
 /* `plantcast verify` of a film. */
 #include <stdio.h>
 
-#include "clients/cli/verify.h"
+#include "clients/cli/picture/verify.h"
 #include "commands.h"
 #include "signed_film.h"
 

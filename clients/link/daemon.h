@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "access/access.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 struct daemon_url {
     char host[256];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Takes the decoder from the module that is loaded when it is first asked for (encode/h264_lazy.c says why). */
-#include "base/module.h"
+#include "base/system/module.h"
 #include "h264_decoder.h"
 
 static struct module h264 = MODULE("plantcast-h264.so"); /* h264_decoder.c */

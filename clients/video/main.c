@@ -5,7 +5,7 @@
 #include <signal.h>
 #include <stdio.h>
 
-#include "base/service_manager.h"
+#include "base/system/service_manager.h"
 #include "branch.h"
 #include "encoder.h"
 #include "metrics.h"

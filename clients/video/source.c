@@ -9,7 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/http_request.h"
+#include "base/system/http_request.h"
 #include "clients/link/png.h"
 #include "message/view_address.h"
 #include "video_words.h"

@@ -16,7 +16,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/timestamp.h"
+#include "base/text/timestamp.h"
 #include "sim_process.h"
 
 enum { TICK_MS = 100, EXIT_USAGE = 2, MAX_SPEED = 10000 };

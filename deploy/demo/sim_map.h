@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/diag.h"
+#include "base/text/diag.h"
 
 struct sim_map_entry {
     char *tag, *series;

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "plant/json_path.h"
+#include "plant/sources/json_path.h"
 #include "sim_encode.h"
 #include "value/mqtt/mqtt_topics.h"
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "plant/csv.h"
+#include "plant/parse/csv.h"
 #include "sim_process.h"
 #include "value/series.h"
 

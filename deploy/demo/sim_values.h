@@ -2,7 +2,7 @@
 /* The present value of every tag: forced through the control port, replayed from a series, or from the simulated process. Thread: one. */
 #ifndef DEMO_SIM_VALUES_H
 #define DEMO_SIM_VALUES_H
-#include "base/diag.h"
+#include "base/text/diag.h"
 #include "plant/plant.h"
 #include "sim_map.h"
 

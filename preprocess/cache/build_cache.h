@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The build cache: what one run of plantcast-prep keeps for the next in the folder of prepared files. An entry is a file of one kind for
-   one key: its bytes, with key, length and checksum before them (base/cache_file.h). Entries are replaced as a whole and never needed: one
+   one key: its bytes, with key, length and checksum before them (cache_file.h). Entries are replaced as a whole and never needed: one
    that is missing, cut, damaged, of another version or another key counts as absent. Thread: any, one writer per entry. */
 #ifndef PREPROCESS_CACHE_BUILD_CACHE_H
 #define PREPROCESS_CACHE_BUILD_CACHE_H
@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/cache_file.h"
+#include "base/files/cache_file.h"
 
 /* Each kind's contents are packed and unpacked by the file named here. */
 enum build_cache_kind {

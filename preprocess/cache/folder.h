@@ -8,8 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/atomic_file.h"
-#include "base/log.h"
+#include "base/files/atomic_file.h"
+#include "base/log/log.h"
 #include "protocol/asset_format.h"
 
 /* A KEY.asset file mapped for reading. */

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
+#include "base/files/pack.h"
 #include "base/mem.h"
-#include "base/pack.h"
 #include "preprocess/cache/build_cache.h"
 
 void model_cache_read(struct model_cache *cache, const char *folder)

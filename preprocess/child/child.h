@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs a program, or a function of this one, on a stranger's file: confined (base/confine.h), with limits of time and memory, in a process
+/* Runs a program, or a function of this one, on a stranger's file: confined (confine.h), with limits of time and memory, in a process
  * group of its own that ends with it. Thread: one at a time per process, since it waits for signals. */
 #ifndef PREPROCESS_CHILD_CHILD_H
 #define PREPROCESS_CHILD_CHILD_H
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/confine.h"
-#include "base/text.h"
+#include "base/system/confine.h"
+#include "base/text/text.h"
 
 enum { CHILD_WHY_BYTES = 400 };
 

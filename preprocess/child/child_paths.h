@@ -2,7 +2,7 @@
 /* A growing list of the paths that a confined child may use. Thread: any, one at a time per list. */
 #ifndef PREPROCESS_CHILD_CHILD_PATHS_H
 #define PREPROCESS_CHILD_CHILD_PATHS_H
-#include "base/confine.h"
+#include "base/system/confine.h"
 
 struct child_paths { /* zero-initialise */
     struct confine_path *at;
@@ -19,7 +19,7 @@ void child_paths_add_beside(struct child_paths *paths, const char *input, const 
 /* Adds what a shell command of the site needs: installed programs, the folders of PATH, settings in /etc other than Plantcast's, and the
  * files and folders that the command names by absolute paths. */
 void child_paths_add_command(struct child_paths *paths, const char *command);
-/* Adds the folders where modules of this program lie (base/module.h): its own, and ../lib/plantcast. */
+/* Adds the folders where modules of this program lie (base/system/module.h): its own, and ../lib/plantcast. */
 void child_paths_add_modules(struct child_paths *paths);
 void child_paths_finish(struct child_paths *paths);
 

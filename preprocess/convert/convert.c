@@ -10,11 +10,11 @@
 #include <sys/stat.h>
 #include <xxhash.h>
 
-#include "base/atomic_file.h"
-#include "base/json_text.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
-#include "base/text.h"
-#include "plant/model_header.h"
+#include "base/text/json_text.h"
+#include "base/text/text.h"
+#include "plant/models/model_header.h"
 #include "preprocess/child/child.h"
 #include "preprocess/child/child_paths.h"
 #include "preprocess/child/work_folder.h"

@@ -2,7 +2,7 @@
 /* Makes the models that a plant file says how to make (`convert`), before they are prepared. Thread: one. */
 #ifndef PREPROCESS_CONVERT_CONVERT_H
 #define PREPROCESS_CONVERT_CONVERT_H
-#include "base/diag.h"
+#include "base/text/diag.h"
 #include "plant/plant.h"
 
 /* Runs the command of each model whose input or command has changed since it was made, or that is not there or was changed itself; what was

@@ -4,8 +4,8 @@
 #define PREPROCESS_DEBUG_VIEWS_H
 #include <stdio.h>
 
-#include "base/diag.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/text/diag.h"
 #include "base/workers.h"
 #include "plant/plant.h"
 

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
+#include "base/image/srgb.h"
 #include "base/mem.h"
-#include "base/srgb.h"
 #include "preprocess/glb/glb_file.h"
 
 struct glb_writer {

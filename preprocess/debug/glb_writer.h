@@ -4,7 +4,7 @@
 #define PREPROCESS_DEBUG_GLB_WRITER_H
 #include <stdint.h>
 
-#include "base/text.h"
+#include "base/text/text.h"
 
 enum glb_mode { GLB_POINTS = 0, GLB_LINES = 1, GLB_TRIANGLES = 4 };
 

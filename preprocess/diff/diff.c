@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 #include "preprocess/diff/diff_shape.h"
 #include "preprocess/pipeline/prepare.h"
 

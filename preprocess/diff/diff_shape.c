@@ -5,9 +5,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 #include "preprocess/geometry/rigid_fit.h"
 #include "surface/mesh/bvh.h"
 

@@ -2,7 +2,7 @@
 /* One of the two plants that a comparison reads: a plant file with its models, or a folder of prepared files. Thread: one. */
 #ifndef PREPROCESS_DIFF_SIDE_H
 #define PREPROCESS_DIFF_SIDE_H
-#include "base/diag.h"
+#include "base/text/diag.h"
 #include "preprocess/cache/folder.h"
 #include "preprocess/model/model_files.h"
 #include "preprocess/model/refusal.h"

@@ -2,7 +2,7 @@
 /* Hair gaps, closed as those of the surface that distances are found on. */
 #include "preprocess/geometry/gaps.h"
 
-#include "base/extent.h"
+#include "base/math/extent.h"
 #include "base/mem.h"
 #include "surface/repair/repair.h"
 

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "plant/nodes.h"
-#include "plant/transform.h"
+#include "plant/models/nodes.h"
+#include "plant/models/transform.h"
 #include "preprocess/geometry/geometry_impl.h"
 
 #define MAX_TRIANGLES 50000000ull /* of one asset */

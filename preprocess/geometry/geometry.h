@@ -3,7 +3,7 @@
    a geometry is changed by one thread at a time. */
 #ifndef PREPROCESS_GEOMETRY_H
 #define PREPROCESS_GEOMETRY_H
-#include "base/text.h"
+#include "base/text/text.h"
 #include "plant/plant.h"
 #include "preprocess/model/gltf_shim.h"
 
@@ -28,7 +28,7 @@ struct geometry {
 };
 
 struct geometry_params {
-    const char *nodes; /* patterns (plant/nodes.h); NULL: all */
+    const char *nodes; /* patterns (plant/models/nodes.h); NULL: all */
     double unit_m;
     enum axis up;
     double tolerance_m; /* no wider gaps are closed, in what is drawn and when distances are found; 0: chosen from the model */

@@ -5,13 +5,13 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 #include "preprocess/geometry/gaps.h"
 #include "preprocess/geometry/geometry_impl.h"
 #include "preprocess/geometry/normals.h"
 #include "preprocess/geometry/winding.h"
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 /* Model units and axes to metres and Z up: (x, y, z) of a Y-up model is (x, -z, y). */
 static void frame_of(const struct geometry_params *params, double out[16])

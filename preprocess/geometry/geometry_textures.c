@@ -2,7 +2,7 @@
 /* The textures of an asset. */
 #include <string.h>
 
-#include "base/image.h"
+#include "base/image/image.h"
 #include "base/mem.h"
 #include "preprocess/geometry/geometry_impl.h"
 

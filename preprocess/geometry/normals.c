@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 #define MANY 256 /* faces at one place, from which on not each is compared with each */
 #define LEAF 16

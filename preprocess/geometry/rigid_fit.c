@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 
 enum { POWER_STEPS = 2000 };
 

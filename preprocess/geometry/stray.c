@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/gap_split.h"
+#include "base/math/gap_split.h"
 #include "base/mem.h"
 
 static struct gap_tri *triangles_of(const struct geometry *geometry)

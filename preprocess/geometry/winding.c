@@ -2,8 +2,8 @@
 /* Flipped faces: each triangle's side by those of its neighbours; what is on the smaller side is turned. */
 #include "preprocess/geometry/winding.h"
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/tri_edges.h"
 

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 
 void glb_file_init(struct glb_file *file)
 {

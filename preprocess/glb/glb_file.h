@@ -5,7 +5,7 @@
 #define PREPROCESS_GLB_GLB_FILE_H
 #include <jansson.h>
 
-#include "base/text.h"
+#include "base/text/text.h"
 
 enum { GLB_FLOAT = 5126, GLB_USHORT = 5123, GLB_UINT = 5125, GLB_VERTICES = 34962, GLB_INDICES = 34963 }; /* as glTF numbers them */
 

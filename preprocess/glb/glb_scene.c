@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/utf8.h"
+#include "base/text/utf8.h"
 #include "preprocess/glb/glb_file.h"
 
 enum { TRIANGLES = 4 }; /* as glTF numbers them */

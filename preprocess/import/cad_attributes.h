@@ -3,7 +3,7 @@
  * them to the model's nodes of those names. Thread: any. */
 #ifndef PREPROCESS_IMPORT_CAD_ATTRIBUTES_H
 #define PREPROCESS_IMPORT_CAD_ATTRIBUTES_H
-#include "base/charset.h"
+#include "base/text/charset.h"
 #include "preprocess/import/cad_model.h"
 
 struct attribute_counts {

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/image/srgb.h"
 #include "base/mem.h"
-#include "base/srgb.h"
 #include "preprocess/glb/glb_file.h"
 
 enum { LINES = 1, TRIANGLES = 4 }; /* as glTF numbers them */

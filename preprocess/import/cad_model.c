@@ -4,8 +4,8 @@
 
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 struct cad_model *cad_model_create(void)
 {

@@ -6,9 +6,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/atomic_file.h"
-#include "base/confine.h"
-#include "base/json_text.h"
+#include "base/files/atomic_file.h"
+#include "base/system/confine.h"
+#include "base/text/json_text.h"
 #include "base/mem.h"
 #include "preprocess/import/commands.h"
 #include "preprocess/import/file_name.h"

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/text.h"
+#include "base/text/text.h"
 
 enum { CONVERSION_WHY_BYTES = 512 };
 

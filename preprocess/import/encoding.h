@@ -2,8 +2,8 @@
 /* Encoding of the names of a model: given by the user, stated by the file, or detected. Thread: any. */
 #ifndef PREPROCESS_IMPORT_ENCODING_H
 #define PREPROCESS_IMPORT_ENCODING_H
-#include "base/charset.h"
-#include "base/text.h"
+#include "base/text/charset.h"
+#include "base/text/text.h"
 
 /* Chooses the encoding of a text. asked: the user's choice, which is always taken; NULL: none. said: the encoding that the file states,
    which is taken if all bytes fit and the text is not UTF-8; NULL or "": none. Otherwise the encoding is detected. */

@@ -9,7 +9,7 @@
 #define PREPROCESS_IMPORT_FINDINGS_H
 #include <jansson.h>
 
-#include "base/text.h"
+#include "base/text/text.h"
 
 /* Returns the findings of one model: {file, lost_count, lost (at most 20,000): [{id, name, class, guid, why}], errors: [{count, text}],
  * left_out: [text], unit: {taken, length} or null, failed: text or null}. said: what its reader printed; failed: why it was not imported,

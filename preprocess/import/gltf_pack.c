@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
 #include "preprocess/glb/glb_file.h"
 #include "preprocess/model/model_json.h"

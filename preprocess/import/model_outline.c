@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/utf8.h"
-#include "base/vec.h"
-#include "plant/asset_size.h"
+#include "base/text/utf8.h"
+#include "plant/models/asset_size.h"
 #include "preprocess/report/text_table.h"
 
 static void add_up(struct model_outline *outline)

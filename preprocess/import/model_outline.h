@@ -4,8 +4,8 @@
 #define PREPROCESS_IMPORT_MODEL_OUTLINE_H
 #include <jansson.h>
 
-#include "base/text.h"
-#include "plant/model_header.h"
+#include "base/text/text.h"
+#include "plant/models/model_header.h"
 
 struct outline_node {
     const char *name;       /* its own, else its mesh's, else ""; not owned */

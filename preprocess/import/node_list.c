@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/json_text.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "preprocess/report/text_table.h"
 
 /* `name=value` for each property, those of groups too. */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/charset.h"
+#include "base/text/charset.h"
 
 const struct conversion_params options_default = { .chord_m = 0.001, .timeout_s = 120, .memory_bytes = (size_t)2 << 30 };
 

@@ -3,7 +3,7 @@
  * primitives and CNTE, END:). There is no published specification; the layout is as open readers describe it. Thread: any. */
 #ifndef PREPROCESS_IMPORT_RVM_H
 #define PREPROCESS_IMPORT_RVM_H
-#include "base/charset.h"
+#include "base/text/charset.h"
 #include "preprocess/import/cad_model.h"
 
 struct rvm_counts {

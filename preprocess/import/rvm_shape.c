@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 enum { MIN_CORNERS = 8, MAX_CORNERS = 256 };
 

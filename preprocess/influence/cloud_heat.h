@@ -9,7 +9,7 @@
    in each tangent plane by weighted least squares; distances d make sum w_ij (d_j - d_i - (X_i + X_j) (p_j - p_i) / 2)^2 least. */
 #ifndef PREPROCESS_INFLUENCE_CLOUD_HEAT_H
 #define PREPROCESS_INFLUENCE_CLOUD_HEAT_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "surface/surface.h"
 
 #define CLOUD_POINTS 30000.0

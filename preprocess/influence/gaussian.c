@@ -7,8 +7,8 @@
 #include <stdatomic.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/influence/gaussian_bodies.h"
 #include "preprocess/influence/gaussian_contrast.h"
 #include "surface/geodesic/laplacian.h"

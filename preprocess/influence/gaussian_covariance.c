@@ -6,8 +6,8 @@
 #include <stdatomic.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 #define STEP 0.02 /* of log k^2: the difference errs by its square over 6; less would cost digits */
 

@@ -6,7 +6,7 @@
 #define PREPROCESS_INFLUENCE_GAUSSIAN_COVARIANCE_H
 #include <cholmod.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/workers.h"
 #include "preprocess/influence/gaussian_bodies.h"
 #include "preprocess/influence/influence_mesh.h"

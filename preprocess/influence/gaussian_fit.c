@@ -7,10 +7,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
-#include "plant/csv.h"
-#include "plant/number.h"
+#include "plant/parse/csv.h"
+#include "plant/parse/number.h"
 #include "preprocess/influence/gaussian_contrast.h"
 #include "preprocess/influence/gaussian_covariance.h"
 

@@ -10,7 +10,7 @@
    follows with the same H. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/workers.h"
 #include "preprocess/influence/influence_bend.h"
 #include "preprocess/influence/influence_mesh.h"

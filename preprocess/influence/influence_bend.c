@@ -5,9 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/extent.h"
+#include "base/math/extent.h"
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/influence/polygons.h"
 #include "surface/mesh/bvh.h"
 

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/simd.h"
 #include "base/mem.h"
-#include "base/simd.h"
 #include "preprocess/influence/influence_bend.h"
 
 #define STEPS 255.0

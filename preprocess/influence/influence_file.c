@@ -7,10 +7,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/cache_file.h"
-#include "base/extent.h"
+#include "base/files/cache_file.h"
+#include "base/math/extent.h"
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "plant/influence.h"
 #include "preprocess/cache/folder.h"
 #include "preprocess/influence/cloud_heat.h"

@@ -2,7 +2,7 @@
 /* From an asset's surface to its file KEY.influence (protocol/ASSET.md). Thread: one; it spreads its work over the workers. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_FILE_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_FILE_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/workers.h"
 #include "plant/sensors.h"
 #include "preprocess/influence/influence_bend.h"

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 #define GRADING 0.7      /* an edge at distance D from the nearest sensor is at most this times D, or half the disc's radius */
 #define MOST_ADDED 1000  /* points for each sensor: a radius that is far smaller than the triangles is not resolved */

@@ -5,9 +5,9 @@
 #include <math.h>
 #include <stdatomic.h>
 
-#include "base/extent.h"
+#include "base/math/extent.h"
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 

@@ -7,7 +7,7 @@
    what can be unfolded, and along great circles but for the size of triangles. Thread: one; it spreads its work over the workers. */
 #ifndef PREPROCESS_INFLUENCE_TRANSPORT_H
 #define PREPROCESS_INFLUENCE_TRANSPORT_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/workers.h"
 #include "preprocess/influence/influence.h"
 

@@ -7,8 +7,8 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 #define SMALL 4.0  /* expected distances: in smaller triangles the middle is probed */
 #define LARGE 16.0 /* likewise: in larger ones, twelve points inside; else the middles of the edges */

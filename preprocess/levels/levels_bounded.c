@@ -6,8 +6,8 @@
 
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 #define RING 48      /* triangles around a point, at most: others stay */
 #define TURN 0.4     /* the cosine between a triangle's old and new normal is larger */

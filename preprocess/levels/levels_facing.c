@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/levels/levels_impl.h"
 
 #define AWAY (-0.5f) /* cosines: the vertex that suits a face best looks away from it; */

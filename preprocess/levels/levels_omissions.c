@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/levels/box_groups.h"
 #include "preprocess/levels/levels_impl.h"
 #include "surface/mesh/bvh.h"

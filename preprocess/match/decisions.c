@@ -11,7 +11,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
-#include "base/charset.h"
+#include "base/text/charset.h"
 #include "preprocess/match/table.h"
 
 enum { TAG, STATUS, ASSET, PLACE, CONFIDENCE, REASON, MAY_BE, CHECK, COLUMNS };

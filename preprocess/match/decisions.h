@@ -2,7 +2,7 @@
 /* matches.csv: what each tag was matched to, and why; what people change in it is kept and obeyed. Thread: one. */
 #ifndef PREPROCESS_MATCH_DECISIONS_H
 #define PREPROCESS_MATCH_DECISIONS_H
-#include "base/text.h"
+#include "base/text/text.h"
 #include "preprocess/match/matcher.h"
 
 struct decision { /* a row, as it was */

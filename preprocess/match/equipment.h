@@ -3,7 +3,7 @@
  * names, or a list. Thread: any. */
 #ifndef PREPROCESS_MATCH_EQUIPMENT_H
 #define PREPROCESS_MATCH_EQUIPMENT_H
-#include "base/text.h"
+#include "base/text/text.h"
 #include "preprocess/match/model_index.h"
 
 /* Appends a line for each asset that `choices` take: "level=N" (the roots are level 1), "@FILE" (names, one a line) or a pattern of names

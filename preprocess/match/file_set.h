@@ -5,7 +5,7 @@
 #define PREPROCESS_MATCH_FILE_SET_H
 #include <stdbool.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 #include "plant/plant_folder.h"
 
 enum { FILE_SET_ROOM = 3 };

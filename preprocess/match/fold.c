@@ -7,7 +7,7 @@
 #include <utf8proc.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 static bool is_ascii(const char *text)
 {

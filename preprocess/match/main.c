@@ -6,9 +6,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/charset.h"
 #include "base/mem.h"
-#include "plant/address.h"
+#include "base/text/charset.h"
+#include "plant/sources/address.h"
 #include "preprocess/match/matching.h"
 
 static void print_usage(FILE *out)

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "preprocess/match/matcher_impl.h"
 
 void candidates_add(struct candidates *list, int asset, int node)

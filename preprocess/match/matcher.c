@@ -9,8 +9,8 @@
 #include <strings.h>
 
 #include "base/mem.h"
-#include "base/text.h"
-#include "base/charset.h"
+#include "base/text/text.h"
+#include "base/text/charset.h"
 #include "preprocess/match/matcher_impl.h"
 #include "preprocess/match/table.h"
 

@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/text.h"
-#include "plant/transform.h"
+#include "base/text/text.h"
+#include "plant/models/transform.h"
 
 static const size_t max_bytes = (size_t)4 << 30;
 enum { MAX_DEPTH = 400, MAX_NODES = 4000000 };

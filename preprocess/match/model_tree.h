@@ -4,7 +4,7 @@
 #define PREPROCESS_MATCH_MODEL_TREE_H
 #include <jansson.h>
 
-#include "plant/nodes.h"
+#include "plant/models/nodes.h"
 
 struct tree_attribute {
     const char *name, *value;
@@ -20,7 +20,7 @@ struct tree_node {
 
 struct model_tree { /* zero-initialise */
     char *path;
-    struct model_node *nodes; /* depth first (plant/nodes.h) */
+    struct model_node *nodes; /* depth first (plant/models/nodes.h) */
     struct tree_node *more;   /* likewise */
     size_t count, capacity, more_capacity;
     json_t *json;

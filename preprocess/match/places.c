@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 #include "preprocess/match/name_tokens.h"
 
 /* Words that mean one end, in descriptions and in names of nodes. */

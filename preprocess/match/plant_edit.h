@@ -2,7 +2,7 @@
 /* Changes a plant file as a person would: appends lines to its lists, and leaves the rest as it is to the byte. Pure. Thread: any. */
 #ifndef PREPROCESS_MATCH_PLANT_EDIT_H
 #define PREPROCESS_MATCH_PLANT_EDIT_H
-#include "base/text.h"
+#include "base/text/text.h"
 
 /* The group that `plantcast import` begins a plant file with, so that it is one. */
 extern const char plant_edit_placeholder[];

@@ -9,8 +9,8 @@
 #include <strings.h>
 
 #include "base/mem.h"
-#include "plant/number.h"
-#include "plant/units.h"
+#include "plant/parse/number.h"
+#include "plant/tags/units.h"
 #include "preprocess/match/isa.h"
 #include "preprocess/match/quantity_words.h"
 

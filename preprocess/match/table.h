@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A table of text cells, out of a CSV file or a spreadsheet. It is more lenient than plant/csv.h, since other programs wrote it: rows may
+/* A table of text cells, out of a CSV file or a spreadsheet. It is more lenient than csv.h, since other programs wrote it: rows may
  * have any number of cells. Thread: any. */
 #ifndef PREPROCESS_MATCH_TABLE_H
 #define PREPROCESS_MATCH_TABLE_H

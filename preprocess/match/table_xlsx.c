@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 enum { MAX_SHEETS = 64, MAX_BYTES = 1 << 28 /* of all cells; a shared string counts in each */ };
 static const size_t max_part_bytes = (size_t)512 << 20;

@@ -9,8 +9,8 @@
 #include <strings.h>
 
 #include "base/mem.h"
-#include "base/text.h"
-#include "plant/number.h"
+#include "base/text/text.h"
+#include "plant/parse/number.h"
 #include "preprocess/match/table.h"
 #include "preprocess/match/tag_header.h"
 

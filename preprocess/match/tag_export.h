@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/charset.h"
-#include "base/text.h"
+#include "base/text/charset.h"
+#include "base/text/text.h"
 #include "preprocess/match/export_field.h"
 
 struct export_tag {

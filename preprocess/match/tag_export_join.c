@@ -5,7 +5,7 @@
 #include <strings.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "preprocess/match/fold.h"
 #include "preprocess/match/tag_export.h"
 

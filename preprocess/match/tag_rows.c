@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "base/mem.h"
-#include "plant/address.h"
-#include "base/charset.h"
+#include "plant/sources/address.h"
+#include "base/text/charset.h"
 #include "preprocess/match/table.h"
 
 enum column {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 extern "C" {
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 }
 
 namespace gltf

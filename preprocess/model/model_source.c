@@ -9,7 +9,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "preprocess/model/model_json.h"
 #include "preprocess/model/model_uri.h"
 

@@ -10,7 +10,7 @@
 #include <utf8proc.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 /* --- files --------------------------------------------------------------------------------------------------------------- */
 

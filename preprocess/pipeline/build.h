@@ -2,7 +2,7 @@
 /* Builds one asset from a parsed model, or from the geometry cache: mesh, levels, sensor distances, and the bytes of its file. */
 #ifndef PREPROCESS_PIPELINE_BUILD_H
 #define PREPROCESS_PIPELINE_BUILD_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/workers.h"
 #include "preprocess/pipeline/build_io.h"
 

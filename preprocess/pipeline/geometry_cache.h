@@ -4,7 +4,7 @@
    count as absent. Thread: one per cache. */
 #ifndef PREPROCESS_PIPELINE_GEOMETRY_CACHE_H
 #define PREPROCESS_PIPELINE_GEOMETRY_CACHE_H
-#include "base/cache_file.h"
+#include "base/files/cache_file.h"
 #include "preprocess/pipeline/build_io.h"
 
 #define GEOMETRY_CACHE_TRIANGLES 10000u /* of assets with fewer, making it all again is about as quick */

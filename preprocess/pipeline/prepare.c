@@ -14,7 +14,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/service_manager.h"
+#include "base/system/service_manager.h"
 #include "plant/recipe.h"
 #include "preprocess/cache/model_cache.h"
 #include "preprocess/cache/folder.h"

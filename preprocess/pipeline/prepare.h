@@ -6,7 +6,7 @@
 #include <stdatomic.h>
 #include <stdio.h>
 
-#include "base/diag.h"
+#include "base/text/diag.h"
 #include "preprocess/pipeline/build.h"
 #include "preprocess/model/model_files.h"
 #include "preprocess/pipeline/geometry_cache.h"

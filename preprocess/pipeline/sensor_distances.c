@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/cache/distance_cache.h"
 #include "preprocess/pipeline/geometry_cache.h"
 #include "surface/mesh/bvh.h"

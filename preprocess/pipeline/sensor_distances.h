@@ -2,7 +2,7 @@
 /* Projects an asset's sensors onto its surface and computes the distances of every surface point from them. */
 #ifndef PREPROCESS_PIPELINE_SENSOR_DISTANCES_H
 #define PREPROCESS_PIPELINE_SENSOR_DISTANCES_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/workers.h"
 #include "preprocess/pipeline/build_io.h"
 #include "preprocess/subdivision/distance_rows.h"

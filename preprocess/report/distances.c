@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 #include "preprocess/cache/folder.h"
 #include "preprocess/pipeline/sensor_distances.h"
 #include "protocol/asset_distance.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "plant/asset_size.h"
+#include "plant/models/asset_size.h"
 #include "preprocess/report/text_table.h"
 
 #define ROWS_MAX 40 /* of a table, unless all are asked for */

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "plant/asset_size.h"
+#include "plant/models/asset_size.h"
 #include "preprocess/report/report.h"
 #include "preprocess/subdivision/subdivide.h"
 #include "preprocess/report/text_table.h"

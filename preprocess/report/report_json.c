@@ -5,7 +5,7 @@
 
 #include "base/mem.h"
 #include "preprocess/cache/folder.h"
-#include "plant/asset_size.h"
+#include "plant/models/asset_size.h"
 #include "preprocess/report/report.h"
 #include "preprocess/pipeline/build_report_json.h"
 

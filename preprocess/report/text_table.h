@@ -4,7 +4,7 @@
 #define PREPROCESS_REPORT_TEXT_TABLE_H
 #include <stdio.h>
 
-#include "base/text.h"
+#include "base/text/text.h"
 
 struct text_table_column {
     const char *title;

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "base/simd.h"
+#include "base/math/simd.h"
 
 #define L INTERP_LANES
 #define LEAST_M 1e-5f    /* a sensor nearer than that has all the weight */

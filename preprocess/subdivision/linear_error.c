@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "plant/singles.h"
 
 #define MOST_SLACK (1 / 255.0) /* of the range */

@@ -6,7 +6,7 @@
 #define PREPROCESS_SUBDIVISION_SAMPLE_CACHE_H
 #include <pthread.h>
 
-#include "base/cache_file.h"
+#include "base/files/cache_file.h"
 
 struct sample_cache {
     struct cache_file file;

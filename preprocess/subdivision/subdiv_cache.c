@@ -7,7 +7,7 @@
 #include <string.h>
 #include <xxhash.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
 #include "preprocess/cache/build_cache.h"
 #include "preprocess/subdivision/subdivide_impl.h"

@@ -12,8 +12,8 @@
    delete; a damaged file counts as absent. Thread: one, except where a function says otherwise. */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIV_CACHE_H
 #define PREPROCESS_SUBDIVISION_SUBDIV_CACHE_H
-#include "base/cache_file.h"
-#include "base/text.h"
+#include "base/files/cache_file.h"
+#include "base/text/text.h"
 #include "preprocess/subdivision/linear_error.h"
 
 struct subdiv_cache {

@@ -4,8 +4,8 @@
 #include <string.h>
 #include <xxhash.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 #include "protocol/asset_distance.h"
 #include "surface/mesh/bvh.h"

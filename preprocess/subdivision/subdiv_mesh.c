@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 bool subdiv_mesh_init(struct subdiv_mesh *mesh, struct geometry *geometry)
 {

@@ -9,8 +9,8 @@
 #include <strings.h>
 
 #include "base/mem.h"
-#include "base/text.h"
-#include "base/utf8.h"
+#include "base/text/text.h"
+#include "base/text/utf8.h"
 
 enum { NOTICE_BYTES = 4096 };
 

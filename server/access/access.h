@@ -4,7 +4,7 @@
 #ifndef ACCESS_ACCESS_H
 #define ACCESS_ACCESS_H
 #include "access/quota.h"
-#include "base/log.h"
+#include "base/log/log.h"
 #include "message/role.h"
 
 enum { ACCESS_MAX_NAMES = 16 };

@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/hex.h"
-#include "base/json_text.h"
 #include "base/mem.h"
+#include "base/text/hex.h"
+#include "base/text/json_text.h"
 #include "views/kept_list.h"
 
 enum { HASH_CHARS = 2 * TOKEN_HASH_BYTES, SECRET_CHARS = 3 + 64 };

@@ -16,11 +16,11 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/hex.h"
+#include "base/text/hex.h"
 #include "base/mem.h"
 #include "access/file_watch.h"
 #include "message/names.h"
-#include "plant/wall.h"
+#include "plant/walls/wall.h"
 
 enum { MAX_FILE_BYTES = 1024 * 1024, RANDOM_BYTES = 32 };
 

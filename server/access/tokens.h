@@ -4,10 +4,10 @@
    write it. Thread: one. */
 #ifndef ACCESS_TOKENS_H
 #define ACCESS_TOKENS_H
-#include "base/log.h"
-#include "base/text.h"
+#include "base/log/log.h"
+#include "base/text/text.h"
 #include "access/access.h"
-#include "plant/wall.h"
+#include "plant/walls/wall.h"
 
 enum { TOKEN_HASH_BYTES = 32, TOKEN_NAME_BYTES = 64, TOKEN_PLANT_BYTES = 128, TOKEN_VIEWS_BYTES = 256 };
 

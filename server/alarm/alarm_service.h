@@ -5,8 +5,8 @@
 #define ALARM_ALARM_SERVICE_H
 #include "alarm/alarms.h"
 #include "alarm/journal_file.h"
-#include "base/counters.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/metrics/counters.h"
 
 struct alarm_service_params {
     struct log *log;

@@ -2,7 +2,7 @@
 /* Alarms at a time in the past: from the journal or, for times before it begins, from the limits. */
 #ifndef ALARM_ALARMS_AT_INSTANT_H
 #define ALARM_ALARMS_AT_INSTANT_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "history/history.h"
 #include "plant/plant.h"
 #include "value/snapshot.h"

@@ -4,8 +4,8 @@
 #ifndef ALARM_JOURNAL_H
 #define ALARM_JOURNAL_H
 #include "alarm/journal_file.h"
-#include "base/counters.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/metrics/counters.h"
 
 struct journal_params {
     struct log *log;

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/database.h"
+#include "base/files/database.h"
 #include "base/mem.h"
 
 enum { APPLICATION_ID = 0x5043414A /* "PCAJ" */ };

@@ -3,7 +3,7 @@
 #ifndef ALARM_JOURNAL_FILE_H
 #define ALARM_JOURNAL_FILE_H
 #include "alarm/alarms.h"
-#include "base/log.h"
+#include "base/log/log.h"
 
 #define JOURNAL_FILE "alarms.sqlite"
 enum { JOURNAL_VERSION = 1 };

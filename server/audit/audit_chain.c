@@ -6,11 +6,11 @@
 #include <openssl/evp.h>
 #include <string.h>
 
-#include "base/hex.h"
-#include "base/json_text.h"
 #include "base/mem.h"
-#include "base/timestamp.h"
-#include "base/utf8.h"
+#include "base/text/hex.h"
+#include "base/text/json_text.h"
+#include "base/text/timestamp.h"
+#include "base/text/utf8.h"
 
 enum { FIELD_BYTES = 1024 };
 static const char HASH_KEY[] = ",\"hash\":\"", END[] = "\"}";

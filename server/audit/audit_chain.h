@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/text.h"
+#include "base/text/text.h"
 
 enum { AUDIT_HASH_CHARS = 64, AUDIT_LINE_BYTES = 32768 };
 

@@ -4,8 +4,8 @@
 #define AUDIT_AUDIT_PARAMS_H
 #include <stddef.h>
 
-#include "base/counters.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/metrics/counters.h"
 
 struct audit_params {
     struct log *log;

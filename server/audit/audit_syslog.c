@@ -10,7 +10,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/timestamp.h"
+#include "base/text/timestamp.h"
 
 enum { MOST_WAITING = 10000, TIMEOUT_S = 10, AUDIT_FACILITY = 13, NOTICE = 5, WARNING = 4 };
 static const int64_t RETRY_NS = 2 * NS_PER_S, LAST_NS = 3 * NS_PER_S;

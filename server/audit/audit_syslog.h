@@ -4,7 +4,7 @@
 #ifndef AUDIT_AUDIT_SYSLOG_H
 #define AUDIT_AUDIT_SYSLOG_H
 #include "audit/audit_params.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 struct audit_syslog;
 /* Returns NULL if there is no thread, already logged. */

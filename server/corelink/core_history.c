@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/http_request.h"
 #include "base/mem.h"
+#include "base/system/http_request.h"
 #include "corelink/core_instant.h"
 
 enum { MOST_BYTES = 64 << 20, CONNECT_S = 4, SLOW_S = 10 /* without a byte */, STATUS_GOOD = 200 };

@@ -4,8 +4,8 @@
    core that readings come from is asked, which so is known to have the same plant. */
 #ifndef CORELINK_CORE_HISTORY_H
 #define CORELINK_CORE_HISTORY_H
-#include "base/log.h"
-#include "base/text.h"
+#include "base/log/log.h"
+#include "base/text/text.h"
 #include "corelink/core_link.h"
 #include "value/snapshot.h"
 

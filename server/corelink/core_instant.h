@@ -2,7 +2,7 @@
 /* The readings of an instant that a core recorded, as bytes, for a renderer. Pure. Thread: any. */
 #ifndef CORELINK_CORE_INSTANT_H
 #define CORELINK_CORE_INSTANT_H
-#include "base/text.h"
+#include "base/text/text.h"
 #include "value/snapshot.h"
 
 #define CORE_INSTANT_PATH "/core/instant"

@@ -13,9 +13,9 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/json_text.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/json_text.h"
+#include "base/text/text.h"
 #include "base/thread.h"
 #include "corelink/core_alarms.h"
 #include "corelink/core_identity.h"

@@ -4,8 +4,8 @@
 #ifndef CORELINK_CORE_LINK_H
 #define CORELINK_CORE_LINK_H
 #include "alarm/alarm_service.h"
-#include "base/counters.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/metrics/counters.h"
 #include "corelink/lease_keeper.h"
 #include "history/historian.h"
 #include "value/store.h"

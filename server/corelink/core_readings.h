@@ -3,7 +3,7 @@
    has them. Pure. Thread: any. */
 #ifndef CORELINK_CORE_READINGS_H
 #define CORELINK_CORE_READINGS_H
-#include "base/text.h"
+#include "base/text/text.h"
 #include "value/snapshot.h"
 #include "value/store.h"
 

@@ -2,7 +2,7 @@
 /* Samples from a core to the one that stands by, as bytes: each sample, in order, for its history. Thread: any. */
 #ifndef CORELINK_CORE_SAMPLES_H
 #define CORELINK_CORE_SAMPLES_H
-#include "base/text.h"
+#include "base/text/text.h"
 #include "value/store.h"
 
 enum {

@@ -3,8 +3,8 @@
    and has the kernel end the process in the moment when it may act no more. Thread: any, where nothing else is said. */
 #ifndef CORELINK_LEASE_KEEPER_H
 #define CORELINK_LEASE_KEEPER_H
-#include "base/counters.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/metrics/counters.h"
 #include "corelink/lease.h"
 #include "plant/plant.h"
 

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 enum { LINE_BYTES = 128, MACHINE_BYTES = 64 };
 

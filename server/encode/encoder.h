@@ -2,7 +2,7 @@
 /* Encoders: turn frames into packets. Thread: one at a time per encoder (a worker). */
 #ifndef ENCODE_ENCODER_H
 #define ENCODE_ENCODER_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/workers.h"
 #include "encode/packet.h"
 

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "base/simd.h"
+#include "base/math/simd.h"
 
 enum { TILE_W = 16, TILE_H = PLANES_BAND_PX / 2 }; /* samples of chroma */
 enum { COLOUR = 16 };         /* chroma that counts as one, in steps */

@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/embedded.h"
 #include "base/mem.h"
+#include "base/text/embedded.h"
 #include "field/lab.h"
 
 enum { BUILT_IN = 6, MOST = BUILT_IN + PLANT_COLORMAPS + 8 };

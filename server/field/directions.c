@@ -4,8 +4,8 @@
 
 #include <math.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "field/layout.h"
 #include "value/quality.h"
 

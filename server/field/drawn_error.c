@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "plant/singles.h"
 
 /* Triangles at a time; triangles of a job; pieces of one triangle. */

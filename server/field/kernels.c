@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/simd.h"
+#include "base/math/simd.h"
 #include "field/scalars.h"
 #include "protocol/asset_distance.h"
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/srgb.h"
+#include "base/image/srgb.h"
 
 static const double white[3] = { 0.95047, 1.0, 1.08883 };
 

@@ -7,8 +7,8 @@
 #include <pthread.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "field/kernels.h"
 #include "protocol/asset_distance.h"
 

@@ -8,7 +8,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
-#include "base/huge_pages.h"
+#include "base/system/huge_pages.h"
 #include "plant/influence.h"
 
 #define LEAST_KNOWN 0.1 /* gp: so much less than in the prior must the variance be, else nothing is known there */

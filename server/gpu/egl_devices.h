@@ -4,7 +4,7 @@
 #define GPU_EGL_DEVICES_H
 #include <glad/egl.h>
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "gpu/gl.h"
 
 enum { EGL_MAX_DEVICES = 64 };

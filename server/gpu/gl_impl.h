@@ -2,7 +2,7 @@
 /* What one way to a GL context provides; gl.c holds the table. */
 #ifndef GPU_GL_IMPL_H
 #define GPU_GL_IMPL_H
-#include "base/text.h"
+#include "base/text/text.h"
 #include "gpu/gl.h"
 
 struct gl_impl {

@@ -8,7 +8,7 @@
 
 #include <glad/gl.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 
 enum { POOL_BLOCK = 64 }; /* texels; as in shaders/instance.glsl; of 4 bytes, what GL asks of offsets into storage buffers at most */
 

@@ -4,9 +4,9 @@
 
 #include <string.h>
 
-#include "base/embedded.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/embedded.h"
+#include "base/text/text.h"
 
 enum { MAX_INCLUDES = 16, LOG_BYTES = 4096 };
 

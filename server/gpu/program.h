@@ -4,7 +4,7 @@
 #define GPU_PROGRAM_H
 #include <glad/gl.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 
 struct program_params {
     const char *vertex, *fragment; /* names of embedded files; or */

@@ -8,7 +8,7 @@
 
 #include <stddef.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 
 struct target {
     int width_px, height_px, samples;

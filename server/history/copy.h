@@ -4,7 +4,7 @@
 #define HISTORY_COPY_H
 #include <stdbool.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 
 #define HISTORY_BACKUP_STAMP "last-backup" /* beside the months: its time is that of the last backup */
 

@@ -3,8 +3,8 @@
    store nor live pictures wait for it. What cannot be written (disk full, read-only) stays in memory up to a limit and is written later. */
 #ifndef HISTORY_HISTORIAN_H
 #define HISTORY_HISTORIAN_H
-#include "base/counters.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/metrics/counters.h"
 #include "history/postgres/postgres.h"
 #include "plant/plant.h"
 #include "value/store.h"

@@ -11,14 +11,14 @@
 #include <sys/stat.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "history/history.h"
 #include "history/month.h"
 #include "history/recorder.h"
 #include "history/spacing.h"
-#include "base/timestamp.h"
-#include "plant/csv.h"
-#include "plant/number.h"
+#include "base/text/timestamp.h"
+#include "plant/parse/csv.h"
+#include "plant/parse/number.h"
 #include "value/quality.h"
 #include "value/state_word.h"
 

@@ -2,9 +2,9 @@
 /* Imports series from a CSV file into history, such as data from before Plantcast was installed. Works while a daemon is recording. */
 #ifndef HISTORY_IMPORT_H
 #define HISTORY_IMPORT_H
-#include "base/charset.h"
-#include "base/diag.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/text/charset.h"
+#include "base/text/diag.h"
 #include "plant/plant.h"
 
 struct import_params {

@@ -5,7 +5,7 @@
 #define HISTORY_MONTH_FILE_H
 #include <stddef.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "history/point.h"
 #include "history/rollup.h"
 #include "plant/plant.h"

@@ -4,7 +4,7 @@
 #define HISTORY_MONTH_FILE_IMPL_H
 #include <sys/types.h>
 
-#include "base/database.h"
+#include "base/files/database.h"
 #include "history/month_file.h"
 
 enum month_statement {
@@ -34,7 +34,7 @@ struct month_file {
     struct month_rollups *rollups; /* of tags */
 };
 
-/* Returns one of the statements above, ready to bind and step (base/database.h). */
+/* Returns one of the statements above, ready to bind and step (base/files/database.h). */
 sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which);
 /* Steps to the end, and logs what fails. Returns 0 or -errno. */
 int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doing);

@@ -4,7 +4,7 @@
 
 #include <errno.h>
 
-#include "base/database.h"
+#include "base/files/database.h"
 #include "base/mem.h"
 #include "history/month.h"
 #include "history/month_file.h"

@@ -6,7 +6,7 @@
 #define HISTORY_MONTH_OUTBOX_H
 #include <stddef.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "history/point.h"
 
 #define MONTH_OUTBOX_SCHEMA \

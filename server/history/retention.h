@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 
 struct retention_limits {
     double days, bytes; /* 0: no limit */

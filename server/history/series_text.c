@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "history/month.h"
-#include "base/timestamp.h"
+#include "base/text/timestamp.h"
 
 /* ten digits: more than any transmitter has */
 static void add_number(struct text *out, double value, const char *none)

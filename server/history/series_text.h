@@ -2,7 +2,7 @@
 /* Writes series of history as JSON and as CSV, as protocol/PROTOCOL.md describes. Pure. Thread: any. */
 #ifndef HISTORY_SERIES_TEXT_H
 #define HISTORY_SERIES_TEXT_H
-#include "base/text.h"
+#include "base/text/text.h"
 #include "history/history.h"
 
 /* Appends one object: {"tag":...,"unit":...,"step":...,"bucket_s":...,"points":[...]} */

@@ -13,9 +13,9 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 static const char HEAD[] = "plantcast spool 1\n";
 enum { PLACES = 3, RESERVE_BYTES = 8 << 20, PLENTY = 10 /* times the reserve */ };

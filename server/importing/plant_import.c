@@ -8,11 +8,11 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/atomic_file.h"
-#include "base/json_text.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
-#include "base/text.h"
-#include "base/utf8.h"
+#include "base/text/json_text.h"
+#include "base/text/text.h"
+#include "base/text/utf8.h"
 #include "importing/export_folder.h"
 #include "plant/plant_folder.h"
 

@@ -15,9 +15,9 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
-#include "plant/csv.h"
+#include "plant/parse/csv.h"
 #include "plant/plant_folder.h"
 
 const char *const loop_check_state_names[] = {

@@ -3,8 +3,8 @@
    name. They are in a file that is only appended to, proofs.csv in the folder of the history (LOOPCHECK.md). Thread: the loop. */
 #ifndef LOOPCHECK_LOOP_CHECKS_H
 #define LOOPCHECK_LOOP_CHECKS_H
-#include "base/log.h"
-#include "base/text.h"
+#include "base/log/log.h"
+#include "base/text/text.h"
 #include "plant/plant.h"
 
 enum { LOOP_CHECK_NAME_BYTES = 64, LOOP_CHECK_REMARK_BYTES = 160 };

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "alarm/devices.h"
-#include "base/atomic_file.h"
-#include "base/json_text.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "message/json_fields.h"
 
 static const struct name names_action[] = { { "acknowledge", ALARM_ACKNOWLEDGE },

@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "alarm/devices.h"
-#include "base/json_text.h"
 #include "base/mem.h"
-#include "base/timestamp.h"
+#include "base/text/json_text.h"
+#include "base/text/timestamp.h"
 #include "message/json_values.h"
 
 enum { ROWS_DEFAULT = 1000, ROWS_MOST = 10000, DIGITS = 7 };

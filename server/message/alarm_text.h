@@ -4,7 +4,7 @@
 #define MESSAGE_ALARM_TEXT_H
 #include "alarm/alarm_service.h"
 #include "alarm/journal.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "message/message.h"
 
 /* The last text, for the next session that needs the same. Zero-initialise; alarm_text_cache_finish. Thread: the loop. */

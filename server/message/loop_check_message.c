@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "base/json_text.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "message/json_fields.h"
 #include "message/json_values.h"
 #include "value/quality.h"

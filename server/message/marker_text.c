@@ -6,9 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/json_text.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/json_text.h"
+#include "base/text/text.h"
 #include "message/json_values.h"
 #include "value/quality.h"
 

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "base/timestamp.h"
+#include "base/text/timestamp.h"
 
 bool message_take_time(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error)
 {

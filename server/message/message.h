@@ -229,7 +229,7 @@ struct message {
     enum signed_frames signed_frames; /* hello, sign */
 };
 
-/* Reads an instant (base/timestamp.h) of the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other
+/* Reads an instant (timestamp.h) of the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other
    text. */
 bool message_take_time(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error);
 

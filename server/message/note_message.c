@@ -2,8 +2,8 @@
 /* A note is at one thing: a tag, an asset, or a position. */
 #include "message/note_message.h"
 
-#include "base/json_text.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "message/json_fields.h"
 
 /* Takes the index of what the member names. -1: it is not there. */

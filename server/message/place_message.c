@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/json_text.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "message/json_fields.h"
 #include "message/json_values.h"
-#include "plant/tag_edit.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
+#include "plant/tags/tag_edit.h"
 #include "scene/far_sensors.h"
 
 /* Returns the path of the tag list's file, through symlinks: saving replaces that file and keeps versions beside it. */

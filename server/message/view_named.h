@@ -3,7 +3,7 @@
 #ifndef MESSAGE_VIEW_NAMED_H
 #define MESSAGE_VIEW_NAMED_H
 #include "message/message.h"
-#include "plant/wall.h"
+#include "plant/walls/wall.h"
 
 /* Builds *view from an address as its author wrote it, who may say all that there is to say. Returns false with *error saying what is
    wrong with the address. */

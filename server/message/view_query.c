@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/timestamp.h"
+#include "base/text/timestamp.h"
 #include "history/history.h"
 #include "message/json_fields.h"
 #include "message/fit_message.h"

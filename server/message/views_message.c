@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "base/json_text.h"
+#include "base/text/json_text.h"
 #include "message/json_fields.h"
 #include "message/json_values.h"
 

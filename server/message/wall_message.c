@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "base/json_text.h"
+#include "base/text/json_text.h"
 #include "message/json_fields.h"
 
 static bool place_parse(const struct plant *plant, const json_t *o, bool pane, struct message *out, struct message_error *error)

@@ -3,7 +3,7 @@
    first 64 bits, which one customer has whole. Pure: time is handed in. Thread: the loop. */
 #ifndef NET_ADDRESS_LIMITS_H
 #define NET_ADDRESS_LIMITS_H
-#include "session/admission.h"
+#include "session/pacing/admission.h"
 
 struct address_usage {
     uint8_t address[16]; /* version 4 as ::ffff:a.b.c.d */

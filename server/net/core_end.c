@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/hex.h"
 #include "base/mem.h"
+#include "base/text/hex.h"
 #include "message/names.h"
 
 static bool hand_on(void *arg, const struct session *session, const char *text)

@@ -2,8 +2,8 @@
 /* Durations of the latency stages. */
 #include "net/latency_stages.h"
 
-#include "base/histogram.h"
 #include "base/mem.h"
+#include "base/metrics/histogram.h"
 
 static const char *const names[STAGE_COUNT] = { "wait", "field", "render", "encode", "queue", "write", "network", "decode" };
 

@@ -3,9 +3,9 @@
    Thread: the loop. */
 #ifndef NET_LATENCY_STAGES_H
 #define NET_LATENCY_STAGES_H
-#include "base/counters.h"
+#include "base/metrics/counters.h"
 #include "service/encoded_frame.h"
-#include "session/pacer.h"
+#include "session/pacing/pacer.h"
 
 enum { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_QUEUE, STAGE_WRITE, STAGE_NETWORK, STAGE_DECODE, STAGE_COUNT };
 struct latency_stages {

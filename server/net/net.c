@@ -23,7 +23,7 @@
 #include "net/handed_socket.h"
 #include "net/net_impl.h"
 #include "net/wall_displays.h"
-#include "session/resume.h"
+#include "session/view/resume.h"
 
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S; /* between ticks; when no session waits for anything */
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS;                  /* for close frames and answers to leave */

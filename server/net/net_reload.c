@@ -9,7 +9,7 @@
 #include "net/net_impl.h"
 #include "net/renderers.h"
 #include "net/stream.h"
-#include "session/resume.h"
+#include "session/view/resume.h"
 
 /* --- what will be looked at ------------------------------------------------------------------------------------------- */
 

@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/hex.h"
-#include "base/json_text.h"
 #include "base/mem.h"
+#include "base/text/hex.h"
+#include "base/text/json_text.h"
 #include "corelink/core_alarms.h"
 #include "corelink/core_identity.h"
 #include "corelink/core_readings.h"

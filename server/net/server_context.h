@@ -5,7 +5,7 @@
 #include <libwebsockets.h>
 
 #include "access/openid/openid.h"
-#include "base/log_pace.h"
+#include "base/log/log_pace.h"
 #include "message/alarm_text.h"
 #include "message/marker_text.h"
 #include "net/address_limits.h"
@@ -14,10 +14,10 @@
 #include "net/picture_signer.h"
 #include "service/history_loader.h"
 #include "service/history_queries.h"
-#include "session/reply_neighbours.h"
+#include "session/reply/reply_neighbours.h"
+#include "session/reply/tag_text_cache.h"
 #include "session/session.h"
-#include "session/tag_text_cache.h"
-#include "session/view_token.h"
+#include "session/view/view_token.h"
 
 enum { SLICE_BYTES = 32 * 1024 };
 
@@ -37,7 +37,7 @@ struct wall_displays {
     size_t count;
 };
 
-/* Pictures over many displays, each of one wall (stream_tiles.c). */
+/* Pictures over many displays, each of one wall (tile_walls.c). */
 struct tile_wall {
     char wall[NAMED_VIEW_ID_BYTES]; /* "": free */
     uint64_t leader;                /* id of the session; 0: none */

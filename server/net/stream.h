@@ -60,7 +60,7 @@ void stream_give_up(struct server_context *server, struct stream *stream, int64_
 /* Takes a pong: measures the round trip, and at first the bandwidth. */
 void stream_on_pong(struct stream *stream, const void *bytes, size_t count);
 
-/* --- stream_tiles.c: sessions that are tiles of one picture --- */
+/* --- tile_walls.c: sessions that are tiles of one picture --- */
 
 /* Asks for the next picture of a tile's wall, and has those shown that all have, if it is time. */
 void tiles_pump(struct server_context *server, const struct stream *stream);

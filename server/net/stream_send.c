@@ -5,7 +5,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "session/reply.h"
+#include "session/reply/reply.h"
 #include "net/stream.h"
 
 static const int64_t PING_NS = 2 * NS_PER_S;

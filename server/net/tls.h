@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 
 struct tls;
 /* Reads both PEM files. Returns NULL if they cannot be served; the reason is logged. */

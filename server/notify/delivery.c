@@ -7,9 +7,9 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/files/secret.h"
 #include "base/mem.h"
-#include "base/secret.h"
-#include "plant/url.h"
+#include "plant/sources/url.h"
 
 enum { CONNECT_S = 10 };
 

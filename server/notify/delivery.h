@@ -5,8 +5,8 @@
 #define NOTIFY_DELIVERY_H
 #include <stdbool.h>
 
-#include "base/log.h"
-#include "plant/notification.h"
+#include "base/log/log.h"
+#include "plant/sections/notification.h"
 
 struct delivery;
 /* notify must outlive it. Returns NULL if libcurl cannot be used (logged). */

@@ -8,10 +8,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/atomic_file.h"
 #include "base/clock.h"
-#include "base/json_text.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "notify/delivery.h"
 #include "notify/notify_text.h"
 #include "notify/outbox.h"

@@ -7,9 +7,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "base/json_text.h"
 #include "base/mem.h"
-#include "base/timestamp.h"
+#include "base/text/json_text.h"
+#include "base/text/timestamp.h"
 
 enum { BASE64_LINE = 57 /* bytes, 76 characters */, WORD = 42 /* bytes of an encoded word: a line of 77 characters with its name */ };
 

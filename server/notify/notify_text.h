@@ -3,7 +3,7 @@
    Thread: any. */
 #ifndef NOTIFY_NOTIFY_TEXT_H
 #define NOTIFY_NOTIFY_TEXT_H
-#include "base/text.h"
+#include "base/text/text.h"
 #include "notify/outbox.h"
 
 enum { NOTIFY_LINES = 50 /* alarms that an e-mail lists; the rest is counted */ };

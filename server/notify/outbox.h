@@ -7,7 +7,7 @@
 #include <jansson.h>
 
 #include "alarm/alarms.h"
-#include "plant/notification.h"
+#include "plant/sections/notification.h"
 
 enum { OUTBOX_ITEMS = 5000 /* that wait, of all recipients together */, OUTBOX_ID_BYTES = 40 };
 #define OUTBOX_REPEAT_US (600 * INT64_C(1000000))   /* an alarm that cleared by itself is not told again sooner */

@@ -12,10 +12,10 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/json_text.h"
 #include "base/mem.h"
-#include "base/text.h"
-#include "base/timestamp.h"
+#include "base/text/json_text.h"
+#include "base/text/text.h"
+#include "base/text/timestamp.h"
 #include "value/backoff.h"
 #include "value/lookup.h"
 #include "value/mqtt/mqtt_client.h"

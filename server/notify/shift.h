@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "plant/notification.h"
 #include "plant/plant.h"
+#include "plant/sections/notification.h"
 
 /* Returns whether the shift is on at that time. On the nights when clocks change, a shift is as long as its hours on the wall. */
 bool shift_is_on(const struct notify_shift *shift, int64_t utc_us);

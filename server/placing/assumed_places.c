@@ -9,9 +9,9 @@
 #include <unistd.h>
 
 #include "base/mem.h"
-#include "base/text.h"
-#include "plant/csv.h"
-#include "plant/tag_edit.h"
+#include "base/text/text.h"
+#include "plant/parse/csv.h"
+#include "plant/tags/tag_edit.h"
 
 /* --- what is known of a place ------------------------------------------------------------------------------------------------- */
 

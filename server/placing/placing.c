@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 #include "placing/mover.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 #include "scene/far_sensors.h"
 #include "surface/relocation.h"
 #include "value/quality.h"

@@ -3,7 +3,7 @@
    distances, and again when geodesic ones are there. Thread: the loop, except what workers call themselves. */
 #ifndef PLACING_PLACING_H
 #define PLACING_PLACING_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/workers.h"
 #include "field/trials.h"
 #include "placing/sensor_coverage.h"

@@ -4,10 +4,10 @@
 
 #include <math.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "field/kernels.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 
 double *sensor_coverage_areas(const struct asset_view *view)
 {

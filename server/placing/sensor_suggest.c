@@ -14,7 +14,7 @@
 #include "placing/mover.h"
 #include "placing/sensor_coverage.h"
 #include "plant/influence.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 
 #define CANDIDATES 1500 /* on each asset, evenly by area of what is not seen */
 #define MEASURED 40     /* of them at most for each suggestion: what is left is worth less than a straight bound */

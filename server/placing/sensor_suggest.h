@@ -6,7 +6,7 @@
    Wolsey & Fisher, 1978), as far as the places that are tried go. Thread: one; it waits for workers. */
 #ifndef PLACING_SENSOR_SUGGEST_H
 #define PLACING_SENSOR_SUGGEST_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/workers.h"
 #include "scene/scene.h"
 

@@ -7,9 +7,9 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
-#include "base/text.h"
-#include "plant/expression.h"
+#include "base/text/text.h"
 #include "plant/plant_impl.h"
+#include "plant/tags/expression.h"
 
 enum { MAX_FILE_BYTES = 1 << 28 };
 

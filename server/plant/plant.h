@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/diag.h"
-#include "plant/units.h"
+#include "base/text/diag.h"
+#include "plant/tags/units.h"
 
 #define PLANT_MAX_M 1e7 /* nothing is farther from the origin: plants may lie where their survey has them, 5,500 km north (UTM) */
 
@@ -320,13 +320,13 @@ struct plant {
     size_t conversion_count;
     struct plant_history history;
     enum alarm_mode alarms;
-    struct named_view *views;    /* plant/wall.h, as the next three */
+    struct named_view *views;    /* plant/walls/wall.h, as the next three */
     struct tour *tours;
     struct other_plant *other_plants;
     struct wall *walls;
     size_t view_count, tour_count, other_plant_count, wall_count;
     struct plant_publish *publish; /* NULL: nothing is published */
-    struct plant_notify *notify; /* who is told of alarms (plant/notification.h); NULL: nobody */
+    struct plant_notify *notify; /* who is told of alarms (plant/sections/notification.h); NULL: nobody */
     struct plant_asset *assets;
     struct plant_group *groups;
     struct plant_source *sources;

@@ -14,10 +14,10 @@
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
-#include "base/atomic_file.h"
 #include "base/clock.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 enum { LOOK_MS = 50 };
 static const char undone[] = ".import-undone"; /* whoever takes the folder next removes what is left of it */

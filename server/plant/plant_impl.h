@@ -2,8 +2,8 @@
 /* What the files that read the plant file and the tag list share. Private to plant/. Thread: one. */
 #ifndef PLANT_PLANT_IMPL_H
 #define PLANT_PLANT_IMPL_H
+#include "plant/parse/yaml_reader.h"
 #include "plant/plant.h"
-#include "plant/yaml_reader.h"
 
 #define PLANT_MAX_VALUE 1e30 /* of a reading or a limit: the field is computed in floats */
 

@@ -6,7 +6,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 
 static bool is_sensor(const struct plant_tag *tag, int asset)
 {

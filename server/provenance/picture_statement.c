@@ -5,7 +5,7 @@
 #include <openssl/evp.h>
 #include <string.h>
 
-#include "base/hex.h"
+#include "base/text/hex.h"
 
 void picture_hash(const void *bytes, size_t count, char out[PICTURE_HASH_BYTES])
 {

@@ -9,8 +9,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/hex.h"
 #include "base/mem.h"
+#include "base/text/hex.h"
 
 struct signing_key {
     EVP_PKEY *pair; /* or the public half alone */

@@ -8,8 +8,8 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "base/huge_pages.h"
 #include "base/mem.h"
+#include "base/system/huge_pages.h"
 #include "render/frame_record.h"
 #include "value/quality.h"
 

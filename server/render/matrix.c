@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 void matrix_identity(double out[16])
 {

@@ -2,9 +2,9 @@
 /* One prepared asset file, mapped into memory and checked. Immutable; counted. Thread: any. */
 #ifndef SCENE_ASSET_H
 #define SCENE_ASSET_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "protocol/asset_format.h"
-#include "base/cache_file.h"
+#include "base/files/cache_file.h"
 #include "protocol/influence_format.h"
 #include "scene/closed_bodies.h"
 

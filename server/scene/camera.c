@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 #define FIT_MARGIN 1.06      /* the box may fill 1/1.06 of the picture */
 #define LEAST_BOX_M 1e-4     /* a smaller box, or one that is empty, is looked at as if it had this size */

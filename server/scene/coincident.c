@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 
 static const double SAME_PLANE_M = 2e-4, SAME_NORMAL = 1e-3; /* CAD's own places, kept as floats */
 static const double LEAST_AREA_M2 = 1e-4, LEAST_OVERLAP_M = 1e-3;

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 #include "scene/main_part.h"
 
 enum { DIRECTIONS = 96 };

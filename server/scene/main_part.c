@@ -5,10 +5,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/gap_split.h"
+#include "base/math/gap_split.h"
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 
 enum { LOGGED_ASSETS = 5 };
 

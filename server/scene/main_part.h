@@ -4,10 +4,10 @@
 #define SCENE_MAIN_PART_H
 #include <stdbool.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "scene/scene.h"
 
-/* Sets the scene's bounds to the box of the main part by the rule of base/gap_split.h, and scene->outside and the assets' stray members.
+/* Sets the scene's bounds to the box of the main part by the rule of gap_split.h, and scene->outside and the assets' stray members.
    Logs the stray pieces (log may be NULL). */
 void main_part_find(struct log *log, struct scene *scene);
 /* Returns whether a place lies in the scene's bounds, with a rim for rounding. */

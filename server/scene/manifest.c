@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 #define MANIFEST_FORMAT 2
 #define MANIFEST_MAX_BYTES (16u * 1024 * 1024)

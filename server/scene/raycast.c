@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/vec.h"
-#include "plant/transform.h"
+#include "base/math/vec.h"
+#include "plant/models/transform.h"
 #include "scene/coincident.h"
 
 static const double RIM = 1e-9; /* corners weigh so little less than nothing: rays do not slip through between triangles */

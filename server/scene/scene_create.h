@@ -2,7 +2,7 @@
 /* Makes the scene of a plant from its prepared files. Thread: any. */
 #ifndef SCENE_SCENE_CREATE_H
 #define SCENE_SCENE_CREATE_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "scene/scene.h"
 
 /* Opens the prepared files of a plant and makes its scene. prepared_folder: as plant_prepared_folder() returns it. Refuses files that do

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/json_text.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "history/month.h"
 #include "message/json_values.h"
 #include "plant/influence.h"

@@ -3,7 +3,7 @@
    (PROTOCOL.md, /api/v1/drift). Thread: one that reads history. */
 #ifndef SERVICE_DRIFT_REPORT_H
 #define SERVICE_DRIFT_REPORT_H
-#include "base/text.h"
+#include "base/text/text.h"
 #include "field/drift.h"
 #include "history/history.h"
 

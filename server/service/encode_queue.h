@@ -3,7 +3,7 @@
    its stream in order. Thread: any. */
 #ifndef SERVICE_ENCODE_QUEUE_H
 #define SERVICE_ENCODE_QUEUE_H
-#include "base/counters.h"
+#include "base/metrics/counters.h"
 #include "base/workers.h"
 #include "service/request_group.h"
 

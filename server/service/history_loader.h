@@ -3,7 +3,7 @@
    drawing finds them. Of each client the newest question counts. Thread: any. */
 #ifndef SERVICE_HISTORY_LOADER_H
 #define SERVICE_HISTORY_LOADER_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "corelink/core_link.h"
 #include "plant/plant.h"
 #include "value/snapshot_cache.h"

@@ -9,7 +9,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "corelink/core_history.h"
 #include "history/history.h"
 #include "history/series_text.h"

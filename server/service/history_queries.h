@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "corelink/core_link.h"
 #include "plant/plant.h"
 #include "scene/scene.h"

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "base/timestamp.h"
+#include "base/text/timestamp.h"
 #include "history/series_text.h"
 
 static void add_number(struct text *path, const char *name, int64_t number)

@@ -4,7 +4,7 @@
    otherwise. */
 #ifndef SERVICE_RENDER_SERVICE_H
 #define SERVICE_RENDER_SERVICE_H
-#include "base/counters.h"
+#include "base/metrics/counters.h"
 #include "gpu/gl.h"
 #include "loopcheck/loop_checks.h"
 #include "service/encoded_frame.h"

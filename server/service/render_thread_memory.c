@@ -2,7 +2,7 @@
 /* What drawing keeps in memory: counted, bounded, and given back when nobody is there. */
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/memory.h"
+#include "base/system/memory.h"
 #include "service/render_thread_impl.h"
 #include "render/frame.h"
 

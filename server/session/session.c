@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One client: its view, what it is owed, what it may have. */
 #include "session/session_impl.h"
-#include "session/resume.h"
-#include "session/view_token.h"
+#include "session/view/resume.h"
+#include "session/view/view_token.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 
 #include "access/pairings.h"
 #include "base/clock.h"
-#include "base/json_text.h"
+#include "base/text/json_text.h"
 #include "base/mem.h"
 #include "message/note_message.h"
 #include "message/views_message.h"
@@ -18,7 +18,7 @@
 #include "message/message_parse.h"
 #include "message/alarm_message.h"
 #include "message/fit_message.h"
-#include "session/reply.h"
+#include "session/reply/reply.h"
 
 struct session *session_create(const struct session_context *context, uint64_t id, int64_t now_ns)
 {

@@ -5,10 +5,10 @@
 #define SESSION_SESSION_H
 #include <jansson.h>
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "session/session_context.h"
 #include "session/session_state.h"
-#include "session/session_view.h"
+#include "session/view/session_view.h"
 
 #define SESSION_MAX_INPUT_BYTES (1024 * 1024) /* beyond that the connection is closed */
 
@@ -151,7 +151,7 @@ void session_choose_step(struct session *session);
 /* Has the client told who follows it, by numbers. */
 void session_say_followers(struct session *session, const uint64_t *sessions, size_t count, int64_t now_ns);
 
-/* --- tiles of one picture (session_tiles.h) ---------------------------------------------------------------------------- */
+/* --- tiles of one picture (tile_sync.h) ---------------------------------------------------------------------------- */
 
 bool session_is_tile(const struct session *session);
 /* Moves what the display shows of the picture, with the next one, which is sent for that. */

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "session/reply.h"
+#include "session/reply/reply.h"
 #include "session/session_impl.h"
 
 void session_close(struct session *session, int code, const char *text)

@@ -5,9 +5,9 @@
 
 #include "alarm/devices.h"
 #include "audit/audit.h"
-#include "base/atomic_file.h"
-#include "base/json_text.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "message/names.h"
 #include "session/session_impl.h"
 

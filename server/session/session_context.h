@@ -4,7 +4,7 @@
 #define SESSION_SESSION_CONTEXT_H
 #include "access/openid/openid.h"
 #include "audit/audit.h"
-#include "base/clock_state.h"
+#include "base/system/clock_state.h"
 #include "scene/scene.h"
 #include "session/session_state.h"
 

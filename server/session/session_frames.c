@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which frames a session wants, and what becomes of those that come. */
 #include "base/clock.h"
-#include "session/reply.h"
+#include "session/reply/reply.h"
 #include "session/session_impl.h"
 
 static const int64_t STILL_NS = 200 * NS_PER_MS;         /* nothing moved for so long: refine */

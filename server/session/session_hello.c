@@ -4,8 +4,8 @@
 
 #include "scene/scene_create.h"
 #include "session/session_impl.h"
-#include "session/resume.h"
-#include "session/view_token.h"
+#include "session/view/resume.h"
+#include "session/view/view_token.h"
 
 static bool judge_token(struct session *session, const char *token, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {

@@ -129,7 +129,7 @@ char *session_carried_text(const struct session_context *context, const struct v
 /* Gives a session the size and camera of `before` and what was carried, as far as its plant has that. */
 void session_look_again(struct session *session, const struct view *before, const char *carried);
 
-/* --- session_tile.c --------------------------------------------------------------------------------------------------- */
+/* --- tile_session.c --------------------------------------------------------------------------------------------------- */
 
 /* Sets the size of the view by that of the display: all of the picture. Returns false if the plant has no such tile (any more). */
 bool session_tile_fit(const struct session *session, const struct wall_place *place, int width_px, int height_px, struct view *view,

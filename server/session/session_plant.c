@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "session/reply.h"
+#include "session/reply/reply.h"
 #include "session/session_impl.h"
 
 /* What is seen, by names, as `params` of the server says it; `start`: of assets that start otherwise than shown, how. */

@@ -8,10 +8,10 @@
 #include "placing/tag_file.h"
 #include "service/encoded_frame.h"
 #include "service/pick_queue.h"
-#include "session/admission.h"
-#include "session/codec_choice.h"
-#include "session/pacer.h"
-#include "session/tile_layout.h"
+#include "session/pacing/admission.h"
+#include "session/pacing/codec_choice.h"
+#include "session/pacing/pacer.h"
+#include "session/tiles/tile_layout.h"
 #include "value/snapshot_cache.h"
 
 enum { SESSION_MAX_REPLIES = 64 };
@@ -156,7 +156,7 @@ struct session_pick { /* a question about a pixel */
     struct pick_query query;
 };
 
-/* A tile of one picture over many displays (session_tiles.c). */
+/* A tile of one picture over many displays (tiles/tile_sync.c). */
 enum { TILE_HELD = 8 };
 struct session_tile {
     struct wall_place place;   /* display 0: it is none */

@@ -6,10 +6,10 @@
 #include <pthread.h>
 #include <string.h>
 
-#include "base/cache_file.h"
-#include "base/extent.h"
+#include "base/files/cache_file.h"
+#include "base/math/extent.h"
 #include "base/mem.h"
-#include "base/vec.h"
+#include "base/math/vec.h"
 #include "surface/vertex_embedding.h"
 #include "surface/mesh/bvh.h"
 #include "surface/surface_store.h"

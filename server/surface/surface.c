@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/extent.h"
+#include "base/math/extent.h"
 #include "base/mem.h"
-#include "base/vec.h"
+#include "base/math/vec.h"
 #include "surface/repair/interior.h"
 #include "surface/mesh/spatial_order.h"
 #include "surface/repair/parts.h"

@@ -26,7 +26,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/workers.h"
 
 struct surface;

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/geodesic/heat.h"
 #include "surface/surface_impl.h"
 

@@ -3,9 +3,9 @@
 #include <stdatomic.h>
 #include <string.h>
 
+#include "base/math/simd.h"
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/simd.h"
-#include "base/vec.h"
 #include "surface/surface_impl.h"
 
 #define BLOCK 16 /* sources propagated one after another by one thread, then written side by side */

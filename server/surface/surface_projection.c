@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 #include "surface/surface_impl.h"
 
 #define SPOT_ON_SURFACE 1e-3 /* mean edges: nearer than that, a point lies on its triangle */

@@ -2,7 +2,7 @@
 /* Serialises a surface, so that one that was built once can be loaded in a fiftieth of the time. Thread: any. */
 #ifndef SURFACE_SURFACE_STORE_H
 #define SURFACE_SURFACE_STORE_H
-#include "base/pack.h"
+#include "base/files/pack.h"
 #include "surface/surface.h"
 
 /* Appends the surface to *to as bytes. */
@@ -11,7 +11,7 @@ void surface_pack(const struct surface *surface, struct text *to);
    The caller destroys it. */
 struct surface *surface_unpack(struct unpack *from, struct log *log, struct workers *workers);
 
-/* Its file holds that and no more (base/cache_file.h). */
+/* Its file holds that and no more (base/files/cache_file.h). */
 #define SURFACE_MAGIC "PLCSURF3"
 
 #endif

@@ -6,8 +6,8 @@
 #include <string.h>
 #include <xxhash.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/surface_impl.h"
 
 #define GRAIN 512

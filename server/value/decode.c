@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "plant/address.h"
+#include "plant/sources/address.h"
 #include "value/quality.h"
 
 static bool is_bit(const struct plant_tag *tag)

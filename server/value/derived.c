@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "plant/expression.h"
+#include "plant/tags/expression.h"
 #include "value/lookup.h"
 #include "value/quality.h"
 #include "value/source_impl.h"

@@ -3,7 +3,7 @@
    connections (modbus_manners.c), and what is done with a response (modbus_answers.c). Thread: the source's own. */
 #ifndef VALUE_MODBUS_IMPL_H
 #define VALUE_MODBUS_IMPL_H
-#include "base/log_pace.h"
+#include "base/log/log_pace.h"
 #include "value/backoff.h"
 #include "value/modbus_link.h"
 #include "value/read_plan.h"

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "plant/address.h"
+#include "plant/sources/address.h"
 #include "value/decode.h"
 #include "value/read_plan.h"
 

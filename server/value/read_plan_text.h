@@ -2,7 +2,7 @@
 /* The read plan of a source as text for people: every request with its addresses on the wire, and the load on the device. */
 #ifndef VALUE_READ_PLAN_TEXT_H
 #define VALUE_READ_PLAN_TEXT_H
-#include "base/text.h"
+#include "base/text/text.h"
 #include "plant/plant.h"
 
 /* Appends the plan of one source; one line for a source that is not Modbus. */

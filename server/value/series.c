@@ -10,8 +10,8 @@
 #include <strings.h>
 
 #include "base/mem.h"
-#include "base/text.h"
-#include "base/timestamp.h"
+#include "base/text/text.h"
+#include "base/text/timestamp.h"
 #include "value/state_word.h"
 
 enum { MAX_BYTES = 512 * 1024 * 1024, LONG_CELLS = 5 };

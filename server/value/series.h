@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads recorded series from CSV files; times count from the start of the file. Three forms are supported:
    wide: a header line, one column is the time, the others are series by their names. The time is in a column whose name ends in _ms, _s,
-     _min or _h, or it is a date and time (base/timestamp.h) in a column called Time, Timestamp, UTC, DateTime or Date, or in the first one;
+     _min or _h, or it is a date and time (timestamp.h) in a column called Time, Timestamp, UTC, DateTime or Date, or in the first one;
    values: a header line with Tag, Time and Value, perhaps Unit: one value a line, as `plantcast history export` prints it;
    long: no header, lines of `time in ms,type,entity,property,value,...`, series by `entity/property`.
    Dates and times without a zone are of the program's zone. Thread: one. */

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "plant/suggest.h"
+#include "plant/parse/suggest.h"
 #include "value/series.h"
 
 static bool has_name(const struct series_names *names, const char *name)

@@ -2,8 +2,8 @@
 /* Sources of readings. Each has one thread, which writes to the store and to nothing else. */
 #ifndef VALUE_SOURCE_H
 #define VALUE_SOURCE_H
-#include "base/counters.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/metrics/counters.h"
 #include "plant/plant.h"
 #include "value/store.h"
 

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
 
 size_t kept_list_find(const json_t *list, const char *id)

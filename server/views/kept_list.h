@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 
 struct kept_list_kind {
     const char *file, *key;           /* the file's name, and the member that is the list */

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-#include "base/json_text.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "views/kept_list.h"
 
 struct named_views {

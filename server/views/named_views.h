@@ -7,9 +7,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "plant/plant.h"
-#include "plant/wall.h"
+#include "plant/walls/wall.h"
 
 enum { NAMED_VIEW_VERSIONS = 10 /* earlier ones kept */ };
 #define NAMED_VIEWS_FILE "views.json"

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 
 enum { NOTES = 100, NOTES_ENDED = 400 /* of these the newest are kept */, NOTE_TEXT_BYTES = 401, NOTE_ID_BYTES = 24 };
 #define NOTES_FILE "notes.json"

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <zlib.h>
 
-#include "base/utf8.h"
+#include "base/text/utf8.h"
 
 enum { SIGNATURE_BYTES = 8, CHUNK_BYTES = 12 /* length, type, checksum */, HEAD_BYTES = 13 };
 

@@ -10,11 +10,11 @@
 #include <strings.h>
 
 #include "base/clock.h"
-#include "base/http_request.h"
-#include "base/json_text.h"
+#include "base/files/secret.h"
 #include "base/mem.h"
-#include "base/secret.h"
-#include "base/text.h"
+#include "base/system/http_request.h"
+#include "base/text/json_text.h"
+#include "base/text/text.h"
 #include "views/other_picture.h"
 
 enum { CONNECT_S = 5, TIMEOUT_S = 10, PICTURE_BYTES = 8 << 20, HEADER_BYTES = 1024, LEAST_PAUSE_S = 5, MOST_PAUSE_S = 60, REST_MS = 60000 };

@@ -4,9 +4,9 @@
    for it. Thread: any, for the functions below. */
 #ifndef VIEWS_OTHER_PLANTS_H
 #define VIEWS_OTHER_PLANTS_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "plant/plant.h"
-#include "plant/wall.h"
+#include "plant/walls/wall.h"
 
 struct other_plants;
 /* plant: with `other_plants`; it must outlive them. Returns NULL if it cannot be started (logged). */

@@ -5,9 +5,9 @@
 #define VIEWS_WALL_REMOTE_H
 #include <jansson.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "plant/plant.h"
-#include "plant/wall.h"
+#include "plant/walls/wall.h"
 
 enum { WALL_DESK_BYTES = 121, WALL_AREA_BYTES = 61, WALL_POINTERS = 8 };
 #define WALL_REMOTE_FILE "walls.json"

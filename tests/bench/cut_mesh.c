@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 #define STEPS_OF_EDGE 16
 #define NO_GAIN 0.5   /* of the error, left by the best cut: as in the product */

@@ -14,8 +14,8 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/geometry/welded_positions.h"
 #include "preprocess/model/model_source.h"
 #include "surface/mesh/bvh.h"

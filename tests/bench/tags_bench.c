@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "session/reply.h"
+#include "session/reply/reply.h"
 #include "tests/support/plant_by_hand.h"
 #include "value/quality.h"
 

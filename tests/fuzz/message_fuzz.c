@@ -11,7 +11,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "session/resume.h"
+#include "session/view/resume.h"
 #include "session/session.h"
 #include "tests/support/small_scene.h"
 #include "tests/fuzz/promise.h"

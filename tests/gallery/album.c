@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "clients/cli/offline_renderer.h"
+#include "clients/cli/picture/offline_renderer.h"
 
 enum { WORDS = 64, LINE_BYTES = 4096 };
 

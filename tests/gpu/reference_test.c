@@ -14,10 +14,10 @@
 
 #include <cmocka.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "message/message.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 #include "render/renderer_compare.h"
 #include "tests/support/site.h"
 #include "tests/support/sweep.h"

@@ -14,7 +14,7 @@
 #include <png.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "tests/support/rig.h"
 #include "tests/support/temp.h"
 

@@ -5,7 +5,7 @@
 #include <jansson.h>
 #include <stdint.h>
 
-#include "base/text.h"
+#include "base/text/text.h"
 
 struct prep_case {
     char *folder, *plant;  /* plant: FOLDER/plant.yaml */

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "tests/support/temp.h"
 
 #define MAX_BYTES ((size_t)1 << 20)

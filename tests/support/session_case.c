@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "session/resume.h"
+#include "session/view/resume.h"
 #include "tests/support/small_scene.h"
 
 int session_case_set_up(void **state)

@@ -2,7 +2,7 @@
 /* What tests of distances along surfaces have in common: a log of errors, threads, and chance from a seed that is printed. */
 #ifndef TESTS_SURFACE_CASE_H
 #define TESTS_SURFACE_CASE_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/workers.h"
 #include "tests/support/cad.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Modbus addresses, data types, byte orders and numbers as tag lists write them. */
-#include "plant/address.h"
+#include "plant/sources/address.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +9,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "plant/number.h"
-#include "plant/suggest.h"
+#include "plant/parse/number.h"
+#include "plant/parse/suggest.h"
 
 static void good_addresses_are_read(void **state)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How much clients may have: limits by name, what addresses have, and whether drawing has room for one more. */
-#include "session/admission.h"
+#include "session/pacing/admission.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

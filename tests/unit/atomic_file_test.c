@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that are replaced at once: what is seen meanwhile, what is left, and that nothing which is there is written through. */
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "tests/support/temp.h"
 
 struct fixture {

@@ -11,14 +11,14 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 #include "base/clock.h"
-#include "base/counters.h"
-#include "base/histogram.h"
-#include "base/diag.h"
-#include "base/log.h"
+#include "base/metrics/counters.h"
+#include "base/metrics/histogram.h"
+#include "base/text/diag.h"
+#include "base/log/log.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "tests/support/temp.h"
 
 static void text_grows(void **state)

@@ -8,8 +8,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/mesh/bvh.h"
 #include "tests/support/cad.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Encodings of short texts, as tag lists and drawings have them: how many of each kind are found. */
-#include "base/charset.h"
+#include "base/text/charset.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the kernel says of its clock, as chrony and others leave it there. */
-#include "base/clock_state.h"
+#include "base/system/clock_state.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* H.264 or JPEG: by what the network takes and what the processors have left, and not to and fro. */
-#include "session/codec_choice.h"
+#include "session/pacing/codec_choice.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -12,9 +12,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/database.h"
+#include "base/files/database.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "tests/support/temp.h"
 
 enum { ADD, ALL, WRONG, STATEMENTS };

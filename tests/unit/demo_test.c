@@ -16,7 +16,7 @@
 #include <sys/wait.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "deploy/demo/sim_values.h"
 #include "plant/plant.h"
 #include "tests/support/temp.h"

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "plant/expression.h"
+#include "plant/tags/expression.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/plant_case.h"
 #include "value/derived.h"

@@ -11,8 +11,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "field/influence_fill.h"
 #include "preprocess/influence/gaussian_covariance.h"
 #include "preprocess/influence/gaussian_fit.h"

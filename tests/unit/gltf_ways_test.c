@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
 #include "tests/support/gltf_case.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/model_seeds.h"

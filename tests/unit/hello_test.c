@@ -10,10 +10,10 @@
 
 #include <cmocka.h>
 
-#include "base/atomic_file.h"
 #include "base/clock.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
-#include "session/resume.h"
+#include "session/view/resume.h"
 #include "tests/support/small_scene.h"
 #include "tests/support/temp.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bytes as hexadecimal digits, and back. */
-#include "base/hex.h"
+#include "base/text/hex.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -23,10 +23,10 @@
 #include <cmocka.h>
 #include <sqlite3.h>
 
-#include "base/atomic_file.h"
 #include "base/clock.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "history/historian.h"
 #include "history/history.h"
 #include "history/month.h"

@@ -11,7 +11,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "history/history.h"
 #include "history/month.h"
 #include "service/history_queries.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Images: what their writers wrote comes back, shrunk where it is too large; what is cut off or claims too much is refused. */
-#include "base/image.h"
+#include "base/image/image.h"
 
 #include <math.h>
 #include <png.h>

@@ -9,8 +9,8 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "base/text.h"
-#include "base/timestamp.h"
+#include "base/text/text.h"
+#include "base/text/timestamp.h"
 #include "history/history.h"
 #include "history/import.h"
 #include "history/month.h"

@@ -9,8 +9,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/influence/gaussian.h"
 #include "preprocess/influence/influence_bend.h"
 #include "tests/support/surface_case.h"

@@ -8,8 +8,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/levels/levels_bounded.h"
 
 #define ROUND 96u /* corners of a circle */

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "base/vec.h"
+#include "base/math/vec.h"
 #include "preprocess/levels/vertex_order.h"
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/bvh.h"

@@ -12,8 +12,8 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/geometry/geometry.h"
 #include "preprocess/model/model_source.h"
 #include "tests/support/surface_case.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The log in its formats, and datagrams to a service manager. */
-#include "base/log.h"
+#include "base/log/log.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,7 +17,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/service_manager.h"
+#include "base/system/service_manager.h"
 #include "tests/support/temp.h"
 
 struct place {

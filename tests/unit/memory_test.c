@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "base/memory.h"
+#include "base/system/memory.h"
 
 enum { PIECES = 4096, PIECE_BYTES = 16 * 1024 };
 

@@ -11,8 +11,8 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/geometry/gaps.h"
 #include "preprocess/geometry/welded_positions.h"
 #include "preprocess/geometry/winding.h"

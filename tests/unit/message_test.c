@@ -12,11 +12,11 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "field/colormap.h"
 #include "message/view_query.h"
 #include "message/view_query_write.h"
-#include "session/reply.h"
+#include "session/reply/reply.h"
 #include "message/visibility.h"
 #include "tests/support/small_scene.h"
 #include "tests/support/sweep.h"

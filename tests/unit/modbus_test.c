@@ -15,7 +15,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "tests/support/modbus_case.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"

@@ -11,10 +11,10 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "base/text.h"
-#include "plant/asset_size.h"
-#include "plant/model_check.h"
-#include "plant/model_header.h"
+#include "base/text/text.h"
+#include "plant/models/asset_size.h"
+#include "plant/models/model_check.h"
+#include "plant/models/model_header.h"
 #include "tests/support/plant_case.h"
 #include "tests/support/temp.h"
 #include "value/series_check.h"

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "plant/json_path.h"
+#include "plant/sources/json_path.h"
 #include "value/mqtt/mqtt_payload.h"
 #include "value/quality.h"
 

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "plant/nodes.h"
+#include "plant/models/nodes.h"
 
 /* site / area1 / (P-1 / motor, P-2 / motor), area2 / (unnamed with mesh "vessel", "#0", "a/b", "P-3" with two instances) */
 static const struct model_node nodes[] = {

@@ -17,7 +17,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/sweep.h"

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "plant/opcua_address.h"
+#include "plant/sources/opcua_address.h"
 #include "tests/support/plant_by_hand.h"
 #include "value/quality.h"
 #include "value/stamped_writer.h"

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "notify/notify_text.h"
 #include "notify/outbox.h"
 #include "notify/shift.h"

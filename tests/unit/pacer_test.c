@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures under way: the window, acknowledgements in and out of order and of what was never sent; and a network that is simulated. */
-#include "session/pacer.h"
+#include "session/pacing/pacer.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "base/atomic_file.h"
 #include "base/clock.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
 #include "tests/support/temp.h"
 

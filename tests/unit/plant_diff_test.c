@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "plant/plant_diff.h"
 #include "tests/support/plant_case.h"
 #include "tests/support/temp.h"

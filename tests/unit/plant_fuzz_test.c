@@ -7,7 +7,7 @@
 #include <stdarg.h>
 #include <cmocka.h>
 
-#include "base/text.h"
+#include "base/text/text.h"
 
 #define SEEDS "tests/fuzz/plant"
 enum { CHANGED = 200, MAX_BYTES = 1 << 16 };

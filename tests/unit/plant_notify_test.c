@@ -7,8 +7,8 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "base/text.h"
-#include "plant/notification.h"
+#include "base/text/text.h"
+#include "plant/sections/notification.h"
 #include "tests/support/plant_case.h"
 
 static void load(struct plant_case *c, const char *notify)

@@ -8,9 +8,9 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "message/views_message.h"
-#include "plant/wall.h"
+#include "plant/walls/wall.h"
 #include "tests/support/plant_case.h"
 
 static void load(struct plant_case *c, const char *more)

@@ -15,7 +15,7 @@
 #include <cmocka.h>
 
 #include "base/clock.h"
-#include "base/cache_file.h"
+#include "base/files/cache_file.h"
 #include "base/mem.h"
 #include "protocol/asset_distance.h"
 #include "scene/asset.h"

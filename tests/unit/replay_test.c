@@ -12,7 +12,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/timestamp.h"
+#include "base/text/timestamp.h"
 #include "tests/support/plant_case.h"
 #include "tests/support/sleep.h"
 #include "tests/support/temp.h"

@@ -12,9 +12,9 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/text.h"
-#include "base/vec.h"
+#include "base/text/text.h"
 #include "preprocess/import/rvm_shape.h"
 
 static const struct rvm_params params = { .chord_m = 1e-4 };

@@ -16,7 +16,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "plant/recipe.h"
 #include "plant/sensors.h"
 #include "tests/support/temp.h"

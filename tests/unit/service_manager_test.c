@@ -14,7 +14,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/service_manager.h"
+#include "base/system/service_manager.h"
 #include "tests/support/temp.h"
 
 enum { EVERY_MS = 500, LIMIT_S = 30 }; /* asked sixty times within the limit */

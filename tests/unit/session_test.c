@@ -12,7 +12,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "session/reply.h"
+#include "session/reply/reply.h"
 #include "session/session_impl.h"
 #include "tests/support/session_case.h"
 #include "value/quality.h"

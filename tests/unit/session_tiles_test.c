@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tiles of one picture: what they are sent to show, and that none waits for ever for what another will not have. */
-#include "session/session_tiles.h"
+#include "session/tiles/tile_sync.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

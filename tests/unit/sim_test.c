@@ -11,7 +11,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
 #include "deploy/demo/sim_encode.h"
 #include "deploy/demo/sim_image.h"

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
 
 struct fixture {

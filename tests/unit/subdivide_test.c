@@ -11,8 +11,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/geometry/welded_positions.h"
 #include "preprocess/subdivision/subdivide.h"
 #include "protocol/asset_distance.h"

@@ -9,11 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
-#include "base/text.h"
-#include "plant/csv.h"
-#include "plant/tag_edit.h"
+#include "base/text/text.h"
+#include "plant/parse/csv.h"
+#include "plant/tags/tag_edit.h"
 #include "tests/support/sweep.h"
 
 static void expect(const char *text, const struct tag_edit *edits, size_t count, const char *expected)

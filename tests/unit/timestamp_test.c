@@ -9,7 +9,7 @@
 #include <time.h>
 #include <cmocka.h>
 
-#include "base/timestamp.h"
+#include "base/text/timestamp.h"
 
 #define S INT64_C(1000000)
 static const int64_t NOW = INT64_C(1793491200) * S; /* 2026-11-01T00:00:00Z */

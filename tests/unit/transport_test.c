@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <cmocka.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "preprocess/influence/transport.h"
 #include "tests/support/surface_case.h"
 

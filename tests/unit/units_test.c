@@ -10,14 +10,14 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "deploy/demo/sim_encode.h"
 #include "history/history.h"
 #include "history/import.h"
 #include "history/month.h"
 #include "history/recorder.h"
 #include "history/series_text.h"
-#include "plant/units.h"
+#include "plant/tags/units.h"
 #include "loopcheck/loop_checks.h"
 #include "tests/support/plant_case.h"
 #include "tests/support/temp.h"

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "base/cache_file.h"
+#include "base/files/cache_file.h"
 #include "base/mem.h"
 #include "protocol/asset_distance.h"
 #include "scene/asset.h"

@@ -12,8 +12,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "clients/cli/offline_renderer.h"
-#include "clients/cli/values.h"
+#include "clients/cli/picture/offline_renderer.h"
+#include "clients/cli/readings/values.h"
 #include "message/names.h"
 #include "plant/influence.h"
 #include "scene/scene_create.h"

@@ -6,9 +6,9 @@
 #include <jansson.h>
 #include <string.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 #define GL_FLOAT 5126
 #define GL_UNSIGNED_INT 5125

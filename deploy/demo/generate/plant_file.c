@@ -2,8 +2,8 @@
 /* plant.yaml and tags.csv as text. */
 #include "plant_file.h"
 
-#include "base/atomic_file.h"
-#include "base/text.h"
+#include "base/files/atomic_file.h"
+#include "base/text/text.h"
 #include "layout.h"
 
 static const char head[] =

@@ -21,7 +21,7 @@
 #include <vector>
 
 extern "C" {
-#include "base/srgb.h"
+#include "base/image/srgb.h"
 }
 #include "preprocess/glb/glb_scene.h"
 #include "preprocess/import/readers/reader.hh"

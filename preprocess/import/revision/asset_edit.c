@@ -8,7 +8,7 @@
 #include <yaml.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "preprocess/match/plant_edit.h"
 
 struct splice {

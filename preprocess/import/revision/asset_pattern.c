@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 static int by_name(const void *a, const void *b, void *header_ptr)
 {

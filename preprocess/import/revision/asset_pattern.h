@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Patterns of nodes (plant/nodes.h) that were written for the old model, for the new one: a renamed node's becomes its new name, a number
+/* Patterns of nodes (nodes.h) that were written for the old model, for the new one: a renamed node's becomes its new name, a number
  * the new number. Thread: one. */
 #ifndef PREPROCESS_IMPORT_ASSET_PATTERN_H
 #define PREPROCESS_IMPORT_ASSET_PATTERN_H
-#include "plant/model_header.h"
+#include "plant/models/model_header.h"
 #include "preprocess/import/revision/node_pairs.h"
 
 struct asset_patterns {

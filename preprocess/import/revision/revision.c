@@ -8,10 +8,10 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
-#include "plant/tag_edit.h"
-#include "plant/transform.h"
+#include "plant/models/transform.h"
+#include "plant/tags/tag_edit.h"
 #include "preprocess/import/revision/asset_pattern.h"
 #include "preprocess/import/revision/model_states.h"
 

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/text.h"
+#include "base/text/text.h"
 
 struct revision_file {
     const char *name;   /* in the folder; or an absolute path: it lies elsewhere */

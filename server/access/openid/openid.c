@@ -10,7 +10,7 @@
 #include "access/openid/openid_impl.h"
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 static const int64_t ERROR_EVERY_NS = 5 * NS_PER_S;
 

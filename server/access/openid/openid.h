@@ -7,7 +7,7 @@
 #include "access/openid/openid_config.h"
 #include "access/openid/sign_ins.h"
 #include "audit/audit.h"
-#include "base/counters.h"
+#include "base/metrics/counters.h"
 
 struct openid_params {
     struct log *log;

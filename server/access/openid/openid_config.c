@@ -9,7 +9,7 @@
 
 #include "access/access.h"
 #include "base/mem.h"
-#include "plant/yaml_reader.h"
+#include "plant/parse/yaml_reader.h"
 
 static const double CHECK_S = 30, HOURS = 12;
 enum { MOST_GROUPS = 200 };

@@ -3,7 +3,7 @@
    Thread: one reads it; immutable from then on. */
 #ifndef OPENID_OPENID_CONFIG_H
 #define OPENID_OPENID_CONFIG_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "message/role.h"
 
 struct openid_group {

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/http_request.h"
+#include "base/files/secret.h"
 #include "base/mem.h"
-#include "base/secret.h"
+#include "base/system/http_request.h"
 
 enum { MOST_BYTES = 512 * 1024, CONNECT_S = 4, TIMEOUT_S = 7 };
 

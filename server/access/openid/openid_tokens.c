@@ -7,7 +7,7 @@
 #include "access/openid/openid_impl.h"
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 static const char *text_of(const json_t *object, const char *key)
 {

@@ -3,8 +3,8 @@
    away the points stay there, up to a limit. Neither the historian nor live pictures wait for it. */
 #ifndef HISTORY_POSTGRES_POSTGRES_H
 #define HISTORY_POSTGRES_POSTGRES_H
-#include "base/counters.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/metrics/counters.h"
 #include "plant/plant.h"
 
 enum { POSTGRES_SPANS = 16 };

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/login_file.h"
+#include "base/files/login_file.h"
 #include "base/mem.h"
 
 static const int64_t CONNECT_NS = 10 * NS_PER_S, ANSWER_NS = 60 * NS_PER_S, STOP_NS = 2 * NS_PER_S;

@@ -10,11 +10,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/atomic_file.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "history/month.h"
-#include "plant/units.h"
+#include "plant/tags/units.h"
 #include "value/quality.h"
 
 enum { POINTS_AT_ONCE = 100000, NUMBER_BYTES = 24, MARK_BYTES = 100 };

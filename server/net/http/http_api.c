@@ -7,12 +7,12 @@
 #include "access/pairings.h"
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/memory.h"
-#include "base/process_counters.h"
+#include "base/system/memory.h"
+#include "base/metrics/process_counters.h"
 #include "net/http/http_impl.h"
 #include "net/connection.h"
 #include "message/views_message.h"
-#include "session/reply.h"
+#include "session/reply/reply.h"
 
 static int await_history(struct server_context *server, struct request *request, struct history_query *query)
 {

@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/json_text.h"
 #include "base/mem.h"
-#include "base/timestamp.h"
+#include "base/text/json_text.h"
+#include "base/text/timestamp.h"
 #include "message/names.h"
 #include "net/connection.h"
 #include "net/http/http_impl.h"

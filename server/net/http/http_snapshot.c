@@ -9,8 +9,8 @@
 #include "message/json_fields.h"
 #include "message/view_address.h"
 #include "message/view_query.h"
-#include "plant/wall.h"
-#include "session/reply.h"
+#include "plant/walls/wall.h"
+#include "session/reply/reply.h"
 #include "net/connection.h"
 
 enum { NAME_BYTES = 256 };

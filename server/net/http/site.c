@@ -13,7 +13,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 enum { MAX_FILE_BYTES = 32 * 1024 * 1024 };
 

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 
 struct site_file {
     char *path; /* of the URL, decoded, from '/' on */

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/image/srgb.h"
 #include "base/mem.h"
-#include "base/srgb.h"
 #include "render/soft/ramps.h"
 
 /* As in shaders/material.glsl. */

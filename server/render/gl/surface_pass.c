@@ -4,7 +4,7 @@
 
 #include <limits.h>
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "gpu/program.h"
 #include "render/plan/culling.h"
 #include "render/matrix.h"

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "render/light/ggx.h"
 
 enum { SKY_WIDTH = 8, SKY_HEIGHT = 256 }; /* the same all around: as many columns as sums of harmonics need */

@@ -8,7 +8,7 @@
 #define RENDER_ENVIRONMENT_H
 #include <stdbool.h>
 
-#include "base/image.h"
+#include "base/image/image.h"
 #include "base/workers.h"
 
 enum { ENVIRONMENT_PX = 128, ENVIRONMENT_LAYERS = 8, ENVIRONMENT_TERMS = 9 };

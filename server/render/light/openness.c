@@ -6,8 +6,8 @@
 #define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
 #include <xxhash.h>
 
-#include "base/embedded.h"
 #include "base/mem.h"
+#include "base/text/embedded.h"
 #include "base/thread.h"
 #include "gpu/mesh.h"
 #include "version.h"

@@ -4,7 +4,7 @@
    or a damaged one, counts as missing. Thread: the one of the GL context. */
 #ifndef RENDER_OPENNESS_H
 #define RENDER_OPENNESS_H
-#include "base/cache_file.h"
+#include "base/files/cache_file.h"
 #include "gpu/pool.h"
 #include "render/gl/gpu_scene.h"
 

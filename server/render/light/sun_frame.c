@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 #include "render/matrix.h"
 
 enum { TURNS = 32 }; /* tried, in a quarter of a circle */

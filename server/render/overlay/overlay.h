@@ -5,7 +5,7 @@
 #include <cairo.h>
 
 #include "loopcheck/loop_checks.h"
-#include "plant/burn_shift.h"
+#include "plant/walls/burn_shift.h"
 #include "render/frame.h"
 
 /* Draws over frame->bgrx. The frame must not be shared yet. The clock is shown in the time zone of the process (TZ), which its main

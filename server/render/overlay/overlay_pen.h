@@ -8,7 +8,7 @@
 #include <cairo.h>
 
 #include "loopcheck/loop_checks.h"
-#include "plant/burn_shift.h"
+#include "plant/walls/burn_shift.h"
 #include "render/frame.h"
 #include "render/overlay/labels.h"
 #include "render/overlay/overlay_words.h"

@@ -4,8 +4,8 @@
 
 #include <math.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "render/pick/coarse_level.h"
 
 enum { PLACES = 400, CANDIDATES_MOST = 20000, CUTS_MOST = 64 };

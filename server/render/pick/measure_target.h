@@ -5,7 +5,7 @@
 #define RENDER_PICK_MEASURE_TARGET_H
 #include <stdbool.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include <glad/gl.h>
 
 enum { MEASURE_CONTEXT = -1, MEASURE_NOTHING = -2 }; /* instead of "no data": an asset without a field; no asset */

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "render/pick/coarse_level.h"
 
 #define STROKE_NONE UINT32_MAX

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/huge_pages.h"
 #include "base/mem.h"
+#include "base/system/huge_pages.h"
 #include "render/soft/soft_impl.h"
 
 enum { SUN_BAND_TILES = 32, SUN_BAND_ROWS = SUN_BAND_TILES * SUN_TILE_STEP_PX + 1 }; /* of the sun map, read at a time: 2 MB */

@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-#include "base/simd.h"
+#include "base/math/simd.h"
 
 #define SOFT_KERNEL SIMD_CLONES("avx2")
 #define SOFT_INLINE SIMD_BODY

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "base/huge_pages.h"
+#include "base/system/huge_pages.h"
 #include "base/mem.h"
 #include "render/soft/ramps.h"
 #include "render/soft/soft_impl.h"

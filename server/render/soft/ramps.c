@@ -2,7 +2,7 @@
 /* Materials in more and more light. */
 #include "render/soft/ramps.h"
 
-#include "base/srgb.h"
+#include "base/image/srgb.h"
 #include "render/soft/pbr.h"
 
 static uint32_t color_of(vec linear, int i, bool muted)

@@ -4,8 +4,8 @@
 
 #include <math.h>
 
+#include "base/image/srgb.h"
 #include "base/mem.h"
-#include "base/srgb.h"
 #include "render/soft/lanes.h"
 
 /* --- texels ------------------------------------------------------------------------------------------------------------------- */

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "base/srgb.h"
+#include "base/image/srgb.h"
 
 void soft_tones_init(struct soft_tones *tones)
 {

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 

@@ -3,7 +3,7 @@
    systems, factored once and solved for blocks of sources. */
 #ifndef SURFACE_GEODESIC_HEAT_H
 #define SURFACE_GEODESIC_HEAT_H
-#include "base/log.h"
+#include "base/log/log.h"
 #include "surface/geodesic/intrinsic.h"
 
 struct heat;

@@ -5,8 +5,8 @@
 #include <cblas.h>
 #include <pthread.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 static pthread_once_t blas_once = PTHREAD_ONCE_INIT;
 static void blas_alone(void)

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 #define STEPS_PER_EDGE 32.0 /* buckets to a mean edge: points in one bucket are taken in any order */
 #define NEAR_EDGES 5.0

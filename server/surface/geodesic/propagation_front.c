@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/simd.h"
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/simd.h"
-#include "base/vec.h"
 #include "surface/geodesic/propagation.h"
 
 #define INSIDE 1e-6      /* least weight of a corner: the source is a little inside its triangle */

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/mesh/bvh_impl.h"
 
 #define LEAF_TRIS 4u

@@ -6,9 +6,9 @@
 #include <immintrin.h>
 #endif
 
+#include "base/math/simd.h"
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/simd.h"
-#include "base/vec.h"
 #include "surface/mesh/bvh_impl.h"
 
 #define BOX_MARGIN 2.4e-7 /* of the largest coordinate, four roundings of it: a point in the box is in it in floats too */

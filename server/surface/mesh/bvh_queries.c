@@ -7,8 +7,8 @@
 #include <immintrin.h>
 #endif
 
-#include "base/simd.h"
-#include "base/vec.h"
+#include "base/math/simd.h"
+#include "base/math/vec.h"
 #include "surface/mesh/bvh_impl.h"
 
 struct query { /* a box, or a ray */

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 #define MOST_STAR 48  /* triangles at a point; one that has more stays */
 #define THINNEST 0.02 /* height of a new triangle, in its longest sides, unless the old one was as thin */

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 /* --- edges --------------------------------------------------------------------------------------------------------------- */
 

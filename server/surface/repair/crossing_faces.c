@@ -2,8 +2,8 @@
 /* Pairs of faces, told apart by their planes and, in the plane of one, by its sides. */
 #include "surface/repair/crossing_faces.h"
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/mesh/bvh.h"
 
 #define ROUNDING 1e-10 /* of the largest coordinate: far more than what sampling moves a point by */

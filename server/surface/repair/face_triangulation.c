@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 #define ON_EDGE 1e-9 /* a weight below this is on the edge */
 #define ON_WAY 1e-6  /* as near to a straight way, as a share of its length, it passes over a point */

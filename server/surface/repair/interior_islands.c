@@ -2,8 +2,8 @@
 /* Visible triangles left over amid hidden ones. */
 #include <math.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/repair/interior.h"
 
 struct island {                /* by its lowest point */

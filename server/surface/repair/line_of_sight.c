@@ -4,8 +4,8 @@
 
 #include <math.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 
 #define LOOKS 0.5    /* cosine between a face's normal and the way to what it looks at, at least */
 #define NEXT_TO 1e-3 /* of the way */

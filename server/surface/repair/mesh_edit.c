@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/mesh/bvh.h"
 #include "surface/repair/face_triangulation.h"
 

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/repair/parts_impl.h"
 
 #define DOUBLES 0.75 /* of a wall's area, at least: slits that stay in one layer leave single pieces at a wall */

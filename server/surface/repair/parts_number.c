@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/repair/parts_impl.h"
 
 #define OPEN_OF_SIZE 0.05 /* open edges together, in roots of the area: a hair gap's leftovers, not a pipe's end */

@@ -2,8 +2,8 @@
 /* Carrying out what the bridging found, and noting each bridge. */
 #include <string.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/vec.h"
 #include "surface/mesh/bvh.h"
 #include "surface/repair/repair_impl.h"
 

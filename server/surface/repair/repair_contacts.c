@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/vec.h"
+#include "base/math/vec.h"
 #include "surface/repair/mesh_edit.h"
 #include "surface/mesh/bvh.h"
 #include "surface/repair/crossing_faces.h"

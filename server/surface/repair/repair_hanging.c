@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/vec.h"
+#include "base/math/vec.h"
 #include "surface/repair/mesh_edit.h"
 #include "surface/repair/borders.h"
 #include "surface/repair/repair_impl.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "plant/json_path.h"
+#include "plant/sources/json_path.h"
 
 static const json_t *item_at(const json_t *array, long index)
 {

@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/login_file.h"
+#include "base/files/login_file.h"
 #include "base/mem.h"
 #include "value/lookup.h"
 #include "value/mqtt/sparkplug_payload.h"

@@ -2,7 +2,7 @@
 /* An MQTT source, as its files share it: one thread with one connection. Private to value/mqtt/. Thread: the source's own. */
 #ifndef VALUE_MQTT_IMPL_H
 #define VALUE_MQTT_IMPL_H
-#include "base/log_pace.h"
+#include "base/log/log_pace.h"
 #include "value/backoff.h"
 #include "value/mqtt/mqtt_client.h"
 #include "value/mqtt/mqtt_payload.h"

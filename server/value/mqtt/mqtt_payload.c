@@ -7,8 +7,8 @@
 #include <string.h>
 #include <strings.h>
 
-#include "base/timestamp.h"
-#include "plant/number.h"
+#include "base/text/timestamp.h"
+#include "plant/parse/number.h"
 #include "value/mqtt/json_select.h"
 #include "value/quality.h"
 

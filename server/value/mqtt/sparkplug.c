@@ -8,7 +8,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "plant/mqtt_address.h"
+#include "plant/sources/mqtt_address.h"
 #include "value/mqtt/sparkplug_payload.h"
 #include "value/quality.h"
 

@@ -2,8 +2,8 @@
 /* What Sparkplug B nodes and their devices say, followed from birth to death: aliases, types, session and sequence numbers. Thread: one. */
 #ifndef VALUE_SPARKPLUG_H
 #define VALUE_SPARKPLUG_H
-#include "base/counter.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/metrics/counter.h"
 #include "value/mqtt/mqtt_client.h"
 #include "value/mqtt/mqtt_topics.h"
 #include "value/stamped_writer.h"

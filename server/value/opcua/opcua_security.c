@@ -11,7 +11,7 @@
 #include <openssl/x509v3.h>
 #include <string.h>
 
-#include "base/login_file.h"
+#include "base/files/login_file.h"
 #include "base/mem.h"
 
 enum { KEY_BITS = 2048, FILE_BYTES = 1 << 20 };

@@ -5,7 +5,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "plant/opcua_address.h"
+#include "plant/sources/opcua_address.h"
 #include "value/opcua/opcua_client.h"
 #include "value/opcua/opcua_impl.h"
 

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast audit`: says whether an audit trail is whole. */
+#include <getopt.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "audit/audit_file.h"
+#include "audit/audit_head.h"
+#include "base/mem.h"
+#include "clients/cli/commands.h"
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast audit verify FILE [--known NUMBER:HASH]\n"
+          "\n"
+          "Verifies the trail that plantcastd --audit FILE writes, with the full files beside it: each line has a hash of its own\n"
+          "and of the line before, so a changed, removed or added line is found. FILE.head tells of removed last lines;\n"
+          "who can change that, too, is found by a line's number and hash that were kept elsewhere, in the journal or on a\n"
+          "syslog server:\n"
+          "  --known NUMBER:HASH   the trail must have that line\n",
+          out);
+}
+
+static int verify(const char *path, const struct audit_chain *known)
+{
+    struct audit_report report;
+    audit_file_verify(path, known, &report);
+    if (report.good)
+        printf("%s: good: lines %" PRIu64 " to %" PRIu64 " in %zu file%s%s\n"
+               "the last is %" PRIu64 ":%s\n",
+               path, report.first_seq, report.end.seq, report.files, report.files == 1 ? "" : "s",
+               report.first_seq > 1 ? "; what came before is not here" : "", report.end.seq, report.end.hash);
+    else
+        fprintf(stderr, "plantcast: %s\n", report.text);
+    mem_free(report.text);
+    return report.good ? 0 : 1;
+}
+
+int cmd_audit(int argc, char **argv)
+{
+    static const struct option options[] = { { "known", required_argument, NULL, 'k' }, { "help", no_argument, NULL, 'h' }, { 0 } };
+    struct audit_chain known;
+    audit_chain_init(&known);
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        if (option == 'h') {
+            print_usage(stdout);
+            return 0;
+        }
+        if (option != 'k' || !audit_head_parse(optarg, &known)) {
+            if (option == 'k')
+                fprintf(stderr, "plantcast: --known: NUMBER:HASH is expected\n");
+            print_usage(stderr);
+            return 2;
+        }
+    }
+    if (argc - optind == 2 && !strcmp(argv[optind], "verify"))
+        return verify(argv[optind + 1], &known);
+    print_usage(stderr);
+    return 2;
+}

@@ -1,0 +1,480 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast backup` and `restore`: history, the journal of alarms and the configuration of a plant, into one folder and out of it. */
+#include <dirent.h>
+#include <errno.h>
+#include <getopt.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "alarm/journal.h"
+#include "base/files/atomic_file.h"
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text/text.h"
+#include "clients/cli/commands.h"
+#include "history/copy.h"
+#include "history/history.h"
+#include "history/month.h"
+#include "base/text/timestamp.h"
+#include "plant/plant.h"
+#include "loopcheck/loop_checks.h"
+#include "access/pairings.h"
+#include "views/named_views.h"
+#include "views/notes.h"
+#include "views/wall_remote.h"
+
+#define MANIFEST "backup.json"
+#define PLANT_FILE "plant.yaml"
+enum { MANIFEST_VERSION = 1, MANIFEST_MAX = 1 << 20 };
+
+struct job {
+    struct log *log;
+    const char *folder;  /* of the backup */
+    const char *history; /* --history */
+    json_t *files;       /* of the manifest: {"name":...,"bytes":...,"xxh128":...} */
+};
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast backup PLANT.yaml -o FOLDER [--history DIR]\n"
+          "       plantcast backup --verify FOLDER\n"
+          "       plantcast restore FOLDER PLANT.yaml [--history DIR]\n"
+          "\n"
+          "backup copies history, the journal of alarms, what was proven, the plant file and its tag list into a new folder, also\n"
+          "while the daemon records: each database as it was at one moment. Models are not in it. Nobody but its maker may read it.\n"
+          "Links are not followed, and what belongs to somebody else than its folder does is not read: neither for root.\n"
+          "\n"
+          "--verify restores a backup aside, in a folder beside it that is removed again, compares what is there with what was backed\n"
+          "up, and checks each database.\n"
+          "\n"
+          "restore checks that a backup is whole and puts it in place: the plant file as PLANT.yaml, its tag list and history where the\n"
+          "plant file says. By root, each file belongs to whom its folder belongs to. Nothing is overwritten: where a file is in the\n"
+          "way, nothing is restored.\n"
+          "\n"
+          "  --history DIR    where history is, or is to be (as the plant file says; else beside it)\n",
+          out);
+}
+
+static bool say(const char *what, const char *why)
+{
+    fprintf(stderr, "plantcast: %s: %s\n", what, why);
+    return false;
+}
+
+static char *history_folder(const struct job *job, const struct plant *plant)
+{
+    return job->history ? mem_strdup(job->history) : plant_history_folder(plant);
+}
+
+/* As the plant file means it: below its own folder, or anywhere. */
+static const char *as_written(const struct plant *plant, const char *path)
+{
+    size_t n = strlen(plant->folder);
+    return !strncmp(path, plant->folder, n) && path[n] == '/' ? path + n + 1 : path;
+}
+
+/* What people make beside the history. */
+static const char *const lists[] = { NAMED_VIEWS_FILE, NOTES_FILE, WALL_REMOTE_FILE, PAIRINGS_FILE };
+enum { LISTS = sizeof(lists) / sizeof(lists[0]) };
+
+static bool is_list(const char *name)
+{
+    for (int i = 0; i < LISTS; i++)
+        if (!strcmp(name, lists[i]))
+            return true;
+    return false;
+}
+
+static bool is_ours(const char *name)
+{
+    int month;
+    return month_parse(name, &month) || !strcmp(name, JOURNAL_FILE) || !strcmp(name, LOOP_CHECKS_FILE) || is_list(name);
+}
+
+/* --- backup --------------------------------------------------------------------------------------------------------------------- */
+
+typedef bool copier(struct log *log, const char *from, const char *to);
+
+static bool add(struct job *job, copier *copy, const char *from, const char *name)
+{
+    char *to = mem_printf("%s/%s", job->folder, name), hash[COPY_HASH_BYTES];
+    long long bytes;
+    bool good = copy(job->log, from, to) && copy_hash(job->log, to, hash, &bytes);
+    if (good)
+        json_array_append_new(job->files, json_pack("{s:s,s:I,s:s}", "name", name, "bytes", (json_int_t)bytes, "xxh128", hash));
+    mem_free(to);
+    return good;
+}
+
+/* The newest month last: what is written meanwhile is in there. */
+static bool add_history(struct job *job, const char *folder)
+{
+    size_t count;
+    int *months = month_list(folder, &count);
+    bool good = true;
+    for (size_t i = 0; i < count && good; i++) {
+        char name[MONTH_NAME_BYTES];
+        month_name(months[i], name);
+        char *from = mem_printf("%s/%s", folder, name);
+        good = add(job, copy_database, from, name);
+        mem_free(from);
+    }
+    mem_free(months);
+    char *journal = mem_printf("%s/" JOURNAL_FILE, folder), *loop_checks = mem_printf("%s/" LOOP_CHECKS_FILE, folder);
+    if (good && access(journal, F_OK) == 0)
+        good = add(job, copy_database, journal, JOURNAL_FILE);
+    if (good && access(loop_checks, F_OK) == 0)
+        good = add(job, copy_file, loop_checks, LOOP_CHECKS_FILE);
+    for (int i = 0; i < LISTS && good; i++) {
+        char *from = mem_printf("%s/%s", folder, lists[i]);
+        good = access(from, F_OK) != 0 || add(job, copy_file, from, lists[i]);
+        mem_free(from);
+    }
+    mem_free(journal);
+    mem_free(loop_checks);
+    return good;
+}
+
+/* NULL: beside the plant file. */
+static const char *history_name(const struct plant *plant)
+{
+    return plant->history.folder ? as_written(plant, plant->history.folder) : NULL;
+}
+
+static bool write_manifest(struct job *job, const struct plant *plant)
+{
+    char now[TIMESTAMP_BYTES];
+    timestamp_print(clock_utc_ns() / 1000, now);
+    json_t *manifest = json_pack("{s:i,s:s,s:s?,s:s,s:O}", "version", MANIFEST_VERSION, "made", now, "history", history_name(plant), "tags",
+                                 as_written(plant, plant->tags_path), "files", job->files);
+    char *path = mem_printf("%s/" MANIFEST, job->folder), *text = json_dumps(manifest, JSON_INDENT(2));
+    int error = atomic_file_put(path, text, strlen(text));
+    if (error)
+        say(path, strerror(-error));
+    free(text);
+    mem_free(path);
+    json_decref(manifest);
+    return !error;
+}
+
+static void remove_folder(const char *folder)
+{
+    DIR *dir = opendir(folder);
+    for (struct dirent *entry; dir && (entry = readdir(dir));) {
+        char *path = mem_printf("%s/%s", folder, entry->d_name);
+        unlink(path);
+        mem_free(path);
+    }
+    if (dir)
+        closedir(dir);
+    rmdir(folder);
+}
+
+/* By its time the daemon says in /metrics when the last backup was. Who may only read the history leaves none. */
+static void leave_stamp(const char *history)
+{
+    char *path = mem_printf("%s/" HISTORY_BACKUP_STAMP, history), now[TIMESTAMP_BYTES + 1];
+    timestamp_print(clock_utc_ns() / 1000, now);
+    strcat(now, "\n");
+    if (access(history, W_OK) == 0)
+        atomic_file_put(path, now, strlen(now));
+    mem_free(path);
+}
+
+/* The folder has its name once all is in it. */
+static bool back_up(struct job *job, const struct plant *plant, const char *out)
+{
+    const char *tags = text_base_name(plant->tags_path);
+    char *history = history_folder(job, plant), *part = mem_printf("%s.part", out);
+    bool good = false;
+    job->folder = part;
+    if (is_ours(tags) || !strcmp(tags, PLANT_FILE) || !strcmp(tags, MANIFEST))
+        say(plant->tags_path, "something else in a backup has that name");
+    else if (access(out, F_OK) == 0)
+        say(out, "is there already");
+    else if (mkdir(part, 0700) != 0)
+        say(part, strerror(errno));
+    else {
+        good = add(job, copy_file, plant->path, PLANT_FILE) && add(job, copy_file, plant->tags_path, tags) && add_history(job, history) &&
+               write_manifest(job, plant);
+        if (good && rename(part, out) != 0)
+            good = say(out, strerror(errno));
+        if (!good)
+            remove_folder(part);
+    }
+    if (good) {
+        leave_stamp(history);
+        printf("%s: %zu files\n", out, json_array_size(job->files));
+    }
+    mem_free(history);
+    mem_free(part);
+    return good;
+}
+
+/* --- restore -------------------------------------------------------------------------------------------------------------------- */
+
+static json_t *read_manifest(const char *folder)
+{
+    char *path = mem_printf("%s/" MANIFEST, folder);
+    size_t bytes;
+    char *text = text_read_file(path, MANIFEST_MAX, &bytes);
+    json_t *manifest = text ? json_loads(text, 0, NULL) : NULL;
+    bool good =
+        json_integer_value(json_object_get(manifest, "version")) == MANIFEST_VERSION && json_is_array(json_object_get(manifest, "files"));
+    if (!good)
+        say(path, text ? "is no list of a backup that this program knows" : strerror(errno));
+    if (!good && manifest) {
+        json_decref(manifest);
+        manifest = NULL;
+    }
+    mem_free(text);
+    mem_free(path);
+    return manifest;
+}
+
+/* A name from a file is no way out of the folder. */
+static bool is_plain(const char *name)
+{
+    return name && *name && *name != '.' && !strchr(name, '/');
+}
+
+static bool is_whole(struct job *job)
+{
+    bool good = true;
+    size_t i;
+    json_t *file;
+    json_array_foreach(job->files, i, file)
+    {
+        const char *name = json_string_value(json_object_get(file, "name")), *expected = json_string_value(json_object_get(file, "xxh128"));
+        char hash[COPY_HASH_BYTES];
+        long long bytes;
+        if (!is_plain(name) || !expected)
+            return say(job->folder, "its list is wrong");
+        char *path = mem_printf("%s/%s", job->folder, name);
+        if (!copy_hash(job->log, path, hash, &bytes) || strcmp(hash, expected) != 0)
+            good = say(path, "is not as it was when the backup was made");
+        mem_free(path);
+    }
+    return good;
+}
+
+static bool is_free(const char *path)
+{
+    struct stat st;
+    return lstat(path, &st) != 0 || say(path, "is in the way; nothing was restored");
+}
+
+/* Where a file of the backup goes. tags: as the plant file writes it; NULL: beside it. */
+static char *place_of(const char *name, const char *plant_path, const char *history, const char *tags)
+{
+    if (!strcmp(name, PLANT_FILE))
+        return mem_strdup(plant_path);
+    if (is_ours(name))
+        return mem_printf("%s/%s", history, name);
+    const char *path = tags && !strcmp(text_base_name(tags), name) ? tags : name;
+    return *path == '/' ? mem_strdup(path) : mem_printf("%.*s%s", (int)(text_base_name(plant_path) - plant_path), plant_path, path);
+}
+
+/* A folder, and no link to one; a new one belongs to whom the one around it belongs to. */
+static bool make_folder(const char *path)
+{
+    struct stat st, around;
+    char *parent = mem_printf("%s/..", path);
+    bool made = mkdir(path, 0750) == 0;
+    bool good = lstat(path, &st) == 0 && S_ISDIR(st.st_mode);
+    if (good && made && geteuid() == 0)
+        good = stat(parent, &around) == 0 && lchown(path, around.st_uid, around.st_gid) == 0;
+    mem_free(parent);
+    return good || say(path, "is no folder, and cannot be made one");
+}
+
+static bool each_file(struct job *job, const char *plant_path, const char *history, const char *tags, bool put)
+{
+    size_t i;
+    json_t *file;
+    bool good = true;
+    json_array_foreach(job->files, i, file)
+    {
+        const char *name = json_string_value(json_object_get(file, "name"));
+        char *from = mem_printf("%s/%s", job->folder, name), *to = place_of(name, plant_path, history, tags);
+        good = good && (put ? copy_file(job->log, from, to) : is_free(to));
+        mem_free(from);
+        mem_free(to);
+    }
+    return good;
+}
+
+/* Where the plant file, in its new place, will look for it. */
+static char *future_history(const struct job *job, const json_t *manifest, const char *plant_path)
+{
+    const char *name = json_string_value(json_object_get(manifest, "history")), *slash = strrchr(plant_path, '/');
+    const char *file = slash ? slash + 1 : plant_path, *dot = strrchr(file, '.');
+    if (job->history || (name && *name == '/'))
+        return mem_strdup(job->history ? job->history : name);
+    if (name)
+        return mem_printf("%.*s%s", (int)(file - plant_path), plant_path, name);
+    return mem_printf("%.*s.history", (int)(dot ? dot - plant_path : (long)strlen(plant_path)), plant_path);
+}
+
+static bool restore(struct job *job, const char *plant_path)
+{
+    json_t *manifest = read_manifest(job->folder);
+    job->files = json_object_get(manifest, "files");
+    char *history = manifest && is_whole(job) ? future_history(job, manifest, plant_path) : NULL;
+    const char *tags = json_string_value(json_object_get(manifest, "tags"));
+    bool good = history && each_file(job, plant_path, history, tags, false);
+    good = good && make_folder(history) && each_file(job, plant_path, history, tags, true);
+    if (good)
+        printf("%s: restored, as of %s; its history is in %s\n", plant_path, json_string_value(json_object_get(manifest, "made")), history);
+    mem_free(history);
+    json_decref(manifest);
+    return good;
+}
+
+/* --- the drill ------------------------------------------------------------------------------------------------------------------ */
+
+static bool is_database(const char *name)
+{
+    size_t length = strlen(name);
+    return length > 7 && !strcmp(name + length - 7, ".sqlite");
+}
+
+/* Copying a database reads all of it, and checks the copy. */
+static bool each_restored(struct job *job, const char *plant_path, const char *history)
+{
+    size_t i;
+    json_t *file;
+    bool good = true;
+    json_array_foreach(job->files, i, file)
+    {
+        const char *name = json_string_value(json_object_get(file, "name")), *expected = json_string_value(json_object_get(file, "xxh128"));
+        char *path = place_of(name, plant_path, history, NULL), *copy = mem_printf("%s.checked", path), hash[COPY_HASH_BYTES];
+        long long bytes;
+        bool same = copy_hash(job->log, path, hash, &bytes) && !strcmp(hash, expected);
+        if (!same)
+            say(path, "is not as it was backed up");
+        good = same && (!is_database(name) || copy_database(job->log, path, copy)) && good;
+        unlink(copy);
+        mem_free(copy);
+        mem_free(path);
+    }
+    return good;
+}
+
+static void say_span(struct job *job, const char *history)
+{
+    struct history_reader *reader = history_reader_create(job->log, history);
+    int64_t first_us, last_us;
+    char first[TIMESTAMP_BYTES], last[TIMESTAMP_BYTES];
+    if (history_span(reader, &first_us, &last_us)) {
+        timestamp_print(first_us, first);
+        timestamp_print(last_us, last);
+        printf("%s: readings from %s to %s\n", job->folder, first, last);
+    }
+    history_reader_destroy(&reader);
+}
+
+static bool verify_in(struct job *job, const char *aside)
+{
+    char *plant_path = mem_printf("%s/" PLANT_FILE, aside), *history = mem_printf("%s/history", aside);
+    bool good = make_folder(history) && each_file(job, plant_path, history, NULL, true) && each_restored(job, plant_path, history);
+    if (good)
+        say_span(job, history);
+    remove_folder(history);
+    remove_folder(aside);
+    mem_free(history);
+    mem_free(plant_path);
+    return good;
+}
+
+static bool verify(struct job *job)
+{
+    json_t *manifest = read_manifest(job->folder);
+    job->files = json_object_get(manifest, "files");
+    char *aside = mem_printf("%s.verify-XXXXXX", job->folder);
+    bool good = manifest && is_whole(job) && (mkdtemp(aside) || say(aside, strerror(errno))) && verify_in(job, aside);
+    if (good)
+        printf("%s: verified: restored aside, %zu files as of %s\n", job->folder, json_array_size(job->files),
+               json_string_value(json_object_get(manifest, "made")));
+    mem_free(aside);
+    json_decref(manifest);
+    return good;
+}
+
+/* --- the command line ------------------------------------------------------------------------------------------------------------ */
+
+/* -1: go on; else the exit code. */
+static int parse(int argc, char **argv, struct job *job, const char **out, bool *drill)
+{
+    static const struct option options[] = { { "history", required_argument, NULL, 'd' },
+                                             { "out", required_argument, NULL, 'o' },
+                                             { "verify", no_argument, NULL, 'v' },
+                                             { "help", no_argument, NULL, 'h' },
+                                             { 0 } };
+    for (int option; (option = getopt_long(argc, argv, "o:h", options, NULL)) != -1;) {
+        switch (option) {
+        case 'd': job->history = optarg; break;
+        case 'o': *out = optarg; break;
+        case 'v': *drill = true; break;
+        case 'h': print_usage(stdout); return 0;
+        default: print_usage(stderr); return 2;
+        }
+    }
+    return -1;
+}
+
+int cmd_backup(int argc, char **argv)
+{
+    struct job job = { 0 };
+    const char *out = NULL;
+    bool drill = false;
+    int code = parse(argc, argv, &job, &out, &drill);
+    if (code >= 0)
+        return code;
+    if (argc - optind != 1 || !out == !drill || (drill && job.history)) {
+        print_usage(stderr);
+        return 2;
+    }
+    if (drill) {
+        umask(0077);
+        job.log = log_create(LOG_WARN);
+        job.folder = argv[optind];
+        code = verify(&job) ? 0 : 1;
+        log_destroy(&job.log);
+        return code;
+    }
+    struct plant *plant = plant_load_or_print(argv[optind]);
+    if (!plant)
+        return 1;
+    umask(0077); /* readings, names and remarks are for whoever made it */
+    job.log = log_create(LOG_WARN);
+    job.files = json_array();
+    code = back_up(&job, plant, out) ? 0 : 1;
+    json_decref(job.files);
+    log_destroy(&job.log);
+    plant_destroy(&plant);
+    return code;
+}
+
+int cmd_restore(int argc, char **argv)
+{
+    struct job job = { 0 };
+    const char *out = NULL;
+    bool drill = false;
+    int code = parse(argc, argv, &job, &out, &drill);
+    if (code >= 0)
+        return code;
+    if (argc - optind != 2 || out || drill) {
+        print_usage(stderr);
+        return 2;
+    }
+    job.log = log_create(LOG_WARN);
+    job.folder = argv[optind];
+    code = restore(&job, argv[optind + 1]) ? 0 : 1;
+    log_destroy(&job.log);
+    return code;
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast drain`: has a daemon of this machine send its sessions to other nodes. */
+#include <errno.h>
+#include <getopt.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "clients/cli/commands.h"
+
+enum { WAIT_S = 13 /* 2 s for a load balancer to hear of it, 10 s in which sessions are closed, and one */, LOOK_US = 50000 };
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast drain PID [--wait SECONDS]\n"
+          "\n"
+          "Sends the signal USR1 to that daemon: within 12 s its sessions are sent elsewhere, one after the other. Ends once that is\n"
+          "over, or the daemon has ended. For preStop of a container, and for ExecStop= of a unit.\n"
+          "\n"
+          "  --wait SECONDS  how long to wait; 0: not at all (13)\n",
+          out);
+}
+
+/* Other programs end by that signal. */
+static bool is_daemon(pid_t pid)
+{
+    char path[64], name[32] = "";
+    snprintf(path, sizeof(path), "/proc/%d/comm", (int)pid);
+    FILE *file = fopen(path, "r");
+    if (!file)
+        return false;
+    size_t count = fread(name, 1, sizeof(name) - 1, file);
+    fclose(file);
+    name[count] = 0;
+    return !strcmp(name, "plantcastd\n");
+}
+
+static int drain(pid_t pid, int wait_s)
+{
+    int64_t end_ns = clock_mono_ns() + wait_s * NS_PER_S;
+    if (!is_daemon(pid)) {
+        fprintf(stderr, "plantcast: %d: no plantcastd\n", (int)pid);
+        return 1;
+    }
+    if (kill(pid, SIGUSR1) != 0) {
+        fprintf(stderr, "plantcast: %d: %s\n", (int)pid, strerror(errno));
+        return 1;
+    }
+    while (clock_mono_ns() < end_ns && kill(pid, 0) == 0)
+        usleep(LOOK_US);
+    return 0;
+}
+
+int cmd_drain(int argc, char **argv)
+{
+    static const struct option options[] = {
+        { "wait", required_argument, NULL, 'w' },
+        { "help", no_argument, NULL, 'h' },
+        { NULL, 0, NULL, 0 },
+    };
+    int wait_s = WAIT_S;
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;)
+        switch (option) {
+        case 'w': wait_s = atoi(optarg); break;
+        case 'h': print_usage(stdout); return 0;
+        default: print_usage(stderr); return 2;
+        }
+    char *end = NULL;
+    long pid = optind + 1 == argc ? strtol(argv[optind], &end, 10) : 0;
+    if (!end || *end || pid < 1 || pid > INT_MAX || wait_s < 0 || wait_s > 3600) {
+        print_usage(stderr);
+        return 2;
+    }
+    return drain((pid_t)pid, wait_s);
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast ready URL`: whether a daemon is ready, for health checks where there is no curl. */
+#include <stdio.h>
+#include <string.h>
+
+#include "clients/cli/commands.h"
+#include "clients/cli/viewer/stream_reach.h"
+#include "clients/link/daemon.h"
+
+static const char usage[] = "usage: plantcast ready URL\n"
+                            "\n"
+                            "Ends with 0 if the daemon (http://HOST:PORT/ or https://) serves pictures, else with 1 and the reason.\n"
+                            "Over http:// it also tries whether a proxy in between passes WebSockets on.\n";
+
+int cmd_ready(int argc, char **argv)
+{
+    struct daemon_url url;
+    struct text body = { 0 };
+    bool help = argc == 2 && !strcmp(argv[1], "--help");
+    if (argc != 2 || help) {
+        fputs(usage, help ? stdout : stderr);
+        return help ? 0 : 2;
+    }
+    if (!daemon_url_parse(argv[1], &url))
+        return 2;
+    int status = daemon_get(&url, "/readyz", &body);
+    if (status && status != 200)
+        fprintf(stderr, "plantcast: not ready: %s\n", body.at ? body.at : "");
+    text_finish(&body);
+    if (status == 200 && !stream_opens(&url) && stream_is_blocked(&url))
+        return 1;
+    return status == 200 ? 0 : 1;
+}

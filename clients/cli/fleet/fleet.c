@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast fleet`: one page and one /metrics over the servers of many plants. */
+#include <getopt.h>
+#include <libwebsockets.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "access/access.h"
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text/embedded.h"
+#include "clients/cli/commands.h"
+#include "fleet_poll.h"
+
+enum { PORT = 8090, HEADER_BYTES = 2048, CHUNK = 16384, NAME_BYTES = 256 };
+
+struct site {
+    struct fleet_poll *poll;
+    const struct fleet_file *file;
+    const char *host; /* a name that it is reached by besides local ones; NULL: none */
+};
+
+struct answer { /* of one connection */
+    char *body;
+    size_t bytes, sent;
+};
+
+static struct lws_context *_Atomic serving;
+static atomic_bool ending;
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast fleet FLEET.yaml [--check]\n"
+          "       plantcast fleet FLEET.yaml --serve [--address ADDRESS] [--port PORT] [--host NAME]\n"
+          "\n"
+          "Serves one page, and one /metrics, over the servers of many plants: a small picture of each, alarms by priority, links that\n"
+          "are down, version, certificate, disk, last backup. A plant that does not answer says since when. The page has no log-in:\n"
+          "ADDRESS is one of this machine (127.0.0.1, the default, or ::1); a proxy before it decides who may see it.\n"
+          "NAME is what people reach that proxy by; requests for other names are refused, since a foreign page may have sent them.\n"
+          "PORT: default 8090; 0: any that is free. INSTALL.md describes the file.\n",
+          out);
+}
+
+/* --- answers ---------------------------------------------------------------------------------------------------------------- */
+
+static const struct page_file {
+    const char *path, *embedded, *type;
+} page_files[] = {
+    { "/", "clients/fleet/fleet.html", "text/html; charset=utf-8" },
+    { "/fleet.js", "clients/fleet/fleet.js", "text/javascript; charset=utf-8" },
+    { "/words.js", "clients/fleet/words.js", "text/javascript; charset=utf-8" },
+    { "/fleet.css", "clients/fleet/fleet.css", "text/css; charset=utf-8" },
+};
+
+/* Returns the body (mem_free), and its type; NULL: there is no such thing. */
+static char *answer_to(const struct site *site, const char *path, size_t *bytes, const char **type)
+{
+    static const char pictures[] = "/picture/";
+    struct text text = { 0 };
+    char *body = NULL;
+    for (size_t i = 0; i < sizeof(page_files) / sizeof(*page_files); i++)
+        if (!strcmp(path, page_files[i].path)) {
+            *type = page_files[i].type;
+            body = mem_strdup(embedded_find(page_files[i].embedded));
+            *bytes = strlen(body);
+            return body;
+        }
+    if (!strncmp(path, pictures, sizeof(pictures) - 1)) {
+        *type = "image/png";
+        return fleet_poll_picture(site->poll, path + sizeof(pictures) - 1, bytes);
+    }
+    struct fleet_plant_state *states = fleet_poll_states(site->poll);
+    if (!strcmp(path, "/fleet.json")) {
+        *type = "application/json";
+        body = fleet_json(site->file, states, clock_utc_ns() / 1000);
+        *bytes = strlen(body);
+    } else if (!strcmp(path, "/metrics")) {
+        *type = "text/plain; version=0.0.4; charset=utf-8";
+        fleet_metrics(site->file, states, &text);
+        body = text.at;
+        *bytes = text.length;
+    }
+    mem_free(states);
+    return body;
+}
+
+static bool add_header(struct lws *wsi, const char *name, const char *value, unsigned char **at, unsigned char *end)
+{
+    return !lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value, (int)strlen(value), at, end);
+}
+
+static int begin_answer(struct lws *wsi, struct answer *answer, int status, const char *type)
+{
+    unsigned char buffer[LWS_PRE + HEADER_BYTES], *start = buffer + LWS_PRE, *at = start, *end = buffer + sizeof(buffer) - 1;
+    if (lws_add_http_common_headers(wsi, (unsigned)status, type, answer->bytes, &at, end) ||
+        !add_header(wsi, "Cache-Control:", "no-store", &at, end) || !add_header(wsi, "X-Content-Type-Options:", "nosniff", &at, end) ||
+        !add_header(wsi, "Referrer-Policy:", "no-referrer", &at, end) ||
+        !add_header(wsi, "Content-Security-Policy:", "default-src 'self'; base-uri 'none'; frame-ancestors 'none'", &at, end) ||
+        lws_finalize_write_http_header(wsi, start, &at, end))
+        return -1;
+    lws_callback_on_writable(wsi);
+    return 0;
+}
+
+/* A page of a foreign name that leads here (DNS rebinding) may not ask. */
+static bool is_for_us(const struct site *site, struct lws *wsi)
+{
+    char host[NAME_BYTES], name[NAME_BYTES];
+    if (lws_hdr_copy(wsi, host, sizeof(host), WSI_TOKEN_HOST) <= 0 || !access_host_name(host, name, sizeof(name)))
+        return false;
+    return access_name_is_local(name) || (site->host && !strcasecmp(site->host, name));
+}
+
+static int on_request(struct lws *wsi, struct answer *answer, const char *path)
+{
+    const struct site *site = lws_context_user(lws_get_context(wsi));
+    const char *type = "text/plain; charset=utf-8";
+    bool may = is_for_us(site, wsi), gets = lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0;
+    mem_free(answer->body);
+    *answer = (struct answer){ 0 };
+    char *body = may && gets ? answer_to(site, path, &answer->bytes, &type) : NULL;
+    int status = body ? HTTP_STATUS_OK : may ? HTTP_STATUS_NOT_FOUND : HTTP_STATUS_FORBIDDEN;
+    if (!body) {
+        type = "text/plain; charset=utf-8";
+        body = mem_strdup(may ? "There is nothing here.\n" : "This name is not served here; see --host.\n");
+        answer->bytes = strlen(body);
+    }
+    answer->body = mem_array(LWS_PRE + answer->bytes + 1, 1);
+    memcpy(answer->body + LWS_PRE, body, answer->bytes);
+    mem_free(body);
+    return begin_answer(wsi, answer, status, type);
+}
+
+static int write_on(struct lws *wsi, struct answer *answer)
+{
+    size_t left = answer->bytes - answer->sent, now = left < CHUNK ? left : CHUNK;
+    bool last = now == left;
+    if (!answer->body)
+        return 0;
+    unsigned char *at = (unsigned char *)answer->body + LWS_PRE + answer->sent;
+    if (lws_write(wsi, at, now, last ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) < (int)now)
+        return -1;
+    answer->sent += now;
+    if (!last) {
+        lws_callback_on_writable(wsi);
+        return 0;
+    }
+    mem_free(answer->body);
+    answer->body = NULL;
+    return lws_http_transaction_completed(wsi) ? -1 : 0;
+}
+
+static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t length)
+{
+    struct answer *answer = user;
+    switch (reason) {
+    case LWS_CALLBACK_HTTP: return on_request(wsi, answer, in);
+    case LWS_CALLBACK_HTTP_WRITEABLE: return write_on(wsi, answer);
+    case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
+    case LWS_CALLBACK_CLOSED_HTTP:
+        if (answer) {
+            mem_free(answer->body);
+            answer->body = NULL;
+        }
+        return 0;
+    case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION: return -1; /* no WebSocket */
+    default: return lws_callback_http_dummy(wsi, reason, user, in, length);
+    }
+}
+
+/* --- the command ------------------------------------------------------------------------------------------------------------ */
+
+static void on_signal(int number)
+{
+    (void)number;
+    struct lws_context *context = atomic_load(&serving);
+    atomic_store(&ending, true);
+    if (context)
+        lws_cancel_service(context);
+}
+
+static int serve(const struct fleet_file *file, const char *address, int port, const char *host)
+{
+    static const struct lws_protocols protocols[] = { { "http", on_event, sizeof(struct answer), 0, 0, NULL, 0 }, { 0 } };
+    struct site site = { fleet_poll_start(file), file, host };
+    struct lws_context_creation_info info = { .port = port,
+                                              .iface = address,
+                                              .protocols = protocols,
+                                              .user = &site,
+                                              .vhost_name = "fleet",
+                                              .gid = (gid_t)-1,
+                                              .uid = (uid_t)-1,
+                                              .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND |
+                                                         (strchr(address, ':') ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6) };
+    lws_set_log_level(LLL_ERR, NULL);
+    signal(SIGPIPE, SIG_IGN);
+    struct lws_context *context = site.poll ? lws_create_context(&info) : NULL;
+    struct lws_vhost *vhost = context ? lws_get_vhost_by_name(context, "fleet") : NULL;
+    if (vhost) {
+        atomic_store(&serving, context);
+        signal(SIGINT, on_signal);
+        signal(SIGTERM, on_signal);
+        printf("plantcast fleet: ready http://%s%s%s:%d/\n", strchr(address, ':') ? "[" : "", address, strchr(address, ':') ? "]" : "",
+               lws_get_vhost_listen_port(vhost));
+        fflush(stdout);
+        while (!atomic_load(&ending) && lws_service(context, 0) >= 0)
+            continue;
+    } else if (site.poll) {
+        fprintf(stderr, "plantcast: %s port %d cannot be listened on\n", address, port);
+    }
+    atomic_store(&serving, NULL);
+    if (context)
+        lws_context_destroy(context);
+    fleet_poll_stop(&site.poll);
+    return vhost ? 0 : 1;
+}
+
+static struct fleet_file *read_or_print(const char *path)
+{
+    struct diag diag = { 0 };
+    struct fleet_file *file = fleet_file_read(path, &diag);
+    diag_print(&diag, stderr);
+    diag_finish(&diag);
+    return file;
+}
+
+int cmd_fleet(int argc, char **argv)
+{
+    static const struct option options[] = { { "serve", no_argument, NULL, 's' },
+                                             { "check", no_argument, NULL, 'c' },
+                                             { "address", required_argument, NULL, 'a' },
+                                             { "port", required_argument, NULL, 'p' },
+                                             { "host", required_argument, NULL, 'n' },
+                                             { "help", no_argument, NULL, 'h' },
+                                             { NULL, 0, NULL, 0 } };
+    const char *address = "127.0.0.1", *host = NULL;
+    int port = PORT;
+    bool serves = false;
+    char *end = "";
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;)
+        switch (option) {
+        case 's': serves = true; break;
+        case 'c': break;
+        case 'a': address = optarg; break;
+        case 'p': port = (int)strtol(optarg, &end, 10); break;
+        case 'n': host = optarg; break;
+        case 'h': print_usage(stdout); return 0;
+        default: print_usage(stderr); return 2;
+        }
+    bool is_here = !strncmp(address, "127.", 4) || !strcmp(address, "::1");
+    if (argc - optind != 1 || *end || port < 0 || port > 65535 || !is_here) {
+        print_usage(stderr);
+        return 2;
+    }
+    struct fleet_file *file = read_or_print(argv[optind]);
+    if (!file)
+        return 1;
+    int code = 0;
+    if (serves)
+        code = serve(file, address, port, host);
+    else
+        printf("%s: %zu plants\n", file->path, file->count);
+    fleet_file_free(&file);
+    return code;
+}

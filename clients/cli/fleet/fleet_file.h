@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The fleet file (YAML): which plants' servers are watched. INSTALL.md describes it. Thread: one. */
+#ifndef CLI_FLEET_FLEET_FILE_H
+#define CLI_FLEET_FLEET_FILE_H
+#include <stddef.h>
+
+#include "base/text/diag.h"
+
+enum { FLEET_PLANTS = 1000 };
+
+struct fleet_plant {
+    char *id;                    /* what it is called in addresses and metrics */
+    char *name;                  /* for people; the id where none is given */
+    char *url;                   /* ends with a slash */
+    char *token_file, *ca_file;  /* NULL: none */
+    double poll_s, picture_s;    /* it allows no more; picture_s 0: no picture */
+    int line;
+};
+
+struct fleet_file {
+    char *path, *folder, *name;
+    double poll_s, picture_s;    /* of plants that say nothing */
+    struct fleet_plant *plants;
+    size_t count;
+};
+
+/* Reads a fleet file; findings go to diag. Returns NULL if there was any error. */
+struct fleet_file *fleet_file_read(const char *path, struct diag *diag);
+void fleet_file_free(struct fleet_file **file); /* &NULL is fine; leaves NULL */
+
+#endif

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast snapshot`: asks a daemon, or draws by itself. */
+#include "snapshot.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "clients/cli/commands.h"
+
+static void add_encoded(struct text *path, const char *arg)
+{
+    for (; *arg; arg++)
+        text_add(path, isalnum((unsigned char)*arg) || strchr("-_.=,", *arg) ? "%c" : "%%%02X", (unsigned char)*arg);
+}
+
+/* What is asked of a daemon, behind its first name. */
+bool snapshot_query(struct snapshot_options *options, struct text *query)
+{
+    if (options->offline_only) {
+        fputs("plantcast: --values, --history, --prepared, --tier, --no-overlay, --field and --gl only go with a plant file\n", stderr);
+        return false;
+    }
+    if (options->baseline && !snapshot_add_arg(options, "baseline", options->baseline))
+        return false;
+    for (size_t i = 0; i < options->arg_count; i++) {
+        text_add(query, "&");
+        add_encoded(query, options->args[i]);
+    }
+    return true;
+}
+
+static int from_daemon(struct snapshot_options *options)
+{
+    struct text path = { 0 }, query = { 0 };
+    int code = 2;
+    if ((options->at && !snapshot_add_arg(options, "at", options->at)) || !snapshot_query(options, &query))
+        goto end;
+    const char *rest = query.at ? query.at : "";
+    code = 0;
+    if (options->pick) {
+        text_add(&path, "/api/v1/pick?x=%.17g&y=%.17g%s", options->place_px[0], options->place_px[1], rest);
+        code = daemon_download(options->from, path.at, NULL);
+        path.length = 0;
+    }
+    text_add(&path, "/snapshot.png%s%s", *rest ? "?" : "", *rest ? rest + 1 : "");
+    if (options->out && code == 0)
+        code = daemon_download(options->from, path.at, options->out);
+end:
+    text_finish(&path);
+    text_finish(&query);
+    return code;
+}
+
+int cmd_snapshot(int argc, char **argv)
+{
+    struct snapshot_options options;
+    int code = snapshot_parse(argc, argv, false, &options);
+    if (code < 0)
+        code = strstr(options.from, "://") ? from_daemon(&options) : snapshot_offline(&options);
+    snapshot_options_finish(&options);
+    return code;
+}

@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast history import|export`: recorded series in and out, as CSV. */
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "clients/cli/commands.h"
+#include "history/history.h"
+#include "history/import.h"
+#include "history/month.h"
+#include "history/series_text.h"
+#include "base/text/timestamp.h"
+#include "plant/parse/number.h"
+
+struct history_options {
+    const char *plant, *folder, *csv, *tags, *from, *to, *start, *unit, *longest_gap, *encoding;
+    int points;
+};
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast history import PLANT.yaml FILE.csv [--folder DIR] [--start INSTANT [--unit ms|s|min|h]]\n"
+          "                                [--longest-gap TIME] [--encoding NAME]\n"
+          "       plantcast history export PLANT.yaml --tags A,B [--from INSTANT] [--to INSTANT] [--points N] [--folder DIR]\n"
+          "\n"
+          "import adds series to the plant's history, such as data from before Plantcast was installed. The daemon may be recording.\n"
+          "The CSV file has the columns Tag, Time, Value and optionally Quality and Unit, or Time and one column for each tag.\n"
+          "Values are in the tag's Eng Units, as its device gives them, unless Unit names another. Times are instants\n"
+          "such as 2026-11-20T10:00:00Z (without a zone: the plant's), or, with --start, numbers that count from there. They are in a\n"
+          "column called Time, Timestamp, UTC, DateTime or Date, or in the first one.\n"
+          "A blank cell, NaN and words such as Bad, No Data or I/O Timeout are Bad samples. Of rows with equal times the last one counts.\n"
+          "If a row has an error, nothing is imported; every error is printed with its line and column.\n"
+          "\n"
+          "export prints the recorded points in a form that import reads (of the last hour, unless --from and --to are given).\n"
+          "\n"
+          "  --folder DIR     folder of the history (default: the one that the plant file names, or the one beside it)\n"
+          "  --points N       at most N points of each tag (20000); if there are more: lowest, highest and mean of intervals\n"
+          "  --longest-gap TIME  a longer time between two samples has no data: 90s, 15min, 8h, 2d (default: the tag's Stale s if its row\n"
+          "                   states it and the series is not slower, else ten times the median spacing of the series)\n"
+          "  --encoding NAME  encoding of the CSV file, such as GB18030 or Windows-1251 (default: found from its bytes)\n"
+          "  INSTANT          2026-11-20T10:00:00Z, with an offset such as +01:00, seconds since 1970, or back from now: -8h\n",
+          out);
+}
+
+static int wrong(const char *what, const char *value)
+{
+    fprintf(stderr, "plantcast history: %s '%s'\n", what, value);
+    print_usage(stderr);
+    return 2;
+}
+
+/* --- import --------------------------------------------------------------------------------------------------------------------- */
+
+static bool parse_unit(const char *text, int64_t *unit_us)
+{
+    static const struct {
+        const char *name;
+        int64_t us;
+    } units[] = { { "ms", 1000 }, { "s", US_PER_S }, { "min", 60 * US_PER_S }, { "h", 3600 * US_PER_S }, { "d", 86400 * US_PER_S } };
+    for (size_t i = 0; i < sizeof(units) / sizeof(units[0]); i++)
+        if (!strcmp(text, units[i].name)) {
+            *unit_us = units[i].us;
+            return true;
+        }
+    return false;
+}
+
+/* "90s", "1.5h"; without a unit: seconds. */
+static bool parse_span(const char *text, int64_t *span_us)
+{
+    char number[24];
+    double count;
+    size_t length = strspn(text, "0123456789.");
+    int64_t unit_us = US_PER_S;
+    if (length == 0 || length >= sizeof(number) || (text[length] && !parse_unit(text + length, &unit_us)))
+        return false;
+    snprintf(number, sizeof(number), "%.*s", (int)length, text);
+    if (number_parse(number, &count) != NUMBER_GOOD || !(count * (double)unit_us >= 1 && count * (double)unit_us < 9e18))
+        return false;
+    *span_us = (int64_t)(count * (double)unit_us);
+    return true;
+}
+
+/* In the largest unit in which the number is at least 1. */
+static void print_span(int64_t span_us, char out[32])
+{
+    double s = (double)span_us / US_PER_S;
+    if (span_us == INT64_MAX)
+        snprintf(out, 32, "any time");
+    else if (s < 120)
+        snprintf(out, 32, "%.4g s", s);
+    else if (s < 7200)
+        snprintf(out, 32, "%.4g min", s / 60);
+    else if (s < 2 * 86400)
+        snprintf(out, 32, "%.4g h", s / 3600);
+    else
+        snprintf(out, 32, "%.4g d", s / 86400);
+}
+
+static void print_counts(const char *path, const struct import_counts *counts)
+{
+    char from[TIMESTAMP_BYTES], to[TIMESTAMP_BYTES], least[32], most[32];
+    timestamp_print(counts->from_us, from);
+    timestamp_print(counts->to_us, to);
+    print_span(counts->longest_us[0], least);
+    print_span(counts->longest_us[1], most);
+    printf("%s: %lld samples of %d tag%s from %s to %s: %lld points recorded\n", path, counts->samples, counts->tags,
+           counts->tags == 1 ? "" : "s", from, to, counts->points);
+    if (!counts->encoding.ascii && strcmp(counts->encoding.name, "UTF-8") != 0) {
+        char *read_as = charset_describe(&counts->encoding);
+        printf("Encoding: %s\n", read_as);
+        mem_free(read_as);
+    }
+    printf("Bad samples: %lld\nDuplicate times: %lld (the last row of each counts)\n", counts->bad, counts->duplicates);
+    if (counts->samples)
+        printf("Gaps without data: %lld (longer than %s%s%s)\n", counts->gaps, least, strcmp(least, most) ? " to " : "",
+               strcmp(least, most) ? most : "");
+}
+
+static int run_import(const struct history_options *options, const struct plant *plant, const char *folder, struct log *log)
+{
+    struct import_params params = {
+        .log = log, .plant = plant, .folder = folder, .path = options->csv, .start_us = INT64_MIN, .unit_us = US_PER_S
+    };
+    char encoding[CHARSET_NAME_BYTES];
+    struct import_counts counts;
+    struct diag diag = { 0 };
+    timestamp_use_zone(plant->time_zone);
+    if (options->start && !timestamp_parse(options->start, clock_utc_ns() / 1000, &params.start_us) &&
+        !timestamp_parse_local(options->start, INT64_MIN, &params.start_us))
+        return wrong("--start: expected " TIMESTAMP_FORMS ", found", options->start);
+    if (options->unit && (!options->start || !parse_unit(options->unit, &params.unit_us)))
+        return wrong("--unit: expected ms, s, min or h, and --start, found", options->unit);
+    if (options->longest_gap && !parse_span(options->longest_gap, &params.longest_gap_us))
+        return wrong("--longest-gap: expected a time such as 90s, 15min, 8h or 2d, found", options->longest_gap);
+    if (options->encoding && !charset_resolve(options->encoding, encoding))
+        return wrong("--encoding: expected a name that iconv --list shows, found", options->encoding);
+    params.encoding = options->encoding ? encoding : NULL;
+    bool good = history_import(&params, &diag, &counts);
+    diag_print(&diag, stderr);
+    if (good)
+        print_counts(options->csv, &counts);
+    else
+        fprintf(stderr, "plantcast: %s: not imported\n", options->csv);
+    diag_finish(&diag);
+    return good ? 0 : 1;
+}
+
+/* --- export --------------------------------------------------------------------------------------------------------------------- */
+
+static bool export_tag(struct history_reader *reader, const struct plant_tag *tag, int64_t from_us, int64_t to_us, int points,
+                       int *was_buckets)
+{
+    struct history_series series;
+    struct text text = { 0 };
+    bool good = history_series(reader, tag->name, from_us, to_us, points, &series) == 0;
+    if (good && *was_buckets != (series.bucket_us > 0)) {
+        *was_buckets = series.bucket_us > 0;
+        series_text_csv_head(&text, series.bucket_us > 0);
+    }
+    if (good)
+        series_text_csv(&text, tag->name, tag->unit, &series);
+    if (text.at)
+        fwrite(text.at, 1, text.length, stdout);
+    text_finish(&text);
+    history_series_finish(&series);
+    return good;
+}
+
+static int run_export(const struct history_options *options, const struct plant *plant, const char *folder, struct log *log)
+{
+    int64_t now_us = clock_utc_ns() / 1000, to_us = now_us, from_us;
+    if (!options->tags)
+        return wrong("--tags: expected names, with commas between them, found", "none");
+    if (options->to && !timestamp_parse(options->to, now_us, &to_us))
+        return wrong("--to: expected " TIMESTAMP_FORMS ", found", options->to);
+    from_us = to_us - 3600 * US_PER_S;
+    if (options->from && !timestamp_parse(options->from, now_us, &from_us))
+        return wrong("--from: expected " TIMESTAMP_FORMS ", found", options->from);
+    if (from_us >= to_us)
+        return wrong("--from: expected an earlier instant than --to, found", options->from ? options->from : "");
+    struct history_reader *reader = history_reader_create(log, folder);
+    history_reader_show_by(reader, plant);
+    char *names = mem_strdup(options->tags), *rest = names;
+    int was_buckets = -1;
+    bool good = true;
+    for (char *tag; good && (tag = strsep(&rest, ","));) {
+        int index = plant_find_tag(plant, tag);
+        good = index >= 0;
+        if (!good)
+            fprintf(stderr, "plantcast: %s: there is no tag '%s'\n", options->plant, tag);
+        good = good && export_tag(reader, &plant->tags[index], from_us, to_us, options->points, &was_buckets);
+    }
+    mem_free(names);
+    history_reader_destroy(&reader);
+    return good ? 0 : 1;
+}
+
+/* --- the command line ------------------------------------------------------------------------------------------------------------- */
+
+/* -1: go on; else the exit code. */
+static int parse(int argc, char **argv, struct history_options *out)
+{
+    static const struct option options[] = {
+        { "folder", required_argument, NULL, 'd' }, { "tags", required_argument, NULL, 't' },  { "from", required_argument, NULL, 'f' },
+        { "to", required_argument, NULL, 'u' },     { "start", required_argument, NULL, 's' }, { "unit", required_argument, NULL, 'n' },
+        { "points", required_argument, NULL, 'p' }, { "longest-gap", required_argument, NULL, 'g' },
+        { "encoding", required_argument, NULL, 'e' },
+        { "help", no_argument, NULL, 'h' },         { NULL, 0, NULL, 0 },
+    };
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        switch (option) {
+        case 'd': out->folder = optarg; break;
+        case 't': out->tags = optarg; break;
+        case 'f': out->from = optarg; break;
+        case 'u': out->to = optarg; break;
+        case 's': out->start = optarg; break;
+        case 'n': out->unit = optarg; break;
+        case 'e': out->encoding = optarg; break;
+        case 'g': out->longest_gap = optarg; break;
+        case 'p':
+            out->points = atoi(optarg);
+            if (out->points < 2)
+                return wrong("--points: expected a number from 2, found", optarg);
+            break;
+        case 'h': print_usage(stdout); return 0;
+        default: print_usage(stderr); return 2;
+        }
+    }
+    return -1;
+}
+
+int cmd_history(int argc, char **argv)
+{
+    struct history_options options = { .points = 20000 };
+    int code = parse(argc, argv, &options);
+    if (code >= 0)
+        return code;
+    bool import = argc - optind == 3 && !strcmp(argv[optind], "import"), export = argc - optind == 2 && !strcmp(argv[optind], "export");
+    if (!import && !export) {
+        print_usage(stderr);
+        return 2;
+    }
+    options.plant = argv[optind + 1];
+    options.csv = import ? argv[optind + 2] : NULL;
+    struct plant *plant = (import ? plant_load_or_print : plant_load_without_models)(options.plant);
+    if (!plant)
+        return 1;
+    struct log *log = log_create(LOG_WARN);
+    char *folder = options.folder ? mem_strdup(options.folder) : plant_history_folder(plant);
+    code = (import ? run_import : run_export)(&options, plant, folder, log);
+    mem_free(folder);
+    log_destroy(&log);
+    plant_destroy(&plant);
+    return code;
+}

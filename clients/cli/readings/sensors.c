@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast sensors suggest`: where more sensors would show the most; `drift`: sensors_drift.c. */
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "clients/cli/commands.h"
+#include "placing/sensor_suggest.h"
+#include "plant/influence.h"
+#include "plant/plant.h"
+#include "scene/scene_create.h"
+
+enum { MOST_ADDED = 100 };
+
+struct suggest_options {
+    const char *plant, *group, *asset, *prepared;
+    size_t count;
+    bool csv;
+};
+
+static void print_usage(FILE *out)
+{
+    fputs(
+        "usage: plantcast sensors suggest PLANT.yaml --add N [--group ID] [--asset ID] [--prepared FOLDER] [--csv]\n"
+        "       plantcast sensors drift PLANT.yaml [--to INSTANT] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
+        "Proposes places for N more sensors, one after the other, each where it takes away most of what the present ones do not see: hot\n"
+        "spots of the group's hot_spot_m that no sensor would read as 5 % of its range (PLANT.md, show: blind).\n"
+        "  --group ID         of which sensors; the plant's first group\n"
+        "  --asset ID         only there; else wherever the group has sensors whose place is known\n"
+        "  --prepared FOLDER  where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
+        "  --csv              the same as a table\n",
+        out);
+}
+
+static void print_suggestions(const struct suggest_options *options, const struct scene *scene, const struct plant_group *group,
+                              const struct suggestion *list, size_t count)
+{
+    puts(options->csv ? "asset,x_m,y_m,z_m,blindness_before,blindness_after,unseen_before,unseen_after" : "");
+    for (size_t i = 0; i < count; i++) {
+        const struct suggestion *s = &list[i];
+        const char *asset = scene->assets[s->asset].plant->id;
+        if (options->csv)
+            printf("%s,%.4f,%.4f,%.4f,%.5f,%.5f,%.5f,%.5f\n", asset, s->at_m[0], s->at_m[1], s->at_m[2], s->before, s->after,
+                   s->unseen_before, s->unseen_after);
+        else
+            printf(
+                "%2zu. %s at %.3f, %.3f, %.3f m: blindness %.1f to %.1f %%, %.1f less; nothing seen on %.1f -> %.1f %% of the surface\n",
+                i + 1, asset, s->at_m[0], s->at_m[1], s->at_m[2], 100 * s->before, 100 * s->after, 100 * (s->before - s->after),
+                100 * s->unseen_before, 100 * s->unseen_after);
+    }
+    if (!options->csv && count < options->count)
+        printf("%zu of %zu: nothing is left to gain in '%s'\n", count, options->count, group->id);
+    if (!options->csv)
+        printf("Blindness: 0 %% with a sensor everywhere, 100 %% where not even a hot spot of %g m as hot as the whole range (%g %s) is "
+               "seen.\n",
+               group->hot_spot_m, group->max - group->min, group->unit);
+}
+
+static int suggest_in(const struct suggest_options *options, const struct plant *plant, struct log *log)
+{
+    int group = options->group ? plant_find_group(plant, options->group) : 0;
+    int asset = options->asset ? plant_find_asset(plant, options->asset) : -1;
+    if (group < 0 || (options->asset && asset < 0)) {
+        fprintf(stderr, "plantcast: %s: no %s '%s'\n", options->plant, group < 0 ? "group" : "asset",
+                group < 0 ? options->group : options->asset);
+        return 1;
+    }
+    char *folder = options->prepared ? mem_strdup(options->prepared) : plant_prepared_folder(plant);
+    struct scene *scene = scene_create(log, plant, folder);
+    struct workers *workers = scene ? workers_create(0) : NULL;
+    struct suggestion list[MOST_ADDED];
+    const struct suggest_query query = { log, workers, scene, folder, group, asset, options->count };
+    size_t count = scene ? sensor_suggest(&query, list) : 0;
+    if (count > 0)
+        print_suggestions(options, scene, &plant->groups[group], list, count);
+    else if (scene)
+        fprintf(stderr, "plantcast: %s: nothing to suggest: '%s' has no sensor there whose place is known, or sees all of it\n",
+                options->plant, plant->groups[group].id);
+    workers_destroy(&workers);
+    scene_destroy(&scene);
+    mem_free(folder);
+    return count > 0 ? 0 : 1;
+}
+
+static int suggest(const struct suggest_options *options)
+{
+    struct plant *plant = plant_load_or_print(options->plant);
+    if (!plant)
+        return 1;
+    struct log *log = log_create(LOG_WARN);
+    int code = suggest_in(options, plant, log);
+    log_destroy(&log);
+    plant_destroy(&plant);
+    return code;
+}
+
+int cmd_sensors(int argc, char **argv)
+{
+    if (argc > 1 && !strcmp(argv[1], "drift"))
+        return cmd_sensors_drift(argc - 1, argv + 1);
+    static const struct option options[] = { { "add", required_argument, NULL, 'a' },
+                                             { "group", required_argument, NULL, 'g' },
+                                             { "asset", required_argument, NULL, 's' },
+                                             { "prepared", required_argument, NULL, 'd' },
+                                             { "csv", no_argument, NULL, 'c' },
+                                             { "help", no_argument, NULL, 'h' },
+                                             { 0 } };
+    struct suggest_options taken = { 0 };
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        char *end = "";
+        switch (option) {
+        case 'a': taken.count = strtoul(optarg, &end, 10); break;
+        case 'g': taken.group = optarg; break;
+        case 's': taken.asset = optarg; break;
+        case 'd': taken.prepared = optarg; break;
+        case 'c': taken.csv = true; break;
+        case 'h': print_usage(stdout); return 0;
+        default: print_usage(stderr); return 2;
+        }
+        if (*end) {
+            taken.count = 0;
+            break;
+        }
+    }
+    if (argc - optind != 2 || strcmp(argv[optind], "suggest") != 0 || taken.count < 1 || taken.count > MOST_ADDED) {
+        if (argc - optind == 2 && !strcmp(argv[optind], "suggest"))
+            fprintf(stderr, "plantcast: --add: 1 to %d expected\n", MOST_ADDED);
+        print_usage(stderr);
+        return 2;
+    }
+    taken.plant = argv[optind + 1];
+    return suggest(&taken);
+}

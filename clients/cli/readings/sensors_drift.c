@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast sensors drift`: which sensors drifted away from what the others say of them, in a week of recorded history. */
+#include <getopt.h>
+#include <stdio.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text/timestamp.h"
+#include "clients/cli/commands.h"
+#include "plant/plant.h"
+#include "scene/scene_create.h"
+#include "service/drift_report.h"
+
+struct drift_options {
+    const char *plant, *group, *to, *prepared, *folder;
+};
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast sensors drift PLANT.yaml [--to INSTANT] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
+          "Lists for each sensor by how much it drifted in a week away from what the others of its group on its asset say of it, by\n"
+          "recorded hourly means (PLANT.md, Sensors that drift). At least three sensors and half a week are needed.\n"
+          "  --to INSTANT       the week ends then; now. 2026-11-20T10:00:00Z, or back from now: -1d\n"
+          "  --group ID         of which sensors; all groups\n"
+          "  --prepared FOLDER  where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
+          "  --folder DIR       where history is (as the plant file says; else beside it)\n"
+          "CSV: tag,verdict (found, none, unknown),change,error,scatter,unit,hours. Exit status: 1: a drift was found.\n",
+          out);
+}
+
+static int print_report(const struct plant *plant, const struct drift_report *report, int group)
+{
+    int found = 0;
+    for (size_t i = 0; i < report->count; i++) {
+        const struct drift *drift = &report->drifts[i];
+        printf("%s,%s,%.4g,%.4g,%.4g,%s,%d\n", plant->tags[neighbours_tag(report->neighbours, i)].name,
+               drift_verdict_name(drift->verdict), drift->change, drift->error, drift->scatter, plant->groups[group].unit, drift->hours);
+        found += drift->verdict == DRIFT_FOUND;
+    }
+    return found;
+}
+
+/* Returns how many were found; -1: it cannot be read. */
+static int look_at(const struct scene *scene, struct history_reader *reader, int only, int64_t to_us)
+{
+    int found = 0;
+    puts("tag,verdict,change,error,scatter,unit,hours");
+    for (int g = 0; g < (int)scene->plant->group_count; g++)
+        for (size_t a = 0; a < scene->asset_count && (only < 0 || g == only); a++) {
+            struct drift_report report;
+            if (!drift_report_read(&report, reader, scene, (int)a, g, to_us))
+                return -1;
+            found += print_report(scene->plant, &report, g);
+            drift_report_finish(&report);
+        }
+    return found;
+}
+
+static int drift_in(const struct drift_options *options, const struct plant *plant, struct log *log)
+{
+    int64_t to_us = clock_utc_ns() / 1000;
+    int group = options->group ? plant_find_group(plant, options->group) : -1, found = -1;
+    timestamp_use_zone(plant->time_zone);
+    if (options->to && !timestamp_parse(options->to, to_us, &to_us)) {
+        fprintf(stderr, "plantcast: --to: expected " TIMESTAMP_FORMS ", found '%s'\n", options->to);
+        return 2;
+    }
+    if (options->group && group < 0) {
+        fprintf(stderr, "plantcast: %s: no group '%s'\n", options->plant, options->group);
+        return 2;
+    }
+    char *prepared = options->prepared ? mem_strdup(options->prepared) : plant_prepared_folder(plant);
+    char *folder = options->folder ? mem_strdup(options->folder) : plant_history_folder(plant);
+    struct scene *scene = scene_create(log, plant, prepared);
+    struct history_reader *reader = history_reader_create(log, folder);
+    history_reader_show_by(reader, plant);
+    if (scene)
+        found = look_at(scene, reader, group, to_us);
+    history_reader_destroy(&reader);
+    scene_destroy(&scene);
+    mem_free(prepared);
+    mem_free(folder);
+    return found < 0 ? 2 : found > 0;
+}
+
+int cmd_sensors_drift(int argc, char **argv)
+{
+    static const struct option options[] = {
+        { "to", required_argument, NULL, 'u' },     { "group", required_argument, NULL, 'g' }, { "prepared", required_argument, NULL, 'p' },
+        { "folder", required_argument, NULL, 'd' }, { "help", no_argument, NULL, 'h' },        { NULL, 0, NULL, 0 },
+    };
+    struct drift_options taken = { 0 };
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        switch (option) {
+        case 'u': taken.to = optarg; break;
+        case 'g': taken.group = optarg; break;
+        case 'p': taken.prepared = optarg; break;
+        case 'd': taken.folder = optarg; break;
+        case 'h': print_usage(stdout); return 0;
+        default: print_usage(stderr); return 2;
+        }
+    }
+    if (argc - optind != 1) {
+        print_usage(stderr);
+        return 2;
+    }
+    taken.plant = argv[optind];
+    struct plant *plant = plant_load_or_print(taken.plant);
+    if (!plant)
+        return 2;
+    struct log *log = log_create(LOG_WARN);
+    int code = drift_in(&taken, plant, log);
+    log_destroy(&log);
+    plant_destroy(&plant);
+    return code;
+}

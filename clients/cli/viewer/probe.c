@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast probe`: many viewers at once, and a table of what they saw. */
+#include "probe.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "clients/cli/commands.h"
+#include "viewer_threads.h"
+#include "clients/link/decoder.h"
+#include "load_generator.h"
+
+enum { MAX_SESSIONS = 1000 };
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast probe URL [--sessions N] [--seconds S] [--motion still|orbit|random] [--hz N] [--size WxH]\n"
+          "                           [--codec jpeg|h264] [--signed refined|all] [--save-signed FOLDER] [--follow] [--spread]\n"
+          "                           [--stall N] [--blind] [--json]\n"
+          "\n"
+          "Opens N sessions on a daemon (http://HOST:PORT/), decodes every frame before it acknowledges it, and prints rates and\n"
+          "latencies. Input to frame: from sending a camera to the first frame drawn with it, or with a newer one, decoded; each of\n"
+          "the cameras that are sent counts, 60 in a second unless --hz says otherwise. Sensor to frame: from a changed reading's\n"
+          "coming in to the frame that was made for it, decoded. `steady` is what comes, texts and all\n"
+          "but answers to pings, once 3 s have gone by.\n"
+          "\n"
+          "  --motion random   drags of up to 2 s, and pauses between them\n"
+          "  --follow          the first session moves, all others follow it; behind leader: from its sending a camera to their frame,\n"
+          "                    once 3 s have gone by\n"
+          "  --spread          of views that stand still: each from another side\n"
+          "  --signed WHICH    has refined frames, or all, come as PNG with a signature (a server with --signing-key)\n"
+          "  --save-signed FOLDER  writes each of these to FOLDER/SESSION-FRAME.png, for plantcast verify; with --signed refined unless\n"
+          "                    that is said\n"
+          "  --stall N         the last N sessions read nothing after their first frame; they are left out of the table\n"
+          "  --blind           acknowledges without decoding, to have many sessions on a small machine; but over https:// all of them\n"
+          "                    are served by one thread, which reads no more than the headers of frames\n",
+          out);
+}
+
+static struct viewer *make_viewer(struct probe *probe, int index)
+{
+    bool moves = probe->motion != MOTION_STILL;
+    return viewer_create(&(struct viewer_params){ .url = &probe->url,
+                                                  .width_px = probe->width_px,
+                                                  .height_px = probe->height_px,
+                                                  .motion = probe->motion,
+                                                  .codec = probe->codec,
+                                                  .seconds = probe->seconds,
+                                                  .hz = probe->hz,
+                                                  .blind = probe->blind,
+                                                  .signs = probe->signs,
+                                                  .folder = probe->folder,
+                                                  .number = index + 1,
+                                                  .stalls = index >= probe->watching,
+                                                  .lead = probe->follow ? &probe->lead : NULL,
+                                                  .follows = probe->follow && index > 0,
+                                                  .seed = (unsigned)index + 1,
+                                                  .start_deg = moves || probe->spread ? 360.0 * index / probe->sessions : 0 });
+}
+
+static int run(struct probe *probe)
+{
+    bool good = true;
+    probe->watching = probe->sessions - probe->stalled;
+    probe->viewers = mem_array((size_t)probe->sessions, sizeof(*probe->viewers));
+    pthread_mutex_init(&probe->lead.lock, NULL);
+    for (int i = 0; i < probe->sessions; i++)
+        good &= (probe->viewers[i] = make_viewer(probe, i)) != NULL;
+    bool (*drive)(struct viewer **, int) = probe->blind && !probe->url.tls ? load_generator_run : viewer_threads_run;
+    good = good && drive(probe->viewers, probe->sessions) && probe_report(probe);
+    for (int i = 0; i < probe->sessions; i++)
+        viewer_destroy(&probe->viewers[i]);
+    pthread_mutex_destroy(&probe->lead.lock);
+    mem_free(probe->viewers);
+    return good ? 0 : 1;
+}
+
+static bool parse_size(const char *text, int *w, int *h)
+{
+    char rest;
+    return sscanf(text, "%dx%d%c", w, h, &rest) == 2 && *w >= 16 && *h >= 16 && *w <= 8192 && *h <= 8192;
+}
+
+static bool parse_motion(const char *text, enum motion *motion)
+{
+    for (int i = 0; i < MOTION_COUNT; i++) {
+        if (!strcmp(text, probe_motions[i])) {
+            *motion = (enum motion)i;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What is taken blind is not decoded. */
+static bool decodes(const struct probe *probe)
+{
+    char why[DECODER_WHY_BYTES];
+    if (probe->blind || strcmp(probe->codec, "h264") != 0 || decoder_has(WIRE_CODEC_H264, why))
+        return true;
+    fprintf(stderr, "plantcast: probe: --codec h264: %s\n", why);
+    return false;
+}
+
+static bool take_option(int option, struct probe *probe)
+{
+    char *end = "";
+    switch (option) {
+    case 'n': probe->sessions = (int)strtol(optarg, &end, 10); return !*end && probe->sessions >= 1 && probe->sessions <= MAX_SESSIONS;
+    case 's': probe->seconds = strtod(optarg, &end); return !*end && probe->seconds > 0 && probe->seconds <= 1e6;
+    case 'm': return parse_motion(optarg, &probe->motion);
+    case 'r': probe->hz = strtod(optarg, &end); return !*end && probe->hz >= 0.1 && probe->hz <= 1000;
+    case 't': probe->stalled = (int)strtol(optarg, &end, 10); return !*end && probe->stalled >= 0;
+    case 'f': probe->follow = true; return true;
+    case 'p': probe->spread = true; return true;
+    case 'b': probe->blind = true; return true;
+    case 'z': return parse_size(optarg, &probe->width_px, &probe->height_px);
+    case 'c': probe->codec = optarg; return !strcmp(optarg, "jpeg") || !strcmp(optarg, "h264");
+    case 'g': probe->signs = optarg; return !strcmp(optarg, "refined") || !strcmp(optarg, "all");
+    case 'o': probe->folder = optarg; return true;
+    case 'j': probe->as_json = true; return true;
+    default: return false;
+    }
+}
+
+int cmd_probe(int argc, char **argv)
+{
+    static const struct option options[] = {
+        { "sessions", required_argument, NULL, 'n' },
+        { "seconds", required_argument, NULL, 's' },
+        { "motion", required_argument, NULL, 'm' },
+        { "size", required_argument, NULL, 'z' },
+        { "hz", required_argument, NULL, 'r' },
+        { "stall", required_argument, NULL, 't' },
+        { "follow", no_argument, NULL, 'f' },
+        { "spread", no_argument, NULL, 'p' },
+        { "blind", no_argument, NULL, 'b' },
+        { "codec", required_argument, NULL, 'c' },
+        { "signed", required_argument, NULL, 'g' },
+        { "save-signed", required_argument, NULL, 'o' },
+        { "json", no_argument, NULL, 'j' },
+        { "help", no_argument, NULL, 'h' },
+        { NULL, 0, NULL, 0 },
+    };
+    struct probe probe = {
+        .sessions = 1, .codec = "jpeg", .seconds = 5, .hz = 60, .motion = MOTION_ORBIT, .width_px = 1280, .height_px = 720
+    };
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        if (option == 'h') {
+            print_usage(stdout);
+            return 0;
+        }
+        if (!take_option(option, &probe)) {
+            if (option != '?')
+                fprintf(stderr, "plantcast: probe: '%s' is not good there\n", optarg);
+            print_usage(stderr);
+            return 2;
+        }
+    }
+    if (probe.folder && !probe.signs)
+        probe.signs = "refined";
+    if (optind + 1 != argc || probe.stalled >= probe.sessions || (probe.folder && probe.blind)) {
+        print_usage(stderr);
+        return 2;
+    }
+    probe.url_text = argv[optind];
+    if (!decodes(&probe))
+        return 1;
+    return daemon_url_parse(probe.url_text, &probe.url) ? run(&probe) : 2;
+}

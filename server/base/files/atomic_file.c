@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writing beside, and renaming. */
+#include "base/files/atomic_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+
+enum { MOST_TRIES = 1000 }; /* names left by programs that were killed under the same number */
+
+int atomic_file_begin(struct atomic_file *file, const char *path, mode_t mode)
+{
+    long pid = (long)getpid();
+    *file = (struct atomic_file){ .fd = -1 };
+    for (int i = 0; i < MOST_TRIES && file->fd < 0; i++) {
+        mem_free(file->beside);
+        file->beside = i ? mem_printf("%s.%ld.%d.new", path, pid, i) : mem_printf("%s.%ld.new", path, pid);
+        file->fd = open(file->beside, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, mode);
+        if (file->fd < 0 && errno != EEXIST)
+            break;
+    }
+    if (file->fd < 0) {
+        int error = -errno;
+        mem_free(file->beside);
+        file->beside = NULL;
+        return error;
+    }
+    file->path = mem_strdup(path);
+    return 0;
+}
+
+int atomic_file_write(struct atomic_file *file, const void *bytes, size_t count)
+{
+    for (const char *at = bytes; count > 0;) {
+        ssize_t n = write(file->fd, at, count);
+        if (n < 0 && errno != EINTR)
+            return -errno;
+        at += n > 0 ? n : 0;
+        count -= n > 0 ? (size_t)n : 0;
+    }
+    return 0;
+}
+
+static void end(struct atomic_file *file)
+{
+    mem_free(file->beside);
+    mem_free(file->path);
+    *file = (struct atomic_file){ .fd = -1 };
+}
+
+/* Some file systems cannot; the file itself is safe there, too. */
+static void sync_folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? mem_printf("%.*s", slash > path ? (int)(slash - path) : 1, path) : mem_strdup(".");
+    int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd >= 0) {
+        fsync(fd);
+        close(fd);
+    }
+    mem_free(folder);
+}
+
+int atomic_file_commit(struct atomic_file *file, bool durable)
+{
+    int error = fsync(file->fd) != 0 ? -errno : 0;
+    if (close(file->fd) != 0 && !error)
+        error = -errno;
+    if (!error && rename(file->beside, file->path) != 0)
+        error = -errno;
+    if (error)
+        unlink(file->beside);
+    else if (durable)
+        sync_folder_of(file->path);
+    end(file);
+    return error;
+}
+
+void atomic_file_abandon(struct atomic_file *file)
+{
+    if (!file->beside)
+        return;
+    close(file->fd);
+    unlink(file->beside);
+    end(file);
+}
+
+static int put_parts(const char *path, const struct atomic_file_part *parts, size_t part_count, bool durable)
+{
+    struct atomic_file file;
+    int error = atomic_file_begin(&file, path, 0666);
+    if (error)
+        return error;
+    for (size_t i = 0; i < part_count && !error; i++)
+        error = atomic_file_write(&file, parts[i].bytes, parts[i].count);
+    if (!error)
+        return atomic_file_commit(&file, durable);
+    atomic_file_abandon(&file);
+    return error;
+}
+
+int atomic_file_put_parts(const char *path, const struct atomic_file_part *parts, size_t part_count)
+{
+    return put_parts(path, parts, part_count, false);
+}
+
+int atomic_file_put(const char *path, const void *bytes, size_t count)
+{
+    return put_parts(path, &(struct atomic_file_part){ bytes, count }, 1, false);
+}
+
+int atomic_file_keep(const char *path, const void *bytes, size_t count)
+{
+    return put_parts(path, &(struct atomic_file_part){ bytes, count }, 1, true);
+}
+
+const char *atomic_file_not_kept(int error)
+{
+    switch (-error) {
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG: return "it could not be kept on disk: the disk is full";
+    case EROFS: return "it could not be kept on disk: the disk is read-only";
+    case ETIMEDOUT: return "it could not be kept on disk: the disk does not answer within a second";
+    default: return "it could not be kept on disk; the log says why";
+    }
+}

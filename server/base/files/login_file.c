@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reads a user and a password. */
+#include "base/files/login_file.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text/text.h"
+
+enum { LOGIN_BYTES = 4096 };
+
+bool login_file_read(const char *path, struct login_file *login, char why[200])
+{
+    *login = (struct login_file){ .text = text_read_file(path, LOGIN_BYTES, &login->bytes) };
+    if (!login->text) {
+        snprintf(why, 200, "%.100s: %s", path, strerror(errno));
+        return false;
+    }
+    char *rest = login->text;
+    login->bytes = strlen(rest);
+    login->user = strsep(&rest, "\r\n");
+    rest += rest && *rest == '\n'; /* behind a carriage return */
+    login->password = rest ? strsep(&rest, "\r\n") : NULL;
+    if (*login->user)
+        return true;
+    snprintf(why, 200, "%.100s: expected a line with the user and one with the password", path);
+    login_file_forget(login);
+    return false;
+}
+
+void login_file_forget(struct login_file *login)
+{
+    if (login->text)
+        explicit_bzero(login->text, login->bytes);
+    mem_free(login->text);
+    *login = (struct login_file){ 0 };
+}

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Packing arrays: how many, how large each, and their bytes up to a multiple of eight. */
+#include "base/files/pack.h"
+
+#include <stdint.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+#define ALIGN 8
+
+struct head {
+    uint64_t count, bytes_each;
+};
+
+static size_t padding_of(size_t bytes)
+{
+    return (ALIGN - bytes % ALIGN) % ALIGN;
+}
+
+void pack_array(struct text *to, const void *array, size_t count, size_t bytes_each)
+{
+    const struct head head = { count, bytes_each };
+    static const char zeros[ALIGN];
+    text_add_bytes(to, &head, sizeof(head));
+    if (count)
+        text_add_bytes(to, array, count * bytes_each);
+    text_add_bytes(to, zeros, padding_of(count * bytes_each));
+}
+
+/* The array's bytes, of which there are that many; NULL: it is not there. */
+static const char *take(struct unpack *from, size_t *count, size_t bytes_each)
+{
+    struct head head = { 0 };
+    if (!from->bad && from->left >= sizeof(head))
+        memcpy(&head, from->at, sizeof(head));
+    from->bad |= head.bytes_each != bytes_each || head.count > (from->left - sizeof(head)) / bytes_each;
+    *count = 0;
+    if (from->bad)
+        return NULL;
+    const char *bytes = from->at + sizeof(head);
+    size_t whole = head.count * bytes_each + padding_of(head.count * bytes_each), left = from->left - sizeof(head);
+    *count = head.count;
+    whole = whole < left ? whole : left;
+    from->at = bytes + whole;
+    from->left = left - whole;
+    return bytes;
+}
+
+void *unpack_array(struct unpack *from, size_t *count, size_t bytes_each)
+{
+    const char *bytes = take(from, count, bytes_each);
+    void *array = *count ? mem_try_array(*count, bytes_each) : NULL;
+    if (array)
+        memcpy(array, bytes, *count * bytes_each);
+    from->bad |= *count && !array;
+    return array;
+}
+
+void unpack_into(struct unpack *from, void *to, size_t count, size_t bytes_each)
+{
+    size_t there;
+    const char *bytes = take(from, &there, bytes_each);
+    from->bad |= there != count;
+    if (!from->bad && count)
+        memcpy(to, bytes, count * bytes_each);
+}

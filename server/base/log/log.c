@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Log lines in three formats, with repeats counted. */
+#include "base/log/log.h"
+
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/system/service_manager.h"
+#include "base/text/json_text.h"
+#include "base/text/utf8.h"
+
+enum { LINE_BYTES = 2048 };
+static const int64_t REPEAT_NS = 1000000000;
+
+struct log {
+    enum log_level level;
+    enum log_format format;
+    char *plant, *journal_socket; /* NULL: not named; the journal's own */
+    pthread_mutex_t lock;
+    /* --- below: under lock */
+    char last[LINE_BYTES];
+    enum log_level last_level;
+    enum log_event last_event;
+    int64_t last_ns;
+    unsigned repeats;
+};
+
+struct log *log_create(enum log_level level)
+{
+    struct log *log = mem_new(sizeof(*log));
+    log->level = level;
+    pthread_mutex_init(&log->lock, NULL);
+    return log;
+}
+
+void log_set_format(struct log *log, enum log_format format, const char *journal_socket)
+{
+    log->format = format;
+    mem_free(log->journal_socket);
+    log->journal_socket = journal_socket ? mem_strdup(journal_socket) : NULL;
+}
+
+void log_set_plant(struct log *log, const char *plant)
+{
+    mem_free(log->plant);
+    log->plant = mem_strdup(plant);
+}
+
+bool log_is_text(const struct log *log)
+{
+    return log->format == LOG_TEXT;
+}
+
+static const char *const names[] = { "error", "warn", "info", "debug" };
+static const char *const priorities[] = { "3", "4", "6", "7" }; /* of syslog */
+
+static void stamp_now(char *out, size_t size)
+{
+    char seconds[32];
+    struct timespec now;
+    struct tm utc;
+    clock_gettime(CLOCK_REALTIME, &now);
+    gmtime_r(&now.tv_sec, &utc);
+    strftime(seconds, sizeof(seconds), "%Y-%m-%dT%H:%M:%S", &utc);
+    snprintf(out, size, "%s.%03ldZ", seconds, now.tv_nsec / 1000000);
+}
+
+static void emit_text(enum log_level level, const char *text)
+{
+    char stamp[48];
+    stamp_now(stamp, sizeof(stamp));
+    fprintf(stderr, "%s %-5s %s\n", stamp, names[level], text);
+}
+
+/* Of what may be no UTF-8: paths and names come from outside. */
+static json_t *json_of(const char *text)
+{
+    json_t *string = json_string(text);
+    if (string)
+        return string;
+    char *clean = mem_strdup(text);
+    for (size_t at = 0, length = strlen(clean), step; at < length; at += step ? step : 1)
+        if ((step = utf8_length(clean + at, length - at)) == 0)
+            clean[at] = '?';
+    string = json_string(clean);
+    mem_free(clean);
+    return string;
+}
+
+static void emit_json(const struct log *log, enum log_level level, enum log_event event, const char *text)
+{
+    char stamp[48];
+    stamp_now(stamp, sizeof(stamp));
+    json_t *object = json_pack("{s:s, s:s, s:o}", "time", stamp, "level", names[level], "message", json_of(text));
+    if (log->plant)
+        json_object_set_new(object, "plant", json_of(log->plant));
+    if (event) {
+        json_object_set_new(object, "event", json_string(log_event_name(event)));
+        json_object_set_new(object, "message_id", json_string(log_event_id(event)));
+    }
+    char *line = json_text(object, 0);
+    fprintf(stderr, "%s\n", line);
+    mem_free(line);
+}
+
+static void emit_journal(const struct log *log, enum log_level level, enum log_event event, const char *text)
+{
+    const struct service_field fields[] = {
+        { "MESSAGE", text },     { "PRIORITY", priorities[level] },  { "SYSLOG_IDENTIFIER", "plantcastd" },
+        { "PLANT", log->plant }, { "EVENT", log_event_name(event) }, { "MESSAGE_ID", log_event_id(event) },
+    };
+    if (!service_journal_send(log->journal_socket ? log->journal_socket : SERVICE_JOURNAL_SOCKET, fields,
+                              sizeof(fields) / sizeof(fields[0])))
+        fprintf(stderr, "<%s>%s\n", priorities[level], text);
+}
+
+static void emit(const struct log *log, enum log_level level, enum log_event event, const char *text)
+{
+    switch (log->format) {
+    case LOG_TEXT: emit_text(level, text); break;
+    case LOG_JSON: emit_json(log, level, event, text); break;
+    case LOG_JOURNAL: emit_journal(log, level, event, text); break;
+    }
+}
+
+static void flush_repeats(struct log *log)
+{
+    if (log->repeats) {
+        char text[LINE_BYTES + 40];
+        snprintf(text, sizeof(text), "%s (%u more)", log->last, log->repeats);
+        emit(log, log->last_level, log->last_event, text);
+        log->repeats = 0;
+    }
+}
+
+void log_destroy(struct log **log)
+{
+    if (!*log)
+        return;
+    flush_repeats(*log);
+    pthread_mutex_destroy(&(*log)->lock);
+    mem_free((*log)->plant);
+    mem_free((*log)->journal_socket);
+    mem_free(*log);
+    *log = NULL;
+}
+
+void log_event(struct log *log, enum log_level level, enum log_event event, const char *fmt, ...)
+{
+    char text[LINE_BYTES];
+    va_list ap;
+    if (level > log->level)
+        return;
+    va_start(ap, fmt);
+    vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    pthread_mutex_lock(&log->lock);
+    int64_t now_ns = clock_mono_ns();
+    if (level == log->last_level && now_ns - log->last_ns < REPEAT_NS && !strcmp(text, log->last)) {
+        log->repeats++;
+    } else {
+        flush_repeats(log);
+        emit(log, level, event, text);
+        memcpy(log->last, text, sizeof(text));
+        log->last_level = level;
+        log->last_event = event;
+        log->last_ns = now_ns;
+    }
+    pthread_mutex_unlock(&log->lock);
+}

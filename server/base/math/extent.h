@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The box around points, along the axes. Thread: any. */
+#ifndef BASE_MATH_EXTENT_H
+#define BASE_MATH_EXTENT_H
+#include "base/math/vec.h"
+
+struct extent {
+    double low[3], high[3];
+};
+
+/* Returns the extent of no point. */
+static inline struct extent extent_empty(void)
+{
+    return (struct extent){ { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+}
+
+/* Extends it to a point, which is finite. */
+static inline void extent_add(struct extent *extent, const double point[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        extent->low[axis] = min_of(extent->low[axis], point[axis]);
+        extent->high[axis] = max_of(extent->high[axis], point[axis]);
+    }
+}
+
+/* As extent_add, of a point in floats. */
+static inline void extent_addf(struct extent *extent, const float point[3])
+{
+    extent_add(extent, (double[3]){ (double)point[0], (double)point[1], (double)point[2] });
+}
+
+/* Returns the length of its diagonal; infinite if it has no point. */
+static inline double extent_size(const struct extent *extent)
+{
+    return vec_distance(extent->low, extent->high);
+}
+
+#endif

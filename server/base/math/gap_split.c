@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Splits triangles at gaps along the axes, found in histograms of their corners. */
+#include "base/math/gap_split.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+enum { BINS = 256, SPLITS_MOST = 64 };
+static const double SMALL_SHARE = 0.02;             /* of the area: small pieces have no more than this together */
+static const double SMALL_GAP = 1, LARGE_GAP = 100; /* sizes of the main part: gaps behind which small and large pieces are left out */
+
+struct part {
+    struct gap_tri *tris;
+    size_t count;
+};
+
+static void box_of(const struct gap_tri *tris, size_t count, double min_m[3], double max_m[3])
+{
+    for (int c = 0; c < 3; c++) {
+        min_m[c] = INFINITY;
+        max_m[c] = -INFINITY;
+        for (size_t t = 0; t < count; t++)
+            for (int k = 0; k < 3; k++) {
+                min_m[c] = fmin(min_m[c], tris[t].at[k][c]);
+                max_m[c] = fmax(max_m[c], tris[t].at[k][c]);
+            }
+    }
+}
+
+static double size_of(const struct gap_tri *tris, size_t count)
+{
+    double min_m[3], max_m[3], size_m = 0;
+    box_of(tris, count, min_m, max_m);
+    for (int c = 0; c < 3; c++)
+        size_m = fmax(size_m, max_m[c] - min_m[c]);
+    return size_m;
+}
+
+/* Finds the widest gap along an axis. Returns its length; 0: there is none. */
+static double find_gap(const struct part *part, int axis, double min_m, double max_m, double *from_m, double *to_m)
+{
+    struct {
+        double low_m, high_m;
+    } bins[BINS];
+    double last_m = min_m, gap_m = 0;
+    if (!(max_m > min_m))
+        return 0;
+    for (int b = 0; b < BINS; b++)
+        bins[b].low_m = INFINITY, bins[b].high_m = -INFINITY;
+    for (size_t t = 0; t < part->count; t++)
+        for (int k = 0; k < 3; k++) {
+            double x = part->tris[t].at[k][axis];
+            int b = (int)fmin(BINS * ((x - min_m) / (max_m - min_m)), BINS - 1);
+            bins[b].low_m = fmin(bins[b].low_m, x);
+            bins[b].high_m = fmax(bins[b].high_m, x);
+        }
+    for (int b = 0; b < BINS; b++) {
+        if (!(bins[b].low_m <= bins[b].high_m))
+            continue;
+        if (bins[b].low_m - last_m > gap_m) {
+            gap_m = bins[b].low_m - last_m;
+            *from_m = last_m;
+            *to_m = bins[b].low_m;
+        }
+        last_m = bins[b].high_m;
+    }
+    return gap_m;
+}
+
+static void swap(struct gap_tri *a, struct gap_tri *b)
+{
+    struct gap_tri copy = *a;
+    *a = *b;
+    *b = copy;
+}
+
+/* Moves triangles of the side (below or above the gap) to the front. Returns how many lie there whole. */
+static size_t gather(struct part *part, int axis, double from_m, double to_m, bool above, double *area_m2)
+{
+    size_t count = 0;
+    *area_m2 = 0;
+    for (size_t t = 0; t < part->count; t++) {
+        int inside = 0;
+        for (int k = 0; k < 3; k++)
+            inside += above ? part->tris[t].at[k][axis] >= to_m : part->tris[t].at[k][axis] <= from_m;
+        if (inside < 3)
+            continue;
+        *area_m2 += part->tris[t].area_m2;
+        swap(&part->tris[t], &part->tris[count++]);
+    }
+    return count;
+}
+
+/* Leaves out what is behind a gap. Returns whether there was one. */
+static bool split(struct part *part, double all_m2)
+{
+    double min_m[3], max_m[3];
+    box_of(part->tris, part->count, min_m, max_m);
+    for (int axis = 0; axis < 3; axis++) {
+        double from_m, to_m, low_m2, high_m2;
+        double gap_m = find_gap(part, axis, min_m[axis], max_m[axis], &from_m, &to_m);
+        if (!(gap_m > 0))
+            continue;
+        size_t low = gather(part, axis, from_m, to_m, false, &low_m2), high = gather(part, axis, from_m, to_m, true, &high_m2);
+        bool above = high_m2 > low_m2 || (high_m2 == low_m2 && high > low);
+        size_t kept = gather(part, axis, from_m, to_m, above, &low_m2);
+        double size_m = size_of(part->tris, kept), lost_m2 = all_m2 - low_m2;
+        if (kept > 0 && size_m > 0 && gap_m >= (lost_m2 <= SMALL_SHARE * all_m2 ? SMALL_GAP : LARGE_GAP) * size_m) {
+            part->count = kept;
+            return true;
+        }
+    }
+    return false;
+}
+
+size_t gap_split(struct gap_tri *tris, size_t count, struct extent *main)
+{
+    struct part part = { tris, count };
+    double all_m2 = 0;
+    int splits = 0;
+    for (size_t t = 0; t < count; t++)
+        all_m2 += tris[t].area_m2;
+    while (splits < SPLITS_MOST && part.count > 0 && split(&part, all_m2))
+        splits++;
+    box_of(tris, part.count, main->low, main->high);
+    return part.count;
+}

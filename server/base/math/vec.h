@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* 3-vectors, in double precision; those whose names begin with vecf in single precision. Thread: any. */
+#ifndef BASE_MATH_VEC_H
+#define BASE_MATH_VEC_H
+#include <math.h>
+
+/* fmin and fmax without their rules for NaN: there is none here, and the calls cost half of a ray. */
+static inline double min_of(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double max_of(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static inline void vec_sub(const double a[3], const double b[3], double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = a[i] - b[i];
+}
+
+static inline double vec_dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* out is neither a nor b. */
+static inline void vec_cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* (b - a) x (c - a): twice as long as the triangle is large; it points to where a, b, c go round counter-clockwise. */
+static inline void vec_normal(const double a[3], const double b[3], const double c[3], double out[3])
+{
+    double ab[3], ac[3];
+    vec_sub(b, a, ab);
+    vec_sub(c, a, ac);
+    vec_cross(ab, ac, out);
+}
+
+static inline double vec_length(const double a[3])
+{
+    return sqrt(vec_dot(a, a));
+}
+
+/* Divides a vector by its length, which it returns; leaves 0 alone. */
+static inline double vec_normalize(double v[3])
+{
+    double length = vec_length(v);
+    for (int i = 0; i < 3 && length > 0; i++)
+        v[i] /= length;
+    return length;
+}
+
+/* Two directions that are orthonormal to each other and to `normal`, a unit vector: right-handed, the same for the same normal (Duff et
+   al., Building an orthonormal basis, revisited, JCGT 2017). */
+static inline void vec_frame(const double normal[3], double x[3], double y[3])
+{
+    double sign = copysign(1, normal[2]), a = -1 / (sign + normal[2]), b = normal[0] * normal[1] * a;
+    x[0] = 1 + sign * normal[0] * normal[0] * a;
+    x[1] = sign * b;
+    x[2] = -sign * normal[0];
+    y[0] = b;
+    y[1] = sign + normal[1] * normal[1] * a;
+    y[2] = -normal[1];
+}
+
+/* Turns v, tangent to a plane with the unit normal `from`, into the plane with the normal `to` by the smallest rotation; whether the
+   normals point to the same side of them makes no difference. */
+static inline void vec_turn(double v[3], const double from[3], const double to[3])
+{
+    double sign = copysign(1, vec_dot(from, to)), part = sign * vec_dot(to, v) / (1 + sign * vec_dot(from, to));
+    for (int i = 0; i < 3; i++)
+        v[i] -= part * (from[i] + sign * to[i]);
+}
+
+static inline double vec_distance2(const double a[3], const double b[3])
+{
+    double d[3];
+    vec_sub(a, b, d);
+    return vec_dot(d, d);
+}
+
+static inline double vec_distance(const double a[3], const double b[3])
+{
+    return sqrt(vec_distance2(a, b));
+}
+
+static inline void vec_mix(const double a[3], const double b[3], double t, double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = a[i] + t * (b[i] - a[i]);
+}
+
+/* --- of floats ------------------------------------------------------------------------------------------------------------------ */
+
+/* a - b, in double precision. */
+static inline void vecf_sub(const float a[3], const float b[3], double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = (double)a[i] - (double)b[i];
+}
+
+static inline float vecf_distance(const float a[3], const float b[3])
+{
+    float x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
+    return sqrtf(x * x + y * y + z * z);
+}
+static inline float vecf_dot(const float a[3], const float b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* As vec_normal, in double precision. */
+static inline void vecf_normal(const float a[3], const float b[3], const float c[3], double out[3])
+{
+    double ab[3], ac[3];
+    vecf_sub(b, a, ab);
+    vecf_sub(c, a, ac);
+    vec_cross(ab, ac, out);
+}
+
+#endif

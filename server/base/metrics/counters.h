@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Registry of metrics: named numbers and histograms, printed for /metrics in the text format of Prometheus. Thread: any. */
+#ifndef BASE_METRICS_COUNTERS_H
+#define BASE_METRICS_COUNTERS_H
+#include "base/metrics/counter.h"
+#include "base/metrics/histogram.h"
+#include "base/text/text.h"
+
+struct counters;
+
+struct counters *counters_create(void);
+void counters_destroy(struct counters **counters);
+/* Registers a metric, or finds it if it is registered already. name may have labels: `plantcast_reads_total{source="plc1"}`; type is
+   "counter" or "gauge". Returns the number, which lives as long as `counters`. help and type are copied. */
+counter *counters_add(struct counters *counters, const char *name, const char *type, const char *help);
+/* Likewise, of a number that is counted in microseconds and printed in seconds. */
+counter *counters_add_seconds(struct counters *counters, const char *name, const char *type, const char *help);
+/* Adds a metric that measure(arg) measures whenever metrics are printed. measure() must not use `counters`, and must not block: it runs in
+   the loop thread. A negative result keeps the last value. */
+counter *counters_add_measured(struct counters *counters, const char *name, const char *type, const char *help,
+                               int64_t (*measure)(void *arg), void *arg);
+/* Stops measuring with `arg`; the metric keeps its last value. */
+void counters_forget_measured(struct counters *counters, const void *arg);
+/* Likewise, of durations (base/metrics/histogram.h); in seconds. */
+struct histogram *counters_add_histogram(struct counters *counters, const char *name, const char *help);
+/* Appends all metrics in the text format of Prometheus. */
+void counters_print(struct counters *counters, struct text *out);
+
+#endif

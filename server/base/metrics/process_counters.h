@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The metrics that Prometheus expects of every process: processor time, memory, files, threads, start. Thread: any. */
+#ifndef BASE_METRICS_PROCESS_COUNTERS_H
+#define BASE_METRICS_PROCESS_COUNTERS_H
+#include "base/metrics/counters.h"
+
+/* Measures this process and sets the metrics process_*. */
+void process_counters_set(struct counters *counters);
+
+#endif

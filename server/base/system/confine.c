@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Landlock by its own system calls: the headers of Debian 12 know only its second version. */
+#include "base/system/confine.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/capability.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+
+#ifndef SYS_landlock_create_ruleset
+#define SYS_landlock_create_ruleset 444
+#define SYS_landlock_add_rule 445
+#define SYS_landlock_restrict_self 446
+#endif
+
+/* linux/landlock.h */
+enum { VERSION_QUERY = 1, RULE_PATH_BENEATH = 1 };
+enum { ABI_RENAME = 2, ABI_TRUNCATE = 3, ABI_TCP = 4, ABI_DEVICES = 5, ABI_SCOPES = 6 };
+enum {
+    EXECUTE = 1 << 0,
+    WRITE_FILE = 1 << 1,
+    READ_FILE = 1 << 2,
+    READ_FOLDER = 1 << 3,
+    REMOVE_FOLDER = 1 << 4,
+    REMOVE_FILE = 1 << 5,
+    MAKE_FOLDER = 1 << 7,
+    MAKE_FILE = 1 << 8,
+    MAKE_SOCKET = 1 << 9,
+    MAKE_FIFO = 1 << 10,
+    MAKE_SYMLINK = 1 << 12,
+    ALL_OF_ABI_1 = (1 << 13) - 1,
+    RENAME = 1 << 13,
+    TRUNCATE = 1 << 14,
+    CONTROL_DEVICE = 1 << 15,
+    OF_FILES = EXECUTE | WRITE_FILE | READ_FILE | TRUNCATE | CONTROL_DEVICE,
+    BIND_AND_CONNECT_TCP = 3,
+    ABSTRACT_SOCKETS_AND_SIGNALS = 3
+};
+
+struct ruleset {
+    uint64_t handled_files, handled_tcp, scoped;
+};
+
+struct path_rule {
+    uint64_t allowed;
+    int32_t parent;
+} __attribute__((packed));
+
+/* Libraries, fonts, what the C library and V8 ask the kernel, and the program that loads others. */
+static const struct confine_path system_paths[] = {
+    { "/lib", CONFINE_READ },
+    { "/lib32", CONFINE_READ },
+    { "/lib64", CONFINE_READ },
+    { "/usr/lib", CONFINE_READ },
+    { "/usr/lib64", CONFINE_READ },
+    { "/usr/local/lib", CONFINE_READ },
+    { "/usr/share", CONFINE_READ },
+    { "/usr/local/share", CONFINE_READ },
+    { "/etc/ld.so.cache", CONFINE_READ },
+    { "/etc/localtime", CONFINE_READ },
+    { "/etc/fonts", CONFINE_READ },
+    { "/etc/ssl/openssl.cnf", CONFINE_READ },
+    { "/dev/urandom", CONFINE_READ },
+    { "/dev/zero", CONFINE_READ },
+    { "/sys/devices/system", CONFINE_READ },
+    { "/sys/fs/cgroup", CONFINE_READ },
+    { "/sys/kernel/mm/transparent_hugepage", CONFINE_READ },
+    { "/proc/meminfo", CONFINE_READ },
+    { "/proc/cpuinfo", CONFINE_READ },
+    { "/proc/stat", CONFINE_READ },
+    { "/proc/version_signature", CONFINE_READ },
+    { "/proc/sys/vm", CONFINE_READ },
+    { "/lib64/ld-linux-x86-64.so.2", CONFINE_EXECUTE },
+    { "/lib/ld-linux-aarch64.so.1", CONFINE_EXECUTE },
+};
+
+static int landlock_version(void)
+{
+    return (int)syscall(SYS_landlock_create_ruleset, NULL, 0, VERSION_QUERY);
+}
+
+static uint64_t files_known(int version)
+{
+    return ALL_OF_ABI_1 | (version >= ABI_RENAME ? RENAME : 0) | (version >= ABI_TRUNCATE ? TRUNCATE : 0) |
+           (version >= ABI_DEVICES ? CONTROL_DEVICE : 0);
+}
+
+static uint64_t rights_of(enum confine_access access, enum confine_role role)
+{
+    uint64_t rights = READ_FILE | READ_FOLDER;
+    if (access == CONFINE_EXECUTE)
+        rights |= EXECUTE;
+    if (access == CONFINE_WRITE)
+        rights |= WRITE_FILE | REMOVE_FOLDER | REMOVE_FILE | MAKE_FOLDER | MAKE_FILE | RENAME | TRUNCATE;
+    if (access == CONFINE_WRITE && role == CONFINE_COMMAND)
+        rights |= MAKE_SOCKET | MAKE_FIFO | MAKE_SYMLINK | EXECUTE;
+    return rights;
+}
+
+/* A path that is absent or that this user cannot reach needs no permission. */
+static int permit(int ruleset, const char *path, uint64_t rights)
+{
+    struct stat st;
+    int file = open(path, O_PATH | O_CLOEXEC), status = 0;
+    if (file < 0)
+        return 0;
+    if (fstat(file, &st) == 0 && !S_ISDIR(st.st_mode))
+        rights &= OF_FILES;
+    struct path_rule rule = { .allowed = rights, .parent = file };
+    if (syscall(SYS_landlock_add_rule, ruleset, RULE_PATH_BENEATH, &rule, 0) != 0)
+        status = -errno;
+    close(file);
+    return status;
+}
+
+static int restrict_paths(const struct confine_params *params, int version)
+{
+    uint64_t known = files_known(version);
+    struct ruleset attributes = { .handled_files = known,
+                                  .handled_tcp = version >= ABI_TCP ? BIND_AND_CONNECT_TCP : 0,
+                                  .scoped = version >= ABI_SCOPES ? ABSTRACT_SOCKETS_AND_SIGNALS : 0 };
+    size_t bytes = version >= ABI_SCOPES ? sizeof(attributes) : version >= ABI_TCP ? 2 * sizeof(uint64_t) : sizeof(uint64_t);
+    int ruleset = (int)syscall(SYS_landlock_create_ruleset, &attributes, bytes, 0);
+    int status = ruleset < 0 ? -errno : permit(ruleset, "/dev/null", (READ_FILE | WRITE_FILE | TRUNCATE) & known);
+    for (size_t i = 0; i < sizeof(system_paths) / sizeof(system_paths[0]) && status == 0; i++)
+        status = permit(ruleset, system_paths[i].path, rights_of(system_paths[i].access, params->role) & known);
+    if (status == 0) /* a launcher's readers have entries of their own, unknown before they start */
+        status = permit(ruleset, params->role == CONFINE_READER ? "/proc/self" : "/proc", READ_FILE | READ_FOLDER);
+    for (size_t i = 0; i < params->path_count && status == 0; i++)
+        status = permit(ruleset, params->paths[i].path, rights_of(params->paths[i].access, params->role) & known);
+    if (status == 0 && syscall(SYS_landlock_restrict_self, ruleset, 0) != 0)
+        status = -errno;
+    if (ruleset >= 0)
+        close(ruleset);
+    return status;
+}
+
+/* Root keeps access to other users' folders, and a launcher the right to give files to them. */
+static void drop_capabilities(enum confine_role role)
+{
+    uint32_t kept = 1U << CAP_DAC_OVERRIDE | 1U << CAP_DAC_READ_SEARCH;
+    struct __user_cap_header_struct header = { .version = _LINUX_CAPABILITY_VERSION_3 };
+    struct __user_cap_data_struct data[_LINUX_CAPABILITY_U32S_3];
+    if (role != CONFINE_READER)
+        kept |= 1U << CAP_CHOWN | 1U << CAP_FOWNER;
+    if (syscall(SYS_capget, &header, data) != 0)
+        return;
+    data[0].effective = data[0].permitted &= kept;
+    data[1].effective = data[1].permitted = data[0].inheritable = data[1].inheritable = 0;
+    syscall(SYS_capset, &header, data);
+    prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
+}
+
+static void offer_to_oom_killer(void)
+{
+    int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+    if (file >= 0) {
+        ssize_t written = write(file, "1000", 4);
+        (void)written; /* a refusal leaves the kernel's own choice */
+        close(file);
+    }
+}
+
+int confine(const struct confine_params *params)
+{
+    int version = landlock_version();
+    offer_to_oom_killer();
+    drop_capabilities(params->role);
+    if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
+        return -errno;
+    bool moves_files = params->role != CONFINE_READER; /* between folders, which the first version forbids */
+    int status = version < 1 || (version < ABI_RENAME && moves_files) ? 0 : restrict_paths(params, version);
+    if (status != 0)
+        return status;
+    status = confine_calls(params->role, params->notifies);
+    return status == -ENOSYS || status == -EINVAL ? 0 : status; /* a kernel without seccomp filters: confine_lacks() says so */
+}
+
+bool confine_lacks(char out[CONFINE_LACKS_BYTES])
+{
+    int version = landlock_version();
+    bool calls = prctl(PR_GET_SECCOMP, 0, 0, 0, 0) >= 0;
+    const char *landlock = version < 1            ? "no Landlock: programs that read uploaded files can read and write all files of "
+                                                    "this user (needs Linux 6.12 with landlock in its list of LSMs)"
+                           : version < ABI_RENAME ? "the first Landlock (needs Linux 6.12): plantcast-import and plantcast-match "
+                                                    "can read and write all files of this user"
+                           : version < ABI_SCOPES ? "an old Landlock (needs Linux 6.12): plantcast-import and plantcast-prep can signal "
+                                                    "other processes of this user"
+                                                  : "";
+    snprintf(out, CONFINE_LACKS_BYTES, "%s%s%s", landlock, *landlock && !calls ? "; " : "",
+             calls ? "" : "no seccomp: they can make any system call (needs CONFIG_SECCOMP_FILTER)");
+    return *out != 0;
+}
+
+void confine_hide_memory(void)
+{
+    setrlimit(RLIMIT_CORE, &(struct rlimit){ 0, 0 });
+    prctl(PR_SET_DUMPABLE, 0, 0, 0, 0);
+}
+
+static bool is_kept(const char *entry, bool notifies, bool own_home)
+{
+    static const char *const names[] = { "PATH=",  "LANG=",         "LANGUAGE=",     "LC_",           "TZ=",
+                                         "TZDIR=", "ASAN_OPTIONS=", "LSAN_OPTIONS=", "TSAN_OPTIONS=", "UBSAN_OPTIONS=" };
+    for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
+        if (!strncmp(entry, names[i], strlen(names[i])))
+            return true;
+    if (own_home && (!strncmp(entry, "HOME=", 5) || !strncmp(entry, "TMPDIR=", 7)))
+        return true;
+    return notifies && !strncmp(entry, "NOTIFY_SOCKET=", 14);
+}
+
+char **confine_environment(const char *home, bool notifies)
+{
+    size_t count = 0, bytes = home ? 2 * strlen(home) + 16 : 0;
+    for (char **entry = environ; entry && *entry; entry++)
+        if (is_kept(*entry, notifies, !home)) {
+            count++;
+            bytes += strlen(*entry) + 1;
+        }
+    char **kept = mem_new((count + 3) * sizeof(*kept) + bytes), *text = (char *)(kept + count + 3);
+    count = 0;
+    for (char **entry = environ; entry && *entry; entry++)
+        if (is_kept(*entry, notifies, !home)) {
+            kept[count++] = text;
+            text = stpcpy(text, *entry) + 1;
+        }
+    if (home) {
+        kept[count++] = text;
+        text = stpcpy(stpcpy(text, "HOME="), home) + 1;
+        kept[count++] = text;
+        stpcpy(stpcpy(text, "TMPDIR="), home);
+    }
+    return kept;
+}

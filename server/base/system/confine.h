@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Confines a process that reads files from strangers: Landlock restricts paths, TCP, signals and abstract sockets, seccomp restricts system
+ * calls. A restriction holds for the process and everything that it starts, and cannot be lifted. */
+#ifndef BASE_SYSTEM_CONFINE_H
+#define BASE_SYSTEM_CONFINE_H
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/system/confine_calls.h"
+
+enum confine_access {
+    CONFINE_READ,
+    CONFINE_EXECUTE, /* and read */
+    CONFINE_WRITE    /* and read; create, rename and remove regular files and folders below */
+};
+
+struct confine_path {
+    const char *path; /* a file, or a folder with everything below; a path that does not exist is skipped */
+    enum confine_access access;
+};
+
+struct confine_params {
+    enum confine_role role;
+    const struct confine_path *paths; /* besides system libraries, fonts and kernel files that every program needs */
+    size_t path_count;
+    bool notifies; /* may send datagrams to a Unix socket: the service manager's */
+};
+
+/* Confines the calling thread and what it starts. Refused system calls return EPERM; those newer than this list return ENOSYS, so that
+ * libraries fall back to older ones. Drops capabilities, sets no_new_privs, and makes the kernel's OOM killer prefer this process. What
+ * the kernel lacks is left out (confine_lacks). Call it while the process has one thread, or between fork and exec: it allocates nothing.
+ * Returns 0 or -errno; then the process must end. */
+int confine(const struct confine_params *params);
+
+enum { CONFINE_LACKS_BYTES = 300 };
+/* Describes in one line what this kernel cannot enforce and which kernel can. Returns false if nothing is missing. */
+bool confine_lacks(char out[CONFINE_LACKS_BYTES]);
+
+/* Makes this process's memory, descriptors and environment unreadable for other processes of its user, and stops core dumps. */
+void confine_hide_memory(void);
+
+/* Returns a copy of the environment that holds only search path, language, time zone, HOME, TMPDIR and, with `notifies`, the service
+ * manager's socket. home: the value of HOME and TMPDIR; NULL keeps both. The array and its strings are one block (mem_free). */
+char **confine_environment(const char *home, bool notifies);
+
+#endif

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Loads modules from beside the program, or from where they are installed. */
+#include "base/system/module.h"
+
+#include <dlfcn.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+
+#define PATH_BYTES 4096
+
+/* Where the module lies; the caller frees it. NULL: nowhere, with the reason. */
+static char *path_of(const char *name, char *why, size_t why_bytes)
+{
+    static const char *const places[] = { "", "../lib/plantcast/" };
+    char program[PATH_BYTES] = "";
+    ssize_t length = readlink("/proc/self/exe", program, sizeof(program) - 1);
+    char *end = length > 0 ? strrchr(program, '/') : NULL;
+    for (size_t i = 0; end && i < sizeof(places) / sizeof(*places); i++) {
+        char *path = mem_printf("%.*s%s%s", (int)(end + 1 - program), program, places[i], name);
+        if (access(path, F_OK) == 0)
+            return path;
+        mem_free(path);
+    }
+    snprintf(why, why_bytes, "%s is missing: it is neither beside %s nor in ../lib/plantcast", name, end ? program : "the program");
+    return NULL;
+}
+
+static void *load(const char *name, char *why, size_t why_bytes)
+{
+    char *path = path_of(name, why, why_bytes);
+    void *library = path ? dlopen(path, RTLD_NOW | RTLD_LOCAL) : NULL;
+    if (path && !library) {
+        const char *reason = dlerror(); /* it begins with the file that it is about, which may be another one */
+        snprintf(why, why_bytes, "%s cannot be loaded: %s", path, reason ? reason : "no reason is given");
+    }
+    mem_free(path);
+    return library;
+}
+
+bool module_find(struct module *module, const char *name, void *function, char *why, size_t why_bytes)
+{
+    pthread_mutex_lock(&module->lock);
+    if (!module->library)
+        module->library = load(module->name, why, why_bytes);
+    void *library = module->library, *symbol = library ? dlsym(library, name) : NULL;
+    pthread_mutex_unlock(&module->lock);
+    if (library && !symbol)
+        snprintf(why, why_bytes, "%s is of another version: it has no %s", module->name, name);
+    memcpy(function, &symbol, sizeof(symbol));
+    return symbol != NULL;
+}

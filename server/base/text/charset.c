@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Names of encodings, byte order marks, and conversion by iconv. */
+#include "base/text/charset.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <iconv.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text/text.h"
+#include "base/text/utf8.h"
+
+static const char replacement[] = "\xef\xbf\xbd";
+
+/* --- names ------------------------------------------------------------------------------------------------------------------ */
+
+/* name: ours. iconv_name: iconv's. written: other names, in lower case and without punctuation, each between blanks. */
+static const struct {
+    const char *name, *iconv_name, *written;
+} known[] = {
+    { "UTF-8", "UTF-8", " utf8 unicodeutf8 unicode cp65001 65001 " },
+    { "UTF-16LE", "UTF-16LE", " utf16le utf16 ucs2 ucs2le unicodelittleendian " },
+    { "UTF-16BE", "UTF-16BE", " utf16be ucs2be unicodebigendian " },
+    { "GB18030", "GB18030", " gb18030 gbk gb2312 euccn cp936 ms936 936 windows936 chinese simplifiedchinese chinesegbk " },
+    { "Big5", "CP950", " big5 cp950 ms950 950 windows950 traditionalchinese " },
+    { "Shift-JIS", "CP932", " shiftjis sjis cp932 ms932 932 windows932 windows31j japanese " },
+    { "EUC-JP", "EUC-JP-MS", " eucjp eucjpms ujis " },
+    { "EUC-KR", "CP949", " euckr cp949 ms949 949 windows949 uhc ksc5601 kscks5601 ksx1001 korean " },
+    { "ISO-2022-JP", "ISO-2022-JP", " iso2022jp jis " },
+    { "Windows-1250", "CP1250", " windows1250 win1250 cp1250 1250 ansi1250 centraleuropean " },
+    { "Windows-1251", "CP1251", " windows1251 win1251 cp1251 1251 ansi1251 cyrillic russian " },
+    { "Windows-1252", "CP1252", " windows1252 win1252 cp1252 1252 ansi1252 ansi latin1 isolatin1 iso88591 western " },
+    { "Windows-1253", "CP1253", " windows1253 win1253 cp1253 1253 ansi1253 greek " },
+    { "Windows-1254", "CP1254", " windows1254 win1254 cp1254 1254 ansi1254 turkish iso88599 latin5 " },
+    { "KOI8-R", "KOI8-R", " koi8r koi8 " },
+    { "CP866", "CP866", " cp866 ibm866 866 dos866 " },
+    { "CP850", "CP850", " cp850 ibm850 850 dos850 " },
+    { "Macintosh", "MACINTOSH", " macintosh macroman mac " },
+};
+enum { KNOWN = sizeof(known) / sizeof(*known) };
+
+static const char *iconv_name_of(const char *name)
+{
+    for (int i = 0; i < KNOWN; i++)
+        if (!strcmp(known[i].name, name))
+            return known[i].iconv_name;
+    return name;
+}
+
+static bool is_convertible(const char *iconv_name)
+{
+    iconv_t converter = iconv_open("UTF-8", iconv_name);
+    if (converter == (iconv_t)-1)
+        return false;
+    iconv_close(converter);
+    return true;
+}
+
+bool charset_resolve(const char *written, char name[CHARSET_NAME_BYTES])
+{
+    char key[CHARSET_NAME_BYTES + 2] = " ";
+    size_t length = 1;
+    bool good = false;
+    for (const char *c = written; *c && length < CHARSET_NAME_BYTES; c++)
+        if (isalnum((unsigned char)*c))
+            key[length++] = (char)tolower((unsigned char)*c);
+    key[length] = ' ';
+    key[length + 1] = 0;
+    for (int i = 0; i < KNOWN && !good; i++)
+        if (length > 1 && strstr(known[i].written, key)) {
+            snprintf(name, CHARSET_NAME_BYTES, "%s", known[i].name);
+            good = true;
+        }
+    if (!good && length > 1 && strlen(written) < CHARSET_NAME_BYTES && !strpbrk(written, "/ ")) {
+        snprintf(name, CHARSET_NAME_BYTES, "%s", written);
+        good = true;
+    }
+    return good && is_convertible(iconv_name_of(name));
+}
+
+char *charset_describe(const struct charset_choice *choice)
+{
+    return *choice->other ? mem_printf("read as %s, but it may be %s: --encoding NAME says which", choice->name, choice->other)
+                          : mem_printf("read as %s", choice->name);
+}
+
+/* --- conversion ------------------------------------------------------------------------------------------------------------- */
+
+/* Appends what iconv wrote. Drops and counts zero bytes, which would end the text. */
+static void take_converted(struct text *out, const char *from, const char *to, size_t *damaged)
+{
+    for (; from < to; from++)
+        if (*from)
+            text_add_bytes(out, from, 1);
+        else
+            ++*damaged;
+}
+
+/* Bytes without a meaning become one U+FFFD each. The last call of iconv() fetches a letter that is kept back for an accent after it:
+   Windows-1258 and Windows-1255 write accents behind their letters. */
+static void convert(const char *bytes, size_t count, const char *encoding, struct text *out, size_t *damaged)
+{
+    char buffer[4096], *from = (char *)bytes;
+    size_t left = count;
+    iconv_t converter = iconv_open("UTF-8", iconv_name_of(encoding));
+    while (left > 0) {
+        char *to = buffer;
+        size_t room = sizeof(buffer);
+        size_t status = converter == (iconv_t)-1 ? (size_t)-1 : iconv(converter, &from, &left, &to, &room);
+        int error = converter == (iconv_t)-1 ? EILSEQ : errno;
+        take_converted(out, buffer, to, damaged);
+        if (status == (size_t)-1 && error != E2BIG) {
+            text_add_bytes(out, replacement, sizeof(replacement) - 1);
+            ++*damaged;
+            from++;
+            left--;
+        }
+    }
+    if (converter != (iconv_t)-1) {
+        char *to = buffer;
+        size_t room = sizeof(buffer);
+        iconv(converter, NULL, NULL, &to, &room);
+        take_converted(out, buffer, to, damaged);
+        iconv_close(converter);
+    }
+    text_add_bytes(out, "", 0);
+}
+
+char *charset_convert(const char *bytes, size_t count, const char *encoding, size_t *damaged)
+{
+    struct text text = { 0 };
+    size_t wrong = 0;
+    convert(bytes, count, encoding, &text, &wrong);
+    if (damaged)
+        *damaged += wrong;
+    return text.at;
+}
+
+size_t charset_encode(const char *utf8, size_t count, const char *encoding, unsigned char *out, size_t out_bytes)
+{
+    iconv_t converter = iconv_open(iconv_name_of(encoding), "UTF-8");
+    if (converter == (iconv_t)-1)
+        return 0;
+    char *from = (char *)utf8, *to = (char *)out;
+    size_t room = out_bytes;
+    bool good = iconv(converter, &from, &count, &to, &room) == 0 && count == 0;
+    iconv_close(converter);
+    return good ? out_bytes - room : 0;
+}
+
+bool charset_fits(const char *bytes, size_t count, const char *encoding)
+{
+    size_t damaged = 0;
+    mem_free(charset_convert(bytes, count, encoding, &damaged));
+    return damaged == 0;
+}
+
+/* --- finding it ------------------------------------------------------------------------------------------------------------- */
+
+size_t charset_count_utf8(const char *bytes, size_t count, size_t *invalid)
+{
+    size_t characters = 0;
+    *invalid = 0;
+    for (size_t i = 0; i < count;) {
+        size_t length = (unsigned char)bytes[i] < 0x80 ? 1 : utf8_length(bytes + i, count - i);
+        characters += length > 1;
+        *invalid += length == 0;
+        i += length ? length : 1;
+    }
+    return characters;
+}
+
+/* Digits, separators and line ends have a zero in one of their two bytes: in the same one throughout. */
+static const char *find_utf16(const char *bytes, size_t count)
+{
+    size_t zeros[2] = { 0 }, looked_at = (count < 65536 ? count : 65536) & ~(size_t)1;
+    for (size_t i = 0; i < looked_at; i++)
+        zeros[i % 2] += bytes[i] == 0;
+    for (int odd = 0; odd < 2; odd++)
+        if (zeros[odd] * 40 > looked_at && zeros[odd] > 16 * zeros[!odd])
+            return odd ? "UTF-16LE" : "UTF-16BE";
+    return NULL;
+}
+
+static const char *find_mark(const char *bytes, size_t count, size_t *mark_bytes)
+{
+    static const struct {
+        const char *name, *mark;
+        size_t bytes;
+    } marks[] = { { "UTF-8", "\xef\xbb\xbf", 3 }, { "UTF-16LE", "\xff\xfe", 2 }, { "UTF-16BE", "\xfe\xff", 2 } };
+    for (size_t i = 0; i < sizeof(marks) / sizeof(*marks); i++)
+        if (count >= marks[i].bytes && !memcmp(bytes, marks[i].mark, marks[i].bytes)) {
+            *mark_bytes = marks[i].bytes;
+            return marks[i].name;
+        }
+    *mark_bytes = 0;
+    return NULL;
+}
+
+static bool has_escape(const char *bytes, size_t count)
+{
+    return memmem(bytes, count, "\x1b$B", 3) || memmem(bytes, count, "\x1b$@", 3);
+}
+
+struct charset_choice charset_find(const char *bytes, size_t count)
+{
+    struct charset_choice choice = { "UTF-8", "", false };
+    size_t mark, invalid, characters;
+    const char *name = find_mark(bytes, count, &mark);
+    if (!name)
+        name = find_utf16(bytes, count);
+    if (!name) {
+        characters = charset_count_utf8(bytes, count, &invalid);
+        choice.ascii = characters == 0 && invalid == 0;
+        if (choice.ascii && has_escape(bytes, count))
+            name = "ISO-2022-JP";
+        else if (invalid * 4 > characters) /* a text that is damaged or cut off may have some */
+            return charset_find_legacy(bytes, count);
+    }
+    if (name) {
+        snprintf(choice.name, sizeof(choice.name), "%s", name);
+        choice.ascii = false;
+    }
+    return choice;
+}
+
+void charset_decode(const char *bytes, size_t count, const char *encoding, struct charset_text *out)
+{
+    struct text text = { 0 };
+    size_t mark;
+    const char *marked = find_mark(bytes, count, &mark);
+    *out = (struct charset_text){ 0 };
+    if (!encoding)
+        out->encoding = charset_find(bytes, count);
+    else
+        charset_resolve(encoding, out->encoding.name);
+    if (!marked || strcmp(marked, out->encoding.name) != 0)
+        mark = 0;
+    convert(bytes + mark, count - mark, out->encoding.name, &text, &out->damaged);
+    out->utf8 = text.at;
+    out->length = text.length;
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Collects diagnostics about files that people wrote: errors and warnings with file, line and column. Thread: one. */
+#ifndef BASE_TEXT_DIAG_H
+#define BASE_TEXT_DIAG_H
+#include <stdio.h>
+
+enum diag_severity { DIAG_ERROR, DIAG_WARNING };
+
+struct diag_item {
+    enum diag_severity severity;
+    char *file;
+    int line, column; /* from 1; 0 = not at one place */
+    char *text;
+    const char *form; /* the format string, by which those of one kind are grouped */
+};
+
+struct diag { /* zero-initialise */
+    struct diag_item *items;
+    size_t count, capacity;
+    int errors, warnings;
+};
+
+/* Adds a diagnostic; the text is formatted and copied. */
+void diag_add(struct diag *diag, enum diag_severity severity, const char *file, int line, int column, const char *fmt, ...)
+    __attribute__((format(printf, 6, 7)));
+/* Adds a copy of a diagnostic of another list. */
+void diag_copy(struct diag *diag, const struct diag_item *item);
+#define diag_error(diag, file, line, column, ...) diag_add(diag, DIAG_ERROR, file, line, column, __VA_ARGS__)
+#define diag_warning(diag, file, line, column, ...) diag_add(diag, DIAG_WARNING, file, line, column, __VA_ARGS__)
+/* Prints all as `file:line:column: error: text`, ordered by file and place. Many warnings of one kind in one file are one line that lists
+   the places; of many errors of one kind the first have a line each. */
+void diag_print(const struct diag *diag, FILE *out);
+void diag_finish(struct diag *diag);
+
+#endif

@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Characters of UTF-8 text (Unicode 15, table 3-7). Thread: any. */
+#ifndef BASE_TEXT_UTF8_H
+#define BASE_TEXT_UTF8_H
+#include <stddef.h>
+
+/* Returns the bytes of the character that `text` begins with, of `left` bytes (at least 1), or 0: it is not UTF-8, or the byte 0. */
+size_t utf8_length(const char *text, size_t left);
+
+#endif

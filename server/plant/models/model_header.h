@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reads the nodes of a glTF file and their bounding boxes from its JSON, without the vertices, for --check, which must be fast. Thread:
+   any. */
+#ifndef PLANT_MODELS_MODEL_HEADER_H
+#define PLANT_MODELS_MODEL_HEADER_H
+#include "plant/models/nodes.h"
+
+struct model_box { /* low > high: empty */
+    double low[3], high[3];
+};
+
+struct model_header {
+    struct model_node *nodes; /* of the scene, depth first */
+    struct model_box *boxes;  /* of each node's own mesh, in the model's units and axes, placed as in the scene */
+    size_t count;
+    bool partial;             /* boxes may be too small: there are instances, or accessors without min and max */
+    void *json;               /* owns the names */
+};
+
+/* Reads a file. Returns false if it cannot, with the reason in why; then there is nothing to finish. */
+bool model_header_read(struct model_header *header, const char *path, char *why, size_t why_bytes);
+/* Returns how many triangles the node's own mesh has, by its accessors' counts. */
+uint64_t model_header_triangles(const struct model_header *header, size_t node);
+void model_header_finish(struct model_header *header);
+
+extern const struct model_box model_box_empty;
+/* Grows a box to contain another one. */
+void model_box_add(struct model_box *box, const struct model_box *other);
+
+#endif

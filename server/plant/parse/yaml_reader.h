@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reads YAML mappings into structs, by tables of keys. Findings go to diag with line and column. Thread: one. */
+#ifndef PLANT_PARSE_YAML_READER_H
+#define PLANT_PARSE_YAML_READER_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <yaml.h>
+
+#include "base/text/diag.h"
+
+struct yaml_reader {
+    char *path;
+    struct diag *diag;
+    yaml_document_t doc;
+};
+
+struct place {
+    int line, column; /* from 1 */
+};
+
+struct choice { /* a table of these ends with { 0 } */
+    const char *name;
+    double value;
+};
+
+enum key_kind {
+    KEY_TEXT,    /* char *, any text */
+    KEY_NAME,    /* char *, text that is not empty */
+    KEY_NUMBER,  /* double */
+    KEY_INT,     /* int */
+    KEY_CHOICE,  /* int (or an enum), from choices */
+    KEY_FLAG,    /* bool, from choices */
+    KEY_FACTOR,  /* double, from choices */
+    KEY_POINT,   /* double[3] */
+    KEY_CUSTOM   /* by read */
+};
+
+struct key { /* one key of a mapping; a table of these ends with { 0 } */
+    const char *name;
+    enum key_kind kind;
+    bool required;
+    size_t offset;                /* in the record */
+    double low, high;             /* of numbers, inclusive; both 0: any that is finite */
+    const struct choice *choices;
+    void (*read)(struct yaml_reader *reader, yaml_node_t *value, void *record);
+};
+
+#define YAML_MAP_MAX_KEYS 56
+struct yaml_map { /* where things were, and whether they were good */
+    const struct key *keys;
+    struct place place;
+    struct place values[YAML_MAP_MAX_KEYS];
+    bool good[YAML_MAP_MAX_KEYS]; /* given, and read without an error */
+};
+
+/* Parses a file. Returns false if it is unreadable, no text or no YAML (reported); yaml_reader_close() is not needed then. path is copied;
+   diag must outlive the reader. */
+bool yaml_reader_open(struct yaml_reader *reader, const char *path, struct diag *diag);
+void yaml_reader_close(struct yaml_reader *reader);
+
+struct place yaml_place(const yaml_node_t *node);
+void yaml_error(struct yaml_reader *reader, struct place place, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+/* Reports `name: expected ..., found ...` at a node. */
+void yaml_expected(struct yaml_reader *reader, const yaml_node_t *node, const char *name, const char *expected);
+/* Returns whether a node is null: an empty plain scalar, `~` or `null` in lower case. The pointer must not be NULL. */
+bool yaml_is_null(const yaml_node_t *node);
+/* Returns the text of a scalar; NULL for lists and mappings. */
+const char *yaml_text(const yaml_node_t *node);
+/* Reads a finite number in [low, high]. Returns false if it is none (reported). */
+bool yaml_number(struct yaml_reader *reader, const yaml_node_t *node, const char *name, double low, double high, double *out);
+
+/* Reads a mapping into record; members whose key is absent or null stay unchanged. what names the mapping in messages ("a group"). Returns
+   false if it is no mapping. */
+bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct key *keys, void *record,
+                   struct yaml_map *map);
+bool yaml_map_good(const struct yaml_map *map, const char *name); /* returns whether the key was given and read without an error */
+bool yaml_map_has(const struct yaml_map *map, const char *name); /* returns whether the key is present, whatever its value */
+/* Returns the place of a value; of the mapping if the key is absent. */
+struct place yaml_map_place(const struct yaml_map *map, const char *name);
+
+/* Returns the number of items; -1 if it is no list (reported). */
+int yaml_list_count(struct yaml_reader *reader, const yaml_node_t *node, const char *name);
+yaml_node_t *yaml_list_item(struct yaml_reader *reader, const yaml_node_t *node, int index);
+
+#endif

@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Parses a path step by step, each time that it is walked. */
+#include "plant/sources/json_path.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { INDEX_DIGITS = 6 };
+
+static bool wrong(char why[200], const char *expected, const char *at)
+{
+    snprintf(why, 200, "%s, found '%.40s'", expected, at);
+    return false;
+}
+
+static void skip_blanks(const char **at)
+{
+    *at += strspn(*at, " \t\r\n");
+}
+
+const char *json_path_begin(const char *text)
+{
+    text += *text == '$' || *text == '@';
+    return text + (*text == '.');
+}
+
+/* --- strings ---------------------------------------------------------------------------------------------------------------- */
+
+static bool add_byte(char out[JSON_PATH_TEXT_BYTES], size_t *count, unsigned byte)
+{
+    if (*count + 1 >= JSON_PATH_TEXT_BYTES)
+        return false;
+    out[(*count)++] = (char)byte;
+    return true;
+}
+
+/* \u0000 and halves of surrogate pairs are no text here. */
+static bool add_unicode(char out[JSON_PATH_TEXT_BYTES], size_t *count, const char *hex)
+{
+    char digits[5] = { 0 }, *end;
+    memcpy(digits, hex, strnlen(hex, 4));
+    unsigned long code = strtoul(digits, &end, 16);
+    if (end != digits + 4 || code == 0 || (code >= 0xD800 && code < 0xE000))
+        return false;
+    if (code < 0x80)
+        return add_byte(out, count, (unsigned)code);
+    bool good = code < 0x800
+                    ? add_byte(out, count, (unsigned)(0xC0 | code >> 6))
+                    : add_byte(out, count, (unsigned)(0xE0 | code >> 12)) && add_byte(out, count, (unsigned)(0x80 | (code >> 6 & 0x3F)));
+    return good && add_byte(out, count, (unsigned)(0x80 | (code & 0x3F)));
+}
+
+static bool add_escape(char out[JSON_PATH_TEXT_BYTES], size_t *count, const char **at)
+{
+    static const char names[] = "\"'\\/bfnrt", bytes[] = "\"'\\/\b\f\n\r\t";
+    const char *p = *at + 1, *name = *p ? strchr(names, *p) : NULL;
+    if (*p == 'u' && add_unicode(out, count, p + 1)) {
+        *at = p + 5;
+        return true;
+    }
+    *at = p + 1;
+    return name && add_byte(out, count, (unsigned char)bytes[name - names]);
+}
+
+/* A string in either kind of quotes. */
+static bool read_string(const char **at, char out[JSON_PATH_TEXT_BYTES], char why[200])
+{
+    const char *begin = *at, *p = begin + 1;
+    size_t count = 0;
+    bool good = true;
+    while (good && *p && *p != *begin) {
+        if (*p == '\\')
+            good = p[1] && add_escape(out, &count, &p);
+        else
+            good = add_byte(out, &count, (unsigned char)*p++);
+    }
+    if (!good || !*p)
+        return wrong(why, "expected a string of at most 127 bytes, closed by its own kind of quote", begin);
+    out[count] = 0;
+    *at = p + 1;
+    return true;
+}
+
+/* --- filters ---------------------------------------------------------------------------------------------------------------- */
+
+static bool read_word(const char **at, const char *word)
+{
+    size_t length = strlen(word);
+    if (strncmp(*at, word, length) != 0 || (*at)[length] == '_' || strspn(*at + length, "abcdefghijklmnopqrstuvwxyz0123456789.[") > 0)
+        return false;
+    *at += length;
+    return true;
+}
+
+/* Returns false without words in `why` if no literal begins there. */
+static bool read_literal(const char **at, struct json_path_test *out, char why[200])
+{
+    static const char *const words[] = { "true", "false", "null" };
+    if (**at == '\'' || **at == '"') {
+        out->kind = JSON_LITERAL_STRING;
+        return read_string(at, out->text, why);
+    }
+    for (int i = 0; i < 3; i++)
+        if (read_word(at, words[i])) {
+            out->kind = (enum json_literal_kind)(JSON_LITERAL_TRUE + i);
+            return true;
+        }
+    size_t length = strspn(*at, "+-.0123456789eE");
+    char *end = NULL;
+    if (length == 0 || !strchr("-0123456789", **at) || (out->number = strtod(*at, &end), end != *at + length))
+        return false;
+    out->kind = JSON_LITERAL_NUMBER;
+    *at = end;
+    return true;
+}
+
+/* `@.a.b`, `@['a']`, `@`; or the name of a member alone. */
+static bool read_operand(const char **at, struct json_path_test *out, char why[200])
+{
+    struct json_path_step step;
+    const char *p = *at;
+    bool named = *p != '@';
+    if (*p == '$' || *p == '!' || *p == '*')
+        return wrong(why, "expected @.member == a string or number in the filter", *at);
+    p += !named;
+    p += !named && *p == '.';
+    out->path = p;
+    bool more = named || p[-1] == '.' || *p == '[';
+    while (more) {
+        if (!json_path_next_operand(&p, &step, why))
+            return false;
+        if (step.kind == JSON_PATH_FILTER)
+            return wrong(why, "a filter inside a filter is not supported", *at);
+        more = p[-1] == '.' || *p == '[';
+    }
+    out->end = p;
+    if (*p == '(')
+        return wrong(why, "functions are not supported", *at);
+    *at = p;
+    return true;
+}
+
+static bool read_test(const char **at, struct json_path_test *out, char why[200])
+{
+    const char *begin = *at;
+    *why = 0;
+    bool literal_first = read_literal(at, out, why);
+    if (!literal_first && (*why || !read_operand(at, out, why)))
+        return false;
+    skip_blanks(at);
+    if (strncmp(*at, "==", 2) != 0)
+        return wrong(why, "expected == (no other comparison is supported)", *at);
+    *at += 2;
+    skip_blanks(at);
+    if (literal_first)
+        return read_operand(at, out, why);
+    return read_literal(at, out, why) || (!*why && wrong(why, "expected a string, a number, true, false or null behind ==", begin));
+}
+
+/* Tests that are joined by &&, perhaps in parentheses. */
+static bool read_tests(const char **at, struct json_path_step *out, int depth, char why[200])
+{
+    for (;;) {
+        skip_blanks(at);
+        if (**at == '(' && depth < JSON_PATH_MAX_TESTS) {
+            ++*at;
+            if (!read_tests(at, out, depth + 1, why))
+                return false;
+            if (**at != ')')
+                return wrong(why, "expected )", *at);
+            ++*at;
+        } else if (out->test_count == JSON_PATH_MAX_TESTS) {
+            return wrong(why, "expected at most 4 comparisons", *at);
+        } else if (!read_test(at, &out->tests[out->test_count++], why)) {
+            return false;
+        }
+        skip_blanks(at);
+        if (strncmp(*at, "&&", 2) != 0)
+            return true;
+        *at += 2;
+    }
+}
+
+/* --- steps ------------------------------------------------------------------------------------------------------------------ */
+
+static bool read_index(const char **at, long *out)
+{
+    const char *p = *at;
+    bool negative = *p == '-';
+    size_t digits = strspn(p += negative, "0123456789");
+    long index = strtol(*at, NULL, 10);
+    if (digits == 0 || digits > INDEX_DIGITS || (negative && index == 0))
+        return false;
+    *out = index;
+    *at = p + digits;
+    return true;
+}
+
+static const char *refusal_in_bracket(const char *at)
+{
+    switch (*at) {
+    case '*': return "wildcards select several values; expected one";
+    case ':': return "slices select several values; expected one";
+    case ',': return "several selectors in one bracket select several values; expected one";
+    case '|': return "|| is not supported in filters";
+    default: return "expected a path such as data.temperature, items[0].value or [\"odd name\"], and ]";
+    }
+}
+
+/* [0], [-1], ["name"], ['name'] or [?@.name=='text']. */
+static bool read_bracket(const char **at, struct json_path_step *out, char why[200])
+{
+    const char *begin = *at, *p = begin + 1;
+    bool good = true;
+    skip_blanks(&p);
+    if (*p == '"' || *p == '\'') {
+        out->kind = JSON_PATH_NAME;
+        good = read_string(&p, out->name, why);
+        if (good && !out->name[0])
+            good = wrong(why, "expected a name that is not empty", begin);
+    } else if (*p == '?') {
+        p++;
+        out->kind = JSON_PATH_FILTER;
+        good = read_tests(&p, out, 0, why);
+    } else {
+        out->kind = JSON_PATH_INDEX;
+        if (!read_index(&p, &out->index))
+            return wrong(why, refusal_in_bracket(p), begin);
+    }
+    skip_blanks(&p);
+    if (good && *p != ']')
+        return wrong(why, refusal_in_bracket(p), p);
+    *at = p + 1;
+    return good;
+}
+
+static bool next(const char **at, struct json_path_step *out, const char *ends, char why[200])
+{
+    const char *p = *at;
+    *out = (struct json_path_step){ .kind = JSON_PATH_NAME };
+    if (*p == '[') {
+        if (!read_bracket(&p, out, why))
+            return false;
+    } else {
+        size_t length = strcspn(p, ends);
+        if (length == 0 && *p == '.')
+            return wrong(why, "descendants (..) select several values; expected one", p);
+        if (length == 1 && *p == '*')
+            return wrong(why, refusal_in_bracket(p), p);
+        if (length == 0 || length >= sizeof(out->name))
+            return wrong(why, "expected a path such as data.temperature, items[0].value or [\"odd name\"]", p);
+        memcpy(out->name, p, length);
+        p += length;
+    }
+    if (*p == '.' && p[1] == '.')
+        return wrong(why, "descendants (..) select several values; expected one", p);
+    if (*p == '.' && (!p[1] || p[1] == '['))
+        return wrong(why, "expected a name behind the dot in a path such as items[0].value", p);
+    bool ended = !*p || *p == '[' || *p == '.' || strchr(ends, *p);
+    if (!ended)
+        return wrong(why, "expected . or [ in a path such as items[0].value", p);
+    *at = p + (*p == '.');
+    return true;
+}
+
+bool json_path_next(const char **at, struct json_path_step *out, char why[200])
+{
+    return next(at, out, ".[", why);
+}
+
+bool json_path_next_operand(const char **at, struct json_path_step *out, char why[200])
+{
+    return next(at, out, ".[ \t\r\n=!<>&|()],'\"*?", why);
+}
+
+bool json_path_check(const char *text, bool relative, char why[200])
+{
+    const char *at = json_path_begin(text);
+    struct json_path_step step;
+    if (*text == '@' && !relative)
+        return wrong(why, "expected a path from the payload's root ($), not from the value beside it (@)", text);
+    while (*at && json_path_next(&at, &step, why))
+        ;
+    return !*at;
+}

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* TOPIC#PATH: `#` stands in no topic, so it parts the two. */
+#include "plant/sources/mqtt_address.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text/text.h"
+#include "plant/sources/json_path.h"
+
+enum field { FIELD_TAG, FIELD_ASSET, FIELD_GROUP, FIELD_ADDRESS, FIELD_COUNT };
+static const char *const field_names[FIELD_COUNT] = { "{tag}", "{asset}", "{group}", "{address}" };
+
+/* The field that text begins with, or FIELD_COUNT. */
+static enum field field_at(const char *text)
+{
+    enum field field = FIELD_TAG;
+    while (field < FIELD_COUNT && strncmp(text, field_names[field], strlen(field_names[field])) != 0)
+        field++;
+    return field;
+}
+
+bool mqtt_template_check(const char *text, char why[200])
+{
+    for (const char *brace = strchr(text, '{'); brace; brace = strchr(brace + 1, '{'))
+        if (field_at(brace) == FIELD_COUNT) {
+            snprintf(why, 200, "expected {tag}, {asset}, {group} or {address}, found '%.20s'", brace);
+            return false;
+        }
+    if (strpbrk(text, "+#")) {
+        snprintf(why, 200, "+ and # stand for many topics; expected one of each tag");
+        return false;
+    }
+    return true;
+}
+
+/* What stands for a field, NULL where the tag has none. address: what stands before the #. */
+static const char *field_text(const struct plant *plant, const struct plant_tag *tag, const char *address, enum field field)
+{
+    switch (field) {
+    case FIELD_TAG: return tag->name;
+    case FIELD_ASSET: return tag->asset >= 0 ? plant->assets[tag->asset].id : tag->lost_asset;
+    case FIELD_GROUP: return tag->group >= 0 ? plant->groups[tag->group].id : NULL;
+    default: return *address ? address : NULL;
+    }
+}
+
+static bool fill_template(const struct plant *plant, const struct plant_tag *tag, const char *address, struct text *out, char why[200])
+{
+    for (const char *at = plant->sources[tag->source].mqtt.topic; *at;) {
+        enum field field = field_at(at);
+        if (field == FIELD_COUNT) {
+            text_add(out, "%c", *at++);
+            continue;
+        }
+        const char *text = field_text(plant, tag, address, field);
+        if (!text) {
+            snprintf(why, 200, "the source's topic has %s, which this tag has not", field_names[field]);
+            return false;
+        }
+        text_add(out, "%s", text);
+        at += strlen(field_names[field]);
+    }
+    return true;
+}
+
+/* GROUP/NODE or GROUP/NODE/DEVICE. */
+static bool is_sparkplug(const char *topic)
+{
+    int parts = 1;
+    for (const char *at = topic; *at; at++) {
+        parts += *at == '/';
+        if (*at == '/' && (at == topic || !at[1] || at[1] == '/'))
+            return false;
+    }
+    return parts == 2 || parts == 3;
+}
+
+static bool check_topic(const char *topic, bool sparkplug, char why[200])
+{
+    if (!*topic)
+        snprintf(why, 200, "expected a topic, or a key topic in the source");
+    else if (strlen(topic) > MQTT_TOPIC_BYTES)
+        snprintf(why, 200, "the topic has %zu bytes; expected at most %d", strlen(topic), MQTT_TOPIC_BYTES);
+    else if (strpbrk(topic, "+#"))
+        snprintf(why, 200, "a topic with + or # would be many");
+    else if (sparkplug && !is_sparkplug(topic))
+        snprintf(why, 200, "expected GROUP/NODE#METRIC or GROUP/NODE/DEVICE#METRIC");
+    else
+        return true;
+    return false;
+}
+
+bool mqtt_address_resolve(const struct plant *plant, struct plant_tag *tag, char why[200])
+{
+    const struct plant_mqtt *mqtt = &plant->sources[tag->source].mqtt;
+    const char *sharp = strchr(tag->address, '#');
+    char *address = sharp ? mem_printf("%.*s", (int)(sharp - tag->address), tag->address) : mem_strdup(tag->address);
+    struct text topic = { 0 };
+    bool by_template = mqtt->topic && (!*address || strstr(mqtt->topic, field_names[FIELD_ADDRESS]));
+    bool good = !by_template || fill_template(plant, tag, address, &topic, why);
+    tag->topic = mem_strdup(by_template && topic.at ? topic.at : address);
+    tag->path = mem_strdup(sharp && sharp[1] ? sharp + 1 : mqtt->payload == MQTT_SPARKPLUG ? tag->name : "");
+    good = good && check_topic(tag->topic, mqtt->payload == MQTT_SPARKPLUG, why);
+    if (good && *tag->path && mqtt->payload == MQTT_NUMBER) {
+        snprintf(why, 200, "a path behind # has no meaning for payload: number");
+        good = false;
+    }
+    if (good && *tag->path && mqtt->payload == MQTT_JSON)
+        good = json_path_check(tag->path, false, why);
+    text_finish(&topic);
+    mem_free(address);
+    return good;
+}

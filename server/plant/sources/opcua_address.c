@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The element stands in front: names of nodes may end in brackets themselves. */
+#include "plant/sources/opcua_address.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+static const char EXPECTED[] = "expected nsu=URI;s=NAME, with i=NUMBER, g=GUID or b=BASE64 in place of s=NAME";
+
+/* [3] in front. False: it is wrong. */
+static bool read_element(const char **at, int *element)
+{
+    char *end;
+    *element = -1;
+    if (**at != '[')
+        return true;
+    errno = 0;
+    long number = strtol(*at + 1, &end, 10);
+    if (!isdigit((unsigned char)(*at)[1]) || *end != ']' || errno || number > 1000000)
+        return false;
+    *element = (int)number;
+    *at = end + 1;
+    return true;
+}
+
+/* %3B and %25 stand for ; and % in a URI. NULL: it is wrong. */
+static char *unescaped(const char *uri, size_t length)
+{
+    char *out = mem_array(length + 1, 1), *to = out;
+    for (size_t i = 0; i < length; i++) {
+        unsigned code = 0;
+        if (uri[i] == '%' && (i + 2 >= length || sscanf(uri + i + 1, "%2x", &code) != 1 || code == 0)) {
+            mem_free(out);
+            return NULL;
+        }
+        *to++ = uri[i] == '%' ? (char)code : uri[i];
+        i += uri[i] == '%' ? 2 : 0;
+    }
+    *to = 0;
+    return out;
+}
+
+static bool check_identifier(const char *text)
+{
+    static const char GUID[] = "xxxxxxxx-xxxx-xxxx-xxxx-xxxxxxxxxxxx";
+    const char *value = *text ? text + 2 : text;
+    if (!strchr("sigb", *text) || !*text || text[1] != '=' || !*value || strlen(value) > OPCUA_NODE_BYTES)
+        return false;
+    if (*text == 'i') {
+        errno = 0;
+        return strspn(value, "0123456789") == strlen(value) && strtoull(value, NULL, 10) <= UINT32_MAX && !errno;
+    }
+    for (size_t i = 0; *text == 'g' && i < sizeof(GUID); i++)
+        if (GUID[i] == 'x' ? !isxdigit((unsigned char)value[i]) : value[i] != GUID[i])
+            return false;
+    return true;
+}
+
+/* nsu=URI; in front, or the source's namespace. NULL: neither, with why. */
+static char *read_namespace(const char **at, const char *of_source, char why[200])
+{
+    const char *end = strchr(*at, ';');
+    snprintf(why, 200, "%s", EXPECTED);
+    if (!strncmp(*at, "ns=", 3)) {
+        snprintf(why, 200, "a number of a namespace may be another one after the next start of the server; expected nsu=URI; in its place");
+        return NULL;
+    }
+    if (strncmp(*at, "nsu=", 4) != 0) {
+        if (!of_source)
+            snprintf(why, 200, "%s, or a key namespace in the source", EXPECTED);
+        return of_source ? mem_strdup(of_source) : NULL;
+    }
+    if (!end || end == *at + 4)
+        return NULL;
+    char *uri = unescaped(*at + 4, (size_t)(end - *at - 4));
+    *at = end + 1;
+    return uri;
+}
+
+bool opcua_address_resolve(const struct plant *plant, struct plant_tag *tag, char why[200])
+{
+    const char *at = tag->address;
+    if (!read_element(&at, &tag->element)) {
+        snprintf(why, 200, "expected an element from 0 to 1000000 in brackets");
+        return false;
+    }
+    tag->topic = read_namespace(&at, plant->sources[tag->source].opcua.name_space, why);
+    if (!tag->topic)
+        return false;
+    if (!check_identifier(at)) {
+        snprintf(why, 200, "%s", EXPECTED);
+        return false;
+    }
+    tag->path = mem_strdup(at);
+    return true;
+}

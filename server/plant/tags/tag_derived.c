@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tags that are computed from others: their expressions, and an order in which each comes after what it needs. */
+#include <math.h>
+
+#include "base/mem.h"
+#include "plant/tags/expression.h"
+#include "plant/tags/tag_links.h"
+
+enum mark { UNSEEN, OPEN, DONE };
+
+struct walk {
+    struct plant *plant;
+    char *marks; /* enum mark, by tag */
+};
+
+static int find_tag(const void *plant, const char *name)
+{
+    return plant_find_tag(plant, name);
+}
+
+static bool parse(const struct tag_link *link, struct plant *plant, struct diag *diag)
+{
+    struct plant_tag *tag = &plant->tags[link->tag];
+    char why[200];
+    size_t at;
+    tag->expression = expression_parse(tag->address + 1, find_tag, plant, why, &at);
+    if (!tag->expression)
+        diag_error(diag, plant->tags_path, link->line, link->column, "Address: '%.60s': %s, at character %zu", tag->address, why, at + 2);
+    return tag->expression != NULL;
+}
+
+/* Of units in which one kind of thing is measured there should be one in an expression: it computes in those that the rows say. */
+static void check_units(const struct tag_link *link, const struct plant *plant, struct diag *diag)
+{
+    const struct plant_tag *tag = &plant->tags[link->tag];
+    const int *inputs;
+    size_t count = expression_inputs(tag->expression, &inputs);
+    for (size_t i = 0; i < count; i++) {
+        const struct plant_tag *first = &plant->tags[inputs[0]], *one = &plant->tags[inputs[i]];
+        const struct plant_tag *other = unit_kind(tag->own_unit) && unit_kind(tag->own_unit) == unit_kind(one->own_unit) ? tag : first;
+        struct unit_change change;
+        if (units_compare(one->own_unit, other->own_unit, &change) != UNITS_CONVERT)
+            continue;
+        diag_warning(diag, plant->tags_path, link->line, link->column,
+                     "Address: '%.60s' takes %.60s in %.20s, as its row says, but %.60s is in %.20s; the expression has to convert one",
+                     tag->address, one->name, one->own_unit, other->name, other->own_unit);
+        return;
+    }
+}
+
+/* Depth first: what a tag needs comes before it. A tag is stale where it says so, else no sooner than what it needs. */
+static bool visit(struct walk *walk, int index)
+{
+    struct plant_tag *tag = &walk->plant->tags[index];
+    const int *inputs;
+    if (!tag->expression || walk->marks[index] == DONE)
+        return true;
+    if (walk->marks[index] == OPEN)
+        return false;
+    walk->marks[index] = OPEN;
+    size_t count = expression_inputs(tag->expression, &inputs);
+    for (size_t i = 0; i < count; i++) {
+        if (!visit(walk, inputs[i]))
+            return false;
+        if (!tag->states_stale)
+            tag->stale_s = fmax(tag->stale_s, walk->plant->tags[inputs[i]].stale_s);
+    }
+    walk->marks[index] = DONE;
+    walk->plant->derived[walk->plant->derived_count++] = index;
+    return true;
+}
+
+void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, struct diag *diag)
+{
+    struct walk walk = { .plant = plant, .marks = mem_array(plant->tag_count, 1) };
+    size_t good = 0;
+    for (size_t i = 0; i < derived->count; i++) {
+        if (!parse(&derived->at[i], plant, diag))
+            continue;
+        check_units(&derived->at[i], plant, diag);
+        good++;
+    }
+    plant->derived = mem_array(good, sizeof(*plant->derived));
+    for (size_t i = 0; i < derived->count; i++) {
+        const struct tag_link *link = &derived->at[i];
+        if (visit(&walk, (int)link->tag))
+            continue;
+        diag_error(diag, plant->tags_path, link->line, link->column, "Address: '%.60s' is computed from itself",
+                   plant->tags[link->tag].name);
+        break; /* all tags of the circle would say so */
+    }
+    mem_free(walk.marks);
+}

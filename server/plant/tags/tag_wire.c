@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A row of the tag list: where the value lies on the wire, what type it has, and how it becomes engineering units. */
+#include "plant/tags/tag_wire.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/mem.h"
+#include "plant/parse/number.h"
+#include "plant/plant_impl.h"
+#include "plant/sources/address.h"
+#include "plant/sources/mqtt_address.h"
+#include "plant/sources/opcua_address.h"
+#include "plant/tags/tag_links.h"
+
+struct tag_wire {
+    const struct plant *plant;
+    struct tag_columns *columns;
+    struct plant_tag *tag;
+};
+
+/* --- address and type ------------------------------------------------------------------------------------------------------------ */
+
+/* What the row says itself, in the column or in the address. False: reported. */
+static bool read_stated_order(struct tag_wire *wire, const struct modbus_address *address, enum byte_order *out)
+{
+    const char *text = cell_text(wire->columns, COL_BYTE_ORDER);
+    *out = address->byte_order;
+    if (!*text)
+        return true;
+    if (!byte_order_parse(text, out)) {
+        cell_error(wire->columns, COL_BYTE_ORDER, "Byte Order: expected ABCD, CDAB, BADC or DCBA, found '%.60s'", text);
+        return false;
+    }
+    if (address->byte_order && *out != address->byte_order) {
+        cell_error(wire->columns, COL_BYTE_ORDER, "Byte Order: '%s' contradicts the address '%.60s'", text, wire->tag->address);
+        return false;
+    }
+    return true;
+}
+
+static void read_byte_order(struct tag_wire *wire, const struct modbus_address *address)
+{
+    struct plant_tag *tag = wire->tag;
+    enum byte_order order;
+    if (!read_stated_order(wire, address, &order) || tag->type == DATA_BIT)
+        return;
+    int registers = data_type_registers(tag->type);
+    if (!order && registers > 1 && tag->source >= 0)
+        order = wire->plant->sources[tag->source].byte_order;
+    tag->byte_order = order;
+    if (order || registers == 1)
+        return;
+    enum tag_column column = wire->columns->at[COL_BYTE_ORDER] >= 0 ? COL_BYTE_ORDER : COL_DATA_TYPE;
+    cell_error(wire->columns, column,
+               "Byte Order: %s has %d bits, so one is needed: ABCD, CDAB, BADC or DCBA here, or byte_order in the tag's source",
+               data_type_name(tag->type), registers * 16);
+}
+
+/* False: reported. Kepware's "Default" is Word, and Boolean where the address is one bit. */
+static bool read_type(struct tag_wire *wire, const struct modbus_address *address)
+{
+    struct plant_tag *tag = wire->tag;
+    const char *text = cell_text(wire->columns, COL_DATA_TYPE);
+    bool one_bit = address->table == TABLE_COIL || address->table == TABLE_DISCRETE || address->bit >= 0;
+    tag->type = one_bit ? DATA_BIT : DATA_UINT16;
+    if (!*text || !strcasecmp(text, "Default"))
+        return true;
+    if (!data_type_parse(text, &tag->type)) {
+        const char *near = data_type_suggest(text);
+        if (near)
+            cell_error(wire->columns, COL_DATA_TYPE, "Data Type: unknown type '%.60s'; did you mean '%s'?", text, near);
+        else
+            cell_error(wire->columns, COL_DATA_TYPE, "Data Type: unknown type '%.60s'; expected one of: %s", text, data_type_all);
+        return false;
+    }
+    if (one_bit && tag->type != DATA_BIT)
+        cell_error(wire->columns, COL_DATA_TYPE, "Data Type: expected Boolean, since '%.60s' is one bit, found '%s'", tag->address, text);
+    else if (!one_bit && tag->type == DATA_BIT)
+        cell_error(wire->columns, COL_ADDRESS, "Address: expected a bit such as %.60s.0, since the type is %s", tag->address, text);
+    return one_bit == (tag->type == DATA_BIT);
+}
+
+/* It comes as a number in engineering units, from a file or from other tags. */
+static bool is_number(const struct tag_wire *wire)
+{
+    const char *kind = wire->tag->source >= 0 ? wire->plant->sources[wire->tag->source].kind : NULL;
+    return tag_is_derived(wire->columns) || (kind && !strcmp(kind, "replay"));
+}
+
+/* Where the place of a register depends on what the first one is called: a longer value at the wrong one still looks like a value. */
+static void check_base(struct tag_wire *wire, int registers)
+{
+    struct plant_tag *tag = wire->tag;
+    const char *bang = strchr(tag->address, '!'), *place = bang ? bang + 1 : tag->address;
+    if (registers == 1 || !(*place >= '0' && *place <= '9') || tag->source < 0 || wire->plant->sources[tag->source].base_stated)
+        return;
+    cell_error(wire->columns, COL_ADDRESS,
+               "Address: '%.60s': %s has %d bits, so it must be said whether the first register is called 0 or 1: by address_base in its "
+               "source, or here by %s:%d (from 0, as on the wire; %s:%d if the first is called 0)",
+               tag->address, data_type_name(tag->type), registers * 16, tag->table == TABLE_INPUT ? "ir" : "hr", tag->register_index,
+               tag->table == TABLE_INPUT ? "ir" : "hr", tag->register_index + 1);
+}
+
+static bool comes_from(const struct tag_wire *wire, const char *kind)
+{
+    const char *its_kind = wire->tag->source >= 0 ? wire->plant->sources[wire->tag->source].kind : NULL;
+    return !tag_is_derived(wire->columns) && its_kind && !strcmp(its_kind, kind);
+}
+
+/* A value that is published is a number; whether it is a bit, only the row can say. */
+static void read_published(struct tag_wire *wire)
+{
+    struct plant_tag *tag = wire->tag;
+    const char *text = cell_text(wire->columns, COL_DATA_TYPE);
+    char why[200];
+    tag->type = DATA_FLOAT64;
+    if (*text && strcasecmp(text, "Default") != 0 && !data_type_parse(text, &tag->type))
+        cell_error(wire->columns, COL_DATA_TYPE, "Data Type: unknown type '%.60s'; expected one of: %s", text, data_type_all);
+    bool is_opcua = comes_from(wire, "opcua");
+    if (is_opcua ? !opcua_address_resolve(wire->plant, tag, why) : !mqtt_address_resolve(wire->plant, tag, why))
+        cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s", tag->address, why);
+}
+
+static void read_address(struct tag_wire *wire)
+{
+    struct plant_tag *tag = wire->tag;
+    struct modbus_address address;
+    char why[200];
+    tag->address = mem_strdup(cell_text(wire->columns, COL_ADDRESS));
+    if (is_number(wire)) {
+        tag->type = DATA_FLOAT64;
+        return;
+    }
+    if (comes_from(wire, "mqtt") || comes_from(wire, "opcua")) {
+        read_published(wire);
+        return;
+    }
+    if (!*tag->address) {
+        if (tag->source >= 0 && wire->columns->at[COL_ADDRESS] >= 0)
+            cell_error(wire->columns, COL_ADDRESS, "Address: expected the address of a register, such as 400001 or hr:0");
+        return;
+    }
+    int base = tag->source >= 0 ? wire->plant->sources[tag->source].address_base : 1;
+    if (!address_parse(tag->address, base, &address, why)) {
+        cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s", tag->address, why);
+        return;
+    }
+    tag->modbus_unit = address.unit;
+    tag->table = address.table;
+    tag->register_index = address.index;
+    tag->bit = address.bit;
+    if (!read_type(wire, &address))
+        return;
+    read_byte_order(wire, &address);
+    int registers = data_type_registers(tag->type);
+    check_base(wire, registers);
+    if (address.index + registers > 65536)
+        cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s takes %d registers, and the last one there is has the index 65535",
+                   tag->address, data_type_name(tag->type), registers);
+}
+
+/* --- scaling ---------------------------------------------------------------------------------------------------------------- */
+
+static void read_range(struct tag_wire *wire, enum tag_column low, enum tag_column high, double *out_low, double *out_high)
+{
+    int errors = wire->columns->csv.diag->errors;
+    bool has_low = cell_number(wire->columns, low, -PLANT_MAX_VALUE, PLANT_MAX_VALUE, out_low);
+    bool has_high = cell_number(wire->columns, high, -PLANT_MAX_VALUE, PLANT_MAX_VALUE, out_high);
+    if (errors != wire->columns->csv.diag->errors)
+        return;
+    enum tag_column missing = has_low ? high : low;
+    if (!has_low || !has_high)
+        cell_error(wire->columns, missing, "%s: expected a number, since Scaling is %s", tag_column_name(missing),
+                   cell_text(wire->columns, COL_SCALING));
+    else if (*out_low >= *out_high)
+        cell_error(wire->columns, low, "%s: expected less than %s, which is %.9g, found %.9g", tag_column_name(low), tag_column_name(high),
+                   *out_high, *out_low);
+}
+
+static void read_scaling(struct tag_wire *wire)
+{
+    struct plant_tag *tag = wire->tag;
+    const char *text = cell_text(wire->columns, COL_SCALING);
+    if (!strcasecmp(text, "Linear"))
+        tag->scaling = SCALING_LINEAR;
+    else if (!strcasecmp(text, "Square Root"))
+        tag->scaling = SCALING_SQUARE_ROOT;
+    else if (*text && strcasecmp(text, "None") != 0)
+        cell_error(wire->columns, COL_SCALING, "Scaling: expected None, Linear or Square Root, found '%.60s'", text);
+    if (tag->scaling != SCALING_NONE && is_number(wire))
+        cell_error(wire->columns, COL_SCALING, "Scaling: expected None, since the value is in engineering units already");
+    tag->has_range = tag->scaling != SCALING_NONE ||
+                     (cell_given(wire->columns, COL_SCALED_LOW) && cell_given(wire->columns, COL_SCALED_HIGH));
+    if (tag->scaling != SCALING_NONE)
+        read_range(wire, COL_RAW_LOW, COL_RAW_HIGH, &tag->raw_low, &tag->raw_high);
+    else if (!*text && cell_given(wire->columns, COL_RAW_LOW) && cell_given(wire->columns, COL_SCALED_LOW))
+        cell_warning(wire->columns, COL_RAW_LOW, "Scaling is blank, so the raw range has no effect; write Linear or None");
+    if (tag->has_range)
+        read_range(wire, COL_SCALED_LOW, COL_SCALED_HIGH, &tag->scaled_low, &tag->scaled_high);
+    tag->negate = cell_flag(wire->columns, COL_NEGATE);
+    for (enum tag_column clamp = COL_CLAMP_LOW; clamp <= COL_CLAMP_HIGH; clamp++)
+        if (cell_flag(wire->columns, clamp))
+            cell_warning(wire->columns, clamp, "%s has no effect: what is beyond the range is shown as such", tag_column_name(clamp));
+}
+
+/* --- what tells that there is no sensor ------------------------------------------------------------------------------------- */
+
+static void read_ne43(struct tag_wire *wire)
+{
+    struct plant_tag *tag = wire->tag;
+    tag->ne43 = cell_flag(wire->columns, COL_NE43);
+    if (tag->ne43 && tag->scaling == SCALING_NONE)
+        cell_error(wire->columns, COL_NE43, "NE 43: expected Scaling Linear or Square Root, whose Raw Low is 4 mA and Raw High 20 mA");
+}
+
+/* 0x8000 is meant bit by bit, -32768 or 1.5e3 as a number. */
+static bool read_sentinel(const char *text, struct plant_sentinel *out)
+{
+    char *end;
+    out->is_bits = !strncasecmp(text, "0x", 2);
+    if (!out->is_bits)
+        return number_parse(text, &out->number) == NUMBER_GOOD;
+    out->bits = strtoull(text + 2, &end, 16);
+    return text[2] && !*end && strspn(text + 2, "0123456789abcdefABCDEF") <= 16;
+}
+
+static void read_sentinels(struct tag_wire *wire)
+{
+    char *texts = mem_strdup(cell_text(wire->columns, COL_OPEN_CIRCUIT)), *rest = texts;
+    struct plant_tag *tag = wire->tag;
+    for (const char *text; (text = strtok_r(rest, " |", &rest));)
+        if (tag->sentinel_count == PLANT_SENTINELS || !read_sentinel(text, &tag->sentinels[tag->sentinel_count++])) {
+            cell_error(wire->columns, COL_OPEN_CIRCUIT,
+                       "Open Circuit: expected at most %d raw values such as 0x8000 or -32768, found '%.60s'", PLANT_SENTINELS, text);
+            break;
+        }
+    mem_free(texts);
+}
+
+void tag_wire_read(struct tag_columns *columns, const struct plant *plant, struct plant_tag *tag)
+{
+    struct tag_wire wire = { plant, columns, tag };
+    read_address(&wire);
+    read_scaling(&wire);
+    read_ne43(&wire);
+    read_sentinels(&wire);
+}

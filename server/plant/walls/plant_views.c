@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The plant file's `views`: what is looked at often, by names. */
+#include <string.h>
+
+#include "base/mem.h"
+#include "plant/plant_impl.h"
+#include "plant/walls/wall.h"
+
+static const char ID_CHARS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
+
+bool named_view_id_valid(const char *id)
+{
+    size_t length = strlen(id);
+    return length > 0 && length < NAMED_VIEW_ID_BYTES && strspn(id, ID_CHARS) == length;
+}
+
+const char *named_view_title_wrong(const char *title)
+{
+    return strlen(title) >= NAMED_VIEW_TITLE_BYTES ? "it is too long" : NULL;
+}
+
+const char *named_view_address_wrong(const char *address)
+{
+    if (strlen(address) >= NAMED_VIEW_ADDRESS_BYTES)
+        return "it is too long";
+    if (address[0] == '#')
+        return "it begins after the #";
+    for (const char *at = address; *at; at++)
+        if ((unsigned char)*at <= ' ' || (unsigned char)*at >= 127)
+            return "there is something in it that does not stand in an address";
+    return NULL;
+}
+
+static void read_view(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct named_view *view)
+{
+    static const struct key keys[] = {
+        { "id", KEY_NAME, true, offsetof(struct named_view, id), 0, 0, NULL, NULL },
+        { "title", KEY_NAME, false, offsetof(struct named_view, title), 0, 0, NULL, NULL },
+        { "view", KEY_NAME, true, offsetof(struct named_view, address), 0, 0, NULL, NULL },
+        { 0 }
+    };
+    struct yaml_map map;
+    view->line = yaml_place(node).line;
+    if (!yaml_map_read(reader, node, "a view", keys, view, &map))
+        return;
+    const char *wrong = view->address ? named_view_address_wrong(view->address) : NULL;
+    if (wrong)
+        yaml_error(reader, yaml_map_place(&map, "view"), "view: '%.60s': %s", view->address, wrong);
+    if (view->title && (wrong = named_view_title_wrong(view->title)))
+        yaml_error(reader, yaml_map_place(&map, "title"), "title: '%.60s': %s", view->title, wrong);
+    if (view->id && !named_view_id_valid(view->id))
+        yaml_error(reader, yaml_map_place(&map, "id"), "id: expected letters, digits, '_', '-' and '.', found '%.60s'", view->id);
+    plant_list_check_id(reader, &map, "view", plant->views, plant->view_count, sizeof(*view), offsetof(struct named_view, line));
+}
+
+void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+{
+    int count;
+    plant->views = plant_list_make(reader, node, "views", 0, sizeof(*plant->views), &count);
+    if (count > NAMED_VIEWS)
+        yaml_error(reader, yaml_place(node), "views: expected at most %d, found %d", NAMED_VIEWS, count);
+    for (int i = 0; i < count && i < NAMED_VIEWS; i++)
+        read_view(reader, yaml_list_item(reader, node, i), plant, &plant->views[plant->view_count++]);
+}
+
+const struct named_view *named_view_find(const struct plant *plant, const char *id)
+{
+    size_t i = 0;
+    while (i < plant->view_count && (!plant->views[i].id || strcmp(plant->views[i].id, id) != 0))
+        i++;
+    return i < plant->view_count ? &plant->views[i] : NULL;
+}
+
+void plant_views_free(struct plant *plant)
+{
+    for (size_t i = 0; i < plant->view_count; i++) {
+        mem_free(plant->views[i].id);
+        mem_free(plant->views[i].title);
+        mem_free(plant->views[i].address);
+    }
+    mem_free(plant->views);
+}

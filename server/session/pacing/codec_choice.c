@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bytes against work. */
+#include "session/pacing/codec_choice.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "base/clock.h"
+
+static const double JPEG_BYTES_PER_PX = 0.1, RATE_HZ = 30;                  /* measured: 196 kB at 1920x1080, quality 78 */
+static const double PLENTY = 4, SCARCE = 2;                                 /* times what JPEG needs */
+static const double SHORT = 0.15, EASY = 0.4;                               /* processors free */
+static const int64_t TO_JPEG_NS = 5 * NS_PER_S, TO_H264_NS = 30 * NS_PER_S; /* a change costs a frame that stands alone */
+
+static bool speaks_for_other(const struct codec_choice *choice, const struct codec_facts *facts)
+{
+    double need = (double)facts->pixels * JPEG_BYTES_PER_PX * RATE_HZ;
+    if (choice->jpeg)
+        return facts->bytes_per_s < SCARCE * need || facts->cpu_free > EASY;
+    return facts->bytes_per_s > PLENTY * need && facts->cpu_free < SHORT;
+}
+
+void codec_choice_update(struct codec_choice *choice, const struct codec_facts *facts, int64_t now_ns)
+{
+    bool narrow = choice->jpeg && facts->bytes_per_s < (double)facts->pixels * JPEG_BYTES_PER_PX * RATE_HZ;
+    if (!speaks_for_other(choice, facts)) {
+        choice->against_ns = 0;
+        return;
+    }
+    if (!choice->against_ns)
+        choice->against_ns = now_ns;
+    if (!narrow && now_ns - choice->against_ns < (choice->jpeg ? TO_H264_NS : TO_JPEG_NS))
+        return;
+    choice->jpeg = !choice->jpeg;
+    choice->against_ns = 0;
+}
+
+double cpu_meter_free(struct cpu_meter *meter, const char *stat)
+{
+    uint64_t user, nice, system, idle, wait, irq, softirq, steal;
+    if (sscanf(stat, "cpu %" SCNu64 " %" SCNu64 " %" SCNu64 " %" SCNu64 " %" SCNu64 " %" SCNu64 " %" SCNu64 " %" SCNu64, &user, &nice,
+               &system, &idle, &wait, &irq, &softirq, &steal) != 8)
+        return 1;
+    struct cpu_meter now = { .busy = user + nice + system + irq + softirq + steal, .idle = idle + wait };
+    uint64_t busy = now.busy - meter->busy, rest = now.idle - meter->idle;
+    bool first = meter->busy + meter->idle == 0, backwards = now.busy < meter->busy || now.idle < meter->idle;
+    *meter = now;
+    return first || backwards || busy + rest == 0 ? 1 : (double)rest / (double)(busy + rest);
+}

@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a session may see whose token is narrowed: to views of the plant file, or, that of a device which was paired, to its display. */
+#include <jansson.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text/json_text.h"
+#include "message/json_fields.h"
+#include "message/view_named.h"
+#include "plant/plant.h"
+#include "session/reply/reply.h"
+#include "session/session_impl.h"
+
+enum { LEAST_PX = 16, FILTERED_DIGITS = 9 };
+
+/* --- views of the plant file ------------------------------------------------------------------------------------------------ */
+
+static const struct named_view *find_view(const struct session *session, const char *id, struct message_error *error)
+{
+    const struct token_holder *holder = &session->identity.holder;
+    char name[48];
+    if (!tokens_may_see(holder, id)) {
+        message_fail(error, "not_allowed", "named: '%s': this token is for the views %.150s", quoted(id, name), holder->views);
+        return NULL;
+    }
+    const struct named_view *named = named_view_find(session->context->plant, id);
+    if (!named)
+        message_fail(error, "bad_field", "named: the plant file has no view '%s'", quoted(id, name));
+    return named;
+}
+
+/* As its author wrote it, who may say all that there is to say; the size stays. */
+static bool read_view(const struct session *session, const struct named_view *named, struct view *view, struct message_error *error)
+{
+    const struct session_context *context = session->context;
+    const struct params_context params = {
+        .scene = context->scene, .baselines = context->baselines, .snapshot = session_snapshot(session), .bare = true
+    };
+    struct view read;
+    if (!view_named_read(&params, named->address, view->width_px, view->height_px, &read, error))
+        return false;
+    if (read.at_us) {
+        message_fail(error, "bad_field", "named: '%.48s' is of an instant, and a stream shows now", named->id);
+        return false;
+    }
+    const struct view before = *view;
+    *view = read;
+    view->width_px = before.width_px;
+    view->height_px = before.height_px;
+    view->pixel_ratio = before.pixel_ratio;
+    view->camera_seq = before.camera_seq;
+    view->params_seq = before.params_seq;
+    view->tier = before.tier;
+    view_set_instant(view, before.at_us, before.field.slot); /* who looks into the past goes on doing so */
+    view_set_trial(view, before.field.trial);
+    return true;
+}
+
+bool session_look(struct session *session, const char *id, struct view *view, struct message_error *error)
+{
+    const struct named_view *named = find_view(session, id, error);
+    if (!named || !read_view(session, named, view, error))
+        return false;
+    snprintf(session->scope.named, sizeof(session->scope.named), "%s", id);
+    return true;
+}
+
+/* The first of the token's views that the plant file has. */
+static const char *first_view(const struct session *session)
+{
+    const struct plant *plant = session->context->plant;
+    for (size_t i = 0; i < plant->view_count; i++)
+        if (tokens_may_see(&session->identity.holder, plant->views[i].id))
+            return plant->views[i].id;
+    return NULL;
+}
+
+bool session_scope_view(struct session *session, const char *id, struct view *view, struct message_error *error)
+{
+    const char *first = id[0] ? id : first_view(session);
+    if (first && session_look(session, first, view, error))
+        return true;
+    if (!first)
+        message_fail(error, "not_allowed", "this token is for the views %.150s, and the plant file has none of them",
+                     session->identity.holder.views);
+    session_close(session, 1008, "this token is for some views, of which this is none");
+    return false;
+}
+
+json_t *session_scope_views(const struct session *session)
+{
+    const struct plant *plant = session->context->plant;
+    json_t *list = json_array();
+    for (size_t i = 0; i < plant->view_count; i++) {
+        const struct named_view *view = &plant->views[i];
+        if (!tokens_may_see(&session->identity.holder, view->id))
+            continue;
+        json_t *o = json_pack("{s:s,s:s}", "id", view->id, "title", view->title ? view->title : view->id);
+        reply_add_wrong(session->context, o, view->address);
+        json_array_append_new(list, o);
+    }
+    return list;
+}
+
+/* --- a display ------------------------------------------------------------------------------------------------------------ */
+
+static const struct wall_display *display_of(const struct session *session)
+{
+    return wall_display_find(session->context->plant, session->identity.holder.wall, session->identity.holder.display);
+}
+
+void session_scope_begin(struct session *session)
+{
+    const struct plant *plant = session->context->plant;
+    const struct token_holder *holder = &session->identity.holder;
+    mem_free(session->scope.tags);
+    session->scope.tags = NULL;
+    if (!holder->display)
+        return;
+    const struct wall_display *display = display_of(session);
+    session->display = (struct wall_place){ .display = holder->display };
+    snprintf(session->display.wall, sizeof(session->display.wall), "%s", holder->wall);
+    if (wall_display_has_pictures(display))
+        return;
+    session->scope.tags = mem_array(plant->tag_count + 1, sizeof(*session->scope.tags));
+    for (size_t i = 0; i < plant->tag_count; i++)
+        session->scope.tags[i] = wall_display_shows_tag(display, plant->tags[i].name);
+}
+
+void session_scope_end(struct session *session)
+{
+    mem_free(session->scope.tags);
+    session->scope.tags = NULL;
+}
+
+void session_scope_fit(const struct session *session, struct view *view)
+{
+    if (session->scope.tags)
+        view->width_px = view->height_px = LEAST_PX;
+}
+
+static bool shows_row(const struct session *session, const json_t *row)
+{
+    const json_t *tag = json_array_get(row, 0);
+    return json_is_integer(tag) && json_integer_value(tag) >= 0 && session->scope.tags[json_integer_value(tag)];
+}
+
+static bool shows_alarm(const struct session *session, const json_t *row)
+{
+    return wall_display_has(display_of(session), PANE_ALARMS, NULL) || shows_row(session, row);
+}
+
+static bool is_own(const struct session *session, const json_t *item)
+{
+    const char *wall = json_string_value(json_object_get(item, "wall"));
+    return wall && !strcmp(wall, session->identity.holder.wall) &&
+           json_integer_value(json_object_get(item, "display")) == session->identity.holder.display;
+}
+
+/* Of its panes; what is for a picture over many displays stands under the first of them. */
+static bool is_ours(const struct session *session, const json_t *item)
+{
+    const char *id = json_string_value(json_object_get(item, "wall"));
+    const struct wall *wall = wall_find(session->context->plant, session->identity.holder.wall);
+    bool is_tile = wall && session->identity.holder.display <= wall->tile.columns * wall->tile.rows;
+    return is_own(session, item) || (is_tile && id && !strcmp(id, wall->id) && json_integer_value(json_object_get(item, "display")) == 1);
+}
+
+static bool shows_view(const struct session *session, const json_t *item)
+{
+    const char *id = json_string_value(json_object_get(item, "id"));
+    return id && wall_display_shows_view(session->context->plant, display_of(session), id);
+}
+
+static bool shows_note(const struct session *session, const json_t *item)
+{
+    (void)item;
+    return !session->scope.tags;
+}
+
+/* What of a message is told item by item, and which items are. */
+static const struct {
+    const char *type, *list;
+    bool (*keeps)(const struct session *session, const json_t *item);
+    bool of_tags; /* only where the display shows no pictures */
+} filters[] = {
+    { "tags", "values", shows_row, true },  { "alarms", "alarms", shows_alarm, true }, { "views", "list", shows_view, false },
+    { "notes", "list", shows_note, false }, { "walls", "list", is_ours, false },       { "walls", "displays", is_own, false },
+    { "pointed", "list", is_ours, false },
+};
+
+static void filter(const struct session *session, json_t *message, size_t i)
+{
+    json_t *list = json_object_get(message, filters[i].list);
+    for (size_t n = json_array_size(list); n-- > 0;)
+        if (!filters[i].keeps(session, json_array_get(list, n)))
+            json_array_remove(list, n);
+}
+
+char *session_scope_text(const struct session *session, char *text)
+{
+    if (!session->identity.holder.display)
+        return text;
+    json_t *message = json_loads(text, 0, NULL);
+    const char *type = json_string_value(json_object_get(message, "type"));
+    bool filtered = false;
+    for (size_t i = 0; type && i < sizeof(filters) / sizeof(filters[0]); i++)
+        if (!strcmp(type, filters[i].type) && !(filters[i].of_tags && !session->scope.tags)) {
+            filter(session, message, i);
+            filtered = true;
+        }
+    if (!filtered) {
+        json_decref(message);
+        return text;
+    }
+    mem_free(text);
+    return json_text(message, FILTERED_DIGITS);
+}
+
+/* --- what may be sent ------------------------------------------------------------------------------------------------------- */
+
+static bool is_in(enum message_type type, const enum message_type *list, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (list[i] == type)
+            return true;
+    return false;
+}
+
+bool session_scope_allows(const struct session *session, const struct message *message, struct message_error *error)
+{
+    static const enum message_type views[] = { MESSAGE_HELLO,  MESSAGE_LOOK,    MESSAGE_RESIZE,    MESSAGE_ACK,
+                                               MESSAGE_CODECS, MESSAGE_VISIBLE, MESSAGE_KEY_FRAME, MESSAGE_PING };
+    static const enum message_type displays[] = { MESSAGE_HELLO,   MESSAGE_LOOK,      MESSAGE_CAMERA, MESSAGE_PARAMS,
+                                                  MESSAGE_FIT,     MESSAGE_RESIZE,    MESSAGE_ACK,    MESSAGE_CODECS,
+                                                  MESSAGE_VISIBLE, MESSAGE_KEY_FRAME, MESSAGE_PING,   MESSAGE_DISPLAY };
+    const struct token_holder *holder = &session->identity.holder;
+    if (holder->views[0] && !is_in(message->type, views, sizeof(views) / sizeof(views[0])))
+        message_fail(error, "not_allowed", "this token is for pictures of the views %.150s: hello or look names one", holder->views);
+    else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])) &&
+             (message->type != MESSAGE_PICK || session->scope.tags)) /* where there are pictures it looks for a side of an alarm's place */
+        message_fail(error, "not_allowed", "this token is that of display %d of wall %s, and does what that does", holder->display,
+                     holder->wall);
+    else
+        return true;
+    return false;
+}
