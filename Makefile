@@ -267,7 +267,6 @@ $(out)/obj/tests/cad/step_samples.o: CXXFLAGS += -isystem $(occt)
 $(out)/tests/cad/step_samples: $(call objects,tests/cad/step_samples)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -pie -o $@ $^ $(occt_libs)
 $(out)/tests/bench/codec_bench: $(out)/lib/link.a
-$(out)/tests/bench/field_degree: $(call objects,tests/bench/cut_mesh)
 # Those that need no module do not load it, as programs do not: it is where theirs would be installed.
 modules_of_tests := $(addprefix $(out)/tests/lib/plantcast/,$(notdir $(modules)))
 $(modules_of_tests): $(out)/tests/lib/plantcast/%: $(bin)/%
