@@ -2,14 +2,8 @@
 /* Faces of two assets in one place: one of them is seen at every pixel, in both tiers and however a moving picture is drawn. */
 #include "scene/coincident.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "tests/support/rig.h"
 #include "value/quality.h"
@@ -78,10 +72,9 @@ static size_t all_seen_through(struct stand *stand, bool by_gl, enum tier tier)
     return sum;
 }
 
-static void test_one_of_two_faces_is_seen(void **state)
+TEST(test_one_of_two_faces_is_seen)
 {
     struct stand stand;
-    (void)state;
     stand_init(&stand, &rig, make_wall());
     toy_set(stand.snapshot, 0, 60, QUALITY_GOOD);
     size_t untold = all_seen_through(&stand, false, TIER_PREVIEW);
@@ -97,11 +90,5 @@ static void test_one_of_two_faces_is_seen(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_one_of_two_faces_is_seen) };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "coincident_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

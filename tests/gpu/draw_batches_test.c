@@ -1,17 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Assets that share a model are drawn by one call: what is seen is what is seen when each is drawn by itself, and there are no more
    calls for more of them. */
+#include "tests/support/test.h"
 #include <limits.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "render/renderer_compare.h"
 #include "tests/support/gl_calls.h"
@@ -169,9 +162,8 @@ static int count_different(const struct frame *a, const struct frame *b)
 }
 
 /* Clusters that are not seen left out; all of every asset; and what others hide left out. */
-static void test_together_as_one_by_one(void **state)
+TEST(test_together_as_one_by_one)
 {
-    (void)state;
     for (int way = 0; way < 3; way++) {
         struct stand stand;
         size_t different = 0;
@@ -203,11 +195,10 @@ static void test_together_as_one_by_one(void **state)
 }
 
 /* Readings that come while a picture is drawn bit by bit are not seen in it, though both lie in one buffer. */
-static void test_a_picture_under_way_keeps_its_readings(void **state)
+TEST(test_a_picture_under_way_keeps_its_readings)
 {
     struct stand stand;
     struct view view;
-    (void)state;
     stand_init(&stand, &rig, make_crowd(9));
     renderer_use_gl(stand.renderer, true);
     view_default(&stand.toy->scene, WIDTH_PX, HEIGHT_PX, &view);
@@ -273,11 +264,10 @@ static struct calls count_calls(struct stand *stand, enum tier tier, int least, 
 }
 
 /* Readings that changed are one upload for each asset. */
-static void test_more_assets_are_no_more_calls(void **state)
+TEST(test_more_assets_are_no_more_calls)
 {
     enum { FEW = 12, MANY = 60, ROUNDS = 4, ROUND_CALLS = 24, ROUND_DRAWS = 3 };
     struct stand small, large;
-    (void)state;
     if (!gl_calls_begin(rig.gl))
         skip();
     stand_row(&small, FEW);
@@ -303,19 +293,13 @@ static void test_more_assets_are_no_more_calls(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_together_as_one_by_one),
-        cmocka_unit_test(test_a_picture_under_way_keeps_its_readings),
-        cmocka_unit_test(test_more_assets_are_no_more_calls),
-    };
     const char *given = getenv("PLANTCAST_SEED");
     seed = given ? strtoull(given, NULL, 10) : 4;
-    cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "draw_batches_test"))
         return 0;
     make_materials();
     print_message("# PLANTCAST_SEED=%llu\n", (unsigned long long)seed);
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = tests_run(NULL);
     rig_finish(&rig);
     return failed;
 }

@@ -1,17 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Triangles too long for the field: picks and pixels on them, against plain sums over all sensors in double precision. Each pick must be
    within a step of colour; each pixel must be, too, or be marked uncertain. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "render/pick/pick.h"
@@ -219,9 +212,8 @@ static void tally_plates(double end_m, struct tally *tally)
     }
 }
 
-static void test_needles(void **state)
+TEST(test_needles)
 {
-    (void)state;
     struct tally tally;
     tally_plates(SIDE_M, &tally);
     expect_truth("needles", &tally);
@@ -229,9 +221,8 @@ static void test_needles(void **state)
 }
 
 /* Small triangles, which are right, stay unmarked beside needles that are marked. */
-static void test_half_of_needles(void **state)
+TEST(test_half_of_needles)
 {
-    (void)state;
     struct tally tally;
     tally_plates(SIDE_M / 2, &tally);
     expect_truth("half of needles", &tally);
@@ -254,9 +245,8 @@ static void stand_on_plate(struct stand *stand, struct view *view, uint64_t reso
 }
 
 /* The frame says how far it may be off, and nothing where readings are equal. */
-static void test_equal_readings_mark_nothing(void **state)
+TEST(test_equal_readings_mark_nothing)
 {
-    (void)state;
     struct stand stand;
     struct view view;
     stand_on_plate(&stand, &view, 0);
@@ -272,9 +262,8 @@ static void test_equal_readings_mark_nothing(void **state)
 }
 
 /* The bound that preparing gives holds for all sensors, and for readings in the range. */
-static void test_lost_sensors_and_wild_readings_are_measured(void **state)
+TEST(test_lost_sensors_and_wild_readings_are_measured)
 {
-    (void)state;
     struct stand stand;
     struct view view;
     stand_on_plate(&stand, &view, 1);
@@ -292,7 +281,7 @@ static void test_lost_sensors_and_wild_readings_are_measured(void **state)
 
 /* --- what was found --------------------------------------------------------------------------------------------------------- */
 
-static void test_long_part(void **state)
+TEST_WITH(test_long_part, prep_case_set_up, prep_case_tear_down)
 {
     static const double readings[] = { 20, 95, 40, 110, 60, 5 };
     struct prep_case *c = *state;
@@ -330,17 +319,5 @@ static void test_long_part(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_needles),
-        cmocka_unit_test(test_half_of_needles),
-        cmocka_unit_test(test_equal_readings_mark_nothing),
-        cmocka_unit_test(test_lost_sensors_and_wild_readings_are_measured),
-        cmocka_unit_test_setup_teardown(test_long_part, prep_case_set_up, prep_case_tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "drawn_error_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The picture tells the field's values, and only those: pixel by pixel on a flat plate, against the legend's own rule. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "field/lab.h"
 #include "render/overlay/overlay.h"
@@ -111,10 +105,9 @@ static int count_wrong(const struct view *view)
     return wrong;
 }
 
-static void test_every_pixel_has_the_legends_color(void **state)
+TEST_WITH(test_every_pixel_has_the_legends_color, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++)
         for (int interpolation = INTERPOLATION_SHEPARD; interpolation <= INTERPOLATION_PAPER; interpolation++)
@@ -126,10 +119,9 @@ static void test_every_pixel_has_the_legends_color(void **state)
             }
 }
 
-static void test_bands(void **state)
+TEST_WITH(test_bands, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
@@ -142,10 +134,9 @@ static void test_bands(void **state)
     }
 }
 
-static void test_logarithmic_scale(void **state)
+TEST_WITH(test_logarithmic_scale, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     view.range_min = 1;
     view.color_scale.log = true;
@@ -156,10 +147,9 @@ static void test_logarithmic_scale(void **state)
 }
 
 /* Dark where the field has that value, and about as wide as it should be. */
-static void test_isolines_run_where_the_value_is(void **state)
+TEST_WITH(test_isolines_run_where_the_value_is, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     const struct scalars *scalars = field_scalars(stand.field, 0, &view.field, stand.snapshot);
     memcpy(view.color_scale.lines, (double[]){ 30, 60 }, 2 * sizeof(double));
@@ -185,10 +175,9 @@ static void test_isolines_run_where_the_value_is(void **state)
 }
 
 /* The value that is written on a line is the field's at that place; drawn at once or bit by bit. */
-static void test_labels_stand_on_their_lines(void **state)
+TEST_WITH(test_labels_stand_on_their_lines, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     const struct scalars *scalars = field_scalars(stand.field, 0, &view.field, stand.snapshot);
     memcpy(view.color_scale.lines, (double[]){ 30, 60 }, 2 * sizeof(double));
@@ -214,11 +203,10 @@ static void test_labels_stand_on_their_lines(void **state)
     frame_unref(&frame);
 }
 
-static void test_beyond_the_range_has_its_own_colors(void **state)
+TEST_WITH(test_beyond_the_range_has_its_own_colors, set_up, tear_down)
 {
     const struct colormap *map = colormap_at(0);
     struct view view;
-    (void)state;
     look_down(&view);
     view.range_min = 40;
     view.range_max = 60;
@@ -234,10 +222,9 @@ static void test_beyond_the_range_has_its_own_colors(void **state)
     }
 }
 
-static void test_readings_at_the_ends_stay_on_the_map(void **state)
+TEST_WITH(test_readings_at_the_ends_stay_on_the_map, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     for (int end = 0; end < 2; end++) {
         for (int tag = 0; tag < PLATE_TAGS; tag++)
@@ -255,10 +242,9 @@ static bool is_grey(const uint8_t *bgrx)
     return bgrx[0] == bgrx[1] && bgrx[1] == bgrx[2];
 }
 
-static void test_no_data_is_grey_stripes(void **state)
+TEST_WITH(test_no_data_is_grey_stripes, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     for (int tag = 0; tag < PLATE_TAGS; tag++)
         toy_set(stand.snapshot, tag, 0, QUALITY_BAD_SENSOR_FAILURE);
@@ -280,10 +266,9 @@ static void test_no_data_is_grey_stripes(void **state)
 }
 
 /* A lost sensor's place shows no colour of the map; elsewhere all stays. */
-static void test_lost_sensor_leaves_its_place_empty(void **state)
+TEST_WITH(test_lost_sensor_leaves_its_place_empty, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     toy_set(stand.snapshot, 2, 95, QUALITY_BAD_SENSOR_FAILURE);
     struct frame *frame = stand_draw(&stand, &view);
@@ -294,10 +279,9 @@ static void test_lost_sensor_leaves_its_place_empty(void **state)
     frame_unref(&frame);
 }
 
-static void test_uncertain_is_stippled(void **state)
+TEST_WITH(test_uncertain_is_stippled, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     for (int tag = 0; tag < PLATE_TAGS; tag++)
         toy_set(stand.snapshot, tag, 50.2, QUALITY_UNCERTAIN_LAST_USABLE);
@@ -331,11 +315,10 @@ static double part_of_first(int x, int y)
 }
 
 /* Between vertices, not along them: triangles are a twelfth of the plate. */
-static void test_the_rim_of_the_uncertain_runs_true(void **state)
+TEST_WITH(test_the_rim_of_the_uncertain_runs_true, set_up, tear_down)
 {
     const double slack = 0.02;
     struct view view;
-    (void)state;
     look_down(&view);
     toy_set(stand.snapshot, 0, 50.2, QUALITY_UNCERTAIN_LAST_USABLE);
     for (int i = 1; i < PLATE_TAGS; i++)
@@ -397,10 +380,9 @@ static void check_alarms(const struct view *view)
     }
 }
 
-static void test_operator_sees_limits(void **state)
+TEST_WITH(test_operator_sees_limits, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     for (int tag = 0; tag < PLATE_TAGS; tag++)
         memcpy(stand.toy->plant.tags[tag].limits, (double[]){ 0, 20, 70, 90 }, 4 * sizeof(double));
@@ -424,11 +406,10 @@ static void test_operator_sees_limits(void **state)
 }
 
 /* At each sensor, how far it is from the one that is asked of: straight, and along the plate the same. */
-static void test_markers_tell_distances(void **state)
+TEST_WITH(test_markers_tell_distances, set_up, tear_down)
 {
     const double want_m[PLATE_TAGS] = { hypot(4, 1), 0, hypot(2, 3) };
     struct view view;
-    (void)state;
     look_down(&view);
     view.camera.eye_m[2] = 14;
     view.field.show = SHOW_DISTANCE;
@@ -448,11 +429,10 @@ static void test_markers_tell_distances(void **state)
 }
 
 /* Pictures of a clock that nothing keeps right say so beside it. */
-static void test_a_clock_that_is_not_set_is_said(void **state)
+TEST_WITH(test_a_clock_that_is_not_set_is_said, set_up, tear_down)
 {
     struct view view;
     int differ = 0;
-    (void)state;
     look_down(&view);
     view.width_px = 800;
     struct frame *set = stand_draw(&stand, &view), *unset = stand_draw(&stand, &view);
@@ -471,7 +451,7 @@ static void test_a_clock_that_is_not_set_is_said(void **state)
 }
 
 /* Of tags that were not proven, once one was: markers and legend say so; elsewhere the picture is as before. */
-static void test_unproven_tags_are_marked(void **state)
+TEST_WITH(test_unproven_tags_are_marked, set_up, tear_down)
 {
     enum { WIDE_PX = 600 };
     struct view view;
@@ -479,7 +459,6 @@ static void test_unproven_tags_are_marked(void **state)
     struct plant *plant = &stand.toy->plant;
     struct plant_source source = { .id = (char[]){ "plc" } };
     int by_name[PLATE_TAGS] = { 0, 1, 2 }, differ[PLATE_TAGS] = { 0 };
-    (void)state;
     plant->tags_by_name = by_name;
     plant->sources = &source;
     for (int i = 0; i < PLATE_TAGS; i++)
@@ -514,10 +493,9 @@ static void test_unproven_tags_are_marked(void **state)
     temp_folder_destroy(&folder);
 }
 
-static void test_default_look_keeps_to_the_palette(void **state)
+TEST_WITH(test_default_look_keeps_to_the_palette, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     view.look = LOOK_DEFAULT;
     view.ramp_interval = 200; /* one band: one colour, only lightness may differ */
@@ -537,10 +515,8 @@ static void test_default_look_keeps_to_the_palette(void **state)
     }
 }
 
-#define each(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-
 /* Strips in the colours of the map itself, as a model may have them, and no sensor: in no picture of a field is any of them a colour. */
-static void test_context_has_no_color(void **state)
+TEST_WITH(test_context_has_no_color, set_up, tear_down)
 {
     enum { STRIPS = 16 };
     static const double low[3] = { 0, 0, 0 };
@@ -548,7 +524,6 @@ static void test_context_has_no_color(void **state)
     struct shape shape = { .materials = materials, .material_count = STRIPS };
     struct toy *toy = toy_create();
     struct view view;
-    (void)state;
     for (uint32_t i = 0; i < STRIPS; i++) {
         const uint8_t *rgb = colormap_at(0)->rgb[i * 255 / (STRIPS - 1)];
         materials[i] = (struct asset_material){ .base_color = { rgb[0] / 255.0f, rgb[1] / 255.0f, rgb[2] / 255.0f, 1 },
@@ -586,29 +561,5 @@ static void test_context_has_no_color(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        each(test_every_pixel_has_the_legends_color),
-        each(test_bands),
-        each(test_logarithmic_scale),
-        each(test_isolines_run_where_the_value_is),
-        each(test_labels_stand_on_their_lines),
-        each(test_beyond_the_range_has_its_own_colors),
-        each(test_readings_at_the_ends_stay_on_the_map),
-        each(test_no_data_is_grey_stripes),
-        each(test_lost_sensor_leaves_its_place_empty),
-        each(test_uncertain_is_stippled),
-        each(test_the_rim_of_the_uncertain_runs_true),
-        each(test_operator_sees_limits),
-        each(test_markers_tell_distances),
-        each(test_a_clock_that_is_not_set_is_said),
-        each(test_unproven_tags_are_marked),
-        each(test_default_look_keeps_to_the_palette),
-        each(test_context_has_no_color),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "field_colors_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

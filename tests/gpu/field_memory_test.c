@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A field that there is no memory for is shown as no data: never as an asset that has no sensors, never as some value. The linker leads
    mem_try_array and pool_take here. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "gpu/pool.h"
 #include "render/shaded_colormap.h"
@@ -110,10 +103,9 @@ static void assert_hatched(const struct view *view)
     frame_unref(&frame);
 }
 
-static void test_without_memory_there_is_no_data(void **state)
+TEST_WITH(test_without_memory_there_is_no_data, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     for (int kind = NO_SUMS; kind <= NO_BUFFER; kind++)
         for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -130,10 +122,9 @@ static void test_without_memory_there_is_no_data(void **state)
         }
 }
 
-static void test_bit_by_bit_too(void **state)
+TEST_WITH(test_bit_by_bit_too, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     look_down(&view);
     view.tier = TIER_REFINED;
     view.field.power = 9;
@@ -150,10 +141,9 @@ static void test_bit_by_bit_too(void **state)
 }
 
 /* Fields that are worked out for the same picture do not push each other out, nor what is shown of them. */
-static void test_with_little_room_many_are_shown_alike(void **state)
+TEST_WITH(test_with_little_room_many_are_shown_alike, set_up_many, tear_down)
 {
     struct view view;
-    (void)state;
     struct field *poor = field_create(rig.workers, &stand.toy->scene);
     struct renderer *frugal = renderer_create(rig.log, rig.gl, &stand.toy->scene, poor);
     assert_non_null(frugal);
@@ -192,13 +182,12 @@ static void assert_kept(const struct fields *fields, struct fields_entry *const 
 }
 
 /* A plant of which one picture needs more than there is room for: its fields are not made anew for each. Others go. */
-static void test_what_one_picture_needs_stays(void **state)
+TEST_WITH(test_what_one_picture_needs_stays, set_up_many, tear_down)
 {
     struct view view;
     struct frame *frame;
     struct fields *fields = &stand.renderer->fields;
     struct fields_entry *was[PLATES];
-    (void)state;
     fields->bound_bytes = 1;
     look_down(&view);
     view.camera.eye_m[2] = 40;
@@ -218,16 +207,5 @@ static void test_what_one_picture_needs_stays(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_without_memory_there_is_no_data, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_bit_by_bit_too, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_with_little_room_many_are_shown_alike, set_up_many, tear_down),
-        cmocka_unit_test_setup_teardown(test_what_one_picture_needs_stays, set_up_many, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "field_memory_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

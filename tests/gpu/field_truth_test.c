@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The truth rules where people see them: what pixels show when sensors are lost, out of range, out of reach or mad. Five sensors on a
    plate and, apart from it but of the same asset, a second plate that no way leads to. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
 
-#include <cmocka.h>
 
 #include "protocol/asset_distance.h"
 #include "render/shaded_colormap.h"
@@ -102,10 +97,9 @@ static bool is_hatched(const struct view *view, double x_m, double y_m, double h
 static const enum tier tiers[] = { TIER_PREVIEW, TIER_REFINED };
 #define for_each_tier(view) for (int tier_index = 0; tier_index < 2 && (look_down(view, tiers[tier_index]), true); tier_index++)
 
-static void test_the_hottest_goes_bad(void **state)
+TEST_WITH(test_the_hottest_goes_bad, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     for_each_tier(&view)
     {
         toy_set(stand.snapshot, HOTTEST, 95, QUALITY_GOOD);
@@ -125,10 +119,9 @@ static void test_the_hottest_goes_bad(void **state)
     }
 }
 
-static void test_a_reading_of_zero_is_a_reading(void **state)
+TEST_WITH(test_a_reading_of_zero_is_a_reading, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     for_each_tier(&view)
     {
         for (int i = 0; i < SENSORS; i++)
@@ -142,19 +135,17 @@ static void test_a_reading_of_zero_is_a_reading(void **state)
     }
 }
 
-static void test_all_bad(void **state)
+TEST_WITH(test_all_bad, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     for (int i = 0; i < SENSORS; i++)
         toy_set(stand.snapshot, i, 50, QUALITY_BAD_NO_COMMUNICATION);
     for_each_tier(&view) assert_true(is_hatched(&view, 2, 2, 1.9));
 }
 
-static void test_one_sensor_is_everywhere_it_reaches(void **state)
+TEST_WITH(test_one_sensor_is_everywhere_it_reaches, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     for_each_tier(&view)
     {
         for (int i = 0; i < HOTTEST; i++)
@@ -166,10 +157,9 @@ static void test_one_sensor_is_everywhere_it_reaches(void **state)
     }
 }
 
-static void test_a_part_that_nobody_reaches(void **state)
+TEST_WITH(test_a_part_that_nobody_reaches, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     for_each_tier(&view)
     {
         assert_true(is_hatched(&view, 1.5 * side_m, 2, 1.8)); /* the second plate */
@@ -182,11 +172,10 @@ static void test_a_part_that_nobody_reaches(void **state)
     }
 }
 
-static void test_what_is_not_a_number_has_no_color(void **state)
+TEST_WITH(test_what_is_not_a_number_has_no_color, set_up, tear_down)
 {
     static const double mad[] = { NAN, INFINITY, -INFINITY };
     struct view view;
-    (void)state;
     for_each_tier(&view) for (int i = 0; i < 3; i++)
     {
         toy_set(stand.snapshot, HOTTEST, mad[i], QUALITY_GOOD);
@@ -195,10 +184,9 @@ static void test_what_is_not_a_number_has_no_color(void **state)
     }
 }
 
-static void test_beyond_the_range(void **state)
+TEST_WITH(test_beyond_the_range, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     for_each_tier(&view)
     {
         toy_set(stand.snapshot, HOTTEST, 1e9, QUALITY_GOOD);
@@ -210,10 +198,9 @@ static void test_beyond_the_range(void **state)
     }
 }
 
-static void test_a_sensor_at_a_vertex_is_exact(void **state)
+TEST_WITH(test_a_sensor_at_a_vertex_is_exact, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     for_each_tier(&view)
     {
         for (double power = 0.5; power <= 16; power *= 2) {
@@ -225,10 +212,9 @@ static void test_a_sensor_at_a_vertex_is_exact(void **state)
     }
 }
 
-static void test_a_distance_is_no_reading(void **state)
+TEST_WITH(test_a_distance_is_no_reading, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     for_each_tier(&view)
     {
         view.field.show = SHOW_DISTANCE;
@@ -243,25 +229,7 @@ static void test_a_distance_is_no_reading(void **state)
     }
 }
 
-#define each(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        each(test_the_hottest_goes_bad),
-        each(test_a_reading_of_zero_is_a_reading),
-        each(test_all_bad),
-        each(test_one_sensor_is_everywhere_it_reaches),
-        each(test_a_part_that_nobody_reaches),
-        each(test_what_is_not_a_number_has_no_color),
-        each(test_beyond_the_range),
-        each(test_a_sensor_at_a_vertex_is_exact),
-        each(test_a_distance_is_no_reading),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "field_truth_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contexts, programs and pictures: what every pass relies on. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <glad/gl.h>
 
 #include "gpu/program.h"
@@ -19,9 +12,8 @@
 
 static struct rig rig;
 
-static void test_names_of_contexts(void **state)
+TEST(test_names_of_contexts)
 {
-    (void)state;
     enum gl_kind kind = GL_OSMESA;
     assert_true(gl_kind_parse("auto", &kind) && kind == GL_AUTO);
     for (enum gl_kind k = GL_AUTO; k <= GL_OSMESA; k++)
@@ -29,9 +21,8 @@ static void test_names_of_contexts(void **state)
     assert_false(gl_kind_parse("glx", &kind));
 }
 
-static void test_addresses_of_devices(void **state)
+TEST(test_addresses_of_devices)
 {
-    (void)state;
     struct gl_device device;
     assert_true(gl_device_parse("0000:65:00.0", &device) && device.index < 0);
     assert_true(device.domain == 0 && device.bus == 0x65 && device.slot == 0 && device.function == 0);
@@ -43,9 +34,8 @@ static void test_addresses_of_devices(void **state)
         assert_false(gl_device_parse(wrong[i], &device));
 }
 
-static void test_context_tells_what_it_is(void **state)
+TEST(test_context_tells_what_it_is)
 {
-    (void)state;
     GLint major = 0, minor = 0;
     glGetIntegerv(GL_MAJOR_VERSION, &major);
     glGetIntegerv(GL_MINOR_VERSION, &minor);
@@ -56,18 +46,16 @@ static void test_context_tells_what_it_is(void **state)
 }
 
 /* Functions of GL are loaded once for all contexts, so that there can be none of another back end beside this one. */
-static void test_contexts_beside_each_other_are_of_one_kind(void **state)
+TEST(test_contexts_beside_each_other_are_of_one_kind)
 {
-    (void)state;
     for (enum gl_kind kind = GL_EGL_DEVICE; kind <= GL_OSMESA; kind++)
         if (kind != rig.gl->kind)
             assert_null(gl_create(rig.log, kind, NULL));
     assert_false(gl_lost(rig.gl));
 }
 
-static void test_pass_tells_its_errors(void **state)
+TEST(test_pass_tells_its_errors)
 {
-    (void)state;
     gl_pass_enter("good");
     assert_true(gl_pass_leave(rig.gl, "good"));
     gl_pass_enter("bad on purpose");
@@ -77,18 +65,16 @@ static void test_pass_tells_its_errors(void **state)
     assert_true(gl_pass_leave(rig.gl, "good again"));
 }
 
-static void test_program_that_does_not_compile(void **state)
+TEST(test_program_that_does_not_compile)
 {
-    (void)state;
     assert_int_equal(program_compile(rig.log, GL_FRAGMENT_SHADER, "broken", "void main() { nonsense }\n", NULL), 0);
     assert_int_equal(program_compile(rig.log, GL_FRAGMENT_SHADER, "lost", "#include \"nowhere.glsl\"\nvoid main() {}\n", NULL), 0);
     assert_int_equal(program_compile(rig.log, GL_FRAGMENT_SHADER, "unquoted", "#include light.glsl\nvoid main() {}\n", NULL), 0);
     assert_int_equal(program_create(rig.log, program_params(.vertex = "nowhere.vert", .fragment = "depth.frag")), 0);
 }
 
-static void test_program_that_does_not_link(void **state)
+TEST(test_program_that_does_not_link)
 {
-    (void)state;
     GLuint stages[2] = {
         program_compile(rig.log, GL_VERTEX_SHADER, "one", "out vec4 a;\nvoid main() { a = vec4(1); gl_Position = a; }\n", NULL),
         program_compile(rig.log, GL_FRAGMENT_SHADER, "two", "in vec2 a;\nout vec4 c;\nvoid main() { c = a.xyxy; }\n", NULL),
@@ -98,9 +84,8 @@ static void test_program_that_does_not_link(void **state)
     assert_int_equal(program_link(rig.log, "mismatch", stages), 0);
 }
 
-static void test_defines_and_includes_reach_the_compiler(void **state)
+TEST(test_defines_and_includes_reach_the_compiler)
 {
-    (void)state;
     GLuint shader = program_compile(rig.log, GL_FRAGMENT_SHADER, "good",
                                     "#include \"light.glsl\"\nout vec4 c;\nvoid main() { c = vec4(light_scalar(VALUE, 0.5)); }\n",
                                     "#define VALUE 0.25\n");
@@ -145,16 +130,14 @@ static void check_flag(int samples)
     target_finish(&target);
 }
 
-static void test_readback_from_the_top(void **state)
+TEST(test_readback_from_the_top)
 {
-    (void)state;
     check_flag(1);
     check_flag(4);
 }
 
-static void test_target_too_large_is_refused(void **state)
+TEST(test_target_too_large_is_refused)
 {
-    (void)state;
     struct target target;
     assert_false(target_init(&target, rig.log, rig.gl->max_texture_px * 2, 16, 1));
 }
@@ -174,9 +157,8 @@ static pid_t try_without_drivers(void)
 
 static pid_t without_drivers;
 
-static void test_no_drivers(void **state)
+TEST(test_no_drivers)
 {
-    (void)state;
     int status = -1;
     assert_int_equal(waitpid(without_drivers, &status, 0), without_drivers);
     assert_true(WIFEXITED(status));
@@ -261,9 +243,8 @@ static pid_t try_devices(void)
     return child;
 }
 
-static void test_devices_that_are_asked_for(void **state)
+TEST(test_devices_that_are_asked_for)
 {
-    (void)state;
     int status = -1;
     assert_int_equal(waitpid(asks_for_devices, &status, 0), asks_for_devices);
     assert_true(WIFEXITED(status));
@@ -274,21 +255,7 @@ static void test_devices_that_are_asked_for(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_names_of_contexts),          cmocka_unit_test(test_addresses_of_devices),
-        cmocka_unit_test(test_context_tells_what_it_is),
-        cmocka_unit_test(test_contexts_beside_each_other_are_of_one_kind),
-        cmocka_unit_test(test_pass_tells_its_errors),      cmocka_unit_test(test_program_that_does_not_compile),
-        cmocka_unit_test(test_program_that_does_not_link), cmocka_unit_test(test_defines_and_includes_reach_the_compiler),
-        cmocka_unit_test(test_readback_from_the_top),      cmocka_unit_test(test_target_too_large_is_refused),
-        cmocka_unit_test(test_no_drivers),                 cmocka_unit_test(test_devices_that_are_asked_for),
-    };
     without_drivers = try_without_drivers();
     asks_for_devices = try_devices();
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "gl_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures against those in tests/golden, made on llvmpipe: as a session without a GPU has them (render/soft, render/refined; the code is
    the same with each context), and drawn by the context itself. GOLDEN_UPDATE=1 makes them anew; look at them before you commit them. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <sys/stat.h>
 
-#include <cmocka.h>
 #include <png.h>
 
 #include "base/mem.h"

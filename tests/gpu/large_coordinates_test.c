@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A plant where its survey has it, 5,500 km north of the origin (UTM), looks as it does at the origin. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "render/pick/pick.h"
@@ -99,34 +92,29 @@ static void assert_same_cameras(bool by_gl, enum tier tier)
     }
 }
 
-static void test_moving_without_a_gpu(void **state)
+TEST(test_moving_without_a_gpu)
 {
-    (void)state;
     assert_same_cameras(false, TIER_PREVIEW);
 }
 
-static void test_still_without_a_gpu(void **state)
+TEST(test_still_without_a_gpu)
 {
-    (void)state;
     assert_same_cameras(false, TIER_REFINED);
 }
 
-static void test_moving_by_gl(void **state)
+TEST(test_moving_by_gl)
 {
-    (void)state;
     assert_same_cameras(true, TIER_PREVIEW);
 }
 
-static void test_still_by_gl(void **state)
+TEST(test_still_by_gl)
 {
-    (void)state;
     assert_same_cameras(true, TIER_REFINED);
 }
 
-static void test_orthographic_and_cut(void **state)
+TEST(test_orthographic_and_cut)
 {
     struct view at_near, at_far;
-    (void)state;
     for (int by_gl = 0; by_gl < 2; by_gl++) {
         renderer_use_gl(near.renderer, by_gl);
         renderer_use_gl(far.renderer, by_gl);
@@ -140,10 +128,9 @@ static void test_orthographic_and_cut(void **state)
     }
 }
 
-static void test_places_and_distances(void **state)
+TEST(test_places_and_distances)
 {
     int hits = 0, sensors = 0;
-    (void)state;
     for (int i = -1; i < 4; i++) {
         struct view at_near, at_far;
         look(i, &at_near, &at_far);
@@ -169,12 +156,6 @@ static void test_places_and_distances(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_moving_without_a_gpu), cmocka_unit_test(test_still_without_a_gpu),
-        cmocka_unit_test(test_moving_by_gl),         cmocka_unit_test(test_still_by_gl),
-        cmocka_unit_test(test_orthographic_and_cut), cmocka_unit_test(test_places_and_distances),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "large_coordinates_test"))
         return 0;
     struct toy *toy = toy_unit();
@@ -183,7 +164,7 @@ int main(void)
     stand_init(&far, &rig, toy);
     toy_fill(near.snapshot, 0);
     toy_fill(far.snapshot, 0);
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = tests_run(NULL);
     stand_finish(&near);
     stand_finish(&far);
     rig_finish(&rig);

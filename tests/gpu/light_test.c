@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Light that is chosen while others watch: baked in bits, kept within a bound, shown when it is ready. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "render/light/light.h"
@@ -64,12 +57,11 @@ static int count_steps(struct light *light, const struct light_key *key)
 }
 
 /* With and without the light of the sky to be worked out. */
-static void test_bits_make_the_same_light(void **state)
+TEST(test_bits_make_the_same_light)
 {
     struct gpu_scene gpu_scene;
     struct light at_once, in_bits;
     const struct light_key suns[2] = { sun(1), sun(2) };
-    (void)state;
     assert_true(init_scene(&gpu_scene, stand.toy) && light_init(&at_once, &gpu_scene, &environments) &&
                 light_init(&in_bits, &gpu_scene, &environments));
     for (int i = 0; i < 2; i++) {
@@ -96,14 +88,13 @@ static void damage(const char *path)
 
 /* The next start reads it, bakes the rest, and comes to the same light for another sun too; not from a file that is damaged, or of a plant
    in which something was moved. */
-static void test_openness_is_kept(void **state)
+TEST(test_openness_is_kept)
 {
     struct gpu_scene gpu_scene;
     struct light anew, first, second;
     struct openness openness;
     const struct light_key suns[2] = { sun(1), sun(2) };
     char folder[] = "/tmp/plantcast-light-XXXXXX", path[64];
-    (void)state;
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof(path), "%s/openness", folder);
     assert_true(init_scene(&gpu_scene, stand.toy));
@@ -137,7 +128,7 @@ static void test_openness_is_kept(void **state)
 }
 
 /* A wall whose corners stick in others: as bright in between as it is, not as dark as its corners. */
-static void test_large_faces_are_lit_within(void **state)
+TEST(test_large_faces_are_lit_within)
 {
     static const double here[3] = { 0, 0, 0 };
     struct toy *toy = toy_create();
@@ -146,7 +137,6 @@ static void test_large_faces_are_lit_within(void **state)
     struct light light;
     struct light_key key = sun(1);
     size_t count;
-    (void)state;
     shape_plate(&shape, TOY_STEEL, (double[]){ 0, 0, 0 }, (double[]){ 10, 0, 0 }, (double[]){ 0, 0, 4 }, 1);
     int wall = toy_add(toy, "WALL", &shape, here, NULL, 0);
     for (int i = 0; i < 4; i++) {
@@ -168,13 +158,29 @@ static void test_large_faces_are_lit_within(void **state)
     toy_destroy(&toy);
 }
 
+/* Tests that do not examine the light of the sky share one baked sky. */
+static char *openness_folder;
+
+static int keep_openness(void **state)
+{
+    (void)state;
+    stand.toy->scene.folder = openness_folder;
+    return 0;
+}
+
+static int forget_openness(void **state)
+{
+    (void)state;
+    stand.toy->scene.folder = NULL;
+    return 0;
+}
+
 /* Forty sessions, each with a sun of its own; one of them is being drawn all the while. */
-static void test_many_lights_fit_in_a_bound(void **state)
+TEST_WITH(test_many_lights_fit_in_a_bound, keep_openness, forget_openness)
 {
     struct gpu_scene gpu_scene;
     struct light light;
     struct light_key key = sun(0);
-    (void)state;
     assert_true(init_scene(&gpu_scene, stand.toy) && light_init(&light, &gpu_scene, &environments));
     size_t one = bake_bytes(&gpu_scene);
     light.bound_bytes = 3 * one;
@@ -198,11 +204,10 @@ static void test_many_lights_fit_in_a_bound(void **state)
     gpu_scene_finish(&gpu_scene);
 }
 
-static void test_the_nearest_sun_stands_in(void **state)
+TEST_WITH(test_the_nearest_sun_stands_in, keep_openness, forget_openness)
 {
     struct gpu_scene gpu_scene;
     struct light light;
-    (void)state;
     assert_true(init_scene(&gpu_scene, stand.toy) && light_init(&light, &gpu_scene, &environments));
     assert_null(light_near(&light, &(struct light_key){ .towards = { 0, 0, 1 } }));
     light_get(&light, &(struct light_key){ .towards = { 1, 0, 0 } });
@@ -214,12 +219,11 @@ static void test_the_nearest_sun_stands_in(void **state)
 }
 
 /* Of the usual light's key and others: the usual one, if it is cached. */
-static void test_one_light_stays(void **state)
+TEST_WITH(test_one_light_stays, keep_openness, forget_openness)
 {
     struct gpu_scene gpu_scene;
     struct light light;
     const struct light_key usual = sun(0), others[2] = { sun(1), sun(4) };
-    (void)state;
     assert_true(init_scene(&gpu_scene, stand.toy) && light_init(&light, &gpu_scene, &environments));
     light.bound_bytes = 3 * bake_bytes(&gpu_scene);
     for (int cached = 1; cached >= 0; cached--) {
@@ -244,10 +248,9 @@ static bool same_pixels(const struct frame *a, const struct frame *b)
 }
 
 /* A moving session turns the sun: nobody waits, and a few pictures later it has what it asked for. */
-static void test_a_moving_session_does_not_wait(void **state)
+TEST(test_a_moving_session_does_not_wait)
 {
     struct view view;
-    (void)state;
     view_default(&stand.toy->scene, 320, 180, &view);
     view.tier = TIER_PREVIEW;
     struct frame *before = stand_draw(&stand, &view);
@@ -274,11 +277,10 @@ static void test_a_moving_session_does_not_wait(void **state)
 }
 
 /* Who is in a hurry has a picture before its light is worked out; it is worked out while nobody asks for anything. */
-static void test_the_first_light_is_rough(void **state)
+TEST(test_the_first_light_is_rough)
 {
     struct stand fresh;
     struct view view;
-    (void)state;
     stand_init(&fresh, &rig, toy_unit());
     for (int i = 0; i < 8; i++)
         toy_set(fresh.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
@@ -299,10 +301,9 @@ static void test_the_first_light_is_rough(void **state)
 }
 
 /* A still picture shows the sun that was asked for, however long that takes. */
-static void test_a_still_picture_waits_for_its_light(void **state)
+TEST(test_a_still_picture_waits_for_its_light)
 {
     struct view view;
-    (void)state;
     view_default(&stand.toy->scene, 320, 180, &view);
     memcpy(view.light_dir, sun(4).towards, sizeof(view.light_dir));
     struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
@@ -315,39 +316,8 @@ static void test_a_still_picture_waits_for_its_light(void **state)
     frame_unref(&whole);
 }
 
-/* Where the sky is not what is tested, it is baked once. */
-static char *openness_folder;
-
-static int keep_openness(void **state)
-{
-    (void)state;
-    stand.toy->scene.folder = openness_folder;
-    return 0;
-}
-
-static int forget_openness(void **state)
-{
-    (void)state;
-    stand.toy->scene.folder = NULL;
-    return 0;
-}
-
-#define with_openness(test) cmocka_unit_test_setup_teardown(test, keep_openness, forget_openness)
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bits_make_the_same_light),
-        cmocka_unit_test(test_large_faces_are_lit_within),
-        with_openness(test_many_lights_fit_in_a_bound),
-        with_openness(test_the_nearest_sun_stands_in),
-        with_openness(test_one_light_stays),
-        cmocka_unit_test(test_a_moving_session_does_not_wait),
-        cmocka_unit_test(test_a_still_picture_waits_for_its_light),
-        cmocka_unit_test(test_the_first_light_is_rough),
-        cmocka_unit_test(test_openness_is_kept),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
     unsetenv("PLANTCAST_SHARED"); /* what others have kept is not looked for */
     if (!rig_init(&rig, "light_test"))
         return 0;
@@ -357,7 +327,7 @@ int main(void)
     if (!environments_init(&environments, rig.gl, &stand.toy->plant, rig.workers))
         return 1;
     openness_folder = temp_folder_create();
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = tests_run(NULL);
     temp_folder_destroy(&openness_folder);
     environments_finish(&environments);
     stand_finish(&stand);

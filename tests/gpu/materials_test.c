@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Materials against glTF's own reflectance, integrated here in double precision: a grid of spheres from rough to smooth, dielectric
    to metal, under surroundings read from a file and under the sun; and white ones in a white furnace, which must not be seen. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/rig.h"
@@ -288,11 +281,10 @@ static double compare(struct scene_of *scene, int i, const double sun[3])
 
 static const double from_behind[3] = { 0, 1, 0 }, from_the_left[3] = { -0.6, -0.64, 0.48 };
 
-static void test_grid(void **state)
+TEST(test_grid)
 {
     struct scene_of scene;
     double all[2] = { 0 }, worst[2] = { 0 };
-    (void)state;
     scene_init(&scene, room, (double[3]){ 0.8, 0.45, 0.2 });
     for (int i = 0; i < spheres; i++)
         for (int lit = 0; lit < 2; lit++) {
@@ -310,12 +302,11 @@ static void test_grid(void **state)
 }
 
 /* Under even light, whatever is white comes out as bright as the light, from face to rim. */
-static void test_white_furnace(void **state)
+TEST(test_white_furnace)
 {
     struct scene_of scene;
     double want[3] = { SKY_LIGHT, SKY_LIGHT, SKY_LIGHT }, worst = 0;
     int off = 0, all = 0;
-    (void)state;
     scene_init(&scene, white, (double[3]){ 1, 1, 1 });
     shown(want);
     for (int i = 0; i < spheres; i++) {
@@ -337,10 +328,9 @@ static void test_white_furnace(void **state)
 }
 
 /* A dark, smooth dielectric mirrors some percent in its middle and much more at its rim. */
-static void test_rim_mirrors(void **state)
+TEST(test_rim_mirrors)
 {
     struct scene_of scene;
-    (void)state;
     scene_init(&scene, white, (double[3]){ 0, 0, 0 });
     struct frame *frame = draw_sphere(&scene, 0, from_behind);
     const uint8_t *middle = frame_pixel(frame, SIDE_PX / 2, SIDE_PX / 2), *rim = frame_pixel(frame, SIDE_PX * 94 / 100, SIDE_PX / 2);
@@ -357,17 +347,7 @@ static void test_rim_mirrors(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_grid),
-        cmocka_unit_test(test_white_furnace),
-        cmocka_unit_test(test_rim_mirrors),
-    };
     steps = sweep(STEPS, 3);
     spheres = steps * steps;
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "materials_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

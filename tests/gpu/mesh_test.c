@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What vertices become on the GPU: folded normals as shaders unfold them, texture coordinates in few bits where they fit. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "gpu/mesh.h"
 #include "gpu/program.h"
@@ -82,9 +76,8 @@ static void unfold(const struct mesh *mesh, float (*out)[4])
     program_destroy(&program);
 }
 
-static void test_normals_come_back(void **state)
+TEST(test_normals_come_back)
 {
-    (void)state;
     static float out[COUNT][4];
     double most = 0;
     struct mesh mesh = make(false, false);
@@ -109,9 +102,8 @@ static void set_texcoords(float low, float high)
     texcoords[COUNT - 1][1] = high;
 }
 
-static void test_texture_coordinates_that_fit_are_short(void **state)
+TEST(test_texture_coordinates_that_fit_are_short)
 {
-    (void)state;
     static uint16_t packed[COUNT][2];
     set_texcoords(0, 1);
     struct mesh mesh = make(true, false);
@@ -124,9 +116,8 @@ static void test_texture_coordinates_that_fit_are_short(void **state)
     mesh_finish(&mesh);
 }
 
-static void test_others_stay_as_they_are(void **state)
+TEST(test_others_stay_as_they_are)
 {
-    (void)state;
     static float back[COUNT][2];
     for (int above = 0; above < 2; above++) {
         set_texcoords(above ? 0 : -1e-6F, above ? 1.000001F : 1);
@@ -138,9 +129,8 @@ static void test_others_stay_as_they_are(void **state)
     }
 }
 
-static void test_bytes_of_its_own(void **state)
+TEST(test_bytes_of_its_own)
 {
-    (void)state;
     set_texcoords(0, 1);
     for (int more = 0; more < 4; more++) {
         struct mesh mesh = make(more & 1, more & 2);
@@ -160,9 +150,8 @@ static void test_bytes_of_its_own(void **state)
 }
 
 /* What is written into the caller's memory afterwards is there in the buffer, and not where it had to be copied. */
-static void test_what_is_kept_is_read_in_place(void **state)
+TEST(test_what_is_kept_is_read_in_place)
 {
-    (void)state;
     static float back_m[COUNT][3];
     struct gl *gl = rig.gl;
     if (!gl->reads_in_place) {
@@ -184,18 +173,10 @@ static void test_what_is_kept_is_read_in_place(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_normals_come_back),
-        cmocka_unit_test(test_texture_coordinates_that_fit_are_short),
-        cmocka_unit_test(test_others_stay_as_they_are),
-        cmocka_unit_test(test_bytes_of_its_own),
-        cmocka_unit_test(test_what_is_kept_is_read_in_place),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "mesh_test"))
         return 0;
     make_normals();
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = tests_run(NULL);
     rig_finish(&rig);
     return failed;
 }

@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What others hide is left out, and not a pixel of the picture differs: from outside, from among and from within what is drawn. */
+#include "tests/support/test.h"
 #include <limits.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "render/renderer_compare.h"
@@ -100,9 +93,8 @@ static void finish(const char *what, const struct tally *tally, size_t least)
     assert_true(tally->left_out >= least);
 }
 
-static void test_the_demo_plant(void **state)
+TEST(test_the_demo_plant)
 {
-    (void)state;
     const size_t least = (size_t)sweep(4, 1);
     struct site site;
     struct tally tally = { 0 };
@@ -146,9 +138,8 @@ static struct toy *make_city(double gap_m)
     return toy;
 }
 
-static void test_cubes(void **state)
+TEST(test_cubes)
 {
-    (void)state;
     for (int i = 0; i < 3; i++) {
         struct stand stand;
         struct tally tally = { 0 };
@@ -168,9 +159,8 @@ static void test_cubes(void **state)
 }
 
 /* Seen from before a face of the city: all cubes but those of that face are left out. */
-static void test_a_wall_hides_what_is_behind(void **state)
+TEST(test_a_wall_hides_what_is_behind)
 {
-    (void)state;
     struct stand stand;
     struct view view;
     size_t count = 0;
@@ -195,9 +185,8 @@ static void test_a_wall_hides_what_is_behind(void **state)
 }
 
 /* The eye is in the box of two balls; a wall that fills the picture hides all of the box, and one ball is before it. */
-static void test_the_eye_in_a_box(void **state)
+TEST(test_the_eye_in_a_box)
 {
-    (void)state;
     struct toy *toy = toy_create();
     struct shape wall = { 0 }, balls = { 0 };
     struct stand stand;
@@ -222,19 +211,8 @@ static void test_the_eye_in_a_box(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_demo_plant),
-        cmocka_unit_test(test_cubes),
-        cmocka_unit_test(test_a_wall_hides_what_is_behind),
-        cmocka_unit_test(test_the_eye_in_a_box),
-    };
     const char *given = getenv("PLANTCAST_SEED");
     seed = given ? strtoull(given, NULL, 10) : 4;
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "occlusion_test"))
-        return 0;
     print_message("# PLANTCAST_SEED=%llu\n", (unsigned long long)seed);
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

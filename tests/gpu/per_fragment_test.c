@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The field worked out at each fragment, with more sensors than the paper's 512, against plain loops over all of them in double precision:
    numbers, and the colours of what is drawn. A plate seen straight from above, so that a pixel's place on it is known. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "protocol/asset_distance.h"
@@ -171,9 +165,8 @@ static void compare(const struct view *view, const float (*numbers)[4], const st
     tally->most_off = off > tally->most_off ? off : tally->most_off;
 }
 
-static void test_more_than_512_sensors(void **state)
+TEST_WITH(test_more_than_512_sensors, set_up, tear_down)
 {
-    (void)state;
     double radius_m = largest_m();
     float(*numbers)[4] = mem_array((size_t)side_px * (size_t)side_px, sizeof(*numbers));
     for (int way = 0; way < 4; way++) {
@@ -196,15 +189,9 @@ static void test_more_than_512_sensors(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test_setup_teardown(test_more_than_512_sensors, set_up, tear_down) };
     struct cad_random random;
     cad_random_start(&random);
     random_state = random.state;
     side_px = sweep(160, 48);
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "per_fragment_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

@@ -3,18 +3,11 @@
    precision, at the demo plant and at a small one. */
 #include "render/pick/pick.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "render/renderer_compare.h"
@@ -183,9 +176,8 @@ static void stand_site(struct stand *stand, struct site *site)
     fill(site);
 }
 
-static void test_small_plant(void **state)
+TEST(test_small_plant)
 {
-    (void)state;
     struct stand stand;
     struct site site;
     struct view view;
@@ -211,9 +203,8 @@ static void test_small_plant(void **state)
 }
 
 /* A real size: several assets of tens of thousands of triangles behind one another. */
-static void test_demo_plant(void **state)
+TEST(test_demo_plant)
 {
-    (void)state;
     struct diag diag = { 0 };
     struct plant *plant = plant_load("build/demo/plant.yaml", &diag);
     diag_finish(&diag);
@@ -245,9 +236,8 @@ static void test_demo_plant(void **state)
     plant_destroy(&plant);
 }
 
-static void test_sensors(void **state)
+TEST(test_sensors)
 {
-    (void)state;
     struct stand stand;
     struct site site;
     struct view view;
@@ -286,9 +276,8 @@ static void test_sensors(void **state)
 }
 
 /* Each half of a split view answers for itself. */
-static void test_split_view(void **state)
+TEST(test_split_view)
 {
-    (void)state;
     struct stand stand;
     struct site site;
     struct view view, right;
@@ -309,16 +298,5 @@ static void test_split_view(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_small_plant),
-        cmocka_unit_test(test_demo_plant),
-        cmocka_unit_test(test_sensors),
-        cmocka_unit_test(test_split_view),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "pick_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

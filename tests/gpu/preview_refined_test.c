@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From the moving to the still tier nothing jumps: colours stay near, and what a texture cuts away is away in both. Every texture of
    a material does what glTF says. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "field/lab.h"
@@ -69,11 +63,10 @@ static void assert_calm(const char *what, struct stand *stand, struct view *view
     assert_true(gap.mean <= bound.mean && gap.far_part <= bound.far_part && gap.most <= bound.most);
 }
 
-static void test_the_unit_does_not_flash(void **state)
+TEST(test_the_unit_does_not_flash)
 {
     struct stand stand;
     struct view view;
-    (void)state;
     stand_init(&stand, &rig, toy_unit());
     for (int i = 0; i < 8; i++)
         toy_set(stand.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
@@ -158,15 +151,13 @@ static void assert_no_flash(const char *path, const char *name)
     site_finish(&site);
 }
 
-static void test_the_demo_does_not_flash(void **state)
+TEST(test_the_demo_does_not_flash)
 {
-    (void)state;
     assert_no_flash(SITE_DEMO, NULL);
 }
 
-static void test_a_real_plant_does_not_flash(void **state)
+TEST(test_a_real_plant_does_not_flash)
 {
-    (void)state;
     if (!site_is_there("plm_plant_equipment.glb"))
         skip();
     assert_no_flash("tests/plants/plant_room.yaml", "plant_room");
@@ -259,11 +250,10 @@ static void halves(struct plate *plate, enum tier tier, int left[3], int right[3
     frame_unref(&frame);
 }
 
-static void test_base_color(void **state)
+TEST(test_base_color)
 {
     struct plate plate = plain_plate();
     int left[3], right[3];
-    (void)state;
     plate.material.base_color_texture = 0;
     plate.texture.srgb = 1;
     paint_right(&plate, (uint8_t[4]){ 255, 40, 40, 255 });
@@ -273,11 +263,10 @@ static void test_base_color(void **state)
     plate_finish(&plate);
 }
 
-static void test_metal_and_roughness(void **state)
+TEST(test_metal_and_roughness)
 {
     struct plate plate = plain_plate();
     int left[3], right[3];
-    (void)state;
     plate.material.metallic_roughness_texture = 0;
     plate.material.metallic = 1;
     plate.material.base_color[1] = plate.material.base_color[2] = 0.1f;
@@ -290,11 +279,10 @@ static void test_metal_and_roughness(void **state)
     plate_finish(&plate);
 }
 
-static void test_normals(void **state)
+TEST(test_normals)
 {
     struct plate plate = plain_plate();
     int left[3], right[3];
-    (void)state;
     plate.material.normal_texture = 0;
     for (int i = 0; i < TEXELS; i++) /* left: towards the sun, which stands to the right; right: away from it */
         memcpy(plate.texels[i], i % CELLS < CELLS / 2 ? (uint8_t[4]){ 204, 128, 230, 255 } : (uint8_t[4]){ 52, 128, 230, 255 }, 4);
@@ -305,11 +293,10 @@ static void test_normals(void **state)
     plate_finish(&plate);
 }
 
-static void test_occlusion_and_glow(void **state)
+TEST(test_occlusion_and_glow)
 {
     struct plate plate = plain_plate();
     int left[3], right[3];
-    (void)state;
     plate.material.occlusion_texture = 0;
     paint_right(&plate, (uint8_t[4]){ 0, 255, 255, 255 });
     plate_init(&plate, NULL, 0);
@@ -327,10 +314,9 @@ static void test_occlusion_and_glow(void **state)
 }
 
 /* A grating: on one with sensors too, holes are holes in both tiers. */
-static void test_holes_are_holes_in_both_tiers(void **state)
+TEST(test_holes_are_holes_in_both_tiers)
 {
     static const double sensor[1][3] = { { -0.5, 0, 0 } };
-    (void)state;
     for (size_t sensors = 0; sensors < 2; sensors++) {
         struct plate plate = plain_plate();
         int left[3], right[3], still_left[3], still_right[3];
@@ -351,9 +337,8 @@ static void test_holes_are_holes_in_both_tiers(void **state)
 }
 
 /* The sun comes from the right: 1 m below, shadows lie 0.75 m to the left. The plate's right half is a hole, from 0 to 1. */
-static void test_holes_let_the_sun_through(void **state)
+TEST(test_holes_let_the_sun_through)
 {
-    (void)state;
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         struct plate plate = plain_plate();
         plate.floor = true;
@@ -374,10 +359,9 @@ static void test_holes_let_the_sun_through(void **state)
 }
 
 /* Context is muted: what its textures are in one tier and their mean in the other is not far apart. */
-static void test_textured_context_does_not_flash(void **state)
+TEST(test_textured_context_does_not_flash)
 {
     struct plate plate = plain_plate();
-    (void)state;
     plate.material.base_color_texture = 0;
     plate.texture.srgb = 1;
     for (int i = 0; i < TEXELS; i++)
@@ -390,17 +374,5 @@ static void test_textured_context_does_not_flash(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_unit_does_not_flash),     cmocka_unit_test(test_the_demo_does_not_flash),
-        cmocka_unit_test(test_a_real_plant_does_not_flash), cmocka_unit_test(test_base_color),
-        cmocka_unit_test(test_metal_and_roughness),         cmocka_unit_test(test_normals),
-        cmocka_unit_test(test_occlusion_and_glow),          cmocka_unit_test(test_holes_are_holes_in_both_tiers),
-        cmocka_unit_test(test_holes_let_the_sun_through),   cmocka_unit_test(test_textured_context_does_not_flash),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "preview_refined_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

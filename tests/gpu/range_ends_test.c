@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A field that is level all over, at the very end of its range or at the value of an isoline: no pixel of it has the colour of what is
    outside, nor a line, however thin the triangles and however steeply the eye sees them. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "tests/support/rig.h"
 #include "tests/support/sweep.h"
@@ -60,14 +55,13 @@ static int count_changed(struct stand *stand, struct view *view, const double ra
 }
 
 /* What is at the very end looks as what is well inside, and what is a hair outside as what is far outside. */
-static void test_no_specks_at_the_ends(void **state)
+TEST(test_no_specks_at_the_ends)
 {
     static const enum look looks[] = { LOOK_DEFAULT, LOOK_GLOSSY, LOOK_FLAT };
     static const double ends[2][2] = { { 20, READING }, { READING, 130 } }, inside[2][2] = { { 20, 90.2 }, { 89.8, 130 } };
     static const double past[2][2] = { { 20, 89.99 }, { 90.01, 130 } }, far_past[2][2] = { { 20, 85 }, { 95, 130 } };
     enum { LINE_PX = 16 }; /* where the eye sees a surface from its edge, rounding is as much as a slope */
     struct stand stand;
-    (void)state;
     stand_init(&stand, &rig, make_poles());
     renderer_use_gl(stand.renderer, true);
     toy_set(stand.snapshot, 0, READING, QUALITY_GOOD);
@@ -91,11 +85,5 @@ static void test_no_specks_at_the_ends(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_no_specks_at_the_ends) };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "range_ends_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

@@ -3,16 +3,9 @@
    of whole plants, seen from near and far, in all ways that a client may ask for. Twice: at the very point of the level that the pixel
    shows; and within a pixel of there on the finest level, since a coarser one may have moved its surface that far. There at pixels' middles
    first; what those leave out, since much of what is far away is smaller than a pixel, is looked for with many samples to a pixel. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
@@ -299,15 +292,13 @@ static void test_plant(const char *path, const char *name, int row, int each, co
     site_finish(&site);
 }
 
-static void test_demo(void **state)
+TEST(test_demo)
 {
-    (void)state;
     test_plant(SITE_DEMO, NULL, 0, 2, &(struct bounds){ 0.03, 0.01, 0.025 });
 }
 
-static void test_plant_room(void **state)
+TEST(test_plant_room)
 {
-    (void)state;
     if (!site_is_there("plm_plant_equipment.glb"))
         skip();
     struct site site;
@@ -317,9 +308,8 @@ static void test_plant_room(void **state)
     site_finish(&site);
 }
 
-static void test_cookie_line(void **state)
+TEST(test_cookie_line)
 {
-    (void)state;
     if (!site_is_there("cookie_factory_mixer.glb"))
         skip();
     test_plant("tests/plants/cookie_line.yaml", "cookie_line", 3, 4, &(struct bounds){ 0.004, 0.004, 0.012 });
@@ -327,17 +317,7 @@ static void test_cookie_line(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_demo),
-        cmocka_unit_test(test_plant_room),
-        cmocka_unit_test(test_cookie_line),
-    };
     width_px = sweep(640, 320);
     height_px = sweep(360, 180);
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "reference_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

@@ -1,18 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The render thread itself: who moves is served while another is refined; who moves on gets no more of what it wanted. */
+#include "tests/support/test.h"
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -104,9 +98,8 @@ static void await_step(int64_t steps)
     }
 }
 
-static void test_mover_is_served_during_a_refinement(void **state)
+TEST(test_mover_is_served_during_a_refinement)
 {
-    (void)state;
     if (hardware)
         skip();
     int64_t steps = count_of("plantcast_render_steps_total");
@@ -128,9 +121,8 @@ static void test_mover_is_served_during_a_refinement(void **state)
 }
 
 /* A small picture of another address does not wait for the end of a large one. */
-static void test_a_small_picture_overtakes_a_large_one_of_another(void **state)
+TEST(test_a_small_picture_overtakes_a_large_one_of_another)
 {
-    (void)state;
     if (hardware)
         skip();
     int64_t steps = count_of("plantcast_render_steps_total");
@@ -160,9 +152,8 @@ static void test_a_small_picture_overtakes_a_large_one_of_another(void **state)
         render_service_forget(service, asked[i].client);
 }
 
-static void test_mover_gives_its_own_refinement_up(void **state)
+TEST(test_mover_gives_its_own_refinement_up)
 {
-    (void)state;
     if (hardware)
         skip();
     int64_t steps = count_of("plantcast_render_steps_total"), abandoned = count_of("plantcast_renders_abandoned_total");
@@ -182,9 +173,8 @@ static void test_mover_gives_its_own_refinement_up(void **state)
     assert_true(count_of("plantcast_renders_abandoned_total") == abandoned + 1);
 }
 
-static void test_refinement_ends_while_others_go_on_moving(void **state)
+TEST(test_refinement_ends_while_others_go_on_moving)
 {
-    (void)state;
     int moved = 0;
     ask(REFINER, URGENCY_REFINE, 3);
     ask(MOVER, URGENCY_INPUT, -1);
@@ -240,9 +230,8 @@ static bool refining_costs_little(int attempt)
 }
 
 /* Where this thread is kept from asking for 150 ms the steps have their turn: once more. */
-static void test_refining_one_costs_a_mover_little(void **state)
+TEST(test_refining_one_costs_a_mover_little)
 {
-    (void)state;
     if (hardware)
         skip();
     bool little = false;
@@ -252,9 +241,8 @@ static void test_refining_one_costs_a_mover_little(void **state)
 }
 
 /* All at one moment, then each after the one before has its picture, in two qualities. */
-static void test_a_hundred_viewers_cost_one_picture(void **state)
+TEST(test_a_hundred_viewers_cost_one_picture)
 {
-    (void)state;
     int64_t renders = count_of("plantcast_renders_total"), encodes = count_of(ENCODES);
     const struct packet *shared = NULL;
     struct frame_request request = {
@@ -315,9 +303,8 @@ static bool shares_time(void)
 }
 
 /* Both get the same time, not the same number. Where this thread is kept from asking for the small ones in time, once more. */
-static void test_time_is_shared_not_pictures(void **state)
+TEST(test_time_is_shared_not_pictures)
 {
-    (void)state;
     bool shared = false;
     for (int attempt = 0; attempt < 5 && !shared; attempt++)
         shared = shares_time();
@@ -356,9 +343,8 @@ static struct encoded_frame *refined_of(double turn)
 
 /* The real context goes, again and again, in the middle of pictures that take long and of short ones: nobody's is lost, and all are
    what they were before. */
-static void test_lost_context_is_made_again_under_load(void **state)
+TEST(test_lost_context_is_made_again_under_load)
 {
-    (void)state;
     enum { LOSSES = 3, MOVES = 4 };
     const int tried = sweep(LOSSES, 2); /* while nothing is under way, then in the middle of a refinement */
     int64_t losses = count_of("plantcast_gl_losses_total"), failures = count_of("plantcast_render_failures_total");
@@ -412,9 +398,8 @@ static size_t address_space_bytes(void)
 }
 
 /* There is room for one more frame in memory, but not for the samples that it is drawn from. */
-static void test_no_memory_fails_that_picture_alone(void **state)
+TEST(test_no_memory_fails_that_picture_alone)
 {
-    (void)state;
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     skip(); /* they end the program where there is no memory */
 #endif
@@ -438,9 +423,8 @@ static void test_no_memory_fails_that_picture_alone(void **state)
 }
 
 /* It was not shown: who asks again is not told that nothing has changed. */
-static void test_what_could_not_be_encoded_is_drawn_again(void **state)
+TEST(test_what_could_not_be_encoded_is_drawn_again)
 {
-    (void)state;
     const enum wire_codec codecs[] = { WIRE_CODEC_H264, WIRE_CODEC_JPEG }; /* the first has no encoder here */
     for (int i = 0; i < 2; i++) {
         struct frame_request request = {
@@ -471,9 +455,8 @@ static struct pick_answer *next_pick(void)
 }
 
 /* A question about a pixel does not wait for a picture that takes long, nor hold it up for more than a step. */
-static void test_picks_are_answered_between_steps(void **state)
+TEST(test_picks_are_answered_between_steps)
 {
-    (void)state;
     if (hardware)
         skip();
     struct pick_query query = { .client = PICKER, .x_px = 320, .y_px = 180 };
@@ -496,9 +479,8 @@ static void test_picks_are_answered_between_steps(void **state)
 }
 
 /* Of those that wait only the newest is answered. */
-static void test_newest_pick_wins(void **state)
+TEST(test_newest_pick_wins)
 {
-    (void)state;
     struct pick_query query = { .client = PICKER, .x_px = 320, .y_px = 180 };
     view_default(&toy->scene, 640, 360, &query.view);
     uint32_t last = 0;
@@ -642,16 +624,14 @@ static void assert_refined_comes(enum look look, int64_t waited_ns)
     render_service_forget(service, REFINER);
 }
 
-static void test_changing_readings_leave_refined_pictures(void **state)
+TEST(test_changing_readings_leave_refined_pictures)
 {
-    (void)state;
     assert_refined_comes(LOOK_DEFAULT, 0);
 }
 
 /* As where a picture takes longer to refine than readings wait for it. */
-static void test_changing_readings_leave_slow_pictures(void **state)
+TEST(test_changing_readings_leave_slow_pictures)
 {
-    (void)state;
     if (hardware)
         skip();
     assert_refined_comes(LOOK_FLAT, 2 * NS_PER_S);
@@ -659,9 +639,8 @@ static void test_changing_readings_leave_slow_pictures(void **state)
 }
 
 /* What a refined picture is coloured from is more than may be kept. */
-static void test_changing_readings_leave_pictures_without_room(void **state)
+TEST(test_changing_readings_leave_pictures_without_room)
 {
-    (void)state;
     if (hardware)
         skip();
     remake(false, (size_t)64 << 20);
@@ -669,9 +648,8 @@ static void test_changing_readings_leave_pictures_without_room(void **state)
 }
 
 /* By GL nothing is kept: a picture is given up for readings a few times, each time later, and comes in the end. */
-static void test_what_takes_long_by_gl_comes_in_the_end(void **state)
+TEST(test_what_takes_long_by_gl_comes_in_the_end)
 {
-    (void)state;
     if (hardware)
         skip();
     remake(true, 0);
@@ -692,9 +670,8 @@ static void test_what_takes_long_by_gl_comes_in_the_end(void **state)
 }
 
 /* Bands, which are not quick to colour again: the refined picture is drawn anew, and comes. */
-static void test_readings_change_pictures_that_are_not_quick(void **state)
+TEST(test_readings_change_pictures_that_are_not_quick)
 {
-    (void)state;
     int64_t abandoned = count_of("plantcast_renders_abandoned_total");
     for (int i = 0; i < 4; i++) {
         struct frame_request request = {
@@ -716,9 +693,8 @@ static void test_readings_change_pictures_that_are_not_quick(void **state)
 }
 
 /* The daemon goes down in the midst of it. */
-static void test_stop_waits_for_no_refinement(void **state)
+TEST(test_stop_waits_for_no_refinement)
 {
-    (void)state;
     if (hardware)
         skip();
     int64_t steps = count_of("plantcast_render_steps_total"), renders = count_of("plantcast_renders_total");
@@ -730,9 +706,8 @@ static void test_stop_waits_for_no_refinement(void **state)
 
 /* With a GPU, or as if there were one: pictures are given to it before others have come. Every one comes, to whom it is for, and shows
    what was asked for; who asks for the same meanwhile shares it; and a context that is lost meanwhile costs none. */
-static void test_pictures_fly(void **state)
+TEST(test_pictures_fly)
 {
-    (void)state;
     enum { CLIENTS = 8, ROUNDS = 6, FIRST = 100 };
     int64_t renders = count_of("plantcast_renders_total"), losses = count_of("plantcast_gl_losses_total");
     remake(true, 0);
@@ -804,9 +779,8 @@ static int move_while(const _Atomic bool *done, pthread_t thread)
     return drawn;
 }
 
-static void test_another_is_made_and_the_first_destroyed_beside_it(void **state)
+TEST(test_another_is_made_and_the_first_destroyed_beside_it)
 {
-    (void)state;
     struct making making = { .made = NULL };
     struct render_service *first = service;
     pthread_t thread;
@@ -848,30 +822,7 @@ static void stop(void)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_mover_is_served_during_a_refinement),
-        cmocka_unit_test(test_a_small_picture_overtakes_a_large_one_of_another),
-        cmocka_unit_test(test_mover_gives_its_own_refinement_up),
-        cmocka_unit_test(test_refinement_ends_while_others_go_on_moving),
-        cmocka_unit_test(test_refining_one_costs_a_mover_little),
-        cmocka_unit_test(test_a_hundred_viewers_cost_one_picture),
-        cmocka_unit_test(test_time_is_shared_not_pictures),
-        cmocka_unit_test(test_lost_context_is_made_again_under_load),
-        cmocka_unit_test(test_no_memory_fails_that_picture_alone),
-        cmocka_unit_test(test_what_could_not_be_encoded_is_drawn_again),
-        cmocka_unit_test(test_picks_are_answered_between_steps),
-        cmocka_unit_test(test_newest_pick_wins),
-        cmocka_unit_test(test_changing_readings_leave_refined_pictures),
-        cmocka_unit_test(test_changing_readings_leave_slow_pictures),
-        cmocka_unit_test(test_changing_readings_leave_pictures_without_room),
-        cmocka_unit_test(test_what_takes_long_by_gl_comes_in_the_end),
-        cmocka_unit_test(test_readings_change_pictures_that_are_not_quick),
-        cmocka_unit_test(test_pictures_fly),
-        cmocka_unit_test(test_another_is_made_and_the_first_destroyed_beside_it),
-        cmocka_unit_test(test_stop_waits_for_no_refinement),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    int failed = start() ? cmocka_run_group_tests(tests, NULL, NULL) : 0;
+    int failed = start() ? tests_run(NULL) : 0;
     stop();
     return failed;
 }

@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What comes with a picture: its content hash, markers, ages; culling; lights; views that are hard. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "render/memory.h"
 #include "render/renderer_compare.h"
@@ -36,9 +30,8 @@ static uint64_t content(void)
     return planned_content(stand.renderer, &view, stand.snapshot);
 }
 
-static void test_content_is_that_of_the_frame(void **state)
+TEST_WITH(test_content_is_that_of_the_frame, reset, NULL)
 {
-    (void)state;
     uint64_t before = content();
     struct frame *frame = stand_draw(&stand, &view);
     assert_true(frame->content == before && before == content());
@@ -46,9 +39,8 @@ static void test_content_is_that_of_the_frame(void **state)
 }
 
 /* Each half of a split view is planned before either is drawn. */
-static void test_plan_holds_while_another_is_made(void **state)
+TEST_WITH(test_plan_holds_while_another_is_made, reset, NULL)
 {
-    (void)state;
     view.camera.eye_m[1] += 0.3; /* a camera of its own: drawn whole, both times */
     struct view other = view;
     struct frame *want = stand_draw(&stand, &view);
@@ -66,9 +58,8 @@ static void test_plan_holds_while_another_is_made(void **state)
     frame_unref(&got);
 }
 
-static void test_content_ignores_numbers_and_times(void **state)
+TEST_WITH(test_content_ignores_numbers_and_times, reset, NULL)
 {
-    (void)state;
     uint64_t before = content();
     view.camera_seq = 7;
     view.params_seq = 8;
@@ -78,9 +69,8 @@ static void test_content_ignores_numbers_and_times(void **state)
     assert_true(content() == before);
 }
 
-static void test_content_sees_what_is_drawn(void **state)
+TEST_WITH(test_content_sees_what_is_drawn, reset, NULL)
 {
-    (void)state;
     uint64_t before = content();
     struct view first = view;
     view.camera.eye_m[0] += 0.01;
@@ -104,9 +94,8 @@ static void test_content_sees_what_is_drawn(void **state)
     assert_true(content() == before);
 }
 
-static void test_content_counts_what_can_be_seen(void **state)
+TEST_WITH(test_content_counts_what_can_be_seen, reset, NULL)
 {
-    (void)state;
     double step = 100.0 / 256;
     uint64_t before = content();
     toy_set(stand.snapshot, 2, 34 + 0.3 * step, QUALITY_GOOD);
@@ -122,9 +111,8 @@ static void test_content_counts_what_can_be_seen(void **state)
 }
 
 /* Many steps, each too small to see: together they must be seen. */
-static void test_slow_drift_is_not_lost(void **state)
+TEST_WITH(test_slow_drift_is_not_lost, reset, NULL)
 {
-    (void)state;
     uint64_t before = content();
     for (int i = 1; i <= 40; i++) {
         toy_set(stand.snapshot, 2, 34 + 0.05 * i, QUALITY_GOOD);
@@ -133,10 +121,9 @@ static void test_slow_drift_is_not_lost(void **state)
     assert_true(content() != before);
 }
 
-static void test_content_is_the_same_elsewhere(void **state)
+TEST_WITH(test_content_is_the_same_elsewhere, reset, NULL)
 {
     struct stand other;
-    (void)state;
     stand_init(&other, &rig, toy_unit());
     for (int i = 0; i < 8; i++)
         toy_set(other.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
@@ -148,9 +135,8 @@ static void test_content_is_the_same_elsewhere(void **state)
     stand_finish(&other);
 }
 
-static void test_what_is_out_of_sight_costs_nothing(void **state)
+TEST_WITH(test_what_is_out_of_sight_costs_nothing, reset, NULL)
 {
-    (void)state;
     struct frame *all = stand_draw(&stand, &view);
     memcpy(view.camera.target_m, (double[3]){ 4.2, 1.2, 50 }, sizeof(view.camera.target_m));
     memcpy(view.camera.eye_m, (double[3]){ 4.2, -1.2, 20 }, sizeof(view.camera.eye_m));
@@ -188,9 +174,8 @@ static const struct {
 };
 
 /* While it is under way, others draw other views, readings change, and its light goes from the cache. */
-static void test_bit_by_bit_is_the_same_picture(void **state)
+TEST_WITH(test_bit_by_bit_is_the_same_picture, reset, NULL)
 {
-    (void)state;
     view.width_px = 801;
     view.height_px = 601;
     size_t cases = sizeof(bit_cases) / sizeof(bit_cases[0]);
@@ -230,9 +215,8 @@ static void test_bit_by_bit_is_the_same_picture(void **state)
     renderer_use_gl(stand.renderer, false);
 }
 
-static void test_abandoned_picture_leaves_no_trace(void **state)
+TEST_WITH(test_abandoned_picture_leaves_no_trace, reset, NULL)
 {
-    (void)state;
     view.tier = TIER_REFINED;
     struct frame *before = stand_draw(&stand, &view);
     for (int i = 0; i < 20; i++) {
@@ -263,9 +247,8 @@ static void look(double ex, double ey, double ez, double tx, double ty, double t
     view.camera = (struct camera){ .eye_m = { ex, ey, ez }, .target_m = { tx, ty, tz }, .up = { 0, 0, 1 }, .fov_deg = 45 };
 }
 
-static void test_markers(void **state)
+TEST_WITH(test_markers, reset, NULL)
 {
-    (void)state;
     const double *at = stand.toy->scene.assets[1].sensors[0].surface_m;
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
@@ -289,9 +272,8 @@ static void test_markers(void **state)
 }
 
 /* 45 degrees from top to bottom: a point 1 m above the target at 1 m / tan(22.5) away lies on the upper edge. */
-static void test_marker_upward_is_upward(void **state)
+TEST_WITH(test_marker_upward_is_upward, reset, NULL)
 {
-    (void)state;
     const double *at = stand.toy->scene.assets[1].sensors[0].surface_m;
     look(at[0] - 2, at[1] - 2, at[2] - 0.5, at[0], at[1], at[2] - 0.5);
     struct frame *frame = stand_draw(&stand, &view);
@@ -300,9 +282,8 @@ static void test_marker_upward_is_upward(void **state)
     frame_unref(&frame);
 }
 
-static void test_age_of_the_oldest(void **state)
+TEST_WITH(test_age_of_the_oldest, reset, NULL)
 {
-    (void)state;
     stand.snapshot->readings[3].age_ns = 42;
     for (int i = 0; i < 8; i++)
         stand.snapshot->readings[i].age_ns = i == 3 ? 9000000000 : 1000000000;
@@ -326,9 +307,8 @@ static long brightness(const struct frame *frame)
 }
 
 /* More lights than are kept: each comes back as it was. */
-static void test_light_can_be_chosen(void **state)
+TEST_WITH(test_light_can_be_chosen, reset, NULL)
 {
-    (void)state;
     long first[5];
     for (int round = 0; round < 2; round++)
         for (int i = 0; i < 5; i++) {
@@ -345,18 +325,16 @@ static void test_light_can_be_chosen(void **state)
 }
 
 /* Else every size of window would have its own light baked. */
-static void test_default_light_is_one(void **state)
+TEST_WITH(test_default_light_is_one, reset, NULL)
 {
     struct view wide, tall;
-    (void)state;
     view_default(&stand.toy->scene, 1600, 400, &wide);
     view_default(&stand.toy->scene, 300, 900, &tall);
     assert_memory_equal(wide.light_dir, tall.light_dir, sizeof(wide.light_dir));
 }
 
-static void test_selection_is_outlined(void **state)
+TEST_WITH(test_selection_is_outlined, reset, NULL)
 {
-    (void)state;
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
         view.selected_asset = -1;
@@ -373,11 +351,10 @@ static void test_selection_is_outlined(void **state)
     }
 }
 
-static void test_many_sizes(void **state)
+TEST_WITH(test_many_sizes, reset, NULL)
 {
     static const int sizes[][2] = { { 16, 16 },   { 640, 360 }, { 16, 1200 }, { 1201, 17 },
                                     { 333, 211 }, { 640, 360 }, { 800, 600 }, { 801, 601 } };
-    (void)state;
     for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++)
         for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
             view.width_px = sizes[i][0];
@@ -389,9 +366,8 @@ static void test_many_sizes(void **state)
         }
 }
 
-static void test_camera_within_the_plant(void **state)
+TEST_WITH(test_camera_within_the_plant, reset, NULL)
 {
-    (void)state;
     look(0, 0, 1.2, 1, 0, 1.2); /* in the shell */
     struct frame *frame = stand_draw(&stand, &view);
     assert_true(brightness(frame) > 0);
@@ -431,9 +407,8 @@ static size_t caches(void)
     return sum;
 }
 
-static void test_what_is_kept_can_be_had_anew(void **state)
+TEST_WITH(test_what_is_kept_can_be_had_anew, reset, NULL)
 {
-    (void)state;
     struct view seen = view;
     stand_look(&stand, 1, &seen);
     seen.tier = TIER_REFINED;
@@ -456,9 +431,8 @@ static void test_what_is_kept_can_be_had_anew(void **state)
 }
 
 /* Light apart: two sets there are in any case, one to show while the next is baked. */
-static void test_what_is_kept_has_a_bound(void **state)
+TEST_WITH(test_what_is_kept_has_a_bound, reset, NULL)
 {
-    (void)state;
     size_t full[RENDER_STORES], bytes[RENDER_STORES], bound = (size_t)1 << 20;
     draw_much();
     renderer_measure_memory(stand.renderer, full);
@@ -472,37 +446,12 @@ static void test_what_is_kept_has_a_bound(void **state)
     renderer_bound_memory(stand.renderer, (size_t)1 << 30);
 }
 
-#define each(test) cmocka_unit_test_setup(test, reset)
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        each(test_content_is_that_of_the_frame),
-        each(test_content_ignores_numbers_and_times),
-        each(test_content_sees_what_is_drawn),
-        each(test_content_counts_what_can_be_seen),
-        each(test_slow_drift_is_not_lost),
-        each(test_content_is_the_same_elsewhere),
-        each(test_what_is_out_of_sight_costs_nothing),
-        each(test_bit_by_bit_is_the_same_picture),
-        each(test_abandoned_picture_leaves_no_trace),
-        each(test_markers),
-        each(test_marker_upward_is_upward),
-        each(test_age_of_the_oldest),
-        each(test_light_can_be_chosen),
-        each(test_default_light_is_one),
-        each(test_selection_is_outlined),
-        each(test_many_sizes),
-        each(test_camera_within_the_plant),
-        each(test_what_is_kept_can_be_had_anew),
-        each(test_what_is_kept_has_a_bound),
-        each(test_plan_holds_while_another_is_made),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "renderer_test"))
         return 0;
     stand_init(&stand, &rig, toy_unit());
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = tests_run(NULL);
     stand_finish(&stand);
     rig_finish(&rig);
     return failed;

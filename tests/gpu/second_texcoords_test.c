@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Textures that lie on the surface in two ways, from a GLB to a picture: a material whose base colour lies as TEXCOORD_0 says and whose
    other four textures lie mirrored must look as one whose four images are mirrored instead. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 #include <png.h>
 
 #include "base/mem.h"
@@ -198,7 +191,7 @@ static struct difference compare(const struct frame *a, const struct frame *b)
     return d;
 }
 
-static void every_way_to_say_it_looks_the_same(void **state)
+TEST_WITH(every_way_to_say_it_looks_the_same, prep_case_set_up, prep_case_tear_down)
 {
     struct frame *frames[WAYS];
     struct difference d[WAYS];
@@ -221,12 +214,5 @@ static void every_way_to_say_it_looks_the_same(void **state)
 
 int main(void)
 {
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = { cmocka_unit_test_setup_teardown(every_way_to_say_it_looks_the_same, prep_case_set_up,
-                                                                        prep_case_tear_down) };
-    if (!rig_init(&rig, "second_texcoords"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shading must not be read as value: an exchanger and a tank, read back from the picture by the nearest colour of the legend. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 #include <turbojpeg.h>
 
 #include "base/mem.h"
@@ -156,11 +149,10 @@ static void look_close(struct view *view)
 
 /* So is the whole plant in the picture, and twice as far, where its parts are a few pixels wide. There the standard tables, made for
    photographs, drop more of the chroma than that, shaded or not. */
-static void test_far_away_it_is_not_either(void **state)
+TEST_WITH(test_far_away_it_is_not_either, set_up, tear_down)
 {
     struct view view;
     double shaded[WAYS], flat[WAYS];
-    (void)state;
     for (int distance = 1; distance < 3; distance++) {
         look_from(distance, &view);
         view.tier = TIER_REFINED;
@@ -173,11 +165,10 @@ static void test_far_away_it_is_not_either(void **state)
 }
 
 /* Maps that say they can be read are read right; the others do not say so. */
-static void test_shading_is_not_read_as_value(void **state)
+TEST_WITH(test_shading_is_not_read_as_value, set_up, tear_down)
 {
     struct view view;
     double p95[WAYS];
-    (void)state;
     look_close(&view);
     for (int map = 0; map < (int)colormap_count(); map++)
         for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -190,11 +181,10 @@ static void test_shading_is_not_read_as_value(void **state)
         }
 }
 
-static void test_glossy_would_be_misread(void **state)
+TEST_WITH(test_glossy_would_be_misread, set_up, tear_down)
 {
     struct view view;
     double p95[WAYS];
-    (void)state;
     look_close(&view);
     view.look = LOOK_GLOSSY;
     measure(&view, p95);
@@ -202,12 +192,11 @@ static void test_glossy_would_be_misread(void **state)
 }
 
 /* Differences between the tiers, seen as lightness: the change from moving to still must not flash. */
-static void test_tiers_agree(void **state)
+TEST_WITH(test_tiers_agree, set_up, tear_down)
 {
     struct view view;
     double sum = 0;
     int count = 0, far = 0;
-    (void)state;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
     view.tier = TIER_REFINED;
     struct frame *still = stand_draw(&stand, &view);
@@ -227,10 +216,9 @@ static void test_tiers_agree(void **state)
 }
 
 /* Whatever looks other than in the view of values, field or context, is grey while all readings are within their limits. */
-static void test_operator_sees_greys(void **state)
+TEST_WITH(test_operator_sees_greys, set_up, tear_down)
 {
     struct view values, limits;
-    (void)state;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &values);
     for (size_t i = 0; i < stand.toy->plant.tag_count; i++)
         memcpy(stand.toy->plant.tags[i].limits, (double[]){ -20, -10, 110, 120 }, 4 * sizeof(double));
@@ -256,19 +244,7 @@ static void test_operator_sees_greys(void **state)
     }
 }
 
-#define each(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        each(test_shading_is_not_read_as_value), each(test_far_away_it_is_not_either),
-        each(test_glossy_would_be_misread),      each(test_tiers_agree),
-        each(test_operator_sees_greys),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "shading_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

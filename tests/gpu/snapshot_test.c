@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast snapshot` on one asset of the demo plant, as a person would call it: exit codes, messages, and what is in the picture. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <png.h>
 
 #include "base/mem.h"
@@ -117,16 +110,14 @@ static int count_colored(void)
     return count;
 }
 
-static void test_without_values_nothing_has_a_color(void **state)
+TEST(test_without_values_nothing_has_a_color)
 {
-    (void)state;
     assert_int_equal(draw(""), 0);
     assert_in_range(count_colored(), 0, 20);
 }
 
-static void test_values_give_color(void **state)
+TEST(test_values_give_color)
 {
-    (void)state;
     write_values("tag,value,quality\nTE-101,90,good\nTE-102,120,\nTE-103,,bad\nTE-104,30,uncertain\n");
     char *options = mem_printf("--values %s/values.csv --tier moving", folder);
     assert_int_equal(draw(options), 0);
@@ -134,9 +125,8 @@ static void test_values_give_color(void **state)
     mem_free(options);
 }
 
-static void test_wrong_values_are_named(void **state)
+TEST(test_wrong_values_are_named)
 {
-    (void)state;
     write_values("tag,value,quality\nTE-101,warm,good\nNO-SUCH,1,good\nTE-102,1,perhaps\n");
     char *options = mem_printf("--values %s/values.csv", folder);
     assert_int_equal(draw(options), 1);
@@ -145,9 +135,8 @@ static void test_wrong_values_are_named(void **state)
     mem_free(options);
 }
 
-static void test_images_are_colour_maps(void **state)
+TEST(test_images_are_colour_maps)
 {
-    (void)state;
     static const char ppm[] = "P6\n2 1\n255\n\xff\x00\x00\x00\x00\xff";
     char *image = temp_write(folder, "map.ppm", ppm, sizeof(ppm) - 1);
     write_values("tag,value,quality\nTE-101,90,good\nTE-102,120,\n");
@@ -161,9 +150,8 @@ static void test_images_are_colour_maps(void **state)
     assert_int_equal(draw("--colormap plaid"), 2);
 }
 
-static void test_split_and_bands(void **state)
+TEST(test_split_and_bands)
 {
-    (void)state;
     write_values("tag,value,quality\nTE-101,90,good\nTE-102,120,\nPT-101,9,good\n");
     char *options = mem_printf("--values %s/values.csv --breaks limits --isolines every:20 --split 'group=pressure;scale=linear'", folder);
     assert_int_equal(draw(options), 0);
@@ -174,9 +162,8 @@ static void test_split_and_bands(void **state)
     assert_true(said("scale: 'log' needs a range above 0; that of 'pressure' begins at 0"));
 }
 
-static void test_usage(void **state)
+TEST(test_usage)
 {
-    (void)state;
     assert_int_equal(snapshot("--help"), 0);
     assert_true(said("usage: plantcast snapshot"));
     assert_int_equal(snapshot(""), 2);
@@ -190,9 +177,8 @@ static void test_usage(void **state)
     assert_int_equal(draw("--group flow"), 2);
 }
 
-static void test_failures(void **state)
+TEST(test_failures)
 {
-    (void)state;
     assert_int_equal(snapshot("no-such-plant.yaml -o x.png"), 1);
     assert_int_equal(draw("--prepared /no/such/folder"), 1);
     assert_int_equal(snapshot("http://127.0.0.1:1/ -o x.png"), 1);
@@ -200,17 +186,7 @@ static void test_failures(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_without_values_nothing_has_a_color),
-        cmocka_unit_test(test_values_give_color),
-        cmocka_unit_test(test_wrong_values_are_named),
-        cmocka_unit_test(test_images_are_colour_maps),
-        cmocka_unit_test(test_split_and_bands),
-        cmocka_unit_test(test_usage),
-        cmocka_unit_test(test_failures),
-    };
     struct rig rig;
-    cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "snapshot_test"))
         return 0;
     rig_finish(&rig);
@@ -220,7 +196,7 @@ int main(void)
     }
     folder = temp_folder_create();
     write_plant();
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = tests_run(NULL);
     mem_free(plant);
     temp_folder_destroy(&folder);
     return failed;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Moving pictures without a GPU against the same ones drawn by GL: every pixel and every marker. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "render/soft/kernels.h"
@@ -12,19 +12,17 @@
 static struct rig rig;
 static struct stand stand;
 
-static void test_home(void **state)
+TEST(test_home)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_PREVIEW, 640, 360, &view);
     soft_assert_like_gl(&stand, &view, 0.002);
 }
 
-static void test_sizes(void **state)
+TEST(test_sizes)
 {
     enum { ONE_ROW_MORE = 185 }; /* than a tile has */
     static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 }, { 200, ONE_ROW_MORE } };
-    (void)state;
     for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
         struct view view;
         soft_start_view(&stand, TIER_PREVIEW, sizes[i][0], sizes[i][1], &view);
@@ -32,10 +30,9 @@ static void test_sizes(void **state)
     }
 }
 
-static void test_flat(void **state)
+TEST(test_flat)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_PREVIEW, 400, 300, &view);
     view.look = LOOK_FLAT;
     view.colormap = (int)colormap_count() - 1;
@@ -45,10 +42,9 @@ static void test_flat(void **state)
 }
 
 /* All round, from far away, from below and from among the pipes, where triangles pass the eye. */
-static void test_cameras(void **state)
+TEST(test_cameras)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_PREVIEW, 320, 240, &view);
     for (int i = 0; i < 12; i++) {
         stand_look(&stand, i, &view);
@@ -57,9 +53,8 @@ static void test_cameras(void **state)
 }
 
 /* Rays are parallel: from all round and above, wide and so narrow that the eye stands among the pipes. */
-static void test_orthographic(void **state)
+TEST(test_orthographic)
 {
-    (void)state;
     for (int i = 0; i < 12; i++) {
         struct view view;
         soft_start_view(&stand, TIER_PREVIEW, 320, 240, &view);
@@ -73,9 +68,8 @@ static void test_orthographic(void **state)
 }
 
 /* By a level plane, by a slanting one, and by a box; bodies that are closed have caps, the inner side of others shows. */
-static void test_cuts(void **state)
+TEST(test_cuts)
 {
-    (void)state;
     for (int i = 0; i < 24; i++) {
         struct view view;
         soft_start_view(&stand, TIER_PREVIEW, 320, 240, &view);
@@ -93,10 +87,9 @@ static void test_cuts(void **state)
     }
 }
 
-static void test_sun(void **state)
+TEST(test_sun)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_PREVIEW, 400, 300, &view);
     for (int i = 0; i < 4; i++) { /* more than are kept */
         double towards[3] = { 0.6 * cos(i), 0.6 * sin(i), 0.8 };
@@ -106,10 +99,9 @@ static void test_sun(void **state)
 }
 
 /* Lines of a pixel and a half: their rims differ. */
-static void test_outlines(void **state)
+TEST(test_outlines)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_PREVIEW, 640, 360, &view);
     for (int asset = 0; asset < (int)stand.toy->scene.asset_count; asset++) {
         view.selected_asset = asset;
@@ -124,20 +116,18 @@ static void test_outlines(void **state)
     frame_unref(&plain);
 }
 
-static void test_hidden_assets(void **state)
+TEST(test_hidden_assets)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_PREVIEW, 320, 240, &view);
     asset_set_add(&view.visibility.hidden, 1);
     soft_assert_like_gl(&stand, &view, 0.003);
 }
 
 /* The third picture of a camera that stands still is coloured anew only; hatches have softer rims then. */
-static void test_still_camera(void **state)
+TEST(test_still_camera)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_PREVIEW, 640, 360, &view);
     view.camera.eye_m[0] += 0.25;
     for (int selected = -1; selected < 2; selected++) {
@@ -161,10 +151,9 @@ static void test_still_camera(void **state)
 }
 
 /* Places to draw it anew must not be taken for the same. */
-static void test_moves_after_standing(void **state)
+TEST(test_moves_after_standing)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_PREVIEW, 320, 200, &view);
     for (int i = 0; i < 3; i++)
         soft_assert_like_gl(&stand, &view, 0.01);
@@ -175,9 +164,8 @@ static void test_moves_after_standing(void **state)
 }
 
 /* What is worked out pixel by pixel: lines, bands, logarithms. Rims of lines differ by the way slopes are measured. */
-static void test_lines_and_scales(void **state)
+TEST(test_lines_and_scales)
 {
-    (void)state;
     for (int i = 0; i < 5; i++) {
         struct view view;
         soft_start_view(&stand, TIER_PREVIEW, 400, 300, &view);
@@ -219,13 +207,12 @@ static bool is_rim(int a, int b)
 }
 
 /* Where data end, and where they are uncertain, in triangles that are cut because they lead far out of the picture. */
-static void test_patterns_close_by(void **state)
+TEST(test_patterns_close_by)
 {
     enum { TANK = 1 }; /* has a sensor that is bad and one that is uncertain */
     const struct scene_asset *asset = &stand.toy->scene.assets[TANK];
     int looked = 0, rims = 0;
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_PREVIEW, 160, 120, &view);
     view.look = LOOK_FLAT;
     const struct scalars *scalars = field_scalars(stand.field, TANK, &view.field, stand.snapshot);
@@ -250,11 +237,10 @@ static void test_patterns_close_by(void **state)
 }
 
 /* One tag without limits: what is near it is plain. What has no field is grey. */
-static void test_operator(void **state)
+TEST(test_operator)
 {
     struct view view;
     struct plant *plant = &stand.toy->plant;
-    (void)state;
     for (size_t tag = 0; tag < plant->tag_count; tag++)
         if (tag != 2)
             memcpy(plant->tags[tag].limits, (double[]){ 0, 20, 70, 90 }, 4 * sizeof(double));
@@ -271,10 +257,9 @@ static void test_operator(void **state)
 }
 
 /* A still camera is shown again from what was kept; lines of the same view are not. */
-static void test_lines_of_a_still_camera(void **state)
+TEST(test_lines_of_a_still_camera)
 {
     struct view view, lined;
-    (void)state;
     soft_start_view(&stand, TIER_PREVIEW, 400, 300, &view);
     lined = view;
     soft_lines_every(&lined, 10);
@@ -306,12 +291,11 @@ static void compare_kernels(const struct view *view, const struct soft_kernels *
 }
 
 /* The loops for wider registers leave the same bits as those for any machine. */
-static void test_kernels(void **state)
+TEST(test_kernels)
 {
     const struct soft_kernels *widest = stand.renderer->by_soft->kernels;
     static const int widths_px[] = { 640, 333, 37, 322, 330 }; /* the last tile is 16 or 8 columns wide, and a row high */
     struct view view;
-    (void)state;
     if (widest == &soft_kernels_plain) {
         print_message("SKIP: this machine has no wider registers\n");
         skip();
@@ -331,12 +315,11 @@ static void test_kernels(void **state)
 }
 
 /* Nothing but sky: wide and high pictures, narrow and wide angles, level and leaning. */
-static void test_sky(void **state)
+TEST(test_sky)
 {
     static const int sizes_px[][2] = { { 640, 360 }, { 1600, 40 }, { 40, 600 }, { 320, 240 } };
     static const double fovs_deg[] = { 10, 40, 100, 140 };
     int worst = 0;
-    (void)state;
     for (int i = 0; i < 4 * 4 * 3; i++) {
         struct view view;
         double lean = i / 16 * 0.7;
@@ -363,9 +346,8 @@ static void test_sky(void **state)
 }
 
 /* Before and behind others, cut, and of a camera that stands still. */
-static void test_ghosts(void **state)
+TEST(test_ghosts)
 {
-    (void)state;
     for (int i = 0; i < 12; i++) {
         struct view view;
         soft_start_view(&stand, TIER_PREVIEW, 320, 240, &view);
@@ -383,9 +365,8 @@ static void test_ghosts(void **state)
 }
 
 /* The other looks: steps of light are as fine as colours are. */
-static void test_gloss_and_materials(void **state)
+TEST(test_gloss_and_materials)
 {
-    (void)state;
     for (int i = 0; i < 8; i++) {
         struct view view;
         soft_start_view(&stand, TIER_PREVIEW, 320, 240, &view);
@@ -401,26 +382,5 @@ static void test_gloss_and_materials(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_home),
-        cmocka_unit_test(test_sizes),
-        cmocka_unit_test(test_flat),
-        cmocka_unit_test(test_cameras),
-        cmocka_unit_test(test_orthographic),
-        cmocka_unit_test(test_cuts),
-        cmocka_unit_test(test_sun),
-        cmocka_unit_test(test_outlines),
-        cmocka_unit_test(test_hidden_assets),
-        cmocka_unit_test(test_still_camera),
-        cmocka_unit_test(test_moves_after_standing),
-        cmocka_unit_test(test_lines_and_scales),
-        cmocka_unit_test(test_patterns_close_by),
-        cmocka_unit_test(test_operator),
-        cmocka_unit_test(test_lines_of_a_still_camera),
-        cmocka_unit_test(test_ghosts),
-        cmocka_unit_test(test_gloss_and_materials),
-        cmocka_unit_test(test_sky),
-        cmocka_unit_test(test_kernels),
-    };
-    return soft_run("soft_test", &rig, &stand, toy_unit, tests, sizeof(tests) / sizeof(tests[0]));
+    return soft_run("soft_test", &rig, &stand, toy_unit);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Still pictures without a GPU against the same ones drawn by GL; and pictures that are coloured once more against new ones. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "tests/support/planned.h"
@@ -12,10 +12,9 @@
 static struct rig rig;
 static struct stand stand;
 
-static void test_home(void **state)
+TEST(test_home)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_REFINED, 640, 360, &view);
     soft_assert_like_gl(&stand, &view, 0.005);
     view.look = LOOK_FLAT;
@@ -30,10 +29,9 @@ static void test_home(void **state)
     soft_assert_like_gl(&stand, &view, 0.005);
 }
 
-static void test_sizes(void **state)
+TEST(test_sizes)
 {
     static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 } };
-    (void)state;
     for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
         struct view view;
         soft_start_view(&stand, TIER_REFINED, sizes[i][0], sizes[i][1], &view);
@@ -42,10 +40,9 @@ static void test_sizes(void **state)
 }
 
 /* All round, from far away, from below and from among the pipes, where triangles pass the eye. */
-static void test_cameras(void **state)
+TEST(test_cameras)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
     for (int i = 0; i < 12; i++) {
         stand_look(&stand, i, &view);
@@ -54,9 +51,8 @@ static void test_cameras(void **state)
 }
 
 /* Rays are parallel. */
-static void test_orthographic(void **state)
+TEST(test_orthographic)
 {
-    (void)state;
     for (int i = 0; i < 12; i++) {
         struct view view;
         soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
@@ -67,9 +63,8 @@ static void test_orthographic(void **state)
 }
 
 /* Lines, bands and logarithms. Rims of lines differ by the way slopes are measured. */
-static void test_lines_and_scales(void **state)
+TEST(test_lines_and_scales)
 {
-    (void)state;
     for (int i = 0; i < 8; i++) {
         struct view view;
         soft_start_view(&stand, TIER_REFINED, 400, 300, &view);
@@ -97,10 +92,9 @@ static void set_limits(bool set)
 }
 
 /* One tag without limits: what is near it is plain. What has no field is grey. */
-static void test_operator(void **state)
+TEST(test_operator)
 {
     struct view view;
-    (void)state;
     set_limits(true);
     soft_start_view(&stand, TIER_REFINED, 400, 300, &view);
     view.field.show = SHOW_OPERATOR;
@@ -113,9 +107,8 @@ static void test_operator(void **state)
 }
 
 /* Bodies that are closed have caps, the inner side of others shows. */
-static void test_cuts(void **state)
+TEST(test_cuts)
 {
-    (void)state;
     for (int i = 0; i < 12; i++) {
         struct view view;
         soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
@@ -131,9 +124,8 @@ static void test_cuts(void **state)
     }
 }
 
-static void test_ghosts(void **state)
+TEST(test_ghosts)
 {
-    (void)state;
     for (int i = 0; i < 8; i++) {
         struct view view;
         soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
@@ -148,10 +140,9 @@ static void test_ghosts(void **state)
     }
 }
 
-static void test_suns(void **state)
+TEST(test_suns)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_REFINED, 400, 300, &view);
     for (int i = 0; i < 4; i++) {
         double towards[3] = { 0.6 * cos(i), 0.6 * sin(i), 0.8 };
@@ -160,10 +151,9 @@ static void test_suns(void **state)
     }
 }
 
-static void test_outlines(void **state)
+TEST(test_outlines)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_REFINED, 640, 360, &view);
     for (int asset = 0; asset < (int)stand.toy->scene.asset_count; asset++) {
         view.selected_asset = asset;
@@ -171,10 +161,9 @@ static void test_outlines(void **state)
     }
 }
 
-static void test_hidden_assets(void **state)
+TEST(test_hidden_assets)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
     asset_set_add(&view.visibility.hidden, 1);
     soft_assert_like_gl(&stand, &view, 0.01);
@@ -219,9 +208,8 @@ static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
 }
 
 /* By one that never drew anything: of two that are under way at a time, one is new. */
-static void test_nothing_in_sight(void **state)
+TEST(test_nothing_in_sight)
 {
-    (void)state;
     struct view view;
     soft_start_view(&stand, TIER_REFINED, 320, 180, &view);
     for (int c = 0; c < 3; c++) /* the sky behind */
@@ -235,9 +223,8 @@ static void test_nothing_in_sight(void **state)
 }
 
 /* A pixel's middle may lie beside the sliver that it is told by: it must not slip along it. */
-static void test_shadows_on_slivers(void **state)
+TEST(test_shadows_on_slivers)
 {
-    (void)state;
     for (int light = 0; light < sweep(3, 1); light++) {
         const double towards[3] = { 0.6 * cos(2 * light), 0.6 * sin(2 * light), 0.8 };
         struct frame *slivers = draw_box_over_floor(1000, towards), *whole = draw_box_over_floor(1, towards);
@@ -260,9 +247,8 @@ static int darkest(const struct frame *frame, int y)
 }
 
 /* A leaning pole: here it is 3 pixels wide, there 4, and its lines must not show that. */
-static void test_thin_poles_have_no_beads(void **state)
+TEST(test_thin_poles_have_no_beads)
 {
-    (void)state;
     enum { FIRST = 80, LAST = 220 };
     struct toy *toy = toy_create();
     struct shape pole = { 0 };
@@ -314,10 +300,9 @@ static void assert_same_anew(const struct view *view)
     frame_unref(&anew);
 }
 
-static void test_new_readings_are_a_new_picture(void **state)
+TEST(test_new_readings_are_a_new_picture)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_REFINED, 501, 300, &view);
     view.selected_asset = 0;
     struct frame *first = soft_draw_anew(&stand, &view);
@@ -338,10 +323,9 @@ static void test_new_readings_are_a_new_picture(void **state)
 }
 
 /* With isolines, their labels, ghosts and a cut. */
-static void test_lines_again(void **state)
+TEST(test_lines_again)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_REFINED, 501, 300, &view);
     soft_lines_every(&view, 10);
     asset_set_add(&view.visibility.ghosts, 2);
@@ -362,9 +346,8 @@ static void test_lines_again(void **state)
 }
 
 /* Colours of the field are mixed with light. */
-static void test_glossy_again(void **state)
+TEST(test_glossy_again)
 {
-    (void)state;
     for (int i = 0; i < 4; i++) {
         struct view view;
         soft_start_view(&stand, TIER_REFINED, 501, 300, &view);
@@ -392,10 +375,9 @@ static void test_glossy_again(void **state)
     }
 }
 
-static void test_new_colors_too(void **state)
+TEST(test_new_colors_too)
 {
     struct view view;
-    (void)state;
     soft_start_view(&stand, TIER_REFINED, 300, 200, &view);
     struct frame *frame = soft_draw_anew(&stand, &view);
     frame_unref(&frame);
@@ -411,10 +393,9 @@ static void test_new_colors_too(void **state)
     toy_fill(stand.snapshot, 0);
 }
 
-static void test_what_else_changes_is_drawn(void **state)
+TEST(test_what_else_changes_is_drawn)
 {
     struct view view, other;
-    (void)state;
     soft_start_view(&stand, TIER_REFINED, 300, 200, &view);
     struct frame *frame = soft_draw_anew(&stand, &view);
     frame_unref(&frame);
@@ -437,10 +418,9 @@ static void test_what_else_changes_is_drawn(void **state)
 }
 
 /* What is kept of them has a bound, and the oldest goes. */
-static void test_few_large_ones_are_kept(void **state)
+TEST(test_few_large_ones_are_kept)
 {
     struct view views[4];
-    (void)state;
     for (int i = 0; i < 4; i++) {
         soft_start_view(&stand, TIER_REFINED, 3000, 2600, &views[i]);
         views[i].camera.eye_m[0] += i;
@@ -453,27 +433,5 @@ static void test_few_large_ones_are_kept(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_home),
-        cmocka_unit_test(test_sizes),
-        cmocka_unit_test(test_cameras),
-        cmocka_unit_test(test_orthographic),
-        cmocka_unit_test(test_lines_and_scales),
-        cmocka_unit_test(test_operator),
-        cmocka_unit_test(test_cuts),
-        cmocka_unit_test(test_ghosts),
-        cmocka_unit_test(test_suns),
-        cmocka_unit_test(test_outlines),
-        cmocka_unit_test(test_hidden_assets),
-        cmocka_unit_test(test_nothing_in_sight),
-        cmocka_unit_test(test_shadows_on_slivers),
-        cmocka_unit_test(test_thin_poles_have_no_beads),
-        cmocka_unit_test(test_new_readings_are_a_new_picture),
-        cmocka_unit_test(test_lines_again),
-        cmocka_unit_test(test_glossy_again),
-        cmocka_unit_test(test_new_colors_too),
-        cmocka_unit_test(test_what_else_changes_is_drawn),
-        cmocka_unit_test(test_few_large_ones_are_kept),
-    };
-    return soft_run("refined_test", &rig, &stand, toy_unit, tests, sizeof(tests) / sizeof(tests[0]));
+    return soft_run("refined_test", &rig, &stand, toy_unit);
 }

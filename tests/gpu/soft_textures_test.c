@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Materials with textures, with holes and of glass, drawn in software against the same ones by GL. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <string.h>
 
 #include "tests/support/soft_case.h"
 #include "value/quality.h"
@@ -139,23 +139,20 @@ static void compare_all(enum tier tier, double may_differ)
     }
 }
 
-static void test_previews(void **state)
+TEST(test_previews)
 {
-    (void)state;
     compare_all(TIER_PREVIEW, 0.02);
 }
 
-static void test_refined(void **state)
+TEST(test_refined)
 {
-    (void)state;
     compare_all(TIER_REFINED, 0.06); /* rims of holes are smooth, and of panes the nearest one is always before the others */
 }
 
 /* One at a time, so that nothing else differs. */
-static void test_each(void **state)
+TEST(test_each)
 {
     static const double may_differ[] = { [SIGN] = 0.003, [FENCE] = 0.03, [WINDOW] = 0.002, [CURTAIN] = 0.002 };
-    (void)state;
     for (int asset = SIGN; asset < PLATES; asset++)
         for (int i = 0; i < 3; i++) {
             struct view view;
@@ -169,10 +166,9 @@ static void test_each(void **state)
 }
 
 /* What is seen through glass and grating is coloured anew as it would be drawn anew. */
-static void test_new_readings(void **state)
+TEST(test_new_readings)
 {
     struct view view;
-    (void)state;
     for (int i = 0; i < 4; i++) {
         look(&view, TIER_REFINED, i);
         toy_set(stand.snapshot, 0, 30, QUALITY_GOOD);
@@ -190,11 +186,5 @@ static void test_new_readings(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_previews),
-        cmocka_unit_test(test_refined),
-        cmocka_unit_test(test_each),
-        cmocka_unit_test(test_new_readings),
-    };
-    return soft_run("soft_textures_test", &rig, &stand, make_plant, tests, sizeof(tests) / sizeof(tests[0]));
+    return soft_run("soft_textures_test", &rig, &stand, make_plant);
 }

@@ -3,16 +3,9 @@
    look each pixel's colour is read back as a value, in previews and in refined frames, over every level that is drawn. They are equal
    wherever a pixel and its neighbours show one surface. Elsewhere a hair decides what a preview shows; a refined frame has antialiased
    rims, and a surface smaller than a pixel may have its part in one. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "render/renderer_compare.h"
@@ -159,23 +152,20 @@ static void test_plant(const char *path, const char *name)
     site_finish(&site);
 }
 
-static void test_demo(void **state)
+TEST(test_demo)
 {
-    (void)state;
     test_plant(SITE_DEMO, NULL);
 }
 
-static void test_plant_room(void **state)
+TEST(test_plant_room)
 {
-    (void)state;
     if (!site_is_there("plm_plant_equipment.glb"))
         skip();
     test_plant("tests/plants/plant_room.yaml", "plant_room");
 }
 
-static void test_cookie_line(void **state)
+TEST(test_cookie_line)
 {
-    (void)state;
     if (!site_is_there("cookie_factory_mixer.glb"))
         skip();
     test_plant("tests/plants/cookie_line.yaml", "cookie_line");
@@ -183,15 +173,5 @@ static void test_cookie_line(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_demo),
-        cmocka_unit_test(test_plant_room),
-        cmocka_unit_test(test_cookie_line),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "soft_values_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who walks through a plant: pictures without a GPU against those that GL draws, with surfaces before the eye, beside it and behind it. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 
-#include <cmocka.h>
 
 #include "render/split_view.h"
 #include "tests/support/site.h"
@@ -88,28 +82,17 @@ static void walk(enum tier tier, int steps)
     site_finish(&site);
 }
 
-static void test_moving(void **state)
+TEST(test_moving)
 {
-    (void)state;
     walk(TIER_PREVIEW, sweep(40, 12));
 }
 
-static void test_still(void **state)
+TEST(test_still)
 {
-    (void)state;
     walk(TIER_REFINED, sweep(12, 4));
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_moving),
-        cmocka_unit_test(test_still),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "soft_walkthrough_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

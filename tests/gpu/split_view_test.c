@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Split views: each half is the picture that it would be by itself, markers and labels stand in their own half, and what is drawn bit by
    bit is what is drawn at once. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "render/overlay/overlay.h"
@@ -54,10 +48,9 @@ static bool same_row(const struct frame *whole, const struct frame *part, int y,
     return memcmp(frame_pixel(whole, from_px, y), frame_pixel(part, part_from_px, y), (size_t)count_px * 4) == 0;
 }
 
-static void test_halves_are_pictures(void **state)
+TEST_WITH(test_halves_are_pictures, set_up, tear_down)
 {
     struct view view, half;
-    (void)state;
     make_view(&view);
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
@@ -90,10 +83,9 @@ static void test_halves_are_pictures(void **state)
     }
 }
 
-static void test_bit_by_bit(void **state)
+TEST_WITH(test_bit_by_bit, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     make_view(&view);
     struct split_view *canvas = planned_split(stand.renderer, &view, stand.snapshot, false);
     int steps = 1;
@@ -113,11 +105,10 @@ static void test_bit_by_bit(void **state)
 }
 
 /* Two of them at once come as each does alone. */
-static void test_launched_together(void **state)
+TEST_WITH(test_launched_together, set_up, tear_down)
 {
     struct view views[2];
     struct split_view *canvases[2];
-    (void)state;
     for (int i = 0; i < 2; i++)
         make_view(&views[i]);
     renderer_use_gl(stand.renderer, true);
@@ -146,10 +137,9 @@ static void test_launched_together(void **state)
 }
 
 /* A view that was split may become narrow. */
-static void test_narrow(void **state)
+TEST_WITH(test_narrow, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     make_view(&view);
     for (view.width_px = 16; view.width_px < 20; view.width_px++) {
         struct frame *frame = split_view_draw_now(stand.renderer, &view, stand.snapshot);
@@ -160,10 +150,9 @@ static void test_narrow(void **state)
     }
 }
 
-static void test_what_is_not_split_stays_as_it_is(void **state)
+TEST_WITH(test_what_is_not_split_stays_as_it_is, set_up, tear_down)
 {
     struct view view;
-    (void)state;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
     struct frame *whole = split_view_draw_now(stand.renderer, &view, stand.snapshot), *plain = stand_draw(&stand, &view);
     assert_memory_equal(whole->bgrx, plain->bgrx, (size_t)HEIGHT * (size_t)whole->stride_bytes);
@@ -175,21 +164,7 @@ static void test_what_is_not_split_stays_as_it_is(void **state)
     frame_unref(&plain);
 }
 
-#define each(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        each(test_halves_are_pictures),
-        each(test_bit_by_bit),
-        each(test_launched_together),
-        each(test_narrow),
-        each(test_what_is_not_split_stays_as_it_is),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "split_view_test"))
-        return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    rig_finish(&rig);
-    return failed;
+    return rig_run(&rig);
 }

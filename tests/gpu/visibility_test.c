@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is hidden, isolated, ghosted or cut away: colours, markers and content of the pictures; and orthographic ones. As a session without
    a GPU has them: some are left to GL then, and what is the same in two pictures must be so across that border; and all by GL. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "render/pick/pick.h"
 #include "tests/support/planned.h"
@@ -84,9 +78,8 @@ static void assert_looks(double exchanger_least, double tank_least, size_t marke
     view.tier = TIER_PREVIEW;
 }
 
-static void test_hidden_and_isolated(void **state)
+TEST_WITH(test_hidden_and_isolated, reset, NULL)
 {
-    (void)state;
     assert_looks(2000, 2000, 8);
     asset_set_add(&view.visibility.hidden, TANK);
     assert_looks(2000, 0, 5);
@@ -100,9 +93,8 @@ static void test_hidden_and_isolated(void **state)
     frame_unref(&frame);
 }
 
-static void test_what_is_hidden_has_no_age(void **state)
+TEST_WITH(test_what_is_hidden_has_no_age, reset, NULL)
 {
-    (void)state;
     for (int i = 5; i < 8; i++)
         stand.snapshot->readings[i].age_ns = 9000000000;
     asset_set_add(&view.visibility.hidden, TANK);
@@ -116,9 +108,8 @@ static uint64_t content(void)
     return planned_content(stand.renderer, &view, stand.snapshot);
 }
 
-static void test_content_sees_what_is_shown(void **state)
+TEST_WITH(test_content_sees_what_is_shown, reset, NULL)
 {
-    (void)state;
     uint64_t whole = content();
     asset_set_add(&view.visibility.hidden, TANK);
     uint64_t hidden = content();
@@ -145,9 +136,8 @@ static void test_content_sees_what_is_shown(void **state)
 }
 
 /* The tank stands before the exchanger's end, or not at all: what is seen through it keeps its colours but for lines and dots. */
-static void test_ghosts_change_few_colours(void **state)
+TEST_WITH(test_ghosts_change_few_colours, reset, NULL)
 {
-    (void)state;
     view.camera = (struct camera){ .eye_m = { 11, 2.5, 2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 30 };
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
@@ -172,9 +162,8 @@ static void test_ghosts_change_few_colours(void **state)
 }
 
 /* A plane that runs away from the eye falls far from pixel to pixel; that is no line. */
-static void test_a_steep_ghost_is_seen_through(void **state)
+TEST_WITH(test_a_steep_ghost_is_seen_through, reset, NULL)
 {
-    (void)state;
     view.camera = (struct camera){ .eye_m = { -8, -1, 1.5 }, .target_m = { 0, 0.5, 0 }, .up = { 0, 0, 1 }, .fov_deg = 30 };
     asset_set_add(&view.visibility.isolated, SLAB);
     struct frame *solid = stand_draw(&stand, &view);
@@ -192,9 +181,8 @@ static void test_a_steep_ghost_is_seen_through(void **state)
     frame_unref(&ghost);
 }
 
-static void test_a_ghost_behind_something_is_not_seen(void **state)
+TEST_WITH(test_a_ghost_behind_something_is_not_seen, reset, NULL)
 {
-    (void)state;
     view.camera = (struct camera){ .eye_m = { -12, 0, 1.2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 4 };
     struct frame *solid = stand_draw(&stand, &view);
     asset_set_add(&view.visibility.ghosts, PUMP);
@@ -210,9 +198,8 @@ static bool is_neutral(const uint8_t *bgrx)
 }
 
 /* The exchanger lies along x, its axis at y = 0, z = 1.2. Seen from the south with the southern half cut away: its inner side. */
-static void test_a_cut_opens_a_neutral_inside(void **state)
+TEST_WITH(test_a_cut_opens_a_neutral_inside, reset, NULL)
 {
-    (void)state;
     view.camera = (struct camera){ .eye_m = { 0, -8, 1.2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 40 };
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++)
         for (int look = LOOK_DEFAULT; look <= LOOK_FLAT; look++) {
@@ -289,11 +276,10 @@ static void cut_through(struct stand *from, enum tier tier, bool core_cut, bool 
 }
 
 /* Solid: a plane hides what is within. Hollow: only its walls are closed. Open: what is within is seen as ever. */
-static void test_a_cut_closes_bodies(void **state)
+TEST_WITH(test_a_cut_closes_bodies, reset, NULL)
 {
     double first_m, last_m;
     struct pick pick;
-    (void)state;
     for (int way = 0; way < 3; way++) {
         struct stand own;
         set_up(&own, nested(way == 1, way == 2));
@@ -318,9 +304,8 @@ static void test_a_cut_closes_bodies(void **state)
 }
 
 /* What is cut away is no obstacle; what is behind the cut is where it was. */
-static void test_a_cut_leaves_the_rest_alone(void **state)
+TEST_WITH(test_a_cut_leaves_the_rest_alone, reset, NULL)
 {
-    (void)state;
     view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 50 } } };
     struct frame *uncut = stand_draw(&stand, &view);
     view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 2.6 } } }; /* the tank goes */
@@ -340,9 +325,8 @@ static void test_a_cut_leaves_the_rest_alone(void **state)
 }
 
 /* Bit by bit, a cut with ghosts is the same picture. */
-static void test_bit_by_bit_is_the_same(void **state)
+TEST_WITH(test_bit_by_bit_is_the_same, reset, NULL)
 {
-    (void)state;
     view.tier = TIER_REFINED;
     asset_set_add(&view.visibility.ghosts, TANK);
     view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 1, 0, 0.1 } } };
@@ -357,9 +341,8 @@ static void test_bit_by_bit_is_the_same(void **state)
 }
 
 /* In an orthographic picture each metre has its pixels, wherever it lies; depth still hides. */
-static void test_orthographic_markers_stand_where_they_should(void **state)
+TEST_WITH(test_orthographic_markers_stand_where_they_should, reset, NULL)
 {
-    (void)state;
     view.camera = (struct camera){ .eye_m = { 1.3, -8, 1.2 }, .target_m = { 1.3, 0, 1.2 }, .up = { 0, 0, 1 }, .height_m = 5 };
     double scale = 270 / 5.0;
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -385,9 +368,8 @@ static void test_orthographic_markers_stand_where_they_should(void **state)
 }
 
 /* What is hidden or cut away throws no shadow: the slab under the exchanger is lit where it was dark. */
-static void test_what_is_not_shown_throws_no_shadow(void **state)
+TEST_WITH(test_what_is_not_shown_throws_no_shadow, reset, NULL)
 {
-    (void)state;
     view.look = LOOK_DEFAULT;
     view.tier = TIER_REFINED;
     memcpy(view.light_dir, (double[3]){ 0, -0.6, 0.8 }, sizeof(view.light_dir));
@@ -407,8 +389,6 @@ static void test_what_is_not_shown_throws_no_shadow(void **state)
     assert_true(abs(shaded[1] - shaded[2]) < 12);
 }
 
-#define each(test) cmocka_unit_test_setup(test, reset)
-
 /* A ball in a closed room. */
 static void stand_room(struct stand *room, struct view *of)
 {
@@ -425,12 +405,11 @@ static void stand_room(struct stand *room, struct view *of)
 }
 
 /* With the walls hidden the ball is not as dark as within them; and they themselves are as they were. */
-static void test_what_is_hidden_leaves_no_dark(void **state)
+TEST_WITH(test_what_is_hidden_leaves_no_dark, reset, NULL)
 {
     struct stand room;
     struct view whole, opened;
     struct frame *first, *again;
-    (void)state;
     for (int hidden_first = 0; hidden_first <= 1; hidden_first++) {
         stand_room(&room, &whole);
         opened = whole;
@@ -453,29 +432,13 @@ static void test_what_is_hidden_leaves_no_dark(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        each(test_hidden_and_isolated),
-        each(test_what_is_hidden_has_no_age),
-        each(test_content_sees_what_is_shown),
-        each(test_ghosts_change_few_colours),
-        each(test_a_steep_ghost_is_seen_through),
-        each(test_a_ghost_behind_something_is_not_seen),
-        each(test_a_cut_opens_a_neutral_inside),
-        each(test_a_cut_closes_bodies),
-        each(test_a_cut_leaves_the_rest_alone),
-        each(test_bit_by_bit_is_the_same),
-        each(test_what_is_not_shown_throws_no_shadow),
-        each(test_what_is_hidden_leaves_no_dark),
-        each(test_orthographic_markers_stand_where_they_should),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "visibility_test"))
         return 0;
     int failed = 0;
     for (int way = 0; way <= 1; way++) {
         by_gl = way == 1;
         set_up(&stand, toy_unit());
-        failed += cmocka_run_group_tests_name(by_gl ? "by GL" : "as without a GPU", tests, NULL, NULL);
+        failed += tests_run(by_gl ? "by GL" : "as without a GPU");
         stand_finish(&stand);
     }
     rig_finish(&rig);

@@ -25,6 +25,4 @@ const struct reading *modbus_case_look(struct modbus_case *c, int tag);
 /* Waits until the tag has this quality. */
 void modbus_case_expect(struct modbus_case *c, int tag, uint32_t quality, double timeout_s);
 
-#define modbus_test(f) cmocka_unit_test_setup_teardown(f, modbus_case_set_up, modbus_case_tear_down)
-
 #endif

@@ -2,6 +2,7 @@
 /* Contexts, stands and pixels for GL tests. */
 #include "tests/support/rig.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,6 +14,7 @@
 
 #include "base/mem.h"
 #include "render/split_view.h"
+#include "tests/support/test.h"
 
 bool rig_init(struct rig *rig, const char *test)
 {
@@ -37,6 +39,15 @@ void rig_finish(struct rig *rig)
     gl_destroy(&rig->gl);
     workers_destroy(&rig->workers);
     log_destroy(&rig->log);
+}
+
+int rig_run(struct rig *rig)
+{
+    if (!rig_init(rig, program_invocation_short_name))
+        return 0;
+    int failed = tests_run(NULL);
+    rig_finish(rig);
+    return failed;
 }
 
 /* Where tests/run lets programs share what costs much and is the same for all: by what the file in it depends on of a toy. NULL: alone. */

@@ -16,6 +16,8 @@ struct rig {
 /* False: there is no such context here; a line of TAP says so, and the program ends well. */
 bool rig_init(struct rig *rig, const char *test);
 void rig_finish(struct rig *rig);
+/* Makes the rig, runs the tests of the program (tests/support/test.h) and finishes the rig. Returns what main returns. */
+int rig_run(struct rig *rig);
 
 struct stand { /* one plant on its renderer */
     struct rig *rig;

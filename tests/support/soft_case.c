@@ -101,10 +101,8 @@ void soft_assert_like_gl(struct stand *stand, const struct view *view, double ma
     frame_unref(&gl);
 }
 
-int soft_run(const char *name, struct rig *rig, struct stand *stand, struct toy *(*make_toy)(void), const struct CMUnitTest *tests,
-             size_t count)
+int soft_run(const char *name, struct rig *rig, struct stand *stand, struct toy *(*make_toy)(void))
 {
-    cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(rig, name))
         return 0;
     if (!rig->gl->software) {
@@ -114,7 +112,7 @@ int soft_run(const char *name, struct rig *rig, struct stand *stand, struct toy 
     }
     stand_init(stand, rig, make_toy());
     toy_fill(stand->snapshot, 0);
-    int failed = _cmocka_run_group_tests(name, tests, count, NULL, NULL);
+    int failed = tests_run(name);
     stand_finish(stand);
     rig_finish(rig);
     return failed;

@@ -2,14 +2,8 @@
 /* Frames drawn in software against the same ones by GL. */
 #ifndef TESTS_SUPPORT_SOFT_CASE_H
 #define TESTS_SUPPORT_SOFT_CASE_H
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <setjmp.h>
-
-#include <cmocka.h>
-
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 /* Starts a view of the whole scene. */
 void soft_start_view(const struct stand *stand, enum tier tier, int width_px, int height_px, struct view *view);
@@ -24,7 +18,6 @@ void soft_assert_same_pixels(const struct frame *soft, const struct frame *gl, d
 /* Draws both; asserts that pixels, markers and labels are the same. */
 void soft_assert_like_gl(struct stand *stand, const struct view *view, double may_differ);
 /* main() of a test: makes the rig and the stand of a toy. Skipped where there is a GPU. */
-int soft_run(const char *name, struct rig *rig, struct stand *stand, struct toy *(*make_toy)(void), const struct CMUnitTest *tests,
-             size_t count);
+int soft_run(const char *name, struct rig *rig, struct stand *stand, struct toy *(*make_toy)(void));
 
 #endif

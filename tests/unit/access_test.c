@@ -2,11 +2,8 @@
 /* Who may do what: each message by each role, where a daemon may listen, names, pages, and what headers say. */
 #include "access/access.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "message/message_parse.h"
@@ -31,9 +28,8 @@ static void expect_least(const char *text, enum role least)
     }
 }
 
-static void each_message_asks_for_its_role(void **state)
+TEST(each_message_asks_for_its_role)
 {
-    (void)state;
     expect_least("{\"type\":\"ping\",\"t\":1}", ROLE_NOBODY);
     static const char *const looking[] = {
         "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"]}",
@@ -54,18 +50,16 @@ static void each_message_asks_for_its_role(void **state)
         expect_least(looking[i], ROLE_OPEN);
 }
 
-static void what_others_see_takes_an_operator(void **state)
+TEST(what_others_see_takes_an_operator)
 {
-    (void)state;
     expect_least("{\"type\":\"params\",\"seq\":1,\"baseline\":\"now\"}", ROLE_OPERATOR);
     expect_least("{\"type\":\"params\",\"seq\":1,\"baseline\":{\"set\":\"a\"}}", ROLE_OPERATOR);
     expect_least("{\"type\":\"params\",\"seq\":1,\"baseline\":{\"remove\":\"a\"}}", ROLE_OPERATOR);
     expect_least(HELLO_WITH("\"baseline\":\"now\""), ROLE_OPERATOR);
 }
 
-static void how_the_field_is_computed_takes_an_engineer(void **state)
+TEST(how_the_field_is_computed_takes_an_engineer)
 {
-    (void)state;
     static const char *const fields[] = { "\"fill\":\"neighbours\"",
                                           "\"strength\":2",
                                           "\"decay\":2",
@@ -84,9 +78,8 @@ static void how_the_field_is_computed_takes_an_engineer(void **state)
     }
 }
 
-static void where_a_daemon_may_listen(void **state)
+TEST(where_a_daemon_may_listen)
 {
-    (void)state;
     const char *why = NULL;
     struct access_params params = { 0 };
     assert_true(access_allowed_at(&params, true, &why));
@@ -111,9 +104,8 @@ static void where_a_daemon_may_listen(void **state)
     assert_false(access_allowed_at(&params, false, &why)); /* what comes from the proxy would go in the clear */
 }
 
-static void hosts_are_names_without_ports(void **state)
+TEST(hosts_are_names_without_ports)
 {
-    (void)state;
     static const struct {
         const char *host, *name;
     } good[] = { { "plant.example", "plant.example" },
@@ -139,9 +131,8 @@ static void hosts_are_names_without_ports(void **state)
     assert_false(access_name_is_local("127.evil.example") || access_name_is_local("localhost.evil.example") || access_name_is_local("::2"));
 }
 
-static void pages_of_other_hosts_may_not(void **state)
+TEST(pages_of_other_hosts_may_not)
 {
-    (void)state;
     struct access_params params = { .origins = { "https://portal.example" }, .origin_count = 1 };
     assert_true(access_origin(&params, "", "plant.example", true)); /* no browser */
     assert_true(access_origin(&params, "http://plant.example:8080", "plant.example:8080", false));
@@ -154,9 +145,8 @@ static void pages_of_other_hosts_may_not(void **state)
     assert_false(access_origin(&params, "plant.example", "plant.example", false));
 }
 
-static void frames_of_pages_that_were_named(void **state)
+TEST(frames_of_pages_that_were_named)
 {
-    (void)state;
     struct access_params params = { .origins = { "https://portal.example", "http://wall.example:81" } };
     char *own = access_content_policy(&params);
     params.origin_count = 2;
@@ -168,9 +158,8 @@ static void frames_of_pages_that_were_named(void **state)
     mem_free(more);
 }
 
-static void lists_in_headers(void **state)
+TEST(lists_in_headers)
 {
-    (void)state;
     char out[64] = "before";
     assert_true(access_list_has("chat, plantcast.v1", "plantcast.v1") && access_list_has("plantcast.v1,x", "plantcast.v1"));
     assert_false(access_list_has("plantcast.v10", "plantcast.v1") || access_list_has("xplantcast.v1", "plantcast.v1"));
@@ -188,26 +177,8 @@ static void lists_in_headers(void **state)
     assert_false(access_forwarded("", out, sizeof(out)));
 }
 
-static void tokens_in_queries_are_known_by_name(void **state)
+TEST(tokens_in_queries_are_known_by_name)
 {
-    (void)state;
     assert_true(access_argument_is_token("token=abc") && access_argument_is_token("Access_Token=abc") && access_argument_is_token("token"));
     assert_false(access_argument_is_token("tokens=abc") || access_argument_is_token("width=5") || access_argument_is_token("=token"));
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_message_asks_for_its_role),
-        cmocka_unit_test(what_others_see_takes_an_operator),
-        cmocka_unit_test(how_the_field_is_computed_takes_an_engineer),
-        cmocka_unit_test(where_a_daemon_may_listen),
-        cmocka_unit_test(hosts_are_names_without_ports),
-        cmocka_unit_test(pages_of_other_hosts_may_not),
-        cmocka_unit_test(frames_of_pages_that_were_named),
-        cmocka_unit_test(lists_in_headers),
-        cmocka_unit_test(tokens_in_queries_are_known_by_name),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,14 +3,8 @@
    have. (Shapes with a formula: surface_test.c.) The clean shape is the truth; of interpenetrating pipes, their union. */
 #include "surface/surface.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/oracle/geodesic.h"
@@ -171,39 +165,35 @@ static void skip_if_watched(void)
 #endif
 }
 
-static void torus(void **state)
+TEST(torus)
 {
     struct cad clean = { 0 };
-    (void)state;
     skip_if_watched();
     cad_torus(&clean, &chance, cells(250), cells(84), 0.2 + 0.4 * cad_random(&chance), 0.5);
     test_alone("torus", 0, &clean);
 }
 
-static void bent_pipe(void **state)
+TEST(bent_pipe)
 {
     struct cad clean = { 0 };
-    (void)state;
     skip_if_watched();
     cad_bent_pipe(&clean, &chance, cells(270), cells(76), 0.15 + 0.1 * cad_random(&chance), 0.5);
     test_alone("S-bent pipe", 1, &clean);
 }
 
-static void thin_walled_box(void **state)
+TEST(thin_walled_box)
 {
     struct cad clean = { 0 };
-    (void)state;
     skip_if_watched();
     cad_thin_box(&clean, &chance, cells(64 + (int)(20 * cad_random(&chance))), cells(44), cells(36), 0.01);
     test_alone("thin-walled box", 2, &clean);
 }
 
-static void interpenetrating_pipes(void **state)
+TEST(interpenetrating_pipes)
 {
     const double middle[3] = { 0, 0, 0 }, beside[3] = { 0.1 * cad_random(&chance), 0.1 * cad_random(&chance), 0.3 * cad_random(&chance) };
     struct cad clean = { 0 };
     struct oracle_mesh outer;
-    (void)state;
     skip_if_watched();
     cad_closed_pipe(&clean, &chance, 0.5, 4, cells(100), cells(110), cells(10), 0, middle);
     size_t vertices = clean.vertex_count, triangles = clean.triangle_count;
@@ -226,14 +216,4 @@ static void interpenetrating_pipes(void **state)
     free((void *)outer.triangles);
 }
 
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(torus),
-        cmocka_unit_test(bent_pipe),
-        cmocka_unit_test(thin_walled_box),
-        cmocka_unit_test(interpenetrating_pipes),
-    };
-    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
-}
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

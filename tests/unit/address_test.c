@@ -2,19 +2,13 @@
 /* Modbus addresses, data types, byte orders and numbers as tag lists write them. */
 #include "plant/sources/address.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "plant/parse/number.h"
 #include "plant/parse/suggest.h"
 
-static void good_addresses_are_read(void **state)
+TEST(good_addresses_are_read)
 {
-    (void)state;
     static const struct {
         const char *text;
         int base;
@@ -61,9 +55,8 @@ static void good_addresses_are_read(void **state)
     }
 }
 
-static void bad_addresses_are_explained(void **state)
+TEST(bad_addresses_are_explained)
 {
-    (void)state;
     static const char *const cases[][2] = {
         { "", "expected 5 or 6 digits such as 40001" },
         { "D100", "expected 5 or 6 digits such as 40001" },
@@ -103,9 +96,8 @@ static void bad_addresses_are_explained(void **state)
     }
 }
 
-static void types_have_two_names(void **state)
+TEST(types_have_two_names)
 {
-    (void)state;
     static const struct {
         const char *ours, *kepware;
         enum data_type type;
@@ -131,9 +123,8 @@ static void types_have_two_names(void **state)
     assert_string_equal(data_type_suggest("Flot"), "float");
 }
 
-static void numbers_are_decimal(void **state)
+TEST(numbers_are_decimal)
 {
-    (void)state;
     static const struct {
         const char *text;
         double is;
@@ -156,9 +147,8 @@ static void numbers_are_decimal(void **state)
     assert_true(value == 99);
 }
 
-static void the_nearest_name_is_suggested(void **state)
+TEST(the_nearest_name_is_suggested)
 {
-    (void)state;
     static const char *const names[] = { "min", "max", NULL, "limits", "interpolation", "temperature", "E-101A", "E-101B" };
     static const char *const cases[][2] = {
         { "mim", "min" },
@@ -184,17 +174,4 @@ static void the_nearest_name_is_suggested(void **state)
     memset(long_name, 'x', sizeof(long_name) - 1);
     long_name[sizeof(long_name) - 1] = 0;
     assert_null(suggest_nearest(long_name, names, 8, sizeof(*names)));
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(good_addresses_are_read),
-        cmocka_unit_test(bad_addresses_are_explained),
-        cmocka_unit_test(types_have_two_names),
-        cmocka_unit_test(numbers_are_decimal),
-        cmocka_unit_test(the_nearest_name_is_suggested),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,11 +2,8 @@
 /* How much clients may have: limits by name, what addresses have, and whether drawing has room for one more. */
 #include "session/pacing/admission.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -21,9 +18,8 @@ static int set_up(void **state)
     return 0;
 }
 
-static void limits_are_set_by_name_and_within_range(void **state)
+TEST_WITH(limits_are_set_by_name_and_within_range, set_up, NULL)
 {
-    (void)state;
     assert_true(quotas_parse(&quotas, "sessions=7"));
     assert_int_equal(quotas.at[QUOTA_SESSIONS], 7);
     assert_true(quotas.given[QUOTA_SESSIONS] && !quotas.given[QUOTA_PIXELS]);
@@ -39,9 +35,8 @@ static void limits_are_set_by_name_and_within_range(void **state)
 
 /* --- addresses ------------------------------------------------------------------------------------------------------------------- */
 
-static void an_address_is_one_however_it_is_written(void **state)
+TEST_WITH(an_address_is_one_however_it_is_written, set_up, NULL)
 {
-    (void)state;
     struct address_limits *limits = address_limits_create(&quotas, true);
     struct address_usage *four = address_limits_ref(limits, "203.0.113.7"), *mapped = address_limits_ref(limits, "::ffff:203.0.113.7");
     struct address_usage *six = address_limits_ref(limits, "2001:db8:1:2::1"),
@@ -59,9 +54,8 @@ static void an_address_is_one_however_it_is_written(void **state)
     address_limits_destroy(&limits);
 }
 
-static void an_address_has_its_limits_and_this_machine_only_those_set(void **state)
+TEST_WITH(an_address_has_its_limits_and_this_machine_only_those_set, set_up, NULL)
 {
-    (void)state;
     struct address_limits *limits = address_limits_create(&quotas, true);
     struct address_usage *usage = address_limits_ref(limits, "203.0.113.7"), *local = address_limits_ref(limits, "127.0.0.1");
     usage->connections = local->connections = (int)quotas.at[QUOTA_ADDRESS_CONNECTIONS];
@@ -77,9 +71,8 @@ static void an_address_has_its_limits_and_this_machine_only_those_set(void **sta
     address_limits_destroy(&limits);
 }
 
-static void messages_of_an_address_are_counted_together(void **state)
+TEST_WITH(messages_of_an_address_are_counted_together, set_up, NULL)
 {
-    (void)state;
     int64_t now_ns = 1000 * NS_PER_S;
     quotas_parse(&quotas, "address-messages=10");
     struct address_limits *limits = address_limits_create(&quotas, true);
@@ -131,9 +124,8 @@ static const char *refuses(const struct admission *admission, struct address_sha
     return admission_refuses(admission, share, pixels);
 }
 
-static void who_would_slow_the_others_down_too_far_is_refused(void **state)
+TEST_WITH(who_would_slow_the_others_down_too_far_is_refused, set_up, NULL)
 {
-    (void)state;
     struct admission admission = { .quotas = &quotas };
     struct address_share share = { 0 };
     admission_join(&admission, &share);
@@ -147,9 +139,8 @@ static void who_would_slow_the_others_down_too_far_is_refused(void **state)
     assert_null(refuses(&admission, &share, 1000, 4));
 }
 
-static void a_busy_second_is_no_reason(void **state)
+TEST_WITH(a_busy_second_is_no_reason, set_up, NULL)
 {
-    (void)state;
     struct admission admission = { .quotas = &quotas };
     struct address_share share = { 0 };
     admission_join(&admission, &share);
@@ -178,9 +169,8 @@ static void a_second_of(struct admission *admission, struct address_share *share
     admission_on_tick(admission, admission->begin_ns + NS_PER_S);
 }
 
-static void one_address_keeps_no_other_out(void **state)
+TEST_WITH(one_address_keeps_no_other_out, set_up, NULL)
 {
-    (void)state;
     struct admission admission = { .quotas = &quotas };
     struct address_share shares[2] = { { .moving = 30 }, { .moving = 0 } };
     admission_join(&admission, &shares[0]);
@@ -201,9 +191,8 @@ static void one_address_keeps_no_other_out(void **state)
     assert_non_null(admission_refuses(&admission, &third, 1000));
 }
 
-static void many_addresses_of_one_session_each_are_as_many_sessions(void **state)
+TEST_WITH(many_addresses_of_one_session_each_are_as_many_sessions, set_up, NULL)
 {
-    (void)state;
     struct admission admission = { .quotas = &quotas };
     struct address_share shares[5] = { { .moving = 1 }, { .moving = 1 }, { .moving = 1 }, { .moving = 1 }, { .moving = 0 } };
     for (int i = 0; i < 4; i++)
@@ -216,9 +205,8 @@ static void many_addresses_of_one_session_each_are_as_many_sessions(void **state
     assert_null(admission_refuses(&admission, &shares[4], 1000));
 }
 
-static void readings_that_are_drawn_too_late_are_a_reason(void **state)
+TEST_WITH(readings_that_are_drawn_too_late_are_a_reason, set_up, NULL)
 {
-    (void)state;
     struct admission admission = { .quotas = &quotas };
     struct address_share share = { 0 };
     admission_join(&admission, &share);
@@ -228,9 +216,8 @@ static void readings_that_are_drawn_too_late_are_a_reason(void **state)
     assert_non_null(refuses(&admission, &share, 1000, 1));
 }
 
-static void pixels_of_all_views_have_a_limit(void **state)
+TEST_WITH(pixels_of_all_views_have_a_limit, set_up, NULL)
 {
-    (void)state;
     struct admission admission = { .quotas = &quotas };
     struct address_share share = { 0 };
     admission_join(&admission, &share);
@@ -238,23 +225,4 @@ static void pixels_of_all_views_have_a_limit(void **state)
     admission.pixels = 900000;
     assert_null(refuses(&admission, &share, 100000, 0));
     assert_non_null(refuses(&admission, &share, 100001, 0));
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-#define TEST(name) cmocka_unit_test_setup(name, set_up)
-    const struct CMUnitTest tests[] = {
-        TEST(limits_are_set_by_name_and_within_range),
-        TEST(an_address_is_one_however_it_is_written),
-        TEST(an_address_has_its_limits_and_this_machine_only_those_set),
-        TEST(messages_of_an_address_are_counted_together),
-        TEST(who_would_slow_the_others_down_too_far_is_refused),
-        TEST(a_busy_second_is_no_reason),
-        TEST(one_address_keeps_no_other_out),
-        TEST(many_addresses_of_one_session_each_are_as_many_sessions),
-        TEST(readings_that_are_drawn_too_late_are_a_reason),
-        TEST(pixels_of_all_views_have_a_limit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Alarms on the wire: what sessions hear, what they may do, what programs get. */
+#include "tests/support/test.h"
 #include <jansson.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -64,6 +58,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+
 /* And waits until alarms know it. */
 static void give(struct setup *s, int tag, double value, uint32_t quality)
 {
@@ -97,9 +93,8 @@ static bool ask(struct setup *s, const char *text, struct message *message, stru
     return message_parse(s->plant, text, strlen(text), message, error);
 }
 
-static void sessions_hear_what_changed(void **state)
+CASE(sessions_hear_what_changed)
 {
-    struct setup *s = *state;
     struct alarm_text_cache said = { 0 };
     uint64_t number = 0, other = 0;
     give(s, 0, 95, QUALITY_GOOD);
@@ -120,9 +115,8 @@ static void sessions_hear_what_changed(void **state)
     alarm_text_cache_finish(&said);
 }
 
-static void what_is_asked_is_done_or_refused(void **state)
+CASE(what_is_asked_is_done_or_refused)
 {
-    struct setup *s = *state;
     struct message message;
     struct message_error error;
     give(s, 0, 95, QUALITY_GOOD);
@@ -144,9 +138,8 @@ static void what_is_asked_is_done_or_refused(void **state)
 }
 
 /* The device of both tags: by its name, once. */
-static void a_device_has_its_own(void **state)
+CASE(a_device_has_its_own)
 {
-    struct setup *s = *state;
     struct message message;
     struct message_error error;
     uint64_t number = 0;
@@ -174,9 +167,8 @@ static void a_device_has_its_own(void **state)
     json_decref(api);
 }
 
-static void roles_are_kept(void **state)
+CASE(roles_are_kept)
 {
-    struct setup *s = *state;
     static const struct {
         const char *action;
         enum role least;
@@ -201,9 +193,8 @@ static bool query(struct setup *s, bool journal, const char *arg, struct alarm_q
     return alarm_query_parse(s->plant, journal, &arg, 1, 1000000, out, &error);
 }
 
-static void programs_get_pages(void **state)
+CASE(programs_get_pages)
 {
-    struct setup *s = *state;
     struct alarm_query q;
     give(s, 0, 95, QUALITY_GOOD);
     give(s, 1, 95, QUALITY_GOOD);
@@ -230,9 +221,8 @@ static void programs_get_pages(void **state)
     assert_false(query(s, true, "from=yesterday", &q));
 }
 
-static void the_journal_is_read_by_pages(void **state)
+CASE(the_journal_is_read_by_pages)
 {
-    struct setup *s = *state;
     struct alarm_query q;
     struct text out = { 0 };
     give(s, 0, 95, QUALITY_GOOD);
@@ -259,18 +249,4 @@ static void the_journal_is_read_by_pages(void **state)
     assert_non_null(strstr(out.at, ",Kim,\"says \"\"now\"\", and means it\"\n"));
     text_finish(&out);
     mem_free(more);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(sessions_hear_what_changed, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_is_asked_is_done_or_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_device_has_its_own, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(roles_are_kept, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(programs_get_pages, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(the_journal_is_read_by_pages, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

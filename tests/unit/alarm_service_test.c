@@ -1,18 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Alarms of a running store: journalled, taken up after kill -9, and when the journal was damaged. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
 #include <stdatomic.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "alarm/alarm_service.h"
 #include "alarm/journal.h"
@@ -78,6 +71,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+
 static void give_all(struct setup *s, double value)
 {
     struct sample samples[TAGS];
@@ -127,9 +122,8 @@ static int wait_for(struct setup *s, enum alarm_status word, int wanted)
     }
 }
 
-static void a_thousand_at_once_are_all_written(void **state)
+CASE(a_thousand_at_once_are_all_written)
 {
-    struct setup *s = *state;
     start(s);
     give_all(s, 90);
     assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS), TAGS);
@@ -172,9 +166,8 @@ static int alarms_of(struct setup *s, struct history_reader *reader, int64_t at_
 }
 
 /* What was there when recording ended: nobody knows how long it lasted. */
-static void while_nothing_was_recorded_no_alarm_is_known(void **state)
+CASE(while_nothing_was_recorded_no_alarm_is_known)
 {
-    struct setup *s = *state;
     int error;
     start(s);
     give_all(s, 90);
@@ -194,9 +187,8 @@ static void while_nothing_was_recorded_no_alarm_is_known(void **state)
 }
 
 /* What was told a second before outlives a kill; what follows goes on from it. */
-static void killed_at_any_moment_it_goes_on(void **state)
+CASE(killed_at_any_moment_it_goes_on)
 {
-    struct setup *s = *state;
     pid_t child = fork();
     if (child == 0) {
         start(s);
@@ -231,9 +223,8 @@ static double counted(struct setup *s, const char *name)
 }
 
 /* A thousand tags whose device does not answer: each is journalled, and one is to be acknowledged. */
-static void a_lost_device_is_no_flood(void **state)
+CASE(a_lost_device_is_no_flood)
 {
-    struct setup *s = *state;
     for (int i = 0; i < TAGS; i++)
         s->plant->tags[i].stale_s = 600;
     store_destroy(&s->store);
@@ -265,9 +256,8 @@ static void on_change(void *arg)
     (*calls)++;
 }
 
-static void who_listens_is_told_of_changes(void **state)
+CASE(who_listens_is_told_of_changes)
 {
-    struct setup *s = *state;
     atomic_int calls = 0;
     start(s);
     alarm_service_listen(s->alarm_service, on_change, &calls);
@@ -286,9 +276,8 @@ static void who_listens_is_told_of_changes(void **state)
     assert_int_equal(calls, before);
 }
 
-static void a_damaged_journal_is_set_aside(void **state)
+CASE(a_damaged_journal_is_set_aside)
 {
-    struct setup *s = *state;
     char garbage[8192];
     memset(garbage, 'x', sizeof(garbage));
     char *path = temp_write(s->folder, JOURNAL_FILE, garbage, sizeof(garbage));
@@ -298,18 +287,4 @@ static void a_damaged_journal_is_set_aside(void **state)
     alarm_service_stop(&s->alarm_service); /* writes what there is */
     assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, TAGS);
     mem_free(path);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_thousand_at_once_are_all_written, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(while_nothing_was_recorded_no_alarm_is_known, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(killed_at_any_moment_it_goes_on, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_lost_device_is_no_flood, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(who_listens_is_told_of_changes, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_damaged_journal_is_set_aside, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

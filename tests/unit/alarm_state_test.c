@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The states of an alarm: every state and every event, by a table that says where each leads; limits, deadbands and delays. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "alarm/alarm_state.h"
 #include "alarm/condition.h"
@@ -78,32 +71,30 @@ static int find_state(const char *name)
     return i;
 }
 
-static void every_event_leads_where_the_table_says(void **unused)
+TEST(every_event_leads_where_the_table_says)
 {
     static const struct alarm_rule rule = { .acknowledges = true };
     int said = 0;
-    (void)unused;
     for (int row = 0; row < ROWS; row++)
         for (int event = 0; event < ALARM_EVENTS; event++) {
             const char *wanted = table[row][1 + event];
             int from = find_state(table[row][0]);
-            struct alarm_state state = states[from].state;
-            enum alarm_outcome outcome = alarm_state_step(&state, &rule, (enum alarm_event)event);
+            struct alarm_state reached = states[from].state;
+            enum alarm_outcome outcome = alarm_state_step(&reached, &rule, (enum alarm_event)event);
             if (!wanted)
                 continue; /* leads to a mixture that has no name here; the invariants below hold for it */
             said++;
             enum alarm_outcome meant = !strcmp(wanted, "=") ? ALARM_AS_IT_WAS : !strcmp(wanted, "-") ? ALARM_REFUSED : ALARM_CHANGED;
             int to = meant == ALARM_CHANGED ? find_state(wanted) : from;
-            if (outcome != meant || memcmp(&state, &states[to].state, sizeof(state)) != 0)
+            if (outcome != meant || memcmp(&reached, &states[to].state, sizeof(reached)) != 0)
                 fail_msg("%s, %s: outcome %d, wanted %s", table[row][0], alarm_event_name((enum alarm_event)event), (int)outcome, wanted);
         }
     assert_true(said > 140);
 }
 
-static void every_state_has_its_word(void **unused)
+TEST(every_state_has_its_word)
 {
     static const struct alarm_rule rule = { .acknowledges = true };
-    (void)unused;
     for (int i = 0; i < STATE_COUNT; i++)
         assert_string_equal(alarm_status_name(alarm_state_status(&states[i].state, &rule)), states[i].word);
     for (int i = 0; i < ALARM_STATUSES; i++)
@@ -127,29 +118,27 @@ static void check_invariants(const struct alarm_state *state, const struct alarm
         assert_true(state->latched); /* what is seen stays until it is reset */
 }
 
-static void no_sequence_breaks_what_must_hold(void **unused)
+TEST(no_sequence_breaks_what_must_hold)
 {
     unsigned seed = 20261120;
-    (void)unused;
     for (int rules = 0; rules < 16; rules++) {
         const struct alarm_rule rule = { .acknowledges = rules & 1, .latches = rules & 2, .forgets = rules & 4, .carried = rules & 8 };
-        struct alarm_state state = { 0 };
+        struct alarm_state now = { 0 };
         for (int i = 0; i < 20000; i++) {
             enum alarm_event event = (enum alarm_event)(rand_r(&seed) % ALARM_EVENTS);
-            struct alarm_state before = state;
-            enum alarm_outcome outcome = alarm_state_step(&state, &rule, event);
+            struct alarm_state before = now;
+            enum alarm_outcome outcome = alarm_state_step(&now, &rule, event);
             if (outcome != ALARM_CHANGED)
-                assert_memory_equal(&before, &state, sizeof(state));
-            check_invariants(&state, &rule);
+                assert_memory_equal(&before, &now, sizeof(now));
+            check_invariants(&now, &rule);
         }
     }
 }
 
 /* --- limits and delays ------------------------------------------------------------------------------------------------------ */
 
-static void a_deadband_lies_inside_its_limit(void **unused)
+TEST(a_deadband_lies_inside_its_limit)
 {
-    (void)unused;
     assert_int_equal(condition_side(ALARM_H, 85, 2, 85), CONDITION_BEYOND); /* at it is beyond it */
     assert_int_equal(condition_side(ALARM_H, 85, 2, 83), CONDITION_BETWEEN);
     assert_int_equal(condition_side(ALARM_H, 85, 2, 82.999), CONDITION_CLEAR);
@@ -160,12 +149,11 @@ static void a_deadband_lies_inside_its_limit(void **unused)
     assert_int_equal(condition_side(ALARM_LL, -5, 0, -4.999), CONDITION_CLEAR);
 }
 
-static void delays_run_whole(void **unused)
+TEST(delays_run_whole)
 {
     const struct condition_delays delays = { 3 * S, 5 * S };
     struct condition c = { 0 };
     int64_t at = 0;
-    (void)unused;
     assert_false(condition_put(&c, &delays, CONDITION_BEYOND, 10 * S));
     assert_false(condition_advance(&c, &delays, 13 * S - 1, &at));
     condition_put(&c, &delays, CONDITION_BETWEEN, 13 * S - 1); /* back below the limit: it begins anew */
@@ -207,11 +195,10 @@ static bool slow_active(const int *sides, int now, const struct condition_delays
     return active;
 }
 
-static void what_comes_does_not_depend_on_who_looks(void **unused)
+TEST(what_comes_does_not_depend_on_who_looks)
 {
     enum { LENGTH = 60 };
     unsigned seed = 7;
-    (void)unused;
     for (int run = 0; run < 3000; run++) {
         const struct condition_delays delays = { rand_r(&seed) % 5 * S, rand_r(&seed) % 5 * S };
         struct condition seldom = { 0 }, often = { 0 };
@@ -231,18 +218,4 @@ static void what_comes_does_not_depend_on_who_looks(void **unused)
                          (int)(delays.off_ns / S));
         }
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_event_leads_where_the_table_says),
-        cmocka_unit_test(every_state_has_its_word),
-        cmocka_unit_test(no_sequence_breaks_what_must_hold),
-        cmocka_unit_test(a_deadband_lies_inside_its_limit),
-        cmocka_unit_test(delays_run_whole),
-        cmocka_unit_test(what_comes_does_not_depend_on_who_looks),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

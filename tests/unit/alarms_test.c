@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The alarms of a plant: made of samples, time and people; in the three modes; after a restart and a reload. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "alarm/alarms.h"
 #include "base/mem.h"
@@ -130,10 +123,9 @@ static void assert_told(struct stage *s, const char *wanted)
     s->log[0] = 0;
 }
 
-static void a_life_of_local_alarms(void **unused)
+TEST(a_life_of_local_alarms)
 {
     struct stage s;
-    (void)unused;
     begin(&s, ALARMS_LOCAL);
     hear(&s, 1, 0, 85, QUALITY_GOOD);
     hear(&s, 2, 0, 91, QUALITY_GOOD);
@@ -153,10 +145,9 @@ static void a_life_of_local_alarms(void **unused)
     end(&s);
 }
 
-static void delays_are_monotonic_and_exact(void **unused)
+TEST(delays_are_monotonic_and_exact)
 {
     struct stage s;
-    (void)unused;
     begin(&s, ALARMS_LOCAL);
     hear(&s, 9, 0, 50, QUALITY_GOOD);
     hear(&s, 10, 1, 6, QUALITY_GOOD);
@@ -169,10 +160,9 @@ static void delays_are_monotonic_and_exact(void **unused)
     end(&s);
 }
 
-static void what_is_bad_is_held_and_says_so(void **unused)
+TEST(what_is_bad_is_held_and_says_so)
 {
     struct stage s;
-    (void)unused;
     begin(&s, ALARMS_LOCAL);
     hear(&s, 1, 0, 95, QUALITY_GOOD);
     act(&s, 1, 0, ALARM_H, ALARM_ACKNOWLEDGE, 0);
@@ -198,10 +188,9 @@ static void what_is_bad_is_held_and_says_so(void **unused)
     end(&s);
 }
 
-static void shelves_end_and_come_back(void **unused)
+TEST(shelves_end_and_come_back)
 {
     struct stage s;
-    (void)unused;
     begin(&s, ALARMS_LOCAL);
     hear(&s, 1, 0, 85, QUALITY_GOOD);
     assert_non_null(act(&s, 2, 0, ALARM_H, ALARM_SHELVE, 0));
@@ -225,10 +214,9 @@ static void shelves_end_and_come_back(void **unused)
     end(&s);
 }
 
-static void design_suppresses(void **unused)
+TEST(design_suppresses)
 {
     struct stage s;
-    (void)unused;
     begin(&s, ALARMS_DISPLAY);
     hear(&s, 1, 2, 1, QUALITY_GOOD);
     hear(&s, 2, 1, 9, QUALITY_GOOD);
@@ -243,10 +231,9 @@ static void design_suppresses(void **unused)
     end(&s);
 }
 
-static void display_acknowledges_nothing(void **unused)
+TEST(display_acknowledges_nothing)
 {
     struct stage s;
-    (void)unused;
     begin(&s, ALARMS_DISPLAY);
     hear(&s, 1, 0, 95, QUALITY_GOOD);
     assert_string_equal(act(&s, 2, 0, ALARM_HH, ALARM_ACKNOWLEDGE, 0), "alarms are another system's here");
@@ -257,10 +244,9 @@ static void display_acknowledges_nothing(void **unused)
     end(&s);
 }
 
-static void a_mirror_shows_what_the_other_system_says(void **unused)
+TEST(a_mirror_shows_what_the_other_system_says)
 {
     struct stage s;
-    (void)unused;
     begin(&s, ALARMS_MIRROR);
     assert_int_equal(alarms_count(s.alarms), 4); /* one, two bits that may go bad, and their device */
     hear(&s, 1, 0, 95, QUALITY_GOOD);            /* the limit is the other's to watch */
@@ -279,10 +265,9 @@ static void a_mirror_shows_what_the_other_system_says(void **unused)
     end(&s);
 }
 
-static void what_was_kept_is_taken_up(void **unused)
+TEST(what_was_kept_is_taken_up)
 {
     struct stage s, next;
-    (void)unused;
     begin(&s, ALARMS_LOCAL);
     hear(&s, 1, 0, 95, QUALITY_GOOD);
     act(&s, 2, 0, ALARM_H, ALARM_SHELVE, 60);
@@ -311,10 +296,9 @@ static void what_was_kept_is_taken_up(void **unused)
     end(&s);
 }
 
-static void a_reload_keeps_what_stays(void **unused)
+TEST(a_reload_keeps_what_stays)
 {
     struct stage s, next;
-    (void)unused;
     begin(&s, ALARMS_LOCAL);
     hear(&s, 1, 0, 95, QUALITY_GOOD);
     hear(&s, 9, 1, 9, QUALITY_GOOD); /* PT's delay of 2 s runs */
@@ -330,10 +314,9 @@ static void a_reload_keeps_what_stays(void **unused)
     end(&s);
 }
 
-static void changes_come_newest_first(void **unused)
+TEST(changes_come_newest_first)
 {
     struct stage s;
-    (void)unused;
     begin(&s, ALARMS_LOCAL);
     hear(&s, 1, 0, 95, QUALITY_GOOD);
     uint64_t before = alarms_number(s.alarms);
@@ -345,11 +328,10 @@ static void changes_come_newest_first(void **unused)
     end(&s);
 }
 
-static void counts_are_what_there_is(void **unused)
+TEST(counts_are_what_there_is)
 {
     struct stage s;
     struct alarm_counts counts;
-    (void)unused;
     begin(&s, ALARMS_LOCAL);
     for (int i = 0; i < 3; i++) {
         hear(&s, 10 + 2 * i, 0, 85, QUALITY_GOOD);
@@ -372,10 +354,9 @@ static void counts_are_what_there_is(void **unused)
 }
 
 /* TT: LL 0, L 10, a deadband of 2. */
-static void what_is_there_stands_before_what_has_gone(void **unused)
+TEST(what_is_there_stands_before_what_has_gone)
 {
     struct stage s;
-    (void)unused;
     begin(&s, ALARMS_LOCAL);
     hear(&s, 1, 0, -5, QUALITY_GOOD);
     assert_int_equal(s.told[0], ALARM_LL);
@@ -391,13 +372,12 @@ static void what_is_there_stands_before_what_has_gone(void **unused)
 }
 
 /* Whatever comes, in whatever order: each step goes on from where the one before ended, and the gravest is the gravest. */
-static void no_sequence_tells_a_contradiction(void **unused)
+TEST(no_sequence_tells_a_contradiction)
 {
     static const uint32_t bad[12] = {
         [9] = QUALITY_BAD_SENSOR_FAILURE, [10] = QUALITY_BAD_COMMUNICATION_ERROR, [11] = QUALITY_BAD_DEVICE_FAILURE
     };
     unsigned seed = 42;
-    (void)unused;
     for (int mode = ALARMS_DISPLAY; mode <= ALARMS_LOCAL; mode++) {
         struct stage s;
         begin(&s, (enum alarm_mode)mode);
@@ -448,10 +428,9 @@ static int active_count(struct stage *s)
     return counts.active;
 }
 
-static void a_lost_device_is_one_alarm(void **unused)
+TEST(a_lost_device_is_one_alarm)
 {
     struct stage s;
-    (void)unused;
     begin(&s, ALARMS_LOCAL);
     hear_all(&s, 1, 50, QUALITY_GOOD);
     hear(&s, 1, 1, 1, QUALITY_GOOD);
@@ -484,12 +463,11 @@ static void a_lost_device_is_one_alarm(void **unused)
 }
 
 /* One after the other goes stale: what was said of the first is taken back into the one of the device, unless somebody has seen it. */
-static void those_that_went_before_are_carried_too(void **unused)
+TEST(those_that_went_before_are_carried_too)
 {
     for (int seen = 0; seen < 2; seen++) {
         struct stage s;
-        (void)unused;
-        begin(&s, ALARMS_LOCAL);
+            begin(&s, ALARMS_LOCAL);
         hear_all(&s, 1, 0, QUALITY_GOOD);
         hear(&s, 2, 0, 50, QUALITY_GOOD);
         hear(&s, 3, 0, 0, QUALITY_BAD_COMMUNICATION_ERROR);
@@ -505,10 +483,9 @@ static void those_that_went_before_are_carried_too(void **unused)
 }
 
 /* A gateway that goes on answering for a controller that has stopped; and a sensor that fails while all others are read. */
-static void a_stopped_controller_is_one_and_a_failed_sensor_its_own(void **unused)
+TEST(a_stopped_controller_is_one_and_a_failed_sensor_its_own)
 {
     struct stage s;
-    (void)unused;
     begin(&s, ALARMS_DISPLAY);
     hear_all(&s, 1, 0, QUALITY_GOOD);
     hear(&s, 2, 0, 50, QUALITY_GOOD);
@@ -525,10 +502,9 @@ static void a_stopped_controller_is_one_and_a_failed_sensor_its_own(void **unuse
 }
 
 /* One of two units behind a gateway: an alarm of that unit, and nothing of the other. */
-static void units_are_devices_of_their_own(void **unused)
+TEST(units_are_devices_of_their_own)
 {
     struct stage s;
-    (void)unused;
     s = (struct stage){ .plant = NULL };
     make_plant(&s, ALARMS_LOCAL);
     s.plant->tags[1].modbus_unit = 7;
@@ -546,10 +522,9 @@ static void units_are_devices_of_their_own(void **unused)
 }
 
 /* A restart and a reload while a device is lost: nothing is raised anew, and those that it carried are still carried. */
-static void what_a_device_carries_outlives_us(void **unused)
+TEST(what_a_device_carries_outlives_us)
 {
     struct stage s, next;
-    (void)unused;
     begin(&s, ALARMS_LOCAL);
     hear_all(&s, 1, 50, QUALITY_GOOD);
     hear_all(&s, 2, 0, QUALITY_BAD_COMMUNICATION_ERROR);
@@ -580,10 +555,9 @@ static void what_a_device_carries_outlives_us(void **unused)
 }
 
 /* None of its tags has a limit: nothing else says that it is gone. */
-static void a_device_without_limits_has_an_alarm(void **unused)
+TEST(a_device_without_limits_has_an_alarm)
 {
     struct stage s = { .plant = NULL };
-    (void)unused;
     make_plant(&s, ALARMS_LOCAL);
     for (int tag = 0; tag < 5; tag++)
         for (int i = 0; i < LIMIT_COUNT; i++)
@@ -608,10 +582,9 @@ static void a_device_without_limits_has_an_alarm(void **unused)
 }
 
 /* A broker or a server that tells of changes only: its tags keep their last values while it is gone. */
-static void a_lost_source_that_never_gets_stale_has_an_alarm(void **unused)
+TEST(a_lost_source_that_never_gets_stale_has_an_alarm)
 {
     struct stage s = { .plant = NULL };
-    (void)unused;
     make_plant(&s, ALARMS_LOCAL);
     for (int tag = 0; tag < 5; tag++)
         s.plant->tags[tag].stale_s = PLANT_NEVER_STALE_S;
@@ -627,32 +600,4 @@ static void a_lost_source_that_never_gets_stale_has_an_alarm(void **unused)
     hear_all(&s, 25, 50, QUALITY_GOOD);
     assert_told(&s, "25 a.LINK clear: unacknowledged > returned\n");
     end(&s);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_life_of_local_alarms),
-        cmocka_unit_test(delays_are_monotonic_and_exact),
-        cmocka_unit_test(what_is_bad_is_held_and_says_so),
-        cmocka_unit_test(shelves_end_and_come_back),
-        cmocka_unit_test(design_suppresses),
-        cmocka_unit_test(display_acknowledges_nothing),
-        cmocka_unit_test(a_mirror_shows_what_the_other_system_says),
-        cmocka_unit_test(what_was_kept_is_taken_up),
-        cmocka_unit_test(a_reload_keeps_what_stays),
-        cmocka_unit_test(changes_come_newest_first),
-        cmocka_unit_test(counts_are_what_there_is),
-        cmocka_unit_test(what_is_there_stands_before_what_has_gone),
-        cmocka_unit_test(a_lost_device_is_one_alarm),
-        cmocka_unit_test(a_device_without_limits_has_an_alarm),
-        cmocka_unit_test(a_lost_source_that_never_gets_stale_has_an_alarm),
-        cmocka_unit_test(those_that_went_before_are_carried_too),
-        cmocka_unit_test(a_stopped_controller_is_one_and_a_failed_sensor_its_own),
-        cmocka_unit_test(units_are_devices_of_their_own),
-        cmocka_unit_test(what_a_device_carries_outlives_us),
-        cmocka_unit_test(no_sequence_tells_a_contradiction),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

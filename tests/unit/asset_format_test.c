@@ -3,14 +3,8 @@
 #include "protocol/asset_distance.h"
 #include "protocol/asset_format.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 #include <xxhash.h>
 
 /* Two levels: two triangles of four vertices, then one triangle of the first three. One texture, two sensors. */
@@ -118,9 +112,8 @@ static void refused_sealed(struct file *f, const char *reason)
     refused(f, f->size, reason);
 }
 
-static void what_is_built_is_read_back(void **state)
+TEST(what_is_built_is_read_back)
 {
-    (void)state;
     struct file f = build(&good);
     struct asset_view v;
     char why[200] = "";
@@ -146,9 +139,8 @@ static void what_is_built_is_read_back(void **state)
     free(f.bytes);
 }
 
-static void the_smallest_asset_is_good(void **state)
+TEST(the_smallest_asset_is_good)
 {
-    (void)state;
     struct asset_material plain = materials[0];
     struct asset_primitive one = { .index_count = 6 };
     plain.base_color_texture = plain.occlusion_texture = ASSET_NO_TEXTURE;
@@ -178,9 +170,8 @@ static void the_smallest_asset_is_good(void **state)
     free(f.bytes);
 }
 
-static void the_layout_is_pinned(void **state)
+TEST(the_layout_is_pinned)
 {
-    (void)state;
     assert_int_equal(sizeof(struct asset_header), 360);
     assert_int_equal(offsetof(struct asset_header, checksum), 24);
     assert_int_equal(offsetof(struct asset_header, key), 32);
@@ -201,9 +192,8 @@ static void the_layout_is_pinned(void **state)
     free(f.bytes);
 }
 
-static void truncated_or_foreign_files_are_refused(void **state)
+TEST(truncated_or_foreign_files_are_refused)
 {
-    (void)state;
     struct asset_view view;
     char why[200] = "";
     assert_false(asset_view_init(&view, NULL, 0, why));
@@ -233,9 +223,8 @@ static void truncated_or_foreign_files_are_refused(void **state)
     free(f.bytes);
 }
 
-static void every_flipped_bit_is_noticed(void **state)
+TEST(every_flipped_bit_is_noticed)
 {
-    (void)state;
     struct file f = build(&good);
     struct asset_view view;
     char why[200];
@@ -250,9 +239,8 @@ static void every_flipped_bit_is_noticed(void **state)
     refused(&f, f.size, "checksum ");
 }
 
-static void sections_out_of_bounds_are_refused(void **state)
+TEST(sections_out_of_bounds_are_refused)
 {
-    (void)state;
     for (int i = 0; i < ASSET_SECTION_COUNT; i++) {
         struct file f = build(&good);
         f.header->sections[i].offset = f.size + 64;
@@ -287,9 +275,8 @@ static void sections_out_of_bounds_are_refused(void **state)
     refused_sealed(&f, "the last name has no end");
 }
 
-static void wrong_vertices_are_refused(void **state)
+TEST(wrong_vertices_are_refused)
 {
-    (void)state;
     struct file f = build(&good);
     ((float *)part(&f, ASSET_POSITIONS))[7] = NAN;
     refused_sealed(&f, "vertex 2: position is not finite");
@@ -316,9 +303,8 @@ static void wrong_vertices_are_refused(void **state)
     refused_sealed(&f, "bounds are not finite");
 }
 
-static void wrong_primitives_and_levels_are_refused(void **state)
+TEST(wrong_primitives_and_levels_are_refused)
 {
-    (void)state;
     struct file f = build(&good);
     ((uint32_t *)part(&f, ASSET_INDICES))[4] = 4;
     refused_sealed(&f, "primitive 0: index 4 names vertex 4 of 4");
@@ -361,9 +347,8 @@ static void wrong_primitives_and_levels_are_refused(void **state)
     refused_sealed(&f, "the levels hold 1 primitives of 2");
 }
 
-static void wrong_clusters_are_refused(void **state)
+TEST(wrong_clusters_are_refused)
 {
-    (void)state;
     struct file f = build(&good);
     ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[1].first_index = 0;
     refused_sealed(&f, "cluster 1 of 3: indices 0+3, expected some of 3..6 (primitive 0)");
@@ -427,9 +412,8 @@ static bool backs_only(const float (*p)[3], const uint32_t *v, uint32_t count, c
 }
 
 /* Random fans that look about upwards, from random eyes: what is left out has only backs, and much that has only backs is left out. */
-static void turned_away_means_only_backs(void **state)
+TEST(turned_away_means_only_backs)
 {
-    (void)state;
     uint32_t seed = 5, backs = 0, left_out = 0;
     for (int n = 0; n < 4000; n++) {
         float p[8][3], eye[3];
@@ -459,9 +443,8 @@ static void turned_away_means_only_backs(void **state)
     assert_true(left_out > backs / 3);
 }
 
-static void wrong_materials_and_textures_are_refused(void **state)
+TEST(wrong_materials_and_textures_are_refused)
 {
-    (void)state;
     struct file f = build(&good);
     ((struct asset_material *)part(&f, ASSET_MATERIALS))->normal_texture = 1;
     refused_sealed(&f, "material 0: texture 1 of 1");
@@ -506,9 +489,8 @@ static void wrong_materials_and_textures_are_refused(void **state)
     refused_sealed(&f, "texture 0: srgb 2");
 }
 
-static void wrong_sensors_are_refused(void **state)
+TEST(wrong_sensors_are_refused)
 {
-    (void)state;
     struct file f = build(&good);
     ((struct asset_sensor *)part(&f, ASSET_SENSORS))[1].surface_m[0] = NAN;
     refused_sealed(&f, "sensor 1: place is not finite");
@@ -521,9 +503,8 @@ static void wrong_sensors_are_refused(void **state)
 }
 
 /* Every code is a distance, farther than the code before, and the nearest one to what lies up to half-way to its neighbours. */
-static void distances_have_16_bits(void **state)
+TEST(distances_have_16_bits)
 {
-    (void)state;
     assert_true(asset_distance_of(0) == 0 && asset_distance_of(ASSET_DISTANCE_NONE) == INFINITY);
     assert_int_equal(asset_distance_code(INFINITY), ASSET_DISTANCE_NONE);
     assert_int_equal(asset_distance_code(NAN), ASSET_DISTANCE_NONE);
@@ -539,7 +520,7 @@ static void distances_have_16_bits(void **state)
 }
 
 /* More vertices than a block has. */
-static void distances_lie_in_blocks(void **state)
+TEST(distances_lie_in_blocks)
 {
     enum { VERTICES = 600, SENSORS = 3 };
     static float at[VERTICES][3], up[VERTICES][3], along_m[SENSORS * VERTICES];
@@ -547,7 +528,6 @@ static void distances_lie_in_blocks(void **state)
     struct asset_parts parts = good;
     struct asset_view v;
     char why[200] = "";
-    (void)state;
     for (size_t i = 0; i < VERTICES; i++) {
         up[i][2] = 1;
         at[i][0] = (float)i;
@@ -577,26 +557,4 @@ static void distances_lie_in_blocks(void **state)
             assert_float_equal(asset_distance_m(&v, s, i), along_m[s * VERTICES + i], along_m[s * VERTICES + i] * 0x1p-12f);
     assert_int_equal(asset_distance_codes(&v, 2, 599)[599 % ASSET_DISTANCE_BLOCK + 1], ASSET_DISTANCE_NONE);
     free(f.bytes);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_built_is_read_back),
-        cmocka_unit_test(the_smallest_asset_is_good),
-        cmocka_unit_test(the_layout_is_pinned),
-        cmocka_unit_test(distances_have_16_bits),
-        cmocka_unit_test(distances_lie_in_blocks),
-        cmocka_unit_test(truncated_or_foreign_files_are_refused),
-        cmocka_unit_test(every_flipped_bit_is_noticed),
-        cmocka_unit_test(sections_out_of_bounds_are_refused),
-        cmocka_unit_test(wrong_vertices_are_refused),
-        cmocka_unit_test(wrong_primitives_and_levels_are_refused),
-        cmocka_unit_test(wrong_clusters_are_refused),
-        cmocka_unit_test(turned_away_means_only_backs),
-        cmocka_unit_test(wrong_materials_and_textures_are_refused),
-        cmocka_unit_test(wrong_sensors_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,9 +3,7 @@
    anew, which a new version of the format asks for. */
 #include "tests/fuzz/asset_fuzz.c"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 #include "tests/support/replay.h"
@@ -87,9 +85,8 @@ static int write_seeds(const char *folder)
     return 0;
 }
 
-static void seeds_are_of_this_version(void **state)
+TEST(seeds_are_of_this_version)
 {
-    (void)state;
     struct asset_material material;
     struct asset_parts small = small_asset(), full = full_asset(&material);
     const struct asset_parts *all[] = { &small, &full };
@@ -104,9 +101,8 @@ static void seeds_are_of_this_version(void **state)
     }
 }
 
-static void seeds_and_their_changes_keep_the_promises(void **state)
+TEST(seeds_and_their_changes_keep_the_promises)
 {
-    (void)state;
     assert_true(replay_folder(SEEDS, 5000, LLVMFuzzerTestOneInput) >= 2);
 }
 
@@ -114,10 +110,5 @@ int main(int argc, char **argv)
 {
     if (argc == 3 && strcmp(argv[1], "--write") == 0)
         return write_seeds(argv[2]);
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(seeds_are_of_this_version),
-        cmocka_unit_test(seeds_and_their_changes_keep_the_promises),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return tests_run(NULL);
 }

@@ -2,16 +2,10 @@
 /* Files that are replaced at once: what is seen meanwhile, what is left, and that nothing which is there is written through. */
 #include "base/files/atomic_file.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"
@@ -39,6 +33,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 static void assert_text(const char *path, const char *want)
 {
     size_t bytes;
@@ -54,9 +50,8 @@ static void assert_nothing_beside(const struct fixture *f)
     mem_free(look);
 }
 
-static void the_old_file_stays_until_the_new_one_is_whole(void **state)
+CASE(the_old_file_stays_until_the_new_one_is_whole)
 {
-    struct fixture *f = *state;
     struct atomic_file file;
     for (int durable = 0; durable < 2; durable++) {
         assert_int_equal(atomic_file_begin(&file, f->path, 0600), 0);
@@ -73,9 +68,8 @@ static void the_old_file_stays_until_the_new_one_is_whole(void **state)
     assert_nothing_beside(f);
 }
 
-static void one_that_is_given_up_leaves_nothing(void **state)
+CASE(one_that_is_given_up_leaves_nothing)
 {
-    struct fixture *f = *state;
     struct atomic_file file;
     assert_int_equal(atomic_file_begin(&file, f->path, 0600), 0);
     assert_int_equal(atomic_file_write(&file, "x", 1), 0);
@@ -85,9 +79,8 @@ static void one_that_is_given_up_leaves_nothing(void **state)
 }
 
 /* Somebody put a link where it would be written, to what only this program may write. */
-static void links_and_files_beside_are_not_written_through(void **state)
+CASE(links_and_files_beside_are_not_written_through)
 {
-    struct fixture *f = *state;
     char *secret = temp_write_text(f->folder, "secret", "secret"), *link = mem_printf("%s.%ld.new", f->path, (long)getpid());
     assert_int_equal(symlink(secret, link), 0);
     assert_int_equal(atomic_file_put(f->path, "new", 3), 0);
@@ -100,15 +93,4 @@ static void links_and_files_beside_are_not_written_through(void **state)
     assert_nothing_beside(f);
     mem_free(secret);
     mem_free(link);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(the_old_file_stays_until_the_new_one_is_whole, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(one_that_is_given_up_leaves_nothing, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(links_and_files_beside_are_not_written_through, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The audit trail: its chain, what was done to its file, rotation, a full disk, and messages of syslog. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <sys/resource.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "audit/audit.h"
 #include "audit/audit_file.h"
@@ -88,9 +81,8 @@ static void put(const char *path, const char *bytes, size_t count)
     fclose(out);
 }
 
-static void test_any_changed_byte(void **state)
+TEST(test_any_changed_byte)
 {
-    (void)state;
     char *dir = folder(), *path = mem_printf("%s/a", dir);
     size_t count;
     struct audit_chain none;
@@ -127,9 +119,8 @@ static size_t starts_of(const char *bytes, size_t count, size_t starts[])
     return found;
 }
 
-static void test_lines_removed_and_moved(void **state)
+TEST(test_lines_removed_and_moved)
 {
-    (void)state;
     char *dir = folder(), *path = mem_printf("%s/a", dir), *head_path = mem_printf("%s.head", path);
     size_t count, starts[8];
     mem_free(write_lines(path, 5, 1 << 20));
@@ -176,9 +167,8 @@ static void test_lines_removed_and_moved(void **state)
 }
 
 /* A daemon that starts on a trail that was cut says so, and the gap stays. */
-static void test_next_start(void **state)
+TEST(test_next_start)
 {
-    (void)state;
     char *dir = folder(), *path = mem_printf("%s/a", dir), *finding;
     size_t count, starts[8];
     mem_free(write_lines(path, 3, 1 << 20));
@@ -209,9 +199,8 @@ static void test_next_start(void **state)
     clean(dir);
 }
 
-static void test_rotation(void **state)
+TEST(test_rotation)
 {
-    (void)state;
     char *dir = folder(), *path = mem_printf("%s/a", dir), *full = mem_printf("%s.000000000004", path), *later;
     struct text lines = { 0 };
     struct audit_file file;
@@ -252,9 +241,8 @@ static void test_rotation(void **state)
 }
 
 /* A file that may not grow takes nothing of a line; once it may, nothing is missing. */
-static void test_full_disk(void **state)
+TEST(test_full_disk)
 {
-    (void)state;
     char *dir = folder(), *path = mem_printf("%s/a", dir), *later;
     struct rlimit before, less;
     struct text lines = { 0 };
@@ -282,9 +270,8 @@ static void test_full_disk(void **state)
 }
 
 /* What strangers send stands in a line, and stays one line of JSON. */
-static void test_strangers_texts(void **state)
+TEST(test_strangers_texts)
 {
-    (void)state;
     struct audit_chain chain, read;
     struct text out = { 0 };
     char *longest = mem_array(5001, 1);
@@ -302,9 +289,8 @@ static void test_strangers_texts(void **state)
     text_finish(&out);
 }
 
-static void test_syslog_frame(void **state)
+TEST(test_syslog_frame)
 {
-    (void)state;
     struct text out = { 0 };
     audit_syslog_frame(&out, "host.example", 17, "login", false, AT_US, "{}", 2);
     assert_int_equal(atoi(out.at), strlen(strchr(out.at, ' ') + 1));
@@ -316,9 +302,8 @@ static void test_syslog_frame(void **state)
 }
 
 /* Threads record at once; all of it is there, in order. */
-static void test_daemon(void **state)
+TEST(test_daemon)
 {
-    (void)state;
     char *dir = folder(), *path = mem_printf("%s/a", dir);
     struct log *log = log_create(LOG_ERROR);
     struct counters *counters = counters_create();
@@ -338,16 +323,4 @@ static void test_daemon(void **state)
     log_destroy(&log);
     mem_free(path);
     clean(dir);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_any_changed_byte), cmocka_unit_test(test_lines_removed_and_moved),
-        cmocka_unit_test(test_next_start),       cmocka_unit_test(test_rotation),
-        cmocka_unit_test(test_full_disk),        cmocka_unit_test(test_strangers_texts),
-        cmocka_unit_test(test_syslog_frame),     cmocka_unit_test(test_daemon),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,16 +3,9 @@
    range) for any readings, or the report names the asset and by how much it errs. All on plates, where the truth is a formula; plates and
    places are drawn at random, by default from one seed. Of 61 others, 114 and 139 were over a bound: one place of 20,000 by 7 steps, where
    two sensors stand 0.1 mm apart, and eight places by 1.13. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <jansson.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "preprocess/cache/folder.h"
@@ -318,7 +311,7 @@ static struct named assert_true_or_named(const struct awkward *a)
     return named;
 }
 
-static void edges_longer_than_the_reach(void **state)
+TEST_WITH(edges_longer_than_the_reach, prep_case_set_up, prep_case_tear_down)
 {
     struct awkward a = { .files = *state };
     make_plate(&a);
@@ -327,7 +320,7 @@ static void edges_longer_than_the_reach(void **state)
     assert_true_or_named(&a);
 }
 
-static void a_reach_shorter_than_the_sampling(void **state)
+TEST_WITH(a_reach_shorter_than_the_sampling, prep_case_set_up, prep_case_tear_down)
 {
     struct awkward a = { .files = *state };
     make_plate(&a);
@@ -338,7 +331,7 @@ static void a_reach_shorter_than_the_sampling(void **state)
     assert_true_or_named(&a);
 }
 
-static void triangles_without_area(void **state)
+TEST_WITH(triangles_without_area, prep_case_set_up, prep_case_tear_down)
 {
     struct awkward a = { .files = *state };
     make_plate(&a);
@@ -353,7 +346,7 @@ static void triangles_without_area(void **state)
     assert_true_or_named(&a);
 }
 
-static void sensors_on_an_edge_a_vertex_and_beside(void **state)
+TEST_WITH(sensors_on_an_edge_a_vertex_and_beside, prep_case_set_up, prep_case_tear_down)
 {
     static const double hairs_m[] = { 0, 1e-6, 1e-5, 1e-4, 1e-3 };
     for (int beside = 0; beside < 2; beside++) {
@@ -372,7 +365,7 @@ static void sensors_on_an_edge_a_vertex_and_beside(void **state)
     }
 }
 
-static void two_sensors_at_one_place(void **state)
+TEST_WITH(two_sensors_at_one_place, prep_case_set_up, prep_case_tear_down)
 {
     struct awkward a = { .files = *state };
     make_plate(&a);
@@ -382,7 +375,7 @@ static void two_sensors_at_one_place(void **state)
     assert_true_or_named(&a);
 }
 
-static void power_of_16(void **state)
+TEST_WITH(power_of_16, prep_case_set_up, prep_case_tear_down)
 {
     struct awkward a = { .files = *state };
     make_plate(&a);
@@ -391,7 +384,7 @@ static void power_of_16(void **state)
     assert_true(assert_true_or_named(&a).by_power > 4);
 }
 
-static void hundreds_of_sensors_on_nine_triangles(void **state)
+TEST_WITH(hundreds_of_sensors_on_nine_triangles, prep_case_set_up, prep_case_tear_down)
 {
     struct awkward a = { .files = *state };
     make_plate(&a);
@@ -400,7 +393,7 @@ static void hundreds_of_sensors_on_nine_triangles(void **state)
 }
 
 /* By far more peaks than there may be triangles: too many to hold each against the truth, but they are named. */
-static void thousands_of_sensors_on_nine_triangles(void **state)
+TEST_WITH(thousands_of_sensors_on_nine_triangles, prep_case_set_up, prep_case_tear_down)
 {
     struct awkward a = { .files = *state };
     struct folder_file file;
@@ -412,21 +405,8 @@ static void thousands_of_sensors_on_nine_triangles(void **state)
     folder_close(&file);
 }
 
-#define WITH_FOLDER(test) cmocka_unit_test_setup_teardown(test, prep_case_set_up, prep_case_tear_down)
-
 int main(void)
 {
-    cmocka_set_message_output(CM_OUTPUT_TAP);
     seed = sweep_seed();
-    const struct CMUnitTest tests[] = {
-        WITH_FOLDER(edges_longer_than_the_reach),
-        WITH_FOLDER(a_reach_shorter_than_the_sampling),
-        WITH_FOLDER(triangles_without_area),
-        WITH_FOLDER(sensors_on_an_edge_a_vertex_and_beside),
-        WITH_FOLDER(two_sensors_at_one_place),
-        WITH_FOLDER(power_of_16),
-        WITH_FOLDER(hundreds_of_sensors_on_nine_triangles),
-        WITH_FOLDER(thousands_of_sensors_on_nine_triangles),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return tests_run(NULL);
 }

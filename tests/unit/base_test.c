@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Text, files, findings, memory, counters and the log. */
+#include "tests/support/test.h"
 #include <errno.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/files/atomic_file.h"
 #include "base/clock.h"
@@ -21,9 +14,8 @@
 #include "base/text/text.h"
 #include "tests/support/temp.h"
 
-static void text_grows(void **state)
+TEST(text_grows)
 {
-    (void)state;
     struct text text = { 0 };
     for (int i = 0; i < 1000; i++)
         text_add(&text, "%d,", i);
@@ -37,9 +29,8 @@ static void text_grows(void **state)
 }
 
 /* What somebody wrote is no program for whoever opens the file. */
-static void cells_are_no_formulas(void **state)
+TEST(cells_are_no_formulas)
 {
-    (void)state;
     static const char *const cells[][2] = { { "=1+1", "'=1+1" },
                                             { "@SUM(A1)", "'@SUM(A1)" },
                                             { "+cmd|x", "'+cmd|x" },
@@ -61,9 +52,8 @@ static void cells_are_no_formulas(void **state)
     }
 }
 
-static void files_are_read_whole_and_replaced_at_once(void **state)
+TEST(files_are_read_whole_and_replaced_at_once)
 {
-    (void)state;
     char *folder = temp_folder_create(), *path = temp_path(folder, "f"), *nowhere = temp_path(folder, "no/f");
     size_t bytes = 99;
     assert_int_equal(atomic_file_put(path, "one\0two", 7), 0);
@@ -94,9 +84,8 @@ static void files_are_read_whole_and_replaced_at_once(void **state)
     mem_free(nowhere);
 }
 
-static void memory_is_zeroed_and_checked(void **state)
+TEST(memory_is_zeroed_and_checked)
 {
-    (void)state;
     int *numbers = NULL;
     size_t capacity = 0;
     mem_grow(&numbers, &capacity, 3, sizeof(*numbers));
@@ -116,9 +105,8 @@ static void memory_is_zeroed_and_checked(void **state)
     mem_free(text);
 }
 
-static void findings_come_in_the_order_of_the_text(void **state)
+TEST(findings_come_in_the_order_of_the_text)
 {
-    (void)state;
     struct diag diag = { 0 };
     char *printed = NULL;
     size_t bytes = 0;
@@ -143,9 +131,8 @@ static void findings_come_in_the_order_of_the_text(void **state)
 }
 
 /* 64 lines that say the same of 64 tags are one; what is said three times, and every error, stays. */
-static void many_warnings_alike_are_one(void **state)
+TEST(many_warnings_alike_are_one)
 {
-    (void)state;
     struct diag diag = { 0 };
     char *printed = NULL;
     size_t bytes = 0;
@@ -168,9 +155,8 @@ static void many_warnings_alike_are_one(void **state)
 }
 
 /* A list in which 2,000 rows are there twice is not 2,000 lines. */
-static void of_many_errors_alike_the_first_are_printed(void **state)
+TEST(of_many_errors_alike_the_first_are_printed)
 {
-    (void)state;
     struct diag diag = { 0 }, copy = { 0 };
     char *printed = NULL;
     size_t bytes = 0, lines = 0;
@@ -193,9 +179,8 @@ static void of_many_errors_alike_the_first_are_printed(void **state)
     diag_finish(&copy);
 }
 
-static void counters_are_printed_by_family(void **state)
+TEST(counters_are_printed_by_family)
 {
-    (void)state;
     struct counters *counters = counters_create();
     struct text text = { 0 };
     counter *a = counters_add(counters, "reads_total{source=\"a\"}", "counter", "Reads.");
@@ -221,9 +206,8 @@ static int lines_with(const char *text, const char *words)
     return count;
 }
 
-static void repeats_in_the_log_are_counted(void **state)
+TEST(repeats_in_the_log_are_counted)
 {
-    (void)state;
     char *folder = temp_folder_create(), *path = temp_path(folder, "log");
     size_t bytes;
     fflush(stderr);
@@ -253,9 +237,8 @@ static void repeats_in_the_log_are_counted(void **state)
     temp_folder_destroy(&folder);
 }
 
-static void durations_are_counted_by_bucket(void **state)
+TEST(durations_are_counted_by_bucket)
 {
-    (void)state;
     struct counters *counters = counters_create();
     struct text text = { 0 };
     struct histogram *plain = counters_add_histogram(counters, "plain_seconds", "Plain.");
@@ -283,9 +266,8 @@ static void durations_are_counted_by_bucket(void **state)
     counters_destroy(&counters);
 }
 
-static void numbers_of_microseconds_are_printed_in_seconds(void **state)
+TEST(numbers_of_microseconds_are_printed_in_seconds)
 {
-    (void)state;
     struct counters *counters = counters_create();
     struct text text = { 0 };
     counter_set(counters_add_seconds(counters, "spent_seconds_total", "counter", "Time."), 12345678);
@@ -293,23 +275,4 @@ static void numbers_of_microseconds_are_printed_in_seconds(void **state)
     assert_string_equal(text.at, "# HELP spent_seconds_total Time.\n# TYPE spent_seconds_total counter\nspent_seconds_total 12.345678\n");
     text_finish(&text);
     counters_destroy(&counters);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(text_grows),
-        cmocka_unit_test(cells_are_no_formulas),
-        cmocka_unit_test(files_are_read_whole_and_replaced_at_once),
-        cmocka_unit_test(memory_is_zeroed_and_checked),
-        cmocka_unit_test(findings_come_in_the_order_of_the_text),
-        cmocka_unit_test(many_warnings_alike_are_one),
-        cmocka_unit_test(of_many_errors_alike_the_first_are_printed),
-        cmocka_unit_test(counters_are_printed_by_family),
-        cmocka_unit_test(numbers_of_microseconds_are_printed_in_seconds),
-        cmocka_unit_test(durations_are_counted_by_bucket),
-        cmocka_unit_test(repeats_in_the_log_are_counted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,13 +2,9 @@
 /* Baselines: what is kept, what is replaced, what is forgotten, and that readers are not pulled away from under. */
 #include "value/baselines.h"
 
+#include "tests/support/test.h"
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 static struct snapshot *readings(double value, int64_t taken_utc_ns)
 {
@@ -35,9 +31,8 @@ static uint32_t keep(struct baselines *baselines, int64_t taken_utc_ns)
     return id;
 }
 
-static void test_a_name_is_found_replaced_and_removed(void **state)
+TEST(test_a_name_is_found_replaced_and_removed)
 {
-    (void)state;
     struct baselines *baselines = baselines_create();
     struct baseline what;
     uint32_t id = set(baselines, "calm", 4), other = set(baselines, "storm", 9);
@@ -62,9 +57,8 @@ static void test_a_name_is_found_replaced_and_removed(void **state)
     baselines_destroy(&baselines);
 }
 
-static void test_names_are_bounded(void **state)
+TEST(test_names_are_bounded)
 {
-    (void)state;
     struct baselines *baselines = baselines_create();
     struct baseline list[BASELINES_NAMED];
     for (int i = 0; i < BASELINES_NAMED; i++) {
@@ -82,9 +76,8 @@ static void test_names_are_bounded(void **state)
     baselines_destroy(&baselines);
 }
 
-static void test_without_a_name_the_oldest_goes(void **state)
+TEST(test_without_a_name_the_oldest_goes)
 {
-    (void)state;
     struct baselines *baselines = baselines_create();
     uint32_t name = set(baselines, "stays", 1), first = keep(baselines, 100), last = first;
     assert_int_equal(keep(baselines, 100), first); /* the same instant */
@@ -112,9 +105,8 @@ static void *replace_often(void *arg)
     return NULL;
 }
 
-static void test_readers_see_whole_ones(void **state)
+TEST(test_readers_see_whole_ones)
 {
-    (void)state;
     struct baselines *baselines = baselines_create();
     pthread_t thread;
     uint32_t id = set(baselines, "busy", 0);
@@ -127,16 +119,4 @@ static void test_readers_see_whole_ones(void **state)
     }
     pthread_join(thread, NULL);
     baselines_destroy(&baselines);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_name_is_found_replaced_and_removed),
-        cmocka_unit_test(test_names_are_bounded),
-        cmocka_unit_test(test_without_a_name_the_oldest_goes),
-        cmocka_unit_test(test_readers_see_whole_ones),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

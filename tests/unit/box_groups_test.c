@@ -2,14 +2,9 @@
 /* Boxes that hang together, beside each compared with each. */
 #include "preprocess/levels/box_groups.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
 #include <time.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "surface/mesh/trimesh.h"
@@ -52,9 +47,8 @@ static bool meet(const struct box *a, const struct box *b)
     return !apart;
 }
 
-static void groups_are_those_of_all_pairs(void **state)
+TEST(groups_are_those_of_all_pairs)
 {
-    (void)state;
     for (uint64_t seed = 1; seed <= 40; seed++) {
         enum { COUNT = 400 };
         struct box boxes[COUNT];
@@ -78,9 +72,8 @@ static void groups_are_those_of_all_pairs(void **state)
 }
 
 /* Each compared with each takes 3.5 thousand million comparisons. */
-static void a_plate_across_any_axis_takes_no_longer(void **state)
+TEST(a_plate_across_any_axis_takes_no_longer)
 {
-    (void)state;
     enum { COUNT = 83750 };
     struct box *boxes = mem_array(COUNT, sizeof(*boxes));
     for (int flat = 0; flat < 4; flat++)
@@ -95,14 +88,4 @@ static void a_plate_across_any_axis_takes_no_longer(void **state)
             mem_free(parent);
         }
     mem_free(boxes);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(groups_are_those_of_all_pairs),
-        cmocka_unit_test(a_plate_across_any_axis_takes_no_longer),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

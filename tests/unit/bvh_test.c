@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The nearest place on triangles, against every triangle tried; equally near ones go by their numbers. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
@@ -94,9 +89,8 @@ static double distance_plainly(const double p[3], const double at[3][3])
 }
 
 /* Triangles from well shaped to a ten-thousandth as high as long, blunt and sharp; points from beside them to a hundred times as far. */
-static void test_nearest_of_a_triangle(void **state)
+TEST(test_nearest_of_a_triangle)
 {
-    (void)state;
     for (int i = 0; i < 200000; i++) {
         double at[3][3], p[3], w[3], q[3], height = pow(10, between(-4, 0)), far = pow(10, between(-3, 2)), along = between(-1, 2);
         for (int axis = 0; axis < 3; axis++) {
@@ -237,12 +231,11 @@ static void check_box(const struct trimesh *mesh, const struct bvh *bvh, const d
     mem_free(met);
 }
 
-static void test_what_rays_and_boxes_meet(void **state)
+TEST(test_what_rays_and_boxes_meet)
 {
     static const size_t counts[] = { 0, 1, 8, 9, 65, 513, 3000 };
     static const double shifts_m[] = { 0, 3e4 };
     int met[2] = { 0 };
-    (void)state;
     for (size_t i = 0; i < sizeof(counts) / sizeof(*counts); i++)
         for (size_t j = 0; j < 2; j++) {
             struct trimesh mesh;
@@ -266,11 +259,10 @@ static void test_what_rays_and_boxes_meet(void **state)
 
 /* Counts that fill the nodes, just do not, and just exceed them; far from the origin, where floats are coarse; points far away, on
    corners, and on planes. */
-static void test_finds_the_nearest(void **state)
+TEST(test_finds_the_nearest)
 {
     static const size_t counts[] = { 0, 1, 7, 8, 9, 63, 64, 65, 512, 513, 3000 };
     static const double shifts_m[] = { 0, 3e4 };
-    (void)state;
     for (size_t i = 0; i < sizeof(counts) / sizeof(*counts); i++)
         for (size_t j = 0; j < 2; j++) {
             struct trimesh mesh;
@@ -294,9 +286,8 @@ static void test_finds_the_nearest(void **state)
 }
 
 /* Points of a lattice, and over them: numbers that come out even. */
-static void test_equally_near_ones_go_by_number(void **state)
+TEST(test_equally_near_ones_go_by_number)
 {
-    (void)state;
     struct trimesh mesh;
     make_mesh(&mesh, 3000, 0);
     struct bvh *bvh = bvh_create(&mesh);
@@ -316,10 +307,9 @@ static void test_equally_near_ones_go_by_number(void **state)
 }
 
 /* Along a side of a triangle and beside it: but for rounding they would never meet, and rounding puts them anywhere. */
-static void test_a_parallel_segment_crosses_nothing(void **state)
+TEST(test_a_parallel_segment_crosses_nothing)
 {
     size_t crossed = 0;
-    (void)state;
     for (int n = 0; n < 100000; n++) {
         double corners[3][3], p[3], q[3], place[3], weights[3], t;
         for (int i = 0; i < 9; i++)
@@ -336,15 +326,4 @@ static void test_a_parallel_segment_crosses_nothing(void **state)
     assert_int_equal(crossed, 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nearest_of_a_triangle),
-        cmocka_unit_test(test_finds_the_nearest),
-        cmocka_unit_test(test_what_rays_and_boxes_meet),
-        cmocka_unit_test(test_equally_near_ones_go_by_number),
-        cmocka_unit_test(test_a_parallel_segment_crosses_nothing),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, set_up, NULL);
-}
+TEST_GROUP(set_up, NULL)

@@ -2,21 +2,13 @@
 /* Cameras: what they refuse, what they fit, and matrices against projection done by hand. */
 #include "scene/camera.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 static const struct camera good = { .eye_m = { 10, -20, 5 }, .target_m = { 1, 2, 3 }, .up = { 0, 0, 1 }, .fov_deg = 45 };
 
-static void nonsense_is_refused(void **state)
+TEST(nonsense_is_refused)
 {
-    (void)state;
     assert_true(camera_valid(&good));
     struct camera c = { .eye_m = { 412345, 5512345, 120 }, .target_m = { 412355, 5512345, 118 }, .up = { 0, 0, 1 }, .fov_deg = 45 };
     assert_true(camera_valid(&c)); /* a survey's coordinates */
@@ -68,9 +60,8 @@ static void project(const double view[16], const double projection[16], const do
     *w = clip[3];
 }
 
-static void a_point_lands_where_geometry_says(void **state)
+TEST(a_point_lands_where_geometry_says)
 {
-    (void)state;
     /* From (0, -10, 0) northwards: right is east, up is up. At 90 degrees the picture's edge is as far out as the point is away. */
     const struct camera c = { .eye_m = { 0, -10, 0 }, .target_m = { 0, 0, 0 }, .up = { 0, 0, 1 }, .fov_deg = 90 };
     const double min[3] = { -5, -5, -5 }, max[3] = { 5, 5, 5 }, p[3] = { 4, -2, 2 };
@@ -84,9 +75,8 @@ static void a_point_lands_where_geometry_says(void **state)
 }
 
 /* Nothing grows smaller with distance; what lies behind the eye is in the picture too. */
-static void an_orthographic_picture_keeps_sizes(void **state)
+TEST(an_orthographic_picture_keeps_sizes)
 {
-    (void)state;
     const struct camera c = { .eye_m = { 0, -10, 0 }, .target_m = { 0, 0, 0 }, .up = { 0, 0, 1 }, .height_m = 8 };
     const double min[3] = { -5, -50, -5 }, max[3] = { 5, 500, 5 };
     double view[16], projection[16], last = 1;
@@ -113,9 +103,8 @@ static double random_in(double low, double high)
     return low + (high - low) * rand() / RAND_MAX;
 }
 
-static void near_and_far_hold_the_box(void **state)
+TEST(near_and_far_hold_the_box)
 {
-    (void)state;
     srand(1);
     for (int round = 0; round < 2000; round++) {
         double min[3], max[3], view[16], projection[16], ndc[8][3], w[8], far_m = 0;
@@ -140,9 +129,8 @@ static void near_and_far_hold_the_box(void **state)
     }
 }
 
-static void a_box_behind_or_without_depth_gives_numbers(void **state)
+TEST(a_box_behind_or_without_depth_gives_numbers)
 {
-    (void)state;
     const struct camera c = { .eye_m = { 0, 0, 0 }, .target_m = { 0, 1, 0 }, .up = { 0, 0, 1 }, .fov_deg = 45 };
     const double behind_min[3] = { -1, -9, -1 }, behind_max[3] = { 1, -8, 1 }, flat_min[3] = { -1, 5, -1 }, flat_max[3] = { 1, 5, 1 };
     double view[16], projection[16], ndc[3], w;
@@ -178,9 +166,8 @@ static void assert_fits(enum axis up, const double min[3], const double max[3], 
     assert_true(wide || tall);
 }
 
-static void a_fit_fills_the_picture(void **state)
+TEST(a_fit_fills_the_picture)
 {
-    (void)state;
     srand(2);
     for (int round = 0; round < 2000; round++) {
         double min[3], max[3];
@@ -192,9 +179,8 @@ static void a_fit_fills_the_picture(void **state)
     }
 }
 
-static void a_fit_is_from_the_raised_south_west(void **state)
+TEST(a_fit_is_from_the_raised_south_west)
 {
-    (void)state;
     const double min[3] = { 0, 0, 0 }, max[3] = { 10, 10, 10 };
     struct camera c;
     camera_fit_up(&c, AXIS_Z, min, max, 1.5);
@@ -205,28 +191,12 @@ static void a_fit_is_from_the_raised_south_west(void **state)
     assert_float_equal(c.up[1], 1, 0);
 }
 
-static void empty_boxes_are_fitted_somehow(void **state)
+TEST(empty_boxes_are_fitted_somehow)
 {
-    (void)state;
     const double point[3] = { 3, 4, 5 }, none_min[3] = { INFINITY, INFINITY, INFINITY }, none_max[3] = { -INFINITY, -INFINITY, -INFINITY };
     struct camera c;
     camera_fit_up(&c, AXIS_Z, point, point, 1);
     assert_true(camera_valid(&c));
     camera_fit_up(&c, AXIS_Z, none_min, none_max, 1);
     assert_true(camera_valid(&c));
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nonsense_is_refused),
-        cmocka_unit_test(a_point_lands_where_geometry_says), cmocka_unit_test(an_orthographic_picture_keeps_sizes),
-        cmocka_unit_test(near_and_far_hold_the_box),
-        cmocka_unit_test(a_box_behind_or_without_depth_gives_numbers),
-        cmocka_unit_test(a_fit_fills_the_picture),
-        cmocka_unit_test(a_fit_is_from_the_raised_south_west),
-        cmocka_unit_test(empty_boxes_are_fitted_somehow),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

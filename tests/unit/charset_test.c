@@ -2,13 +2,7 @@
 /* Encodings of short texts, as tag lists and drawings have them: how many of each kind are found. */
 #include "base/text/charset.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 
@@ -66,9 +60,8 @@ static const struct kind {
 };
 
 /* A text that the choice shows as other letters is worse than one that is said to be unsure. */
-static void test_kinds(void **state)
+TEST(test_kinds)
 {
-    (void)state;
     size_t texts = 0, right = 0, unsure = 0, wrong = 0;
     for (size_t k = 0; k < sizeof(kinds) / sizeof(*kinds); k++) {
         size_t of_kind = 0, right_of_kind = 0;
@@ -96,9 +89,8 @@ static void test_kinds(void **state)
     assert_int_equal(wrong, 0);
 }
 
-static void test_marks_and_damage(void **state)
+TEST(test_marks_and_damage)
 {
-    (void)state;
     static const struct {
         const char *bytes;
         size_t count;
@@ -124,9 +116,8 @@ static void test_marks_and_damage(void **state)
     }
 }
 
-static void test_names(void **state)
+TEST(test_names)
 {
-    (void)state;
     static const char *const written[][2] = { { "Windows 1251", "Windows-1251" }, { "GBK", "GB18030" },         { "gb2312", "GB18030" },
                                               { "Latin-1", "Windows-1252" },      { "ISO 8859-1", "Windows-1252" }, { "sjis", "Shift-JIS" },
                                               { "Unicode UTF-8", "UTF-8" },       { "CP949", "EUC-KR" },        { "ISO-8859-5",
@@ -148,9 +139,8 @@ static void test_names(void **state)
 }
 
 /* A byte that two encodings explain as well as each other. */
-static void test_unsure(void **state)
+TEST(test_unsure)
 {
-    (void)state;
     struct charset_choice choice = charset_find("Gr\x94\xe1"
                                                 "e",
                                                 5);
@@ -161,9 +151,8 @@ static void test_unsure(void **state)
 }
 
 /* The encodings that write accents behind letters keep the last letter back: without it PT-10A would be PT-10, another tag. */
-static void test_last_letter(void **state)
+TEST(test_last_letter)
 {
-    (void)state;
     static const struct {
         const char *encoding, *bytes, *utf8;
     } cases[] = {
@@ -181,12 +170,4 @@ static void test_last_letter(void **state)
         assert_int_equal(damaged, 0);
         mem_free(text);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_kinds), cmocka_unit_test(test_marks_and_damage), cmocka_unit_test(test_names),
-                                        cmocka_unit_test(test_unsure), cmocka_unit_test(test_last_letter) };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("charset", tests, NULL, NULL);
 }

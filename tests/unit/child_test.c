@@ -1,18 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Other programs: what they print, how they end, and what they may not do. */
+#include "tests/support/test.h"
 #include <fcntl.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "preprocess/child/child.h"
@@ -47,9 +40,8 @@ static bool run(const char *script, int timeout_s, size_t memory_bytes)
 
 static const size_t room = (size_t)1 << 30;
 
-static void test_output_and_the_last_line_of_errors(void **state)
+TEST(test_output_and_the_last_line_of_errors)
 {
-    (void)state;
     assert_true(run("echo one; echo two; echo no matter >&2", 10, room));
     assert_string_equal(output.at, "one\ntwo\n");
     assert_false(run("echo first >&2; printf 'the\\treason\\n\\n' >&2; exit 3", 10, room));
@@ -60,25 +52,22 @@ static void test_output_and_the_last_line_of_errors(void **state)
     assert_string_equal(output.at, "/tmp\n/tmp\n");
 }
 
-static void test_a_program_that_is_not_there(void **state)
+TEST(test_a_program_that_is_not_there)
 {
-    (void)state;
     const char *const argv[] = { "/nowhere/reader", NULL };
     assert_false(child_run(&(struct child_params){ .argv = argv, .folder = "/tmp", .timeout_s = 10, .memory_bytes = room }, &output, why));
     assert_string_equal(why, "/nowhere/reader: No such file or directory");
 }
 
-static void test_a_crash_is_told(void **state)
+TEST(test_a_crash_is_told)
 {
-    (void)state;
     assert_false(run("kill -SEGV $$", 10, room));
     assert_string_equal(why, "the script crashed (SIGSEGV)");
 }
 
 /* Also what it started in the background, which holds its pipes. */
-static void test_a_hang_ends(void **state)
+TEST(test_a_hang_ends)
 {
-    (void)state;
     assert_false(run("sleep 1000 & sleep 1000", 1, room));
     assert_string_equal(why, "the script was ended after 1 s (--timeout)");
     assert_true(seconds < 5);
@@ -89,25 +78,22 @@ static void test_a_hang_ends(void **state)
     assert_true(seconds < 5);
 }
 
-static void test_endless_output_is_cut(void **state)
+TEST(test_endless_output_is_cut)
 {
-    (void)state;
     assert_false(run("yes", 1, room));
     assert_true(output.length <= (9 << 20));
 }
 
-static void test_memory_is_limited(void **state)
+TEST(test_memory_is_limited)
 {
-    (void)state;
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     assert_false(run("dd if=/dev/zero of=/dev/null bs=512M count=1", 20, (size_t)64 << 20));
     assert_string_equal(why, "the script needs more than 64 MB of memory (--memory)");
 #endif
 }
 
-static void test_there_is_no_network(void **state)
+TEST(test_there_is_no_network)
 {
-    (void)state;
     assert_false(run("python3 -c 'import socket; socket.socket()'", 20, room));
     assert_non_null(strstr(why, "not permitted"));
     assert_true(run("python3 -c 'import socket; socket.socketpair()'", 20, room));
@@ -146,9 +132,8 @@ static int print_number(void *arg)
     return printf("%d\n", *(int *)arg) > 0 && close(open("/etc/passwd", O_RDONLY)) != 0 ? 0 : 1;
 }
 
-static void test_a_function_of_this_program(void **state)
+TEST(test_a_function_of_this_program)
 {
-    (void)state;
     int number = 7;
     char lacks[CONFINE_LACKS_BYTES];
     if (!confine_lacks(lacks)) {
@@ -163,9 +148,8 @@ static void test_a_function_of_this_program(void **state)
     assert_string_equal(why, "the STEP reader crashed (SIGABRT)");
 }
 
-static void test_a_signal_ends_it(void **state)
+TEST(test_a_signal_ends_it)
 {
-    (void)state;
     sigset_t term, before;
     char script[64], lacks[CONFINE_LACKS_BYTES];
     sigemptyset(&term);
@@ -192,9 +176,8 @@ static void on_signal(int signal)
     gone_when_signalled = access(path_of_work, F_OK) != 0;
 }
 
-static void test_a_signal_waits_for_the_work_folder(void **state)
+TEST(test_a_signal_waits_for_the_work_folder)
 {
-    (void)state;
     char target[] = "/tmp/plantcast-work-XXXXXX", inside[300];
     struct work_folder work;
     assert_non_null(mkdtemp(target));
@@ -218,20 +201,7 @@ static void test_a_signal_waits_for_the_work_folder(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_output_and_the_last_line_of_errors),
-        cmocka_unit_test(test_a_program_that_is_not_there),
-        cmocka_unit_test(test_a_crash_is_told),
-        cmocka_unit_test(test_a_hang_ends),
-        cmocka_unit_test(test_endless_output_is_cut),
-        cmocka_unit_test(test_memory_is_limited),
-        cmocka_unit_test(test_there_is_no_network),
-        cmocka_unit_test(test_a_function_of_this_program),
-        cmocka_unit_test(test_a_signal_ends_it),
-        cmocka_unit_test(test_a_signal_waits_for_the_work_folder),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    int failed = cmocka_run_group_tests_name("child", tests, NULL, NULL);
+    int failed = tests_run("child");
     text_finish(&output);
     return failed;
 }

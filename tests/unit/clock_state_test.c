@@ -2,18 +2,13 @@
 /* What the kernel says of its clock, as chrony and others leave it there. */
 #include "base/system/clock_state.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 
-static void what_keeps_it_right_is_believed(void **state)
+TEST(what_keeps_it_right_is_believed)
 {
-    (void)state;
     struct timex timex = { .status = STA_PLL, .maxerror = 12345 };
     struct clock_state clock = clock_state_of(&timex, TIME_OK);
     assert_true(clock.set);
@@ -29,9 +24,8 @@ static void what_keeps_it_right_is_believed(void **state)
     assert_true(clock_state_of(&timex, TIME_WAIT).set);
 }
 
-static void nobody_keeps_it_right(void **state)
+TEST(nobody_keeps_it_right)
 {
-    (void)state;
     struct timex timex = { .status = STA_UNSYNC, .maxerror = 16000000 };
     for (int returned = -1; returned <= TIME_ERROR; returned++) {
         struct clock_state clock = clock_state_of(&timex, returned);
@@ -43,9 +37,8 @@ static void nobody_keeps_it_right(void **state)
     assert_false(clock_state_of(&timex, -1).set); /* the call is not allowed here */
 }
 
-static void errors_are_told_in_steps(void **state)
+TEST(errors_are_told_in_steps)
 {
-    (void)state;
     const struct {
         double error_s;
         int ms;
@@ -54,23 +47,10 @@ static void errors_are_told_in_steps(void **state)
         assert_int_equal(clock_state_error_ms(&(struct clock_state){ .error_s = cases[i].error_s }), cases[i].ms);
 }
 
-static void this_machine_says_something(void **state)
+TEST(this_machine_says_something)
 {
-    (void)state;
     struct clock_state clock = clock_state_read();
     assert_int_equal(clock.set, clock_utc_is_set());
     assert_true(clock.error_s >= 0 && clock.leap_s >= -1 && clock.leap_s <= 1);
     print_message("# set: %d, within %d ms\n", clock.set, clock_state_error_ms(&clock));
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_keeps_it_right_is_believed),
-        cmocka_unit_test(nobody_keeps_it_right),
-        cmocka_unit_test(errors_are_told_in_steps),
-        cmocka_unit_test(this_machine_says_something),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

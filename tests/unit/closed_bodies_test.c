@@ -2,13 +2,8 @@
 /* Which bodies are closed. */
 #include "scene/closed_bodies.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "tests/support/shape.h"
 #include "tests/support/toy.h"
@@ -33,17 +28,15 @@ static uint32_t closed_triangles(struct shape *shape)
     return indices / 3;
 }
 
-static void test_a_box_is_closed(void **state)
+TEST(test_a_box_is_closed)
 {
     struct shape shape = { 0 };
-    (void)state;
     shape_box(&shape, TOY_STEEL, low, high); /* each side has vertices of its own */
     assert_int_equal(closed_triangles(&shape), BOX);
 }
 
-static void test_what_has_a_hole_is_not(void **state)
+TEST(test_what_has_a_hole_is_not)
 {
-    (void)state;
     for (uint32_t gone = 0; gone < BOX; gone += 17) {
         struct shape shape = { 0 };
         shape_box(&shape, TOY_STEEL, low, high);
@@ -55,9 +48,8 @@ static void test_what_has_a_hole_is_not(void **state)
 }
 
 /* By rounding, seams lie a little apart. */
-static void test_seams_may_gape_by_rounding(void **state)
+TEST(test_seams_may_gape_by_rounding)
 {
-    (void)state;
     for (int wide = 0; wide < 2; wide++) {
         struct shape shape = { 0 };
         shape_box(&shape, TOY_STEEL, low, high);
@@ -68,10 +60,9 @@ static void test_seams_may_gape_by_rounding(void **state)
     }
 }
 
-static void test_what_is_turned_round_in_part_is_not(void **state)
+TEST(test_what_is_turned_round_in_part_is_not)
 {
     struct shape shape = { 0 };
-    (void)state;
     shape_box(&shape, TOY_STEEL, low, high);
     uint32_t first = shape.indices[0];
     shape.indices[0] = shape.indices[1];
@@ -79,10 +70,9 @@ static void test_what_is_turned_round_in_part_is_not(void **state)
     assert_int_equal(closed_triangles(&shape), 0);
 }
 
-static void test_bodies_are_judged_one_by_one(void **state)
+TEST(test_bodies_are_judged_one_by_one)
 {
     struct shape shape = { 0 };
-    (void)state;
     shape_box(&shape, TOY_STEEL, low, high);
     shape_plate(&shape, TOY_BLUE, (double[3]){ 3, 3, 3 }, (double[3]){ 1, 0, 0 }, (double[3]){ 0, 1, 0 }, 2);
     shape_box(&shape, TOY_CONCRETE, (double[3]){ 5, 5, 5 }, (double[3]){ 6, 6, 6 });
@@ -90,7 +80,7 @@ static void test_bodies_are_judged_one_by_one(void **state)
     assert_int_equal(closed_triangles(&shape), 3 * BOX);
 }
 
-static void test_glass_bounds_nothing(void **state)
+TEST(test_glass_bounds_nothing)
 {
     const struct asset_material glass = { .base_color = { 1, 1, 1, 0.3f },
                                           .alpha = ASSET_ALPHA_BLEND,
@@ -100,21 +90,6 @@ static void test_glass_bounds_nothing(void **state)
                                           .occlusion_texture = ASSET_NO_TEXTURE,
                                           .emissive_texture = ASSET_NO_TEXTURE };
     struct shape shape = { .materials = &glass, .material_count = 1 };
-    (void)state;
     shape_box(&shape, 0, low, high);
     assert_int_equal(closed_triangles(&shape), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_box_is_closed),
-        cmocka_unit_test(test_what_has_a_hole_is_not),
-        cmocka_unit_test(test_seams_may_gape_by_rounding),
-        cmocka_unit_test(test_what_is_turned_round_in_part_is_not),
-        cmocka_unit_test(test_bodies_are_judged_one_by_one),
-        cmocka_unit_test(test_glass_bounds_nothing),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Distances of the heat method on a point cloud, against what is known of spheres, tubes and plates; and what the method gets wrong. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "preprocess/influence/cloud_heat.h"
@@ -56,9 +51,8 @@ static void expect_errors(const struct made *made, const char *what, const doubl
     assert_true(sum <= mean * largest_m && most <= worst * largest_m);
 }
 
-static void test_sphere(void **state)
+TEST(test_sphere)
 {
-    (void)state;
     struct made made = { 0 };
     cad_sphere(&made.cad, &chance, 24);
     make(&made, (const double[3]){ 0, 0, 1 });
@@ -71,9 +65,8 @@ static void test_sphere(void **state)
     finish(&made);
 }
 
-static void test_tube(void **state)
+TEST(test_tube)
 {
-    (void)state;
     struct made made = { 0 };
     cad_cylinder(&made.cad, &chance, 64, 40, 4, 0);
     const float *at = made.cad.positions[0];
@@ -116,9 +109,8 @@ static void add_plate(struct cad *cad, double z_m)
     cad->triangle_count += 2;
 }
 
-static void test_reaches_through_what_is_thin(void **state)
+TEST(test_reaches_through_what_is_thin)
 {
-    (void)state;
     for (int thin = 0; thin < 2; thin++) {
         struct made made = { 0 };
         float along_m[8];
@@ -135,9 +127,8 @@ static void test_reaches_through_what_is_thin(void **state)
 }
 
 /* A ribbon folded to and fro: along it is far longer than its box is wide, and heat must not be lost on the way. */
-static void test_serpentine(void **state)
+TEST(test_serpentine)
 {
-    (void)state;
     struct made made = { 0 };
     const double leg_m = 1, gap_m = 0.2, long_m = 120;
     cad_plate(&made.cad, &chance, 1201, 3, long_m, 0.1, 0);
@@ -156,14 +147,4 @@ static void test_serpentine(void **state)
     finish(&made);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sphere),
-        cmocka_unit_test(test_tube),
-        cmocka_unit_test(test_serpentine),
-        cmocka_unit_test(test_reaches_through_what_is_thin),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
-}
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

@@ -2,14 +2,8 @@
 /* Clusters of a torus of two materials: no triangle is lost, they are small, and views from outside leave out about what they may. */
 #include "preprocess/levels/clusters.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 
@@ -72,9 +66,8 @@ static uint32_t *in_order(const struct geometry *g, const struct asset_primitive
     return triangles;
 }
 
-static void no_triangle_is_lost(void **state)
+TEST(no_triangle_is_lost)
 {
-    (void)state;
     struct workers *workers = workers_create(2);
     for (int threaded = 0; threaded < 2; threaded++) {
         struct geometry g;
@@ -103,9 +96,8 @@ static void no_triangle_is_lost(void **state)
 }
 
 /* From 20 m away, of a torus 8 m wide. */
-static void views_leave_out_much(void **state)
+TEST(views_leave_out_much)
 {
-    (void)state;
     struct geometry g;
     struct clusters clusters;
     double half_m = 0;
@@ -129,14 +121,4 @@ static void views_leave_out_much(void **state)
     assert_true(left_out > backs / 3);
     clusters_finish(&clusters);
     geometry_finish(&g);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_triangle_is_lost),
-        cmocka_unit_test(views_leave_out_much),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

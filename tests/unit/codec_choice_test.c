@@ -2,11 +2,8 @@
 /* H.264 or JPEG: by what the network takes and what the processors have left, and not to and fro. */
 #include "session/pacing/codec_choice.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 
@@ -24,9 +21,8 @@ static int run(struct codec_choice *choice, double mbyte_per_s, double cpu_free,
     return changes;
 }
 
-static void h264_unless_there_is_plenty_and_no_processor(void **state)
+TEST(h264_unless_there_is_plenty_and_no_processor)
 {
-    (void)state;
     struct codec_choice choice = { 0 };
     int64_t now_ns = NS_PER_S;
     assert_int_equal(run(&choice, 0, 0, 60, &now_ns), 0);     /* nothing is known of the network */
@@ -37,9 +33,8 @@ static void h264_unless_there_is_plenty_and_no_processor(void **state)
     assert_true(choice.jpeg);
 }
 
-static void a_short_time_decides_nothing(void **state)
+TEST(a_short_time_decides_nothing)
 {
-    (void)state;
     struct codec_choice choice = { 0 };
     int64_t now_ns = NS_PER_S;
     for (int i = 0; i < 20; i++) {
@@ -55,33 +50,19 @@ static void a_short_time_decides_nothing(void **state)
     assert_int_equal(run(&choice, 500, 0.9, 31, &now_ns), 1);
 }
 
-static void a_network_that_gets_narrow_decides_at_once(void **state)
+TEST(a_network_that_gets_narrow_decides_at_once)
 {
-    (void)state;
     struct codec_choice choice = { .jpeg = true };
     int64_t now_ns = NS_PER_S;
     assert_int_equal(run(&choice, 3, 0.02, 1, &now_ns), 1);
     assert_false(choice.jpeg);
 }
 
-static void processor_time_is_what_proc_says(void **state)
+TEST(processor_time_is_what_proc_says)
 {
-    (void)state;
     struct cpu_meter meter = { 0 };
     assert_true(cpu_meter_free(&meter, "cpu  100 0 100 700 100 0 0 0 0 0\ncpu0 1 1 1 1\n") == 1);
     assert_true(cpu_meter_free(&meter, "cpu  150 10 115 715 110 0 0 0 0 0\n") == 0.25);
     assert_true(cpu_meter_free(&meter, "cpu  150 10 115 715 110 0 0 0 0 0\n") == 1);
     assert_true(cpu_meter_free(&meter, "nothing") == 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(h264_unless_there_is_plenty_and_no_processor),
-        cmocka_unit_test(a_short_time_decides_nothing),
-        cmocka_unit_test(a_network_that_gets_narrow_decides_at_once),
-        cmocka_unit_test(processor_time_is_what_proc_says),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,14 +2,8 @@
 /* Which of two assets is seen where their faces coincide, and that picking says the same. */
 #include "scene/coincident.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "scene/raycast.h"
 #include "tests/support/toy.h"
@@ -24,9 +18,8 @@ static int add_box(struct toy *toy, const char *id, double low_x, double low_y, 
     return toy_add(toy, id, &shape, HERE, SENSOR, sensor_count);
 }
 
-static void earlier_ones_are_seen(void **state)
+TEST(earlier_ones_are_seen)
 {
-    (void)state;
     struct toy *toy = toy_create();
     int first = add_box(toy, "A", 0, 0, 0, 1, 1, 1, 0), second = add_box(toy, "B", 0.2, 0.1, 0, 3, 0.9, 1, 0);
     int third = add_box(toy, "C", 2, 0, 0.5, 4, 1, 1, 0), alone = add_box(toy, "D", 0, 0, 1.5, 1, 1, 2.5, 0);
@@ -38,9 +31,8 @@ static void earlier_ones_are_seen(void **state)
     toy_destroy(&toy);
 }
 
-static void those_with_sensors_are_seen(void **state)
+TEST(those_with_sensors_are_seen)
 {
-    (void)state;
     struct toy *toy = toy_create();
     int context = add_box(toy, "A", 0, 0, 0, 1, 1, 1, 0), measured = add_box(toy, "B", 0, 0, 0, 1, 1, 2, 1);
     coincident_find(&toy->scene);
@@ -49,11 +41,10 @@ static void those_with_sensors_are_seen(void **state)
 }
 
 /* On one plane side by side, through each other, close before each other: depth alone decides. */
-static void others_do_not_coincide(void **state)
+TEST(others_do_not_coincide)
 {
     static const double low[3][3] = { { 1, 0, 0 }, { 0.5, 0.5, 0.5 }, { 0.2, 0.2, 0.2 } };
     static const double high[3][3] = { { 2, 1, 1 }, { 1.5, 1.5, 1.5 }, { 0.8, 0.8, 1.002 } };
-    (void)state;
     for (int i = 1; i < 3; i++) {
         struct toy *toy = toy_create();
         add_box(toy, "A", 0, 0, 0, 1, 1, 1, 0);
@@ -66,9 +57,8 @@ static void others_do_not_coincide(void **state)
 }
 
 /* Rays from all over onto the face of both: whichever file order the loop has, the one in front is hit. */
-static void rays_hit_what_is_seen(void **state)
+TEST(rays_hit_what_is_seen)
 {
-    (void)state;
     for (int parallel = 0; parallel < 2; parallel++)
         for (int with_sensor = 0; with_sensor < 2; with_sensor++) {
             struct toy *toy = toy_create();
@@ -91,16 +81,4 @@ static void rays_hit_what_is_seen(void **state)
             }
             toy_destroy(&toy);
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(earlier_ones_are_seen),
-        cmocka_unit_test(those_with_sensors_are_seen),
-        cmocka_unit_test(others_do_not_coincide),
-        cmocka_unit_test(rays_hit_what_is_seen),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The colour maps as tables and as colours. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "field/colormap.h"
 
@@ -74,9 +68,8 @@ static double lab_distance(const double a[3], const double b[3])
 
 /* --- tests ---------------------------------------------------------------------------------------------------------------- */
 
-static void test_names(void **state)
+TEST(test_names)
 {
-    (void)state;
     static const char *const names[] = { "relief", "calm", "viridis", "cividis", "diverging", "turbo" };
     assert_int_equal(colormap_count(), 6);
     for (int i = 0; i < 6; i++) {
@@ -86,9 +79,8 @@ static void test_names(void **state)
     assert_int_equal(colormap_find("jet"), -1);
 }
 
-static void test_tables_are_whole(void **state)
+TEST(test_tables_are_whole)
 {
-    (void)state;
     static const uint8_t viridis_first[3] = { 68, 1, 84 }, viridis_last[3] = { 253, 231, 37 }, turbo_last[3] = { 122, 4, 3 };
     assert_memory_equal(colormap_at(2)->rgb[0], viridis_first, 3);
     assert_memory_equal(colormap_at(2)->rgb[255], viridis_last, 3);
@@ -99,9 +91,8 @@ static void test_tables_are_whole(void **state)
                 assert_true(abs(colormap_at(i)->rgb[row][k] - colormap_at(i)->rgb[row - 1][k]) <= 8);
 }
 
-static void test_ends_are_not_on_the_map(void **state)
+TEST(test_ends_are_not_on_the_map)
 {
-    (void)state;
     for (size_t i = 0; i < colormap_count(); i++) {
         const struct colormap *map = colormap_at(i);
         double below[3], above[3], at[3];
@@ -116,9 +107,8 @@ static void test_ends_are_not_on_the_map(void **state)
     }
 }
 
-static void test_maps_for_relief_are_low_in_contrast_and_ordered(void **state)
+TEST(test_maps_for_relief_are_low_in_contrast_and_ordered)
 {
-    (void)state;
     for (int i = 0; i < 4; i++) {
         const struct colormap *map = colormap_at((size_t)(i / 2));
         int as_deuteranope = i % 2;
@@ -137,9 +127,8 @@ static void test_maps_for_relief_are_low_in_contrast_and_ordered(void **state)
     }
 }
 
-static void test_maps_for_relief_leave_room_for_shading(void **state)
+TEST(test_maps_for_relief_leave_room_for_shading)
 {
-    (void)state;
     for (int row = 0; row < 512; row++)
         for (int step = -1; step <= 1; step += 2) {
             double lab[3], c[3];
@@ -152,9 +141,8 @@ static void test_maps_for_relief_leave_room_for_shading(void **state)
 }
 
 /* What is meant by "shading must not be read as value": L* moved by up to 7, read back by the nearest legend colour. */
-static void test_relief_is_read_back_through_shading(void **state)
+TEST(test_relief_is_read_back_through_shading)
 {
-    (void)state;
     const struct colormap *map = colormap_at(0);
     for (int as_deuteranope = 0; as_deuteranope < 2; as_deuteranope++) {
         int misread = 0, total = 0;
@@ -183,9 +171,8 @@ static void test_relief_is_read_back_through_shading(void **state)
     }
 }
 
-static void test_maps_can_be_added(void **state)
+TEST(test_maps_can_be_added)
 {
-    (void)state;
     uint8_t rgb[256][3];
     size_t before = colormap_count();
     for (int i = 0; i < 256; i++)
@@ -202,19 +189,4 @@ static void test_maps_can_be_added(void **state)
     assert_int_equal(colormap_add("mine", (const uint8_t(*)[3])rgb), added); /* changed, not added again */
     assert_true(colormap_at((size_t)added)->rgb[0][0] == 99 && colormap_count() == before + 1);
     assert_int_equal(colormap_add("relief", (const uint8_t(*)[3])rgb), -1);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_names),
-        cmocka_unit_test(test_tables_are_whole),
-        cmocka_unit_test(test_ends_are_not_on_the_map),
-        cmocka_unit_test(test_maps_for_relief_are_low_in_contrast_and_ordered),
-        cmocka_unit_test(test_maps_for_relief_leave_room_for_shading),
-        cmocka_unit_test(test_relief_is_read_back_through_shading),
-        cmocka_unit_test(test_maps_can_be_added),
-    };
-    return cmocka_run_group_tests_name("colormap", tests, NULL, NULL);
 }

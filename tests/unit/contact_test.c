@@ -2,14 +2,8 @@
 /* Bodies that touch face to face, and bodies that pass through themselves: distances against an exact solver on their union's surface. */
 #include "surface/surface.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/oracle/geodesic.h"
@@ -184,11 +178,10 @@ static void skip_if_watched(void)
 
 /* --- face to face ------------------------------------------------------------------------------------------------------------- */
 
-static void a_foot_stands_on_a_base(void **state)
+TEST(a_foot_stands_on_a_base)
 {
     struct cad base = { 0 }, foot = { 0 };
     double turn = cad_random(&chance);
-    (void)state;
     skip_if_watched();
     cad_box(&base, &chance, 40, 40, 6, 0.05);
     cad_box(&foot, &chance, 13, 11, 20, 0.06);
@@ -207,10 +200,9 @@ static void make_flange(struct cad *plate, struct cad *pipe)
     move(pipe, 0.1, 0.9, 1, (double)(4 * 0.05f));
 }
 
-static void a_flange_lies_on_a_plate(void **state)
+TEST(a_flange_lies_on_a_plate)
 {
     struct cad plate = { 0 }, pipe = { 0 };
-    (void)state;
     skip_if_watched();
     make_flange(&plate, &pipe);
     test_pair("flange on a plate", 1, &plate, &pipe, 0);
@@ -220,13 +212,12 @@ static void a_flange_lies_on_a_plate(void **state)
 
 /* A gap of the one runs over a gap of the other, and a vertex at it lies just on the other's edge: as they were drawn when such a vertex
    was set into that edge, and both bodies became one. */
-static void gaps_of_a_flange_and_its_plate_run_over_each_other(void **state)
+TEST(gaps_of_a_flange_and_its_plate_run_over_each_other)
 {
     static const struct {
         uint64_t shape, gaps;
     } drawn[] = { { 24, 12172029404843593626u }, { 16, 5872334337837050722u }, { 11, 16606944144200248149u } };
     const struct cad_random was = chance;
-    (void)state;
     skip_if_watched();
     for (size_t i = 0; i < sizeof(drawn) / sizeof(drawn[0]); i++) {
         struct cad plate = { 0 }, pipe = { 0 }, both = { 0 };
@@ -256,10 +247,9 @@ static void make_boxes(struct cad *below, struct cad *above, bool stacked)
 }
 
 /* The same vertices on both sides, so that one face is left of two, or two with other diagonals. */
-static void boxes_are_stacked(void **state)
+TEST(boxes_are_stacked)
 {
     struct cad below = { 0 }, above = { 0 };
-    (void)state;
     skip_if_watched();
     make_boxes(&below, &above, true);
     test_pair("stacked boxes", 2, &below, &above, 0);
@@ -268,10 +258,9 @@ static void boxes_are_stacked(void **state)
 }
 
 /* They share three edges of the step, with the same vertices. */
-static void a_box_stands_at_the_edge_of_another(void **state)
+TEST(a_box_stands_at_the_edge_of_another)
 {
     struct cad below = { 0 }, above = { 0 };
-    (void)state;
     skip_if_watched();
     make_boxes(&below, &above, false);
     test_pair("box at a box's edge", 0, &below, &above, 0);
@@ -310,40 +299,37 @@ static void score_drawn(const char *name, int row, const struct drawn *drawn, si
 
 /* As they were drawn when a slit stayed at the rim: along it; behind a few faces in it that nobody asked after; and when a gap's edge below
    fitted the one above and closed with that, so that nothing at all was hidden. */
-static void gaps_at_a_rim_that_boxes_share(void **state)
+TEST(gaps_at_a_rim_that_boxes_share)
 {
     static const struct drawn drawn[] = { { false, 4572757393123136864u, 9974078172818400498u },
                                           { true, 15637282480159728428u, 4190595509245954882u },
                                           { true, 8255063493486768376u, 17951463482698918783u },
                                           { true, 11029998158218764781u, 5666404303935474837u } };
-    (void)state;
     skip_if_watched();
     score_drawn("boxes, gaps at their rim", 0, drawn, sizeof(drawn) / sizeof(drawn[0]), CAD_GAPS);
 }
 
 /* As they were drawn when both bodies were cut on one side of an edge, each elsewhere: the two vertices closed with each other, and the
    edge on the other side stayed open. Last: three faces of four were, each elsewhere, and each vertex was set into one other only. */
-static void vertices_hang_in_an_edge_that_boxes_share(void **state)
+TEST(vertices_hang_in_an_edge_that_boxes_share)
 {
     static const struct drawn drawn[] = { { false, 16412639206824042380u, 3835865350566676432u },
                                           { true, 347, 2937101372886084558u },
                                           { true, 315, 344318115056305710u },
                                           { false, 5411203762277396347u, 17379661297130099942u } };
-    (void)state;
     skip_if_watched();
     score_drawn("boxes, two in one edge", 1, drawn, sizeof(drawn) / sizeof(drawn[0]), CAD_HANGING);
 }
 
 /* Whatever hangs where, nothing stays open: drawn often, without the solver. In the rows, vertices are nearer to each other than what
    fits exactly, or than the tolerance. */
-static void nothing_stays_open_where_vertices_hang(void **state)
+TEST(nothing_stays_open_where_vertices_hang)
 {
     enum { FOUND = 3, DRAWN = 8 };
     static const struct drawn found[FOUND] = { { true, 3616225228971510762u, 9529096995392165780u },
                                                { false, 12847895688012758659u, 7169513539583218994u },
                                                { false, 12320550652532879441u, 10885357293221945589u } };
     const struct cad_random was = chance;
-    (void)state;
     for (int i = 0; i < FOUND + DRAWN; i++) {
         struct cad below = { 0 }, above = { 0 }, both = { 0 }, broken;
         struct cad_place place;
@@ -377,12 +363,11 @@ static void nothing_stays_open_where_vertices_hang(void **state)
 
 /* --- through itself ------------------------------------------------------------------------------------------------------------ */
 
-static void a_tube_passes_through_itself(void **state)
+TEST(a_tube_passes_through_itself)
 {
     struct cad tube = { 0 }, up = { 0 }, down = { 0 };
     struct outer outer;
     double radius = 0.12 + 0.05 * cad_random(&chance); /* its sharpest bend has 0.178: more would fold there */
-    (void)state;
     skip_if_watched();
     cad_eight(&tube, &chance, 150, 36, radius, 0);
     cad_eight(&up, &chance, 150, 36, radius, 1);
@@ -398,19 +383,4 @@ static void a_tube_passes_through_itself(void **state)
     cad_finish(&down);
 }
 
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_tube_passes_through_itself),
-        cmocka_unit_test(a_foot_stands_on_a_base),
-        cmocka_unit_test(a_flange_lies_on_a_plate),
-        cmocka_unit_test(gaps_of_a_flange_and_its_plate_run_over_each_other),
-        cmocka_unit_test(boxes_are_stacked),
-        cmocka_unit_test(a_box_stands_at_the_edge_of_another),
-        cmocka_unit_test(gaps_at_a_rim_that_boxes_share),
-        cmocka_unit_test(vertices_hang_in_an_edge_that_boxes_share),
-        cmocka_unit_test(nothing_stays_open_where_vertices_hang),
-    };
-    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
-}
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

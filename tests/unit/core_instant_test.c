@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Readings of an instant from a core to a renderer: to the bit; and nothing is believed that cannot be. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "corelink/core_instant.h"
@@ -33,9 +26,8 @@ static struct text make_message(struct snapshot *snapshot)
     return text;
 }
 
-static void each_comes_to_the_bit(void **state)
+TEST(each_comes_to_the_bit)
 {
-    (void)state;
     struct snapshot *sent = snapshot_create(TAGS), *got = snapshot_create(TAGS);
     struct text text = make_message(sent);
     int64_t first_us = 0;
@@ -60,9 +52,8 @@ static void each_comes_to_the_bit(void **state)
     snapshot_destroy(&got);
 }
 
-static void any_bytes_are_read_or_refused(void **state)
+TEST(any_bytes_are_read_or_refused)
 {
-    (void)state;
     struct snapshot *snapshot = snapshot_create(TAGS), *got = snapshot_create(TAGS);
     struct text text = make_message(snapshot);
     unsigned seed = (unsigned)sweep_seed();
@@ -91,14 +82,4 @@ static void any_bytes_are_read_or_refused(void **state)
     text_finish(&text);
     snapshot_destroy(&snapshot);
     snapshot_destroy(&got);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_comes_to_the_bit),
-        cmocka_unit_test(any_bytes_are_read_or_refused),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

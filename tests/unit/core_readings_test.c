@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Readings between core and renderer: only what changed, to the bit; and nothing is believed that cannot be. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "corelink/core_identity.h"
@@ -62,11 +57,10 @@ static const char *read_message(struct way *way, int64_t now_mono_ns)
     return core_readings_read(&way->readings, TAGS, way->text.at, way->text.length, now_mono_ns);
 }
 
-static void only_changes_are_sent(void **state)
+TEST(only_changes_are_sent)
 {
     struct way way;
     const struct mirrored *got = way.got;
-    (void)state;
     way_init(&way);
     write_message(&way);
     assert_null(read_message(&way, 100 * S));
@@ -84,10 +78,9 @@ static void only_changes_are_sent(void **state)
     way_finish(&way);
 }
 
-static void nonsense_is_refused(void **state)
+TEST(nonsense_is_refused)
 {
     struct way way;
-    (void)state;
     way_init(&way);
     write_message(&way);
     const size_t whole = way.text.length;
@@ -123,10 +116,9 @@ static void assert_late(struct way *way, int64_t core_ns, int64_t now_ns, int64_
     assert_true(llabs(way->got[0].received_mono_ns - (now_ns - late_ns - S)) < DRIFT_NS);
 }
 
-static void late_readings_are_older(void **state)
+TEST(late_readings_are_older)
 {
     struct way way;
-    (void)state;
     way_init(&way);
     for (int i = 0; i < 3; i++) { /* each a second after the one before; the second takes 5 s longer */
         int64_t late_ns = i == 1 ? 5 * S : 0;
@@ -140,9 +132,8 @@ static void late_readings_are_older(void **state)
 }
 
 /* What is shown there is shown here, whatever its age; a lost link makes all Bad, also what is told again unchanged afterwards. */
-static void a_store_shows_what_the_other_shows(void **state)
+TEST(a_store_shows_what_the_other_shows)
 {
-    (void)state;
     struct plant *plant = plant_by_hand_create(2);
     plant_by_hand_source(plant, "a", 1);
     plant_by_hand_tag(plant, "TT", TABLE_HOLDING, 0, DATA_INT16);
@@ -166,9 +157,8 @@ static void a_store_shows_what_the_other_shows(void **state)
     plant_by_hand_destroy(&plant);
 }
 
-static void differences_have_names(void **state)
+TEST(differences_have_names)
 {
-    (void)state;
     const struct core_identity own = { "1.0", "Plant", "abc" };
     const struct core_identity others[] = { { "1.1", "Plant", "abc" }, { "1.0", "P", "abc" }, { "1.0", "Plant", "x" } };
     const char *const names[] = { "version", "plant", "configuration" };
@@ -184,17 +174,4 @@ static void differences_have_names(void **state)
     assert_string_equal(why, "the core does not tell its plant");
     mem_free(why);
     json_decref(message);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(only_changes_are_sent),
-        cmocka_unit_test(nonsense_is_refused),
-        cmocka_unit_test(late_readings_are_older),
-        cmocka_unit_test(a_store_shows_what_the_other_shows),
-        cmocka_unit_test(differences_have_names),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Samples from a core to the one that stands by: each, in order, to the bit; and nothing is believed that cannot be. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "corelink/core_samples.h"
@@ -46,9 +39,8 @@ static struct text make_message(void)
     return text;
 }
 
-static void each_comes_in_order(void **state)
+TEST(each_comes_in_order)
 {
-    (void)state;
     struct text text = make_message();
     struct sample_event *got;
     size_t count;
@@ -66,9 +58,8 @@ static void each_comes_in_order(void **state)
     text_finish(&text);
 }
 
-static void nonsense_is_refused(void **state)
+TEST(nonsense_is_refused)
 {
-    (void)state;
     struct text text = make_message();
     struct sample_event *got;
     size_t count;
@@ -89,9 +80,8 @@ static void nonsense_is_refused(void **state)
     text_finish(&text);
 }
 
-static void any_bytes_are_read_or_refused(void **state)
+TEST(any_bytes_are_read_or_refused)
 {
-    (void)state;
     unsigned seed = (unsigned)sweep_seed();
     struct text text = make_message();
     for (int round = 0; round < 20000; round++) {
@@ -108,15 +98,4 @@ static void any_bytes_are_read_or_refused(void **state)
         }
     }
     text_finish(&text);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_comes_in_order),
-        cmocka_unit_test(nonsense_is_refused),
-        cmocka_unit_test(any_bytes_are_read_or_refused),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

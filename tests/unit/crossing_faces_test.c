@@ -2,13 +2,8 @@
 /* Faces that may pass through others: of every crossing that sampled pieces show, and few besides. */
 #include "surface/repair/crossing_faces.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
@@ -87,10 +82,9 @@ static size_t count_flagged(const struct model *model, const char *crosses)
     return count;
 }
 
-static void a_pipe_that_winds_past_itself_has_none(void **state)
+TEST(a_pipe_that_winds_past_itself_has_none)
 {
     struct model *model = mem_new(sizeof(*model));
-    (void)state;
     for (int n = 0; n < 50; n++) {
         double radius_m = between(0.02, 0.4);
         make_coil(model, radius_m, between(2.1, 4) * radius_m, between(0.2, 2));
@@ -100,10 +94,9 @@ static void a_pipe_that_winds_past_itself_has_none(void **state)
     mem_free(model);
 }
 
-static void a_pipe_that_winds_into_itself_has_some(void **state)
+TEST(a_pipe_that_winds_into_itself_has_some)
 {
     struct model *model = mem_new(sizeof(*model));
-    (void)state;
     make_coil(model, 0.2, 0.3, 1.25); /* the last quarter is in the first */
     char *crosses = crossing_faces_find(&model->parts);
     assert_in_range(count_flagged(model, crosses), 20, model->triangle_count / 2);
@@ -160,11 +153,10 @@ static size_t count_crossings(const struct model *model, size_t piece)
     return count;
 }
 
-static void no_crossing_of_pieces_is_missed(void **state)
+TEST(no_crossing_of_pieces_is_missed)
 {
     struct model *model = mem_new(sizeof(*model));
     size_t found = 0, flagged = 0, all = 0;
-    (void)state;
     for (int n = 0; n < sweep(400, 60); n++) {
         make_tangle(model, (uint32_t)between(5, 40), pow(10, between(-6, 0)));
         char *crosses = crossing_faces_find(&model->parts);
@@ -184,13 +176,4 @@ static void no_crossing_of_pieces_is_missed(void **state)
     mem_free(model);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_pipe_that_winds_past_itself_has_none),
-        cmocka_unit_test(a_pipe_that_winds_into_itself_has_some),
-        cmocka_unit_test(no_crossing_of_pieces_is_missed),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, set_up, NULL);
-}
+TEST_GROUP(set_up, NULL)

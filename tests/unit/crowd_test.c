@@ -2,15 +2,10 @@
 /* Which markers are drawn, by the rule of protocol/LABELS.md, against the vectors that the browser's are tested with too. */
 #include "render/overlay/crowd.h"
 
+#include "tests/support/test.h"
 #include <dirent.h>
 #include <jansson.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/synthetic.h"
@@ -49,9 +44,8 @@ static void check_vector(const char *name)
     json_decref(vector);
 }
 
-static void draws_what_the_vectors_say(void **state)
+TEST(draws_what_the_vectors_say)
 {
-    (void)state;
     int count = 0;
     DIR *folder = opendir(FOLDER);
     assert_non_null(folder);
@@ -65,9 +59,8 @@ static void draws_what_the_vectors_say(void **state)
 }
 
 /* Also where they lie on one another, and where there are none. */
-static void draws_the_first_of_thousands(void **state)
+TEST(draws_the_first_of_thousands)
 {
-    (void)state;
     enum { COUNT = 4096 };
     static struct crowd_item items[COUNT];
     static bool drawn[COUNT];
@@ -78,14 +71,4 @@ static void draws_the_first_of_thousands(void **state)
     crowd_thin(items, COUNT, 1, drawn);
     for (int i = 0; i < COUNT; i++)
         assert_int_equal(drawn[i], i > 0 && i <= 6);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(draws_what_the_vectors_say),
-        cmocka_unit_test(draws_the_first_of_thousands),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,13 +2,7 @@
 /* CSV rows and the place of every cell. */
 #include "plant/parse/csv.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 #include "base/text/text.h"
@@ -45,6 +39,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 static void open_bytes(struct fixture *f, const char *text, size_t bytes)
 {
     forget(f);
@@ -79,9 +75,8 @@ static void assert_one_error(struct fixture *f, int line, int column, const char
         fail_msg("%d:%d: %s is not %d:%d: %s", item->line, item->column, item->text, line, column, words);
 }
 
-static void separators_are_detected(void **state)
+CASE(separators_are_detected)
 {
-    struct fixture *f = *state;
     static const char *const texts[] = { "A,B,C\n1,2;x,3\n", "A;B;C\r\n1;2,x;3\r\n", "A\tB\tC\r1\t 2 \t3", "\"A,,,,\";B;C\n1;2;3" };
     static const char *const rows[] = { "1|2;x|3", "1|2,x|3", "1|2|3", "1|2|3" };
     for (size_t i = 0; i < 4; i++) {
@@ -93,9 +88,8 @@ static void separators_are_detected(void **state)
     }
 }
 
-static void quotes_hold_separators_quotes_and_line_breaks(void **state)
+CASE(quotes_hold_separators_quotes_and_line_breaks)
 {
-    struct fixture *f = *state;
     open_text(f, "A,B,C\n\"x,y\",\"say \"\"hi\"\"\", \"two\nlines\" \n  3\" pipe ,\"\",\"  kept  \"\nlast,,end");
     assert_row(f, "x,y|say \"hi\"|two\nlines");
     assert_int_equal(csv_cell_line(&f->csv, 2), 2);
@@ -109,9 +103,8 @@ static void quotes_hold_separators_quotes_and_line_breaks(void **state)
     assert_int_equal(f->diag.count, 0);
 }
 
-static void columns_count_characters(void **state)
+CASE(columns_count_characters)
 {
-    struct fixture *f = *state;
     open_text(f, "\xEF\xBB\xBFName,Größe °C,C\r\n\"äöü\",€,x\r\n");
     assert_int_equal(f->csv.header.cells[0].column, 1);
     assert_int_equal(f->csv.header.cells[2].column, 15);
@@ -124,9 +117,8 @@ static void columns_count_characters(void **state)
     assert_int_equal(csv_cell_line(&f->csv, 2), 2);
 }
 
-static void blank_rows_are_passed_over(void **state)
+CASE(blank_rows_are_passed_over)
 {
-    struct fixture *f = *state;
     open_text(f, "\n  \nA,B,,\n\n,,,\n1,2,,,,\n \r\n3\n\n");
     assert_int_equal(f->csv.header.count, 2);
     assert_int_equal(f->csv.header.cells[0].line, 3);
@@ -142,9 +134,8 @@ static void blank_rows_are_passed_over(void **state)
     assert_int_equal(f->diag.count, 0);
 }
 
-static void mistakes_have_a_place(void **state)
+CASE(mistakes_have_a_place)
 {
-    struct fixture *f = *state;
     open_text(f, "A,B\n1,\"open\n2,3\n");
     assert_one_error(f, 2, 3, "this quote is never closed");
     open_text(f, "A,B\n1,\"x\" y\n2,3\n");
@@ -164,7 +155,7 @@ static void mistakes_have_a_place(void **state)
 }
 
 /* One line for a file that is something else, ten for a text in another encoding. */
-static void what_is_no_table_is_said_once(void **state)
+CASE(what_is_no_table_is_said_once)
 {
     static const struct {
         const char *begins, *says;
@@ -175,7 +166,6 @@ static void what_is_no_table_is_said_once(void **state)
         { "PK\x03\x04\x14", "is a ZIP archive, or a document that is one (XLSX, DOCX, 3MF); a table (CSV) is wanted" },
         { "\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n", "is no text; a table (CSV) is wanted" },
     };
-    struct fixture *f = *state;
     for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++) {
         char *path = temp_write_text(f->folder, "t.csv", others[i].begins);
         struct diag diag = { 0 };
@@ -202,9 +192,8 @@ static void what_is_no_table_is_said_once(void **state)
     mem_free(path);
 }
 
-static void reading_goes_on_after_a_mistake(void **state)
+CASE(reading_goes_on_after_a_mistake)
 {
-    struct fixture *f = *state;
     open_text(f, "A,B\n\"1\" x,2\n3,\xFF\n4,5\n");
     assert_row(f, "1|2");
     assert_row(f, "3|_");
@@ -212,31 +201,12 @@ static void reading_goes_on_after_a_mistake(void **state)
     assert_int_equal(f->diag.errors, 2);
 }
 
-static void files_without_a_header_are_refused(void **state)
+CASE(files_without_a_header_are_refused)
 {
-    struct fixture *f = *state;
     static const char *const texts[] = { "", "\n \r\n", ",,,\n", "\xEF\xBB\xBF" };
     for (size_t i = 0; i < 4; i++) {
         mem_free(temp_write_text(f->folder, "t.csv", texts[i]));
         assert_false(csv_open(&f->csv, f->path, &f->diag));
         assert_int_equal(f->diag.errors, i + 1);
     }
-}
-
-#define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        TEST(separators_are_detected),
-        TEST(quotes_hold_separators_quotes_and_line_breaks),
-        TEST(columns_count_characters),
-        TEST(blank_rows_are_passed_over),
-        TEST(mistakes_have_a_place),
-        TEST(what_is_no_table_is_said_once),
-        TEST(reading_goes_on_after_a_mistake),
-        TEST(files_without_a_header_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

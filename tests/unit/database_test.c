@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* SQLite files in a format of ours: versions, damage, errors. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include <errno.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "base/files/database.h"
@@ -49,6 +43,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+
 static struct database make(struct setup *s, const struct database_format *format)
 {
     struct database db;
@@ -77,9 +73,8 @@ static int version_read(struct setup *s, const struct database_format *format)
     return error;
 }
 
-static void what_is_written_is_read(void **state)
+CASE(what_is_written_is_read)
 {
-    struct setup *s = *state;
     assert_int_equal(version_read(s, &first), -ENOENT);
     write_once(s, &first);
     struct database db = make(s, &second);
@@ -92,9 +87,8 @@ static void what_is_written_is_read(void **state)
     database_finish(&db);
 }
 
-static void an_older_version_is_converted_and_a_newer_one_left_alone(void **state)
+CASE(an_older_version_is_converted_and_a_newer_one_left_alone)
 {
-    struct setup *s = *state;
     bool renewed;
     write_once(s, &first);
     write_once(s, &second);
@@ -109,16 +103,14 @@ static void an_older_version_is_converted_and_a_newer_one_left_alone(void **stat
     assert_int_equal(version_read(s, &first), -EACCES);
 }
 
-static void a_file_without_anything_in_it_is_none(void **state)
+CASE(a_file_without_anything_in_it_is_none)
 {
-    struct setup *s = *state;
     mem_free(temp_write(s->folder, "x.sqlite", "", 0));
     assert_int_equal(version_read(s, &first), -ENOENT);
 }
 
-static void a_damaged_file_is_set_aside(void **state)
+CASE(a_damaged_file_is_set_aside)
 {
-    struct setup *s = *state;
     char rubbish[4096];
     memset(rubbish, 'z', sizeof(rubbish));
     mem_free(temp_write(s->folder, "x.sqlite", rubbish, sizeof(rubbish)));
@@ -134,9 +126,8 @@ static void a_damaged_file_is_set_aside(void **state)
 }
 
 /* A statement that cannot be prepared is bound to and stepped as others are: the error comes out of the step. */
-static void a_wrong_statement_is_an_error_when_it_is_stepped(void **state)
+CASE(a_wrong_statement_is_an_error_when_it_is_stepped)
 {
-    struct setup *s = *state;
     write_once(s, &first);
     struct database db = make(s, &first);
     assert_int_equal(database_open_to_read(&db), 0);
@@ -147,17 +138,4 @@ static void a_wrong_statement_is_an_error_when_it_is_stepped(void **state)
     assert_int_equal(database_fail(&db, database_step(&db, wrong), "cannot be read"), -EIO);
     assert_int_equal(database_fail(&db, database_run(&db, database_statement(&db, ADD)), "cannot be written"), -EROFS);
     database_finish(&db);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(what_is_written_is_read, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(an_older_version_is_converted_and_a_newer_one_left_alone, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_file_without_anything_in_it_is_none, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_damaged_file_is_set_aside, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_wrong_statement_is_an_error_when_it_is_stepped, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

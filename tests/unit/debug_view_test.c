@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Debug views: GLB files by the rules of glTF 2.0, showing what the report counts. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "preprocess/model/gltf_shim.h"
@@ -50,6 +44,8 @@ static int set_up(void **state)
     prep_case_tags(c, tags_rows);
     return 0;
 }
+
+#define CASE(name) TEST_ON(struct prep_case *c, name, set_up, prep_case_tear_down)
 
 struct glb {
     struct text file;
@@ -181,9 +177,8 @@ static size_t count_of(const struct glb *glb, const char *name)
     return (size_t)json_integer_value(json_object_get(positions_of(glb, node_shape(glb, name)), "count"));
 }
 
-static void views_follow_the_rules(void **state)
+CASE(views_follow_the_rules)
 {
-    struct prep_case *c = *state;
     static const char *const names[] = { "plant.debug/GAP%2F1.glb", "plant.debug/APART.glb", "plant.debug/INSIDE.glb",
                                          "plant.debug/BARE.glb" };
     prep_case_expect(c, "$PLANT --debug-view", 0);
@@ -205,9 +200,8 @@ static void views_follow_the_rules(void **state)
     }
 }
 
-static void bridges_and_points_are_those_of_the_report(void **state)
+CASE(bridges_and_points_are_those_of_the_report)
 {
-    struct prep_case *c = *state;
     struct glb glb;
     prep_case_expect(c, "$PLANT --debug-view=$FOLDER/views --report json", 0);
     json_t *report = prep_case_json(&c->out);
@@ -228,9 +222,8 @@ static void bridges_and_points_are_those_of_the_report(void **state)
     json_decref(report);
 }
 
-static void what_cannot_be_reached_is_shown(void **state)
+CASE(what_cannot_be_reached_is_shown)
 {
-    struct prep_case *c = *state;
     struct glb glb;
     prep_case_expect(c, "$PLANT --debug-view", 0);
     glb_open(&glb, c, "plant.debug/APART.glb");
@@ -250,9 +243,8 @@ static void what_cannot_be_reached_is_shown(void **state)
 }
 
 /* Dark where the sensor is, bright at the other end: the ends of the colour map. */
-static void colors_follow_the_distance(void **state)
+CASE(colors_follow_the_distance)
 {
-    struct prep_case *c = *state;
     struct glb glb;
     for (int far = 0; far < 2; far++) {
         prep_case_expect(c, far ? "$PLANT --debug-view --sensor T-GAP2" : "$PLANT --debug-view --sensor T-GAP", 0);
@@ -282,18 +274,4 @@ static void colors_follow_the_distance(void **state)
     prep_case_expect(c, "$PLANT --debug-view=/proc/no/such --asset APART", 1);
     prep_case_says(&c->err, "cannot be made");
     prep_case_expect(c, "$PLANT --sensor T-GAP", 2);
-}
-
-#define WITH_PLANT(test) cmocka_unit_test_setup_teardown(test, set_up, prep_case_tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        WITH_PLANT(views_follow_the_rules),
-        WITH_PLANT(bridges_and_points_are_those_of_the_report),
-        WITH_PLANT(what_cannot_be_reached_is_shown),
-        WITH_PLANT(colors_follow_the_distance),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,13 +2,8 @@
 /* Taking points out where a surface is flat: its shape, what is hidden of it and the borders of its parts stay. */
 #include "surface/mesh/decimate.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/cad.h"
@@ -151,10 +146,9 @@ static void same_areas(const struct plate *plate, double lift_m)
     assert_float_equal(area_of(plate, 1, across), 0.5 * length, 1e-6);
 }
 
-static void a_flat_plate_has_its_corners_left(void **state)
+TEST(a_flat_plate_has_its_corners_left)
 {
     struct plate plate;
-    (void)state;
     plate_init(&plate, 0);
     cut_up(&plate);
     assert_int_equal(plate.mesh.point_count, ADDED + 4);
@@ -169,10 +163,9 @@ static void a_flat_plate_has_its_corners_left(void **state)
     trimesh_finish(&plate.mesh);
 }
 
-static void triangles_of_the_model_that_share_pieces_are_one_plane(void **state)
+TEST(triangles_of_the_model_that_share_pieces_are_one_plane)
 {
     struct plate plate;
-    (void)state;
     plate_init(&plate, 0);
     put_on_edge(&plate, 0, 2);
     put_on_edge(&plate, 1, 4);
@@ -184,10 +177,9 @@ static void triangles_of_the_model_that_share_pieces_are_one_plane(void **state)
     trimesh_finish(&plate.mesh);
 }
 
-static void a_fold_stays_where_it_is(void **state)
+TEST(a_fold_stays_where_it_is)
 {
     struct plate plate;
-    (void)state;
     plate_init(&plate, 0.3);
     put_on_edge(&plate, 0, 2);
     cut_up(&plate);
@@ -200,9 +192,8 @@ static void a_fold_stays_where_it_is(void **state)
 }
 
 /* Of two parts in one plane, and of one that is half hidden. */
-static void a_border_stays_where_it_is(void **state)
+TEST(a_border_stays_where_it_is)
 {
-    (void)state;
     for (int hides = 0; hides < 2; hides++) {
         struct plate plate;
         plate_init(&plate, 0);
@@ -230,10 +221,9 @@ static void a_border_stays_where_it_is(void **state)
     }
 }
 
-static void what_is_not_flat_stays(void **state)
+TEST(what_is_not_flat_stays)
 {
     struct plate plate;
-    (void)state;
     plate_init(&plate, 0);
     put_inside(&plate, 0);
     plate.mesh.points[4][2] = 1e-3;
@@ -244,15 +234,4 @@ static void what_is_not_flat_stays(void **state)
     trimesh_finish(&plate.mesh);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_flat_plate_has_its_corners_left),
-        cmocka_unit_test(triangles_of_the_model_that_share_pieces_are_one_plane),
-        cmocka_unit_test(a_fold_stays_where_it_is),
-        cmocka_unit_test(a_border_stays_where_it_is),
-        cmocka_unit_test(what_is_not_flat_stays),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, set_up, NULL);
-}
+TEST_GROUP(set_up, NULL)

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decoding: every type in every byte order from bytes written out by hand, and every scaling. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include "value/decode.h"
 #include "value/quality.h"
@@ -76,9 +72,8 @@ static const struct {
     { DATA_FLOAT64, BYTE_ORDER_DCBA, { 0x9A99, 0x9999, 0x9999, 0xB93F }, 0.1 },
 };
 
-static void every_type_in_every_byte_order(void **state)
+TEST(every_type_in_every_byte_order)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof(vectors) / sizeof(vectors[0]); i++) {
         struct plant_tag tag = tag_of(vectors[i].type, vectors[i].order);
         struct sample sample = decode(&tag, vectors[i].words);
@@ -89,9 +84,8 @@ static void every_type_in_every_byte_order(void **state)
     }
 }
 
-static void takes_as_many_registers_as_its_type(void **state)
+TEST(takes_as_many_registers_as_its_type)
 {
-    (void)state;
     const int widths[] = { [DATA_BIT] = 1, [DATA_INT16] = 1, [DATA_UINT16] = 1, [DATA_BCD] = 1, [DATA_INT32] = 2, [DATA_UINT32] = 2,
                            [DATA_FLOAT32] = 2, [DATA_LBCD] = 2, [DATA_INT64] = 4, [DATA_UINT64] = 4, [DATA_FLOAT64] = 4 };
     for (int type = DATA_BIT; type <= DATA_LBCD; type++) {
@@ -102,9 +96,8 @@ static void takes_as_many_registers_as_its_type(void **state)
     }
 }
 
-static void numbers_are_decoded_as_registers_are(void **state)
+TEST(numbers_are_decoded_as_registers_are)
 {
-    (void)state;
     struct plant_tag tag = { .type = DATA_FLOAT64, .scaling = SCALING_LINEAR, .raw_high = 100, .scaled_high = 10, .has_range = true,
                              .sentinel_count = 2, .sentinels = { { .number = -99 }, { .is_bits = true, .bits = 0x8000 } } };
     const struct {
@@ -123,9 +116,8 @@ static void numbers_are_decoded_as_registers_are(void **state)
     assert_true(sample.value == 0 && sample.quality == QUALITY_GOOD);
 }
 
-static void bits(void **state)
+TEST(bits)
 {
-    (void)state;
     struct plant_tag tag = tag_of(DATA_BIT, BYTE_ORDER_NONE);
     const uint16_t word = 0x8005;
     for (tag.bit = 0; tag.bit < 16; tag.bit++)
@@ -162,9 +154,8 @@ static void check_scaled(const struct plant_tag *tag, int raw, double value, uin
     assert_string_equal(quality_name(sample.quality), quality_name(quality));
 }
 
-static void linear_scaling(void **state)
+TEST(linear_scaling)
 {
-    (void)state;
     struct plant_tag tag = scaled(SCALING_LINEAR, 4000, 20000, -50, 350); /* 4..20 mA in microamperes */
     check_scaled(&tag, 4000, -50, QUALITY_GOOD);
     check_scaled(&tag, 6000, 0, QUALITY_GOOD); /* exactly 0 is a reading */
@@ -182,9 +173,8 @@ static void linear_scaling(void **state)
     check_scaled(&falling, -10, 101, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
 }
 
-static void square_root_scaling(void **state)
+TEST(square_root_scaling)
 {
-    (void)state;
     struct plant_tag tag = scaled(SCALING_SQUARE_ROOT, 0, 10000, 0, 50); /* flow from a differential pressure */
     check_scaled(&tag, 0, 0, QUALITY_GOOD);
     check_scaled(&tag, 2500, 25, QUALITY_GOOD);
@@ -193,17 +183,15 @@ static void square_root_scaling(void **state)
     check_scaled(&tag, -5, 0, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* no root of a negative number */
 }
 
-static void unscaled_negation(void **state)
+TEST(unscaled_negation)
 {
-    (void)state;
     struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
     tag.negate = true;
     assert_true(decode(&tag, (uint16_t[]){ 5 }).value == -5);
 }
 
-static void what_is_no_number_is_a_sensor_failure(void **state)
+TEST(what_is_no_number_is_a_sensor_failure)
 {
-    (void)state;
     const uint16_t floats[][2] = { { 0x7FC0, 0 }, { 0x7F80, 0 }, { 0xFF80, 0 } }; /* NaN, +Inf, -Inf */
     for (int i = 0; i < 3; i++) {
         struct plant_tag tag = tag_of(DATA_FLOAT32, BYTE_ORDER_ABCD);
@@ -228,9 +216,8 @@ static uint32_t quality_of_raw(struct plant_tag *tag, int raw)
 }
 
 /* 0 to 27648 are 4 to 20 mA, as common analogue cards count: 1728 steps to the milliampere. */
-static void a_current_says_that_its_loop_has_failed(void **state)
+TEST(a_current_says_that_its_loop_has_failed)
 {
-    (void)state;
     struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
     tag.scaling = SCALING_LINEAR;
     tag.has_range = true;
@@ -254,9 +241,8 @@ static void a_current_says_that_its_loop_has_failed(void **state)
     assert_true(fabs(below + 1.25) < 0.01); /* 3.8 mA is below the range, and measured */
 }
 
-static void an_open_circuit_s_value_is_no_reading(void **state)
+TEST(an_open_circuit_s_value_is_no_reading)
 {
-    (void)state;
     struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
     assert_int_equal(quality_of_raw(&tag, 0x8000), QUALITY_GOOD); /* off by default */
     tag.sentinels[0] = (struct plant_sentinel){ .is_bits = true, .bits = 0x8000 };
@@ -272,9 +258,8 @@ static void an_open_circuit_s_value_is_no_reading(void **state)
     assert_int_equal(decode(&number, (uint16_t[]){ 0x3C00, 0xC61C }).quality, QUALITY_BAD_SENSOR_FAILURE);
 }
 
-static void a_range_without_scaling_is_the_instrument_s(void **state)
+TEST(a_range_without_scaling_is_the_instrument_s)
 {
-    (void)state;
     struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
     tag.has_range = true;
     tag.scaled_low = -50;
@@ -284,23 +269,4 @@ static void a_range_without_scaling_is_the_instrument_s(void **state)
     struct sample above = decode(&tag, &(uint16_t){ 151 });
     assert_true(above.quality == QUALITY_UNCERTAIN_UNITS_EXCEEDED && above.value == 151);
     assert_int_equal(quality_of_raw(&tag, -51), QUALITY_UNCERTAIN_UNITS_EXCEEDED);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_type_in_every_byte_order),
-        cmocka_unit_test(a_current_says_that_its_loop_has_failed),
-        cmocka_unit_test(an_open_circuit_s_value_is_no_reading),
-        cmocka_unit_test(a_range_without_scaling_is_the_instrument_s),
-        cmocka_unit_test(takes_as_many_registers_as_its_type),
-        cmocka_unit_test(numbers_are_decoded_as_registers_are),
-        cmocka_unit_test(bits),
-        cmocka_unit_test(linear_scaling),
-        cmocka_unit_test(square_root_scaling),
-        cmocka_unit_test(unscaled_negation),
-        cmocka_unit_test(what_is_no_number_is_a_sensor_failure),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures that wait come back in their order, none is lost, and others get every second turn. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "service/deferred_requests.h"
 
@@ -24,11 +19,10 @@ static void assert_batch(const struct request_group *group, uint64_t first, size
         assert_int_equal(group->tickets[i].client, first + i);
 }
 
-static void test_the_oldest_comes_first(void **state)
+TEST(test_the_oldest_comes_first)
 {
     struct deferred_requests deferred = { 0 };
     struct request_group group = { 0 };
-    (void)state;
     for (uint64_t round = 0; round < 50; round++) {
         for (uint64_t i = 0; i < 3; i++) {
             fill(&group, 100 * round + 10 * i, 1 + (int)((round + i) % 4));
@@ -45,11 +39,10 @@ static void test_the_oldest_comes_first(void **state)
     deferred_requests_finish(&deferred);
 }
 
-static void test_a_full_list_takes_no_more(void **state)
+TEST(test_a_full_list_takes_no_more)
 {
     struct deferred_requests deferred = { 0 };
     struct request_group group = { 0 };
-    (void)state;
     for (uint64_t i = 0; i < DEFERRED_MOST; i++) {
         fill(&group, 10 * i, 2);
         assert_true(deferred_requests_push(&deferred, &group));
@@ -69,11 +62,10 @@ static void test_a_full_list_takes_no_more(void **state)
     deferred_requests_finish(&deferred);
 }
 
-static void test_turns(void **state)
+TEST(test_turns)
 {
     struct deferred_requests deferred = { 0 };
     struct request_group group = { 0 };
-    (void)state;
     assert_false(deferred_requests_due(&deferred, true));
     assert_false(deferred_requests_due(&deferred, false));
     fill(&group, 1, 1);
@@ -84,15 +76,4 @@ static void test_turns(void **state)
     assert_true(deferred_requests_due(&deferred, false) && deferred_requests_due(&deferred, false));
     request_group_finish(&group);
     deferred_requests_finish(&deferred);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_oldest_comes_first),
-        cmocka_unit_test(test_a_full_list_takes_no_more),
-        cmocka_unit_test(test_turns),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

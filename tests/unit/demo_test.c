@@ -1,18 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The demo plant as its generator writes it: the same bytes each time, a plant file without a finding, the exchanger of the
    paper's size, sensors on the surfaces, and the faults that were put in on purpose. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "tests/support/test.h"
 /* cmocka needs those first */
-#include <cmocka.h>
 #include <fnmatch.h>
 #include <jansson.h>
 #include <math.h>
 #include <spawn.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 
 #include "base/mem.h"
@@ -202,9 +196,8 @@ static void visit_asset(const struct plant_asset *asset, struct visit *visit)
 
 /* --- tests ------------------------------------------------------------------------------------------------------------------ */
 
-static void test_same_bytes(void **state)
+TEST(test_same_bytes)
 {
-    (void)state;
     static const char *const names[] = { "plant.glb", "plant.yaml", "tags.csv" };
     char *again = temp_folder_create();
     generate(again);
@@ -219,9 +212,8 @@ static void test_same_bytes(void **state)
     temp_folder_destroy(&again);
 }
 
-static void test_assets_and_tags(void **state)
+TEST(test_assets_and_tags)
 {
-    (void)state;
     static const char *const groups[] = { "temperature", "pressure", "vibration" };
     int in_group[3] = { 0 }, well_equipped = 0;
     assert_in_range(plant->asset_count, 20, 30);
@@ -241,9 +233,8 @@ static void test_assets_and_tags(void **state)
     assert_in_range(well_equipped, 15, 30);
 }
 
-static void test_registers_do_not_overlap(void **state)
+TEST(test_registers_do_not_overlap)
 {
-    (void)state;
     static unsigned char used[65536];
     for (size_t i = 0; i < plant->tag_count; i++) {
         const struct plant_tag *tag = plant->tags + i;
@@ -255,9 +246,8 @@ static void test_registers_do_not_overlap(void **state)
     }
 }
 
-static void test_exchanger(void **state)
+TEST(test_exchanger)
 {
-    (void)state;
     struct visit visit = { 0 };
     int asset = plant_find_asset(plant, "E-101"), thermometers = 0;
     visit_asset(plant->assets + asset, &visit);
@@ -269,9 +259,8 @@ static void test_exchanger(void **state)
     mem_free(visit.corners);
 }
 
-static void test_triangle_budget(void **state)
+TEST(test_triangle_budget)
 {
-    (void)state;
     size_t triangles = 0;
     for (size_t a = 0; a < plant->asset_count; a++) {
         struct visit visit = { 0 };
@@ -321,9 +310,8 @@ static double triangle_distance(const double p[3], const double corner[3][3])
                 fmin(segment_distance(p, corner[1], corner[2]), segment_distance(p, corner[2], corner[0])));
 }
 
-static void test_sensors_on_surface(void **state)
+TEST(test_sensors_on_surface)
 {
-    (void)state;
     int by_node = 0;
     for (size_t i = 0; i < plant->tag_count; i++) {
         const struct plant_tag *tag = plant->tags + i;
@@ -349,9 +337,8 @@ static int compare_triangles(const void *a, const void *b)
 }
 
 /* Faults on purpose: faces that are there twice, and slivers. */
-static void test_faults(void **state)
+TEST(test_faults)
 {
-    (void)state;
     struct visit visit = { 0 };
     size_t repeated = 0, slivers = 0;
     visit_asset(plant->assets + plant_find_asset(plant, "E-101"), &visit);
@@ -400,9 +387,8 @@ static int upset_now(const struct sim_values *values, int *last, int *since_s)
 
 /* In calm every tag is within its limits; an upset brings at most 12 of them beyond H or L, and some beyond HH or LL. Over as many
    cycles as there are machines, so that each has had its worn bearing. */
-static void test_limits_fit_the_process(void **state)
+TEST(test_limits_fit_the_process)
 {
-    (void)state;
     struct diag diag = { 0 };
     struct sim_map map = { 0 };
     struct sim_values *values = sim_values_create(plant, &map, false, &diag);
@@ -431,13 +417,4 @@ static void test_limits_fit_the_process(void **state)
     diag_finish(&diag);
 }
 
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_bytes),         cmocka_unit_test(test_assets_and_tags), cmocka_unit_test(test_registers_do_not_overlap),
-        cmocka_unit_test(test_exchanger),          cmocka_unit_test(test_triangle_budget), cmocka_unit_test(test_sensors_on_surface),
-        cmocka_unit_test(test_faults),             cmocka_unit_test(test_limits_fit_the_process),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_GROUP(set_up, tear_down)

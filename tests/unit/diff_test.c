@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* plantcast-prep --diff: what a new revision changes, and which tags lose their place. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 #include "tests/support/boxes.h"
@@ -94,6 +88,8 @@ static int set_up(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct prep_case *c, name, set_up, prep_case_tear_down)
+
 static const json_t *named(const json_t *root, const char *list, const char *key, const char *name)
 {
     const json_t *items = json_object_get(root, list);
@@ -165,9 +161,8 @@ static void check_tags(const json_t *root)
     assert_int_equal(json_array_size(json_object_get(root, "orphans")), 4);
 }
 
-static void a_revision_is_compared(void **state)
+CASE(a_revision_is_compared)
 {
-    struct prep_case *c = *state;
     json_t *root = compare(c, "$FOLDER/old.yaml $FOLDER/new.yaml", 1);
     check_assets(root, true);
     check_tags(root);
@@ -178,9 +173,8 @@ static void a_revision_is_compared(void **state)
 }
 
 /* What is usual: the model's file was overwritten, and only what was prepared from it is left of the old one. */
-static void a_prepared_folder_stands_for_the_old_plant(void **state)
+CASE(a_prepared_folder_stands_for_the_old_plant)
 {
-    struct prep_case *c = *state;
     prep_case_expect(c, "$FOLDER/old.yaml", 0);
     char *model = temp_path(c->folder, "old.glb");
     assert_int_equal(remove(model), 0);
@@ -191,9 +185,8 @@ static void a_prepared_folder_stands_for_the_old_plant(void **state)
     json_decref(root);
 }
 
-static void nothing_lost_is_no_error(void **state)
+CASE(nothing_lost_is_no_error)
 {
-    struct prep_case *c = *state;
     write_plant(c, "new", NEW_ASSETS,
                 "T-SAME,400001,Float,plc,temperature,SAME,,0.5,0.5,1\nT-X,400003,Float,plc,temperature,ADDED,,60,0,0\n");
     json_t *root = compare(c, "$FOLDER/old.yaml $FOLDER/new.yaml", 0);
@@ -211,9 +204,8 @@ static void nothing_lost_is_no_error(void **state)
 }
 
 /* Points that only its coarser levels have lie off its surface. */
-static void levels_are_no_change(void **state)
+CASE(levels_are_no_change)
 {
-    struct prep_case *c = *state;
     struct cad_random chance = { 1 };
     struct cad ball = { 0 };
     struct maker maker;
@@ -236,9 +228,8 @@ static void levels_are_no_change(void **state)
     json_decref(root);
 }
 
-static void the_tolerance_decides(void **state)
+CASE(the_tolerance_decides)
 {
-    struct prep_case *c = *state;
     json_t *root = compare(c, "$FOLDER/old.yaml $FOLDER/new.yaml --tolerance 0.06", 1);
     asset_of(root, "CHANGED", "same");
     assert_true(json_is_false(json_object_get(named(root, "sensors", "tag", "T-CHANGED"), "moved")));
@@ -246,9 +237,8 @@ static void the_tolerance_decides(void **state)
     json_decref(root);
 }
 
-static void wrong_use_and_wrong_input_are_told_apart(void **state)
+CASE(wrong_use_and_wrong_input_are_told_apart)
 {
-    struct prep_case *c = *state;
     prep_case_expect(c, "--diff $FOLDER/old.yaml", 2);
     prep_case_expect(c, "--diff $FOLDER/old.yaml $FOLDER/new.yaml more", 2);
     prep_case_expect(c, "--diff $FOLDER/old.yaml $FOLDER/new.yaml --tolerance -1", 2);
@@ -256,17 +246,4 @@ static void wrong_use_and_wrong_input_are_told_apart(void **state)
     prep_case_expect(c, "--diff $FOLDER/none.yaml $FOLDER/new.yaml", 1);
     prep_case_expect(c, "--diff $FOLDER $FOLDER/new.yaml", 1);
     prep_case_says(&c->err, "manifest.json: error: cannot be read");
-}
-
-#define WITH_PLANTS(test) cmocka_unit_test_setup_teardown(test, set_up, prep_case_tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        WITH_PLANTS(a_revision_is_compared),   WITH_PLANTS(a_prepared_folder_stands_for_the_old_plant),
-        WITH_PLANTS(nothing_lost_is_no_error), WITH_PLANTS(levels_are_no_change),
-        WITH_PLANTS(the_tolerance_decides),    WITH_PLANTS(wrong_use_and_wrong_input_are_told_apart),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

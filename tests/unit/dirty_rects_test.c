@@ -2,12 +2,8 @@
 /* Rectangles around what changed: none missing, none at odds with each other, few. */
 #include "encode/dirty_rects.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/sweep.h"
@@ -48,9 +44,8 @@ static void check_shape(const struct frame *frame, const struct dirty_rect *rect
     }
 }
 
-static void equal_pictures_have_none(void **state)
+TEST(equal_pictures_have_none)
 {
-    (void)state;
     struct frame *a = grey(333, 77), *b = grey(333, 77);
     struct dirty_rect rects[DIRTY_RECTS_MAX];
     assert_int_equal(dirty_rects_find(a, b, rects), 0);
@@ -63,9 +58,8 @@ static void equal_pictures_have_none(void **state)
     frame_unref(&b);
 }
 
-static void two_far_places_are_two_small_rectangles(void **state)
+TEST(two_far_places_are_two_small_rectangles)
 {
-    (void)state;
     struct frame *a = grey(1920, 1080), *b = grey(1920, 1080);
     struct dirty_rect rects[DIRTY_RECTS_MAX];
     dot(b, 5, 5);
@@ -77,9 +71,8 @@ static void two_far_places_are_two_small_rectangles(void **state)
     frame_unref(&b);
 }
 
-static void every_changed_pixel_is_inside(void **state)
+TEST(every_changed_pixel_is_inside)
 {
-    (void)state;
     unsigned seed = (unsigned)sweep_seed();
     srand(seed);
     for (int round = 0; round < 60; round++) {
@@ -102,15 +95,4 @@ static void every_changed_pixel_is_inside(void **state)
         frame_unref(&a);
         frame_unref(&b);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equal_pictures_have_none),
-        cmocka_unit_test(two_far_places_are_two_small_rectangles),
-        cmocka_unit_test(every_changed_pixel_is_inside),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

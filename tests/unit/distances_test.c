@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast-prep distances` from a CAD file to what it prints: round a cylinder, against the formula. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/cad.h"
@@ -76,7 +69,7 @@ static void check(struct prep_case *c, const char *tag, const double sensor[2], 
     mem_free(arguments);
 }
 
-static void round_a_cylinder(void **state)
+TEST_WITH(round_a_cylinder, prep_case_set_up, prep_case_tear_down)
 {
     struct prep_case *c = *state;
     struct cad_random random;
@@ -95,13 +88,4 @@ static void round_a_cylinder(void **state)
     for (int i = 0; i < 2; i++)
         check(c, i ? "T2" : "T1", sensors[i], vertices);
     text_finish(&tags);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(round_a_cylinder, prep_case_set_up, prep_case_tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

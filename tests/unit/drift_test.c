@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Drifting sensors: the fit against plain least squares, and real series (../shared/data/sensors) stretched over a week, as they are and
    with a drift put into one sensor. The limit of an alarm is a tenth of the group's range beyond all that was ever read. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/log/log.h"
 #include "base/mem.h"
@@ -91,10 +84,9 @@ static double slow_change(const double *values, const double *predicted, const d
     return a[UNKNOWNS - 1][UNKNOWNS] / a[UNKNOWNS - 1][UNKNOWNS - 1];
 }
 
-static void test_fit_is_least_squares(void **state)
+TEST(test_fit_is_least_squares)
 {
     double values[DRIFT_HOURS], predicted[DRIFT_HOURS], nearest[DRIFT_HOURS];
-    (void)state;
     srand(1);
     for (int round = 0; round < 200; round++) {
         double gain = random_in(0.5, 2), change = random_in(-5, 5), noise = random_in(0.01, 1), at = 50;
@@ -167,26 +159,23 @@ static void jump_and_back(int round, struct jump *jump)
 }
 
 /* A sensor stands elsewhere beside the others from one hour to the next: that is no drift, and hides none. */
-static void test_jumps_are_no_drift(void **state)
+TEST(test_jumps_are_no_drift)
 {
-    (void)state;
     srand(2);
     fit_after_jumps("a jump", one_jump, 75, 16);
 }
 
-static void test_a_jump_and_back_is_no_drift(void **state)
+TEST(test_a_jump_and_back_is_no_drift)
 {
-    (void)state;
     srand(3);
     fit_after_jumps("a jump and back", jump_and_back, 68, 12);
 }
 
 /* No drift can be told from readings that are not there, or from a plant that itself went one way all week. */
-static void test_what_cannot_be_told_is_unknown(void **state)
+TEST(test_what_cannot_be_told_is_unknown)
 {
     double values[DRIFT_HOURS], predicted[DRIFT_HOURS];
     struct drift drift;
-    (void)state;
     for (int h = 0; h < DRIFT_HOURS; h++) {
         values[h] = h < DRIFT_HOURS_LEAST - 1 ? 50 + h : NAN;
         predicted[h] = 50;
@@ -364,7 +353,7 @@ static struct series all_series[] = {
     { RIG, 0.5, 1, { { 0 } } }, /* this one was held out */
 };
 
-static void test_false_accusations_are_counted(void **state)
+TEST_WITH(test_false_accusations_are_counted, prep_case_set_up, prep_case_tear_down)
 {
     static const int most[] = { 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0 }; /* sensors */
     for (size_t k = 0; k < sizeof(all_series) / sizeof(*all_series); k++) {
@@ -382,7 +371,7 @@ static void test_false_accusations_are_counted(void **state)
 }
 
 /* Not used when the rule was made: temperatures of 25 mixers by a simulation (half an hour, about every 6 s), stretched over a week. */
-static void test_held_out_series(void **state)
+TEST_WITH(test_held_out_series, prep_case_set_up, prep_case_tear_down)
 {
     enum { MIXERS = 25 };
     static double sums[MIXERS][DRIFT_HOURS], counts[MIXERS][DRIFT_HOURS];
@@ -474,7 +463,7 @@ static bool accuses_another(const struct row_of_sensors *row, const struct serie
 }
 
 /* sigma: the scatter of the sensor without a drift. */
-static void test_a_drift_is_found_before_its_alarm(void **state)
+TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_tear_down)
 {
     enum { SIZES = 3 };
     static const double sizes[SIZES] = { 3, 4, 8 }; /* sigmas in a week */
@@ -518,7 +507,7 @@ static void test_a_drift_is_found_before_its_alarm(void **state)
 }
 
 /* With the drifting one left out, the others are judged by each other: none of them is accused for it. */
-static void test_one_that_drifts_does_not_accuse_others(void **state)
+TEST_WITH(test_one_that_drifts_does_not_accuse_others, prep_case_set_up, prep_case_tear_down)
 {
     struct series *s = &all_series[1];
     struct row_of_sensors row;
@@ -535,7 +524,7 @@ static void test_one_that_drifts_does_not_accuse_others(void **state)
 }
 
 /* Nor does one that is lost for a day and a half, whatever it reads otherwise. */
-static void test_one_that_is_lost_for_a_while_accuses_nobody(void **state)
+TEST_WITH(test_one_that_is_lost_for_a_while_accuses_nobody, prep_case_set_up, prep_case_tear_down)
 {
     struct series s = all_series[1];
     struct row_of_sensors row;
@@ -556,7 +545,7 @@ static void test_one_that_is_lost_for_a_while_accuses_nobody(void **state)
 }
 
 /* Of one that never reads anything nothing is said, and the others are held against those that do. */
-static void test_one_that_is_silent_hides_nothing(void **state)
+TEST_WITH(test_one_that_is_silent_hides_nothing, prep_case_set_up, prep_case_tear_down)
 {
     struct series s = all_series[1];
     struct row_of_sensors row;
@@ -575,7 +564,7 @@ static void test_one_that_is_silent_hides_nothing(void **state)
     leave(&row);
 }
 
-static void test_the_nearest_are_found(void **state)
+TEST_WITH(test_the_nearest_are_found, prep_case_set_up, prep_case_tear_down)
 {
     struct row_of_sensors row;
     size_t near[SENSORS];
@@ -589,7 +578,7 @@ static void test_the_nearest_are_found(void **state)
     leave(&row);
 }
 
-static void test_of_two_nobody_can_tell_which(void **state)
+TEST_WITH(test_of_two_nobody_can_tell_which, prep_case_set_up, prep_case_tear_down)
 {
     struct series two = all_series[1];
     struct row_of_sensors row;
@@ -601,24 +590,4 @@ static void test_of_two_nobody_can_tell_which(void **state)
     for (int i = 0; i < 2; i++)
         assert_int_equal(drifts[i].verdict, DRIFT_UNKNOWN);
     leave(&row);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fit_is_least_squares),
-        cmocka_unit_test(test_jumps_are_no_drift),
-        cmocka_unit_test(test_a_jump_and_back_is_no_drift),
-        cmocka_unit_test(test_what_cannot_be_told_is_unknown),
-        cmocka_unit_test_setup_teardown(test_false_accusations_are_counted, prep_case_set_up, prep_case_tear_down),
-        cmocka_unit_test_setup_teardown(test_held_out_series, prep_case_set_up, prep_case_tear_down),
-        cmocka_unit_test_setup_teardown(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_tear_down),
-        cmocka_unit_test_setup_teardown(test_one_that_drifts_does_not_accuse_others, prep_case_set_up, prep_case_tear_down),
-        cmocka_unit_test_setup_teardown(test_one_that_is_lost_for_a_while_accuses_nobody, prep_case_set_up, prep_case_tear_down),
-        cmocka_unit_test_setup_teardown(test_one_that_is_silent_hides_nothing, prep_case_set_up, prep_case_tear_down),
-        cmocka_unit_test_setup_teardown(test_the_nearest_are_found, prep_case_set_up, prep_case_tear_down),
-        cmocka_unit_test_setup_teardown(test_of_two_nobody_can_tell_which, prep_case_set_up, prep_case_tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

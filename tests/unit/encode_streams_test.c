@@ -2,12 +2,8 @@
 /* Who gets which packets, by a model: each client decodes what it is given, and a packet is good only right after the one it needs. */
 #include "service/encode_streams.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -72,6 +68,8 @@ static int tear_down(void **state)
     mem_free(f);
     return 0;
 }
+
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
 
 static struct request_ticket order_of(const struct fixture *f, uint64_t client, const struct view *view)
 {
@@ -162,9 +160,8 @@ static size_t chain_count(const struct fixture *f)
     return count;
 }
 
-static void one_client_has_one_key_frame(void **state)
+CASE(one_client_has_one_key_frame)
 {
-    struct fixture *f = *state;
     for (int i = 0; i < 100; i++)
         show(f, 1, i, (uint64_t)i + 1, false);
     assert_true(f->encodes == 100 && f->keys == 1 && chain_count(f) == 1);
@@ -172,17 +169,15 @@ static void one_client_has_one_key_frame(void **state)
     assert_true(f->keys <= 2);
 }
 
-static void viewers_of_one_view_cost_one_encode(void **state)
+CASE(viewers_of_one_view_cost_one_encode)
 {
-    struct fixture *f = *state;
     for (int i = 0; i < 20; i++)
         show(f, 0xfff, i, (uint64_t)i + 1, false);
     assert_true(f->encodes == 20 && f->keys == 1 && chain_count(f) == 1);
 }
 
-static void who_joins_a_still_view_is_given_what_is_there(void **state)
+CASE(who_joins_a_still_view_is_given_what_is_there)
 {
-    struct fixture *f = *state;
     show(f, 1, 0, 1, false);
     show(f, 1, 0, 2, false);
     for (unsigned client = 1; client < CLIENTS; client++)
@@ -192,17 +187,15 @@ static void who_joins_a_still_view_is_given_what_is_there(void **state)
     assert_true(f->encodes == 3 && f->keys == 1);
 }
 
-static void who_missed_some_catches_up_without_a_key_frame(void **state)
+CASE(who_missed_some_catches_up_without_a_key_frame)
 {
-    struct fixture *f = *state;
     for (int i = 0; i < 12; i++)
         show(f, i % 4 == 3 ? 0xfff : 0xffe, 0, (uint64_t)i + 1, false);
     assert_true(f->encodes == 12 && f->keys == 1 && chain_count(f) == 1);
 }
 
-static void who_looks_elsewhere_gets_a_stream_of_its_own(void **state)
+CASE(who_looks_elsewhere_gets_a_stream_of_its_own)
 {
-    struct fixture *f = *state;
     show(f, 0xfff, 0, 1, false);
     show(f, 1, 1, 2, false);
     show(f, 0xffe, 0, 3, false);
@@ -212,9 +205,8 @@ static void who_looks_elsewhere_gets_a_stream_of_its_own(void **state)
     assert_true(chain_count(f) <= 2);
 }
 
-static void a_slow_one_does_not_cost_the_others_key_frames(void **state)
+CASE(a_slow_one_does_not_cost_the_others_key_frames)
 {
-    struct fixture *f = *state;
     int before = 0;
     for (int i = 0; i < 2000; i++) { /* 100 s, one key frame after the other */
         show(f, i % 50 == 49 ? 0xfff : 0xffe, i, (uint64_t)i + 1, false);
@@ -225,9 +217,8 @@ static void a_slow_one_does_not_cost_the_others_key_frames(void **state)
 }
 
 /* As the acknowledgements of hundreds come in: some ask for the next view while the others still wait for the one before. */
-static void whole_pictures_are_made_once_however_it_is_asked_for(void **state)
+CASE(whole_pictures_are_made_once_however_it_is_asked_for)
 {
-    struct fixture *f = *state;
     f->codec = WIRE_CODEC_JPEG;
     show(f, 0xfff, 0, 1, false);
     for (int i = 1; i < 50; i++) {
@@ -238,9 +229,8 @@ static void whole_pictures_are_made_once_however_it_is_asked_for(void **state)
     assert_int_equal(f->encodes, 50);
 }
 
-static void what_broke_starts_anew(void **state)
+CASE(what_broke_starts_anew)
 {
-    struct fixture *f = *state;
     show(f, 3, 0, 1, false);
     struct encode_stream *stream = f->streams.first;
     stream->planned++; /* a picture that could not be made */
@@ -249,9 +239,8 @@ static void what_broke_starts_anew(void **state)
     assert_int_equal(f->keys, 2);
 }
 
-static void whoever_asks_whenever_decodes_it(void **state)
+CASE(whoever_asks_whenever_decodes_it)
 {
-    struct fixture *f = *state;
     unsigned seed = (unsigned)sweep_seed();
     srand(seed);
     for (int i = 0; i < 20000; i++) {
@@ -263,22 +252,4 @@ static void whoever_asks_whenever_decodes_it(void **state)
         show(f, clients, rand() % 4, (uint64_t)(rand() % 6) + 1, rand() % 30 == 0);
         assert_in_range(chain_count(f), 0, CLIENTS);
     }
-}
-
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(one_client_has_one_key_frame),
-        TEST(viewers_of_one_view_cost_one_encode),
-        TEST(who_joins_a_still_view_is_given_what_is_there),
-        TEST(who_missed_some_catches_up_without_a_key_frame),
-        TEST(who_looks_elsewhere_gets_a_stream_of_its_own),
-        TEST(a_slow_one_does_not_cost_the_others_key_frames),
-        TEST(whole_pictures_are_made_once_however_it_is_asked_for),
-        TEST(what_broke_starts_anew),
-        TEST(whoever_asks_whenever_decodes_it),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,15 +2,11 @@
 /* Encoders: what comes out decodes to what went in, within what the codec may lose. */
 #include "encode/encoder.h"
 
+#include "tests/support/test.h"
 #include <errno.h>
 #include <png.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 #include <turbojpeg.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 
@@ -82,9 +78,8 @@ static void check_jpeg(int w, int h, int quality, bool full_chroma, double toler
     frame_unref(&frame);
 }
 
-static void jpeg_keeps_the_picture(void **state)
+TEST(jpeg_keeps_the_picture)
 {
-    (void)state;
     check_jpeg(320, 200, 78, false, 24, 16);
     check_jpeg(320, 200, 95, true, 12, 0);
     check_jpeg(333, 77, 78, false, 30, 16); /* no multiple of a block */
@@ -134,11 +129,10 @@ static size_t head_of(const uint8_t *bytes, size_t count) /* up to the picture i
 }
 
 /* A draft's head, and so its tables, are everybody's. From JPEG_READ_QUALITY on, thin things keep more of their colour. */
-static void jpeg_keeps_the_colour_of_thin_things(void **state)
+TEST(jpeg_keeps_the_colour_of_thin_things)
 {
     struct frame *frame = thin_lines(320, 200);
     tjhandle turbo = tjInitCompress();
-    (void)state;
     for (int quality = 66; quality <= 80; quality += 14) {
         unsigned char *bytes = NULL;
         unsigned long count = 0;
@@ -175,9 +169,8 @@ static void decode_parts(const struct packet *packet, uint8_t *bgr)
     tjDestroy(turbo);
 }
 
-static void jpeg_sends_only_what_changed(void **state)
+TEST(jpeg_sends_only_what_changed)
 {
-    (void)state;
     struct log *log = log_create(LOG_ERROR);
     struct encoder *encoder = encoder_create(log, "jpeg", NULL);
     struct frame *before = gradient(640, 360), *now = gradient(640, 360);
@@ -219,9 +212,8 @@ static void jpeg_sends_only_what_changed(void **state)
     mem_free(bgr);
 }
 
-static void png_keeps_every_pixel(void **state)
+TEST(png_keeps_every_pixel)
 {
-    (void)state;
     struct frame *frame = gradient(123, 45);
     struct packet *packet = encode("png", frame, 0, false);
     png_image image = { .version = PNG_IMAGE_VERSION };
@@ -237,9 +229,8 @@ static void png_keeps_every_pixel(void **state)
     frame_unref(&frame);
 }
 
-static void packets_outlive_frames_without_their_pixels(void **state)
+TEST(packets_outlive_frames_without_their_pixels)
 {
-    (void)state;
     struct frame *frame = gradient(64, 64);
     struct packet *packet = encode("jpeg", frame, 80, false), *second = packet_ref(packet);
     frame_unref(&frame);
@@ -252,24 +243,9 @@ static void packets_outlive_frames_without_their_pixels(void **state)
     packet_unref(&second);
 }
 
-static void unknown_codecs_are_refused(void **state)
+TEST(unknown_codecs_are_refused)
 {
-    (void)state;
     struct log *log = log_create(LOG_ERROR);
     assert_null(encoder_create(log, "gif", NULL));
     log_destroy(&log);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(jpeg_keeps_the_picture),
-        cmocka_unit_test(jpeg_keeps_the_colour_of_thin_things),
-        cmocka_unit_test(jpeg_sends_only_what_changed),
-        cmocka_unit_test(png_keeps_every_pixel),
-        cmocka_unit_test(packets_outlive_frames_without_their_pixels),
-        cmocka_unit_test(unknown_codecs_are_refused),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Expressions: what they are worth, what is wrong with them and where; and derived tags, with quality and age carried through. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "plant/tags/expression.h"
@@ -49,7 +43,7 @@ static double worth(const char *text)
     return value;
 }
 
-static void arithmetic(void **state)
+TEST(arithmetic)
 {
     static const struct {
         const char *text;
@@ -62,7 +56,6 @@ static void arithmetic(void **state)
         { "difference([a],[b])", 5 }, { "approach(100, 60, 20, 50)", 40 }, { "approach(100, 60, 20, 70)", 30 },
         { "lmtd(100, 60, 20, 60)", 40 }, { "lmtd(100, 40, 20, 60)", 20 / 0.69314718055994531 }, { "mean(mean([a],[b]),min(1,2))", 3.25 },
     };
-    (void)state;
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++)
         if (!(fabs(worth(cases[i].text) - cases[i].value) < 1e-12))
             fail_msg("%s is %.17g, expected %.17g", cases[i].text, worth(cases[i].text), cases[i].value);
@@ -71,7 +64,7 @@ static void arithmetic(void **state)
     assert_false(isfinite(worth("lmtd(100, 20, 20, 60)")));
 }
 
-static void mistakes_are_found(void **state)
+TEST(mistakes_are_found)
 {
     static const struct {
         const char *text, *why;
@@ -88,7 +81,6 @@ static void mistakes_are_found(void **state)
         { "1e", "expected a number", 0 },
         { "0x10", "or the end", 1 }, { "2**3", "expected [TAG]", 2 }, { "[]", "unknown tag ''", 0 },
     };
-    (void)state;
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         char why[200] = "";
         size_t at;
@@ -98,11 +90,10 @@ static void mistakes_are_found(void **state)
     }
 }
 
-static void long_and_deep_ones_are_refused(void **state)
+TEST(long_and_deep_ones_are_refused)
 {
     char text[4000], why[200];
     size_t at;
-    (void)state;
     memset(text, '(', 3000);
     text[3000] = 0;
     assert_null(expression_parse(text, find, NULL, why, &at));
@@ -124,7 +115,7 @@ static void write_one(struct store *store, int tag, double value, uint32_t quali
     store_write(store, &(struct sample){ tag, value, quality }, 1, now_ns, now_ns + 1000 * S);
 }
 
-static void quality_and_age_are_carried_through(void **state)
+TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state;
     plant_case_load(c, yaml, "Tag Name,Address,Stale s\nmean,\"=mean([d],[b])\",\na,40001,20\nb,40002,60\nd,= [a] - [b],\n");
@@ -169,7 +160,7 @@ static void quality_and_age_are_carried_through(void **state)
     store_destroy(&store);
 }
 
-static void rows_are_checked(void **state)
+TEST_WITH(rows_are_checked, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state;
     plant_case_load(c, yaml,
@@ -180,17 +171,4 @@ static void rows_are_checked(void **state)
           { "tags.csv", 7, 6, "Source: expected none, since the address is an expression" },
           { "tags.csv", 8, 7, "Scaling: expected None, since the value is in engineering units already" },
           { "tags.csv", 8, 1, "Raw Low" }, { "tags.csv", 8, 1, "Scaled Low" });
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(arithmetic),
-        cmocka_unit_test(mistakes_are_found),
-        cmocka_unit_test(long_and_deep_ones_are_refused),
-        cmocka_unit_test_setup_teardown(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(rows_are_checked, plant_case_set_up, plant_case_tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The field against plain double-precision loops, and each rule that keeps it true. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 #include <float.h>
 #include <malloc.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "field/field.h"
@@ -218,9 +212,8 @@ static double between(uint64_t *random, double low, double high)
 
 /* --- against the truth ---------------------------------------------------------------------------------------------------- */
 
-static void test_worked_example_of_the_paper(void **state)
+TEST(test_worked_example_of_the_paper)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2, .max = 1));
     rig.params.interpolation = INTERPOLATION_PAPER;
     rig.params.radius_m = 10;
@@ -258,9 +251,8 @@ static void randomize(struct rig *rig, uint64_t *random)
     }
 }
 
-static void test_random_input_is_as_plain_loops_say(void **state)
+TEST(test_random_input_is_as_plain_loops_say)
 {
-    (void)state;
     uint64_t seed = sweep_seed(), random = seed;
     for (int round = 0; round < 60; round++) {
         size_t sensors = 1 + synthetic_random(&random) % 24, vertices = 260 + synthetic_random(&random) % 600;
@@ -276,9 +268,8 @@ static void test_random_input_is_as_plain_loops_say(void **state)
     }
 }
 
-static void test_extreme_parameters(void **state)
+TEST(test_extreme_parameters)
 {
-    (void)state;
     uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 1500, .sensors = 9, .seed = random));
     const double powers[] = { 0.5, 2, 16 }, strengths[] = { 0, 1, 100 };
@@ -299,9 +290,8 @@ static void test_extreme_parameters(void **state)
 }
 
 /* By all means: the lost ones have no data at their places; in shepard the others have their readings there; elsewhere, plain loops. */
-static void test_4096_sensors(void **state)
+TEST(test_4096_sensors)
 {
-    (void)state;
     uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 4400, .sensors = 4096, .seed = random));
     for (size_t i = 0; i < 4096; i += 7)
@@ -326,9 +316,8 @@ static void test_4096_sensors(void **state)
 
 /* --- truth rules ---------------------------------------------------------------------------------------------------------- */
 
-static void test_exact_at_the_sensor(void **state)
+TEST(test_exact_at_the_sensor)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 12, .seed = sweep_seed()));
     const double powers[] = { 0.5, 1, 2, 3.7, 16 };
     for (int k = 0; k < 5; k++)
@@ -349,9 +338,8 @@ static void test_exact_at_the_sensor(void **state)
     rig_finish(&rig);
 }
 
-static void test_two_sensors_at_one_place_are_averaged(void **state)
+TEST(test_two_sensors_at_one_place_are_averaged)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 3));
     for (size_t v = 0; v < 300; v++)
         synthetic_set_distance(rig.plant, 1, v, asset_distance_m(&rig.plant->file.view, 0, v));
@@ -362,9 +350,8 @@ static void test_two_sensors_at_one_place_are_averaged(void **state)
     rig_finish(&rig);
 }
 
-static void test_losing_the_hottest_is_not_painted_over(void **state)
+TEST(test_losing_the_hottest_is_not_painted_over)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .seed = sweep_seed()));
     for (size_t i = 0; i < 5; i++)
         set(&rig, i, i == 2 ? 95 : 20, i == 2 ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD);
@@ -392,9 +379,8 @@ static void test_losing_the_hottest_is_not_painted_over(void **state)
     rig_finish(&rig);
 }
 
-static void test_a_good_twin_keeps_the_place(void **state)
+TEST(test_a_good_twin_keeps_the_place)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 3));
     for (size_t v = 0; v < 300; v++)
         synthetic_set_distance(rig.plant, 1, v, asset_distance_m(&rig.plant->file.view, 0, v));
@@ -407,9 +393,8 @@ static void test_a_good_twin_keeps_the_place(void **state)
     rig_finish(&rig);
 }
 
-static void test_zero_is_a_reading(void **state)
+TEST(test_zero_is_a_reading)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2, .min = -10, .max = 10));
     set(&rig, 0, 0.0, QUALITY_GOOD);
     set(&rig, 1, 8, QUALITY_GOOD);
@@ -427,9 +412,8 @@ static void test_zero_is_a_reading(void **state)
     rig_finish(&rig);
 }
 
-static void test_all_bad_is_no_data(void **state)
+TEST(test_all_bad_is_no_data)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 6, .min = 20, .max = 90));
     for (int paper = 0; paper < 2; paper++)
         for (int fill = 0; fill < 2; fill++) {
@@ -445,9 +429,8 @@ static void test_all_bad_is_no_data(void **state)
     rig_finish(&rig);
 }
 
-static void test_one_sensor_is_everywhere(void **state)
+TEST(test_one_sensor_is_everywhere)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 1));
     set(&rig, 0, 41.7, QUALITY_GOOD);
     const struct scalars *scalars = show(&rig);
@@ -465,9 +448,8 @@ static void assert_even(const struct rig *rig, float value)
 }
 
 /* Whatever the group or whoever looks asks for, a place that nobody knows makes no gradient. */
-static void test_an_assumed_place_is_the_whole_asset_evenly(void **state)
+TEST(test_an_assumed_place_is_the_whole_asset_evenly)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 1, .island = 100));
     rig.plant->plant.tags[0].place_assumed = true;
     rig.plant->plant.tags[0].strength = 0;
@@ -486,9 +468,8 @@ static void test_an_assumed_place_is_the_whole_asset_evenly(void **state)
     rig_finish(&rig);
 }
 
-static void test_of_assumed_places_the_nearest_to_trouble_stands_for_all(void **state)
+TEST(test_of_assumed_places_the_nearest_to_trouble_stands_for_all)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     for (int i = 0; i < 3; i++) {
         rig.plant->plant.tags[i].place_assumed = true;
@@ -514,9 +495,8 @@ static void test_of_assumed_places_the_nearest_to_trouble_stands_for_all(void **
     rig_finish(&rig);
 }
 
-static void test_beside_a_known_place_an_assumed_one_paints_nothing(void **state)
+TEST(test_beside_a_known_place_an_assumed_one_paints_nothing)
 {
-    (void)state;
     struct rig with = rig_create(synthetic_create(.vertices = 700, .sensors = 3)), without = with;
     with.plant->plant.tags[2].place_assumed = true;
     set(&with, 2, 99, QUALITY_GOOD);
@@ -533,9 +513,8 @@ static void test_beside_a_known_place_an_assumed_one_paints_nothing(void **state
     rig_finish(&without);
 }
 
-static void test_over_range_passes_shepard_and_not_paper(void **state)
+TEST(test_over_range_passes_shepard_and_not_paper)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     set(&rig, 0, 250, QUALITY_GOOD);
     set(&rig, 1, -40, QUALITY_GOOD);
@@ -550,9 +529,8 @@ static void test_over_range_passes_shepard_and_not_paper(void **state)
 }
 
 /* Rounding must not turn a plant at exactly MAX into one beyond it. */
-static void test_equal_readings_make_exactly_that(void **state)
+TEST(test_equal_readings_make_exactly_that)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 11, .min = 0.1, .max = 0.3, .seed = sweep_seed()));
     rig.params.power = 3.3;
     for (size_t i = 0; i < 11; i++)
@@ -567,9 +545,8 @@ static void test_equal_readings_make_exactly_that(void **state)
     rig_finish(&rig);
 }
 
-static void test_not_a_number_does_not_poison(void **state)
+TEST(test_not_a_number_does_not_poison)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 4));
     const double poison[] = { (double)NAN, (double)INFINITY, -(double)INFINITY };
     for (int paper = 0; paper < 2; paper++)
@@ -585,9 +562,8 @@ static void test_not_a_number_does_not_poison(void **state)
     rig_finish(&rig);
 }
 
-static void test_a_mad_reading_leaves_nothing_behind(void **state)
+TEST(test_a_mad_reading_leaves_nothing_behind)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 9));
     const double mad[] = { 1e300, -1e300, 1e12, 3e7 };
     for (int k = 0; k < 4; k++) {
@@ -601,9 +577,8 @@ static void test_a_mad_reading_leaves_nothing_behind(void **state)
     rig_finish(&rig);
 }
 
-static void test_half_the_weight_uncertain(void **state)
+TEST(test_half_the_weight_uncertain)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -625,9 +600,8 @@ static void test_half_the_weight_uncertain(void **state)
     rig_finish(&rig);
 }
 
-static void test_a_part_that_nobody_reaches(void **state)
+TEST(test_a_part_that_nobody_reaches)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 900, .sensors = 4, .island = 50, .min = -5, .max = 5));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -645,9 +619,8 @@ static void test_a_part_that_nobody_reaches(void **state)
     rig_finish(&rig);
 }
 
-static void test_a_sensor_out_of_reach_does_not_make_its_place_lost(void **state)
+TEST(test_a_sensor_out_of_reach_does_not_make_its_place_lost)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     for (size_t j = 0; j < 300; j++)
         synthetic_set_distance(rig.plant, 0, j, INFINITY); /* Bad, and on another part */
@@ -659,9 +632,8 @@ static void test_a_sensor_out_of_reach_does_not_make_its_place_lost(void **state
     rig_finish(&rig);
 }
 
-static void test_reach_ends_the_field(void **state)
+TEST(test_reach_ends_the_field)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     rig.params.reach_m = 2;
     set(&rig, 0, 30, QUALITY_GOOD);
@@ -683,9 +655,8 @@ static void test_reach_ends_the_field(void **state)
 }
 
 /* Far from any edge: nobody sees where a sensor leaves the sums. */
-static void test_a_sensor_fades_towards_its_reach(void **state)
+TEST(test_a_sensor_fades_towards_its_reach)
 {
-    (void)state;
     for (int paper = 0; paper < 2; paper++) {
         struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -716,9 +687,8 @@ static void test_a_sensor_fades_towards_its_reach(void **state)
     }
 }
 
-static void test_a_sensor_of_strength_0_has_no_say(void **state)
+TEST(test_a_sensor_of_strength_0_has_no_say)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     rig.plant->plant.tags[0].strength = 0;
     set(&rig, 0, 90, QUALITY_BAD_SENSOR_FAILURE);
@@ -733,9 +703,8 @@ static void test_a_sensor_of_strength_0_has_no_say(void **state)
     rig_finish(&rig);
 }
 
-static void test_a_sensor_acts_on_its_own_asset_only(void **state)
+TEST(test_a_sensor_acts_on_its_own_asset_only)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 3, .assets = 2));
     struct scalar *before = mem_array(600, sizeof(*before));
     const struct scalars *other = field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot);
@@ -751,9 +720,8 @@ static void test_a_sensor_acts_on_its_own_asset_only(void **state)
     rig_finish(&rig);
 }
 
-static void test_an_asset_without_sensors_of_the_group_has_no_field(void **state)
+TEST(test_an_asset_without_sensors_of_the_group_has_no_field)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     rig.plant->plant.tags[0].group = rig.plant->plant.tags[1].group = 3;
     assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot));
@@ -762,9 +730,8 @@ static void test_an_asset_without_sensors_of_the_group_has_no_field(void **state
 
 /* --- what does not drift -------------------------------------------------------------------------------------------------- */
 
-static void test_an_hour_of_flicker_leaves_no_drift(void **state)
+TEST(test_an_hour_of_flicker_leaves_no_drift)
 {
-    (void)state;
     uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 800, .sensors = 12, .seed = random));
     for (int paper = 0; paper < 2; paper++) {
@@ -781,11 +748,10 @@ static void test_an_hour_of_flicker_leaves_no_drift(void **state)
 }
 
 /* As a loose wire has it: at any moment, while others change by columns, which are what could be left over. */
-static void test_flicker_at_any_moment_leaves_no_drift(void **state)
+TEST(test_flicker_at_any_moment_leaves_no_drift)
 {
     static const uint32_t qualities[] = { QUALITY_GOOD, QUALITY_BAD_COMMUNICATION_ERROR, QUALITY_UNCERTAIN_LAST_USABLE,
                                           QUALITY_BAD_SENSOR_FAILURE };
-    (void)state;
     uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 12, .seed = random));
     for (int paper = 0; paper < 2; paper++) {
@@ -822,9 +788,8 @@ static float worst_difference(const struct rig *rig)
     return worst;
 }
 
-static void test_an_hour_of_changes_leaves_no_drift(void **state)
+TEST(test_an_hour_of_changes_leaves_no_drift)
 {
-    (void)state;
     uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 40, .seed = random));
     for (int paper = 0; paper < 2; paper++) {
@@ -840,9 +805,8 @@ static void test_an_hour_of_changes_leaves_no_drift(void **state)
     rig_finish(&rig);
 }
 
-static void test_sums_are_made_anew_now_and_then(void **state)
+TEST(test_sums_are_made_anew_now_and_then)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12));
     for (size_t i = 0; i < 12; i++) /* what adding and taking away again leaves behind */
         set(&rig, i, 33.3 + (double)i, QUALITY_GOOD);
@@ -854,9 +818,8 @@ static void test_sums_are_made_anew_now_and_then(void **state)
     rig_finish(&rig);
 }
 
-static void test_a_day_of_changes_leaves_no_drift(void **state)
+TEST(test_a_day_of_changes_leaves_no_drift)
 {
-    (void)state;
     uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12, .seed = random));
     for (int tick = 0; tick < 86400; tick++) {
@@ -870,9 +833,8 @@ static void test_a_day_of_changes_leaves_no_drift(void **state)
     rig_finish(&rig);
 }
 
-static void test_cut_of_the_work_does_not_matter(void **state)
+TEST(test_cut_of_the_work_does_not_matter)
 {
-    (void)state;
     uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 70000, .sensors = 9, .seed = random));
     struct workers *one = workers_create(1), *many = workers_create(5);
@@ -895,9 +857,8 @@ static void test_cut_of_the_work_does_not_matter(void **state)
 
 /* --- versions ------------------------------------------------------------------------------------------------------------- */
 
-static void test_version_grows_with_real_changes_only(void **state)
+TEST(test_version_grows_with_real_changes_only)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     const struct scalars *scalars = show(&rig);
     uint64_t version = scalars->version, flags = scalars->flags_version;
@@ -927,9 +888,8 @@ static void test_version_grows_with_real_changes_only(void **state)
     rig_finish(&rig);
 }
 
-static void test_a_bad_reading_that_moves_changes_nothing(void **state)
+TEST(test_a_bad_reading_that_moves_changes_nothing)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     set(&rig, 1, 10, QUALITY_BAD_SENSOR_FAILURE);
     uint64_t version = show(&rig)->version;
@@ -938,9 +898,8 @@ static void test_a_bad_reading_that_moves_changes_nothing(void **state)
     rig_finish(&rig);
 }
 
-static void test_a_reading_without_weight_changes_nothing(void **state)
+TEST(test_a_reading_without_weight_changes_nothing)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     rig.plant->plant.tags[1].strength = 0;
     uint64_t version = show(&rig)->version;
@@ -951,9 +910,8 @@ static void test_a_reading_without_weight_changes_nothing(void **state)
 
 /* --- sharing and the bound ------------------------------------------------------------------------------------------------ */
 
-static void test_equal_parameters_share(void **state)
+TEST(test_equal_parameters_share)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     struct field_params again;
     field_params_default(&rig.plant->plant, 0, &again);
@@ -967,9 +925,8 @@ static void test_equal_parameters_share(void **state)
     rig_finish(&rig);
 }
 
-static void test_instances_share_their_weights(void **state)
+TEST(test_instances_share_their_weights)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 16, .assets = 10));
     size_t bytes[3] = { 0 };
     for (int round = 0; round < 3; round++) {
@@ -994,9 +951,8 @@ static size_t bytes_allocated(void)
     return info.uordblks + info.hblkhd;
 }
 
-static void test_dragging_stays_under_the_bound(void **state)
+TEST(test_dragging_stays_under_the_bound)
 {
-    (void)state;
     const size_t slack = 256 << 10; /* layouts, and what only lives during a call */
     struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 20, .assets = 2));
     size_t bound = 3 << 20;
@@ -1017,9 +973,8 @@ static void test_dragging_stays_under_the_bound(void **state)
 }
 
 /* Columns pushed out or never kept, or kept for a part of the vertices, give the same bits as kept ones. */
-static void test_without_room_for_columns_the_bits_are_the_same(void **state)
+TEST(test_without_room_for_columns_the_bits_are_the_same)
 {
-    (void)state;
     uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37, .seed = random));
     struct field *tight = field_create(workers, &rig.plant->scene), *half = field_create(workers, &rig.plant->scene);
@@ -1047,9 +1002,8 @@ static void test_without_room_for_columns_the_bits_are_the_same(void **state)
 }
 
 /* Where there is not room for all columns, all that there is is used, and once there is room for all, that. */
-static void test_as_many_columns_as_fit_are_kept(void **state)
+TEST(test_as_many_columns_as_fit_are_kept)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37));
     const size_t block = (size_t)37 * (256 * sizeof(float) + 1), columns = (3000 + 255) / 256 * block;
     set(&rig, 0, 1, QUALITY_GOOD);
@@ -1068,9 +1022,8 @@ static void test_as_many_columns_as_fit_are_kept(void **state)
 }
 
 /* Two sessions that look at all assets in turn, with room for less than one of them: all pointers of one round stay good. */
-static void test_scalars_of_the_same_parameters_stay(void **state)
+TEST(test_scalars_of_the_same_parameters_stay)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .assets = 8));
     field_set_cache_limit(rig.field, 100000);
     for (int round = 0; round < 6; round++) {
@@ -1087,9 +1040,8 @@ static void test_scalars_of_the_same_parameters_stay(void **state)
 }
 
 /* Few sensors are summed in one go once their shares are known; that gives the bits of the long way, and the same account of changes. */
-static void test_few_sensors_are_summed_in_one_go(void **state)
+TEST(test_few_sensors_are_summed_in_one_go)
 {
-    (void)state;
     enum { VERTICES = 1100 };
     uint64_t random = sweep_seed();
     for (size_t sensors = 1; sensors <= 9; sensors++)
@@ -1166,9 +1118,8 @@ static void check_many_at_once(size_t sensors)
     rig_finish(&rig);
 }
 
-static void test_many_at_once_are_as_one_by_one(void **state)
+TEST(test_many_at_once_are_as_one_by_one)
 {
-    (void)state;
     check_many_at_once(5); /* summed anew each time */
     check_many_at_once(12);
 }
@@ -1208,18 +1159,16 @@ static void check_far_assets(size_t sensors)
     rig_finish(&rig);
 }
 
-static void test_far_assets_have_room_for_what_is_drawn(void **state)
+TEST(test_far_assets_have_room_for_what_is_drawn)
 {
-    (void)state;
     check_far_assets(5);
     check_far_assets(12);
 }
 
 /* --- levels, pieces ------------------------------------------------------------------------------------------------------- */
 
-static void test_a_level_is_a_prefix(void **state)
+TEST(test_a_level_is_a_prefix)
 {
-    (void)state;
     uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 20, .seed = random));
     const size_t counts[] = { 300, 3000, 300, 300, 1, 2000, 700, 2999 };
@@ -1234,9 +1183,8 @@ static void test_a_level_is_a_prefix(void **state)
     rig_finish(&rig);
 }
 
-static void test_a_prefix_costs_less(void **state)
+TEST(test_a_prefix_costs_less)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 20000, .sensors = 4));
     const struct scalars *scalars = field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, 500);
     assert_int_equal(scalars->ready, 512);
@@ -1254,9 +1202,8 @@ static void test_a_prefix_costs_less(void **state)
     rig_finish(&rig);
 }
 
-static void test_in_pieces_it_is_the_same(void **state)
+TEST(test_in_pieces_it_is_the_same)
 {
-    (void)state;
     uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 30, .seed = random));
     for (int round = 0; round < 6; round++) {
@@ -1277,9 +1224,8 @@ static void test_in_pieces_it_is_the_same(void **state)
     rig_finish(&rig);
 }
 
-static void test_what_is_under_way_may_be_dropped(void **state)
+TEST(test_what_is_under_way_may_be_dropped)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 30));
     struct field_params other = rig.params;
     field_set_cache_limit(rig.field, 0);
@@ -1296,9 +1242,8 @@ static void test_what_is_under_way_may_be_dropped(void **state)
 
 /* --- parameters, probe, distance ------------------------------------------------------------------------------------------ */
 
-static void test_parameters_out_of_range(void **state)
+TEST(test_parameters_out_of_range)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 1));
     const struct plant *plant = &rig.plant->plant;
     assert_null(field_params_wrong(plant, &rig.params));
@@ -1338,9 +1283,8 @@ static void test_parameters_out_of_range(void **state)
     rig_finish(&rig);
 }
 
-static void test_distance_from_one_sensor(void **state)
+TEST(test_distance_from_one_sensor)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 500, .sensors = 3, .assets = 2, .island = 20));
     struct field_params straight = rig.params;
     double low, high;
@@ -1399,9 +1343,8 @@ static void assert_difference(const struct rig *rig, const struct snapshot *then
     mem_free(after);
 }
 
-static void test_difference_is_that_of_two_fields(void **state)
+TEST(test_difference_is_that_of_two_fields)
 {
-    (void)state;
     uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 900, .sensors = 12, .island = 9, .seed = random));
     struct baselines *baselines = baselines_create();
@@ -1425,9 +1368,8 @@ static void test_difference_is_that_of_two_fields(void **state)
     baselines_destroy(&baselines);
 }
 
-static void test_difference_needs_both(void **state)
+TEST(test_difference_needs_both)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 400, .sensors = 4));
     struct baselines *baselines = baselines_create();
     rig.params.show = SHOW_DIFFERENCE;
@@ -1456,9 +1398,8 @@ static void test_difference_needs_both(void **state)
     baselines_destroy(&baselines);
 }
 
-static void test_overrides_are_as_if_configured(void **state)
+TEST(test_overrides_are_as_if_configured)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 6, .seed = sweep_seed()));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -1482,9 +1423,8 @@ static void test_overrides_are_as_if_configured(void **state)
     rig_finish(&rig);
 }
 
-static void test_overrides_are_bounded_and_ordered(void **state)
+TEST(test_overrides_are_bounded_and_ordered)
 {
-    (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 300));
     struct field_params turned = rig.params, before = rig.params;
     for (int i = 0; i < FIELD_OVERRIDES; i++) {
@@ -1517,64 +1457,4 @@ static int tear_down(void **state)
     return 0;
 }
 
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_worked_example_of_the_paper),
-        cmocka_unit_test(test_random_input_is_as_plain_loops_say),
-        cmocka_unit_test(test_extreme_parameters),
-        cmocka_unit_test(test_4096_sensors),
-        cmocka_unit_test(test_exact_at_the_sensor),
-        cmocka_unit_test(test_two_sensors_at_one_place_are_averaged),
-        cmocka_unit_test(test_losing_the_hottest_is_not_painted_over),
-        cmocka_unit_test(test_a_good_twin_keeps_the_place),
-        cmocka_unit_test(test_zero_is_a_reading),
-        cmocka_unit_test(test_all_bad_is_no_data),
-        cmocka_unit_test(test_one_sensor_is_everywhere),
-        cmocka_unit_test(test_an_assumed_place_is_the_whole_asset_evenly),
-        cmocka_unit_test(test_of_assumed_places_the_nearest_to_trouble_stands_for_all),
-        cmocka_unit_test(test_beside_a_known_place_an_assumed_one_paints_nothing),
-        cmocka_unit_test(test_over_range_passes_shepard_and_not_paper),
-        cmocka_unit_test(test_equal_readings_make_exactly_that),
-        cmocka_unit_test(test_not_a_number_does_not_poison),
-        cmocka_unit_test(test_a_mad_reading_leaves_nothing_behind),
-        cmocka_unit_test(test_half_the_weight_uncertain),
-        cmocka_unit_test(test_a_part_that_nobody_reaches),
-        cmocka_unit_test(test_a_sensor_out_of_reach_does_not_make_its_place_lost),
-        cmocka_unit_test(test_reach_ends_the_field),
-        cmocka_unit_test(test_a_sensor_fades_towards_its_reach),
-        cmocka_unit_test(test_a_sensor_of_strength_0_has_no_say),
-        cmocka_unit_test(test_a_sensor_acts_on_its_own_asset_only),
-        cmocka_unit_test(test_an_asset_without_sensors_of_the_group_has_no_field),
-        cmocka_unit_test(test_an_hour_of_flicker_leaves_no_drift),
-        cmocka_unit_test(test_flicker_at_any_moment_leaves_no_drift),
-        cmocka_unit_test(test_an_hour_of_changes_leaves_no_drift),
-        cmocka_unit_test(test_sums_are_made_anew_now_and_then),
-        cmocka_unit_test(test_a_day_of_changes_leaves_no_drift),
-        cmocka_unit_test(test_cut_of_the_work_does_not_matter),
-        cmocka_unit_test(test_version_grows_with_real_changes_only),
-        cmocka_unit_test(test_a_bad_reading_that_moves_changes_nothing),
-        cmocka_unit_test(test_a_reading_without_weight_changes_nothing),
-        cmocka_unit_test(test_equal_parameters_share),
-        cmocka_unit_test(test_instances_share_their_weights),
-        cmocka_unit_test(test_dragging_stays_under_the_bound),
-        cmocka_unit_test(test_without_room_for_columns_the_bits_are_the_same),
-        cmocka_unit_test(test_as_many_columns_as_fit_are_kept),
-        cmocka_unit_test(test_scalars_of_the_same_parameters_stay),
-        cmocka_unit_test(test_few_sensors_are_summed_in_one_go),
-        cmocka_unit_test(test_many_at_once_are_as_one_by_one),
-        cmocka_unit_test(test_far_assets_have_room_for_what_is_drawn),
-        cmocka_unit_test(test_a_level_is_a_prefix),
-        cmocka_unit_test(test_a_prefix_costs_less),
-        cmocka_unit_test(test_in_pieces_it_is_the_same),
-        cmocka_unit_test(test_what_is_under_way_may_be_dropped),
-        cmocka_unit_test(test_parameters_out_of_range),
-        cmocka_unit_test(test_distance_from_one_sensor),
-        cmocka_unit_test(test_difference_is_that_of_two_fields),
-        cmocka_unit_test(test_difference_needs_both),
-        cmocka_unit_test(test_overrides_are_as_if_configured),
-        cmocka_unit_test(test_overrides_are_bounded_and_ordered),
-    };
-    return cmocka_run_group_tests_name("field", tests, set_up, tear_down);
-}
+TEST_GROUP(set_up, tear_down)

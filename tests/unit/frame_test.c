@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What markers say is what the picture shows at their places. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "render/frame.h"
@@ -32,13 +28,12 @@ static struct frame *frame_of_two(enum field_show left, uint32_t baseline)
     return frame;
 }
 
-static void test_a_difference_says_differences(void **state)
+TEST(test_a_difference_says_differences)
 {
     static const double then[TAGS] = { 20, 30, 40, 50 }, now[TAGS] = { 25, 28, 41, 50 };
     static const uint32_t then_q[TAGS] = { 0, 0, QUALITY_BAD_SENSOR_FAILURE, QUALITY_UNCERTAIN_LAST_USABLE }, now_q[TAGS] = { 0 };
     struct baselines *baselines = baselines_create();
     struct snapshot *before = readings(then, then_q), *after = readings(now, now_q);
-    (void)state;
     uint32_t id = baselines_set(baselines, "then", before);
     struct frame *frame = frame_of_two(SHOW_DIFFERENCE, id);
     frame_read_markers(frame, after, baselines);
@@ -59,13 +54,12 @@ static void test_a_difference_says_differences(void **state)
     baselines_destroy(&baselines);
 }
 
-static void test_readings_and_those_behind_the_eye(void **state)
+TEST(test_readings_and_those_behind_the_eye)
 {
     static const double now[TAGS] = { 25, 28, 41, 50 };
     static const uint32_t qualities[TAGS] = { 0, QUALITY_BAD_SENSOR_FAILURE, 0, 0 };
     struct snapshot *snapshot = readings(now, qualities);
     struct frame *frame = frame_of_two(SHOW_VALUE, 0);
-    (void)state;
     frame->markers[0].x_px = FRAME_BEHIND_PX;
     frame_read_markers(frame, snapshot, NULL);
     assert_int_equal(frame->marker_count, 2 * TAGS - 1);
@@ -76,13 +70,12 @@ static void test_readings_and_those_behind_the_eye(void **state)
 }
 
 /* Metres, whatever the reading is. */
-static void test_distances_stay_what_they_are(void **state)
+TEST(test_distances_stay_what_they_are)
 {
     static const double now[TAGS] = { 25, 28, 41, 50 };
     static const uint32_t qualities[TAGS] = { 0, QUALITY_BAD_SENSOR_FAILURE, 0, 0 };
     struct snapshot *snapshot = readings(now, qualities);
     struct frame *frame = frame_of_two(SHOW_DISTANCE, 0);
-    (void)state;
     for (int i = 0; i < TAGS; i++)
         frame->markers[i].value = 0.5 * i;
     frame_read_markers(frame, snapshot, NULL);
@@ -92,15 +85,4 @@ static void test_distances_stay_what_they_are(void **state)
     }
     frame_unref(&frame);
     snapshot_destroy(&snapshot);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_difference_says_differences),
-        cmocka_unit_test(test_readings_and_those_behind_the_eye),
-        cmocka_unit_test(test_distances_stay_what_they_are),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

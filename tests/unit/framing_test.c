@@ -2,14 +2,9 @@
 /* Cameras that look at something: all of it is in the picture, and fills it; from the side that was asked for. */
 #include "scene/framing.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "scene/extremes.h"
 #include "scene/main_part.h"
@@ -59,9 +54,8 @@ static void forward_of(const struct camera *camera, double forward[3])
         forward[i] /= sqrt(length);
 }
 
-static void every_side_shows_all_of_it(void **state)
+TEST(every_side_shows_all_of_it)
 {
-    (void)state;
     const struct scene *scene = small_scene();
     for (int asset = -1; asset < 2; asset++)
         for (int side = SIDE_NOW; side <= SIDE_ISO; side++)
@@ -81,9 +75,8 @@ static void every_side_shows_all_of_it(void **state)
                 }
 }
 
-static void a_window_is_filled(void **state)
+TEST(a_window_is_filled)
 {
-    (void)state;
     static const struct camera_window windows[] = { { -1, 0.6, -1, 0.8 }, { -0.2, 0.9, 0.1, 0.4 }, { -1, -0.5, -1, 1 } };
     const struct scene *scene = small_scene();
     for (int side = SIDE_NOW; side <= SIDE_ISO; side++)
@@ -104,9 +97,8 @@ static void a_window_is_filled(void **state)
             }
 }
 
-static void sides_are_where_they_should_be(void **state)
+TEST(sides_are_where_they_should_be)
 {
-    (void)state;
     static const double forward[][3] = { [SIDE_TOP] = { 0, 0, -1 },  [SIDE_BOTTOM] = { 0, 0, 1 }, [SIDE_FRONT] = { 0, 1, 0 },
                                          [SIDE_BACK] = { 0, -1, 0 }, [SIDE_LEFT] = { 1, 0, 0 },   [SIDE_RIGHT] = { -1, 0, 0 } };
     for (int side = SIDE_TOP; side <= SIDE_RIGHT; side++) {
@@ -121,9 +113,8 @@ static void sides_are_where_they_should_be(void **state)
     }
 }
 
-static void north_is_above_in_a_plan(void **state)
+TEST(north_is_above_in_a_plan)
 {
-    (void)state;
     struct camera camera = { .eye_m = { 9, 9, 9 }, .up = { 0, 0, 1 }, .fov_deg = 45 };
     struct framing framing = { .asset = -1, .tag = -1, .side = SIDE_TOP };
     double view[16], projection[16];
@@ -133,9 +124,8 @@ static void north_is_above_in_a_plan(void **state)
     assert_float_equal(view[5], 1, 1e-5); /* up is north */
 }
 
-static void names_are_found(void **state)
+TEST(names_are_found)
 {
-    (void)state;
     const struct plant *plant = small_scene()->plant;
     struct framing framing;
     assert_true(framing_find(plant, "P-101A", &framing) && framing.asset == 1 && framing.tag == -1);
@@ -145,9 +135,8 @@ static void names_are_found(void **state)
     assert_false(framing_find(plant, "", &framing));
 }
 
-static void a_sensor_is_seen_from_outside(void **state)
+TEST(a_sensor_is_seen_from_outside)
 {
-    (void)state;
     const struct scene *scene = small_scene();
     struct camera camera;
     struct framing framing;
@@ -193,9 +182,8 @@ static void expect_framed(struct toy *toy, int outside)
     toy_destroy(&toy);
 }
 
-static void a_stray_piece_is_left_out(void **state)
+TEST(a_stray_piece_is_left_out)
 {
-    (void)state;
     static const double sizes[] = { 0.001, 0.1, 1 }; /* a third of the area, if it is hopelessly far away */
     for (int i = 0; i < 3; i++) {
         struct toy *toy = toy_create();
@@ -207,9 +195,8 @@ static void a_stray_piece_is_left_out(void **state)
     }
 }
 
-static void a_stray_vertex_is_left_out(void **state)
+TEST(a_stray_vertex_is_left_out)
 {
-    (void)state;
     struct toy *toy = toy_create();
     struct shape shape = { 0 };
     shape_box(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ 4, 2, 1 });
@@ -227,9 +214,8 @@ static void a_stray_vertex_is_left_out(void **state)
     toy_destroy(&toy);
 }
 
-static void small_and_long_ones_fill_the_picture(void **state)
+TEST(small_and_long_ones_fill_the_picture)
 {
-    (void)state;
     static const double sizes_m[][3] = { { 1e-3, 1e-3, 1e-3 }, { 5e-3, 2e-3, 1e-3 }, { 0.02, 0.02, 0.02 }, { 0.1, 0.05, 0.02 },
                                          { 300, 0.2, 0.2 },    { 80, 60, 0.01 },     { 0.2, 0.2, 90 } };
     for (size_t i = 0; i < sizeof(sizes_m) / sizeof(*sizes_m); i++) {
@@ -240,9 +226,8 @@ static void small_and_long_ones_fill_the_picture(void **state)
 }
 
 /* A stack on its foot, units apart from each other, a plate with little on it: none of it is stray, nor the ground. */
-static void what_belongs_together_stays(void **state)
+TEST(what_belongs_together_stays)
 {
-    (void)state;
     struct toy *toy = toy_create();
     add_box(toy, "PLANT", (double[3]){ 20, 20, 10 }, (double[3]){ 0, 0, 0 });
     add_box(toy, "STACK", (double[3]){ 0.5, 0.5, 60 }, (double[3]){ 30, 10, 0 });
@@ -255,18 +240,4 @@ static void what_belongs_together_stays(void **state)
     add_box(toy, "PLATE", (double[3]){ 0.18, 0.15, 0.02 }, (double[3]){ 0, 0, 0 });
     add_box(toy, "BRACKET", (double[3]){ 0.05, 0.05, 0.08 }, (double[3]){ 0.06, 0.05, 0.02 });
     expect_framed(toy, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_side_shows_all_of_it),    cmocka_unit_test(a_window_is_filled),
-        cmocka_unit_test(sides_are_where_they_should_be),
-        cmocka_unit_test(north_is_above_in_a_plan),      cmocka_unit_test(names_are_found),
-        cmocka_unit_test(a_sensor_is_seen_from_outside), cmocka_unit_test(a_stray_piece_is_left_out),
-        cmocka_unit_test(a_stray_vertex_is_left_out),    cmocka_unit_test(small_and_long_ones_fill_the_picture),
-        cmocka_unit_test(what_belongs_together_stays),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

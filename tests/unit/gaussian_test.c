@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The Gaussian process against a dense one: the kernel by inverting the system, weights by the equations of ordinary kriging with one mean
    for each body (Cressie, Statistics for Spatial Data, 3.2), lost sensors by leaving them out; and places and numbers that are awkward. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
@@ -248,9 +241,8 @@ static double *place_of(const struct dense *d, const struct solved *s, size_t ve
 enum { FEW = 5 };
 static const double few_places[FEW][3] = { { 0.2, 0.3, 0 }, { 1.7, 0.2, 0 }, { 1.1, 0.8, 0 }, { 0.4, 0.9, 0 }, { 1.5, 0.7, 0 } };
 
-static void test_agrees_with_a_dense_one(void **state)
+TEST(test_agrees_with_a_dense_one)
 {
-    (void)state;
     static const struct gaussian_params cases[3] = { { 0.8, 0.5, 10 }, { 3, 0.1, 4 }, { 40, 0.2, 20 } }; /* the last: far longer */
     for (int c = 0; c < 3; c++) {
         struct solved s = { 0 };
@@ -294,9 +286,8 @@ static void test_agrees_with_a_dense_one(void **state)
 }
 
 /* What the others say of each sensor: (P v)_i / P_ii less than its reading, with variance 1 / P_ii. */
-static void test_precision_says_what_the_others_say(void **state)
+TEST(test_precision_says_what_the_others_say)
 {
-    (void)state;
     const struct gaussian_params p = { 0.8, 0.5, 10 };
     const double readings[FEW] = { 20, 35, 28, 22, 90 };
     struct solved s = { 0 };
@@ -331,9 +322,8 @@ static void sphere_of(struct solved *s, const double (*places_m)[3], size_t coun
 }
 
 /* A smooth field's readings are met within the noise, and rows add up to 1. */
-static void test_readings_are_met_within_noise(void **state)
+TEST(test_readings_are_met_within_noise)
 {
-    (void)state;
     enum { MANY = 40 };
     struct solved s = { 0 };
     double places[MANY][3], readings[MANY], ones[MANY];
@@ -360,9 +350,8 @@ static void test_readings_are_met_within_noise(void **state)
     finish(&s);
 }
 
-static void test_two_sensors_at_one_place_that_disagree(void **state)
+TEST(test_two_sensors_at_one_place_that_disagree)
 {
-    (void)state;
     const double places[3][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, -1 } }, readings[3] = { 20, 40, 60 };
     for (int i = 0; i < 2; i++) {
         struct solved s = { 0 };
@@ -375,9 +364,8 @@ static void test_two_sensors_at_one_place_that_disagree(void **state)
 }
 
 /* One sensor gives its value to its whole body, and its doubt grows away from it; a body without a sensor gets nothing. */
-static void test_one_sensor_and_bodies_apart(void **state)
+TEST(test_one_sensor_and_bodies_apart)
 {
-    (void)state;
     struct solved s = { 0 };
     const double places[1][3] = { { 0, 0, 1 } }, reading[1] = { 50 };
     cad_sphere(&s.shape, &chance, 16);
@@ -404,9 +392,8 @@ static void test_one_sensor_and_bodies_apart(void **state)
     finish(&s);
 }
 
-static void test_all_in_a_line_and_a_kernel_longer_than_all(void **state)
+TEST(test_all_in_a_line_and_a_kernel_longer_than_all)
 {
-    (void)state;
     struct solved s = { 0 };
     double places[6][3] = { { 0 } }, readings[6];
     for (size_t i = 0; i < 6; i++) {
@@ -424,9 +411,8 @@ static void test_all_in_a_line_and_a_kernel_longer_than_all(void **state)
     finish(&s);
 }
 
-static void test_threads_change_nothing(void **state)
+TEST(test_threads_change_nothing)
 {
-    (void)state;
     struct solved s = { 0 };
     cad_plate(&s.shape, &chance, 41, 21, 2, 1, 0.2);
     prepare(&s, few_places, FEW, 0.15, (double)INFINITY);
@@ -444,9 +430,8 @@ static void test_threads_change_nothing(void **state)
 }
 
 /* Without solving for a sensor, for ranges from a tenth of the plate to ten times it. */
-static void test_covariance_agrees_with_a_dense_one(void **state)
+TEST(test_covariance_agrees_with_a_dense_one)
 {
-    (void)state;
     static const double ranges_m[4] = { 0.25, 0.8, 3, 20 };
     struct solved s = { 0 };
     struct gaussian_covariance found;
@@ -481,9 +466,8 @@ static double gaussian(void)
 
 /* Readings that a process of range 0.7 and deviation 6 makes, with noise 0.8: what is fitted is near that. Sensors stand in pairs, as only
  * neighbours tell noise from a field that is rough. */
-static void test_fit_finds_what_made_the_readings(void **state)
+TEST(test_fit_finds_what_made_the_readings)
 {
-    (void)state;
     enum { SENSORS = 24, INSTANTS = 200 };
     struct solved s = { 0 };
     struct readings_table table = { .count = SENSORS, .instants = INSTANTS };
@@ -551,9 +535,8 @@ static void expect_table(const char *folder, const char *text, const char *wrong
     mem_free(path);
 }
 
-static void test_tables(void **state)
+TEST(test_tables)
 {
-    (void)state;
     char *folder = temp_folder_create();
     expect_table(folder,
                  "\xef\xbb\xbf"
@@ -568,20 +551,4 @@ static void test_tables(void **state)
     temp_folder_destroy(&folder);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_agrees_with_a_dense_one),
-        cmocka_unit_test(test_precision_says_what_the_others_say),
-        cmocka_unit_test(test_readings_are_met_within_noise),
-        cmocka_unit_test(test_two_sensors_at_one_place_that_disagree),
-        cmocka_unit_test(test_one_sensor_and_bodies_apart),
-        cmocka_unit_test(test_all_in_a_line_and_a_kernel_longer_than_all),
-        cmocka_unit_test(test_threads_change_nothing),
-        cmocka_unit_test(test_covariance_agrees_with_a_dense_one),
-        cmocka_unit_test(test_fit_finds_what_made_the_readings),
-        cmocka_unit_test(test_tables),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
-}
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

@@ -1,21 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What plantcast-prep keeps for the next time: a changed sensor gives the file that preparing all anew gives, to the last bit, without the
    model being read; among very many sensors, one that shows the field as well. What is damaged is not used; killed midway, it goes on. */
+#include "tests/support/test.h"
 #include <fcntl.h>
 #include <jansson.h>
 #include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
@@ -105,6 +99,8 @@ static int set_up(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct prep_case *c, name, set_up, NULL)
+
 /* Prepares with these tags into FOLDER/`into`. The asset's report. */
 static json_t *prepare(struct prep_case *c, const char *tags, const char *into, bool *model_read)
 {
@@ -175,9 +171,8 @@ static void assert_as_fresh(struct prep_case *c, const char *tags, const json_t 
 }
 
 /* Where each group had one sensor, nothing was drawn from distances, and they were not checked. */
-static void what_was_not_checked_is_checked_once_it_shows(void **state)
+CASE(what_was_not_checked_is_checked_once_it_shows)
 {
-    struct prep_case *c = *state;
     static const char *const tags[] = { "a,,,,t,A,,1.3,0,0\nc,,,,p,A,,0,1,0.3\n",
                                         "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\n" };
     for (int i = 0; i < 2; i++) {
@@ -195,7 +190,7 @@ static int number(const json_t *asset, const char *name)
     return (int)json_integer_value(json_object_get(asset, name));
 }
 
-static void a_changed_sensor_costs_its_own_distances(void **state)
+CASE(a_changed_sensor_costs_its_own_distances)
 {
     static const struct {
         const char *tags;
@@ -210,7 +205,6 @@ static void a_changed_sensor_costs_its_own_distances(void **state)
         { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,TT-2,,,\nd,,,,t,A,TT-1,,,\n", 3, true },     /* on a node nobody asked for */
         { "d,,,,t,A,TT-1,,,\nc,,,,t,A,TT-2,,,\ne,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0.01\n", 3, false }, /* in another order */
     };
-    struct prep_case *c = *state;
     for (size_t i = 0; i < sizeof(changes) / sizeof(*changes); i++) {
         bool model_read;
         json_t *asset = prepare(c, changes[i].tags, "kept", &model_read);
@@ -249,9 +243,8 @@ static void damage(const char *path, bool cut)
     mem_free(bytes);
 }
 
-static void what_is_damaged_is_made_anew(void **state)
+CASE(what_is_damaged_is_made_anew)
 {
-    struct prep_case *c = *state;
     for (int cut = 0; cut < 2; cut++) {
         char *tags = mem_printf("a,,,,t,A,,1.3,0,0.0%d\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", cut ? 5 : 2);
         bool model_read;
@@ -279,10 +272,9 @@ static ino_t file_number(const char *path)
 }
 
 /* Where points lie is taken from the last time, and is written again only where little of it was known. */
-static void points_are_found_once(void **state)
+CASE(points_are_found_once)
 {
     static const char *const places[] = { "1.3,0,0.02", "1.3,0,0.05", "0.8,0.8,0" };
-    struct prep_case *c = *state;
     bool model_read;
     json_decref(prepare_first(c));
     char *spots = kept_file(c, ".spots");
@@ -343,9 +335,8 @@ static size_t bytes_of(const char *path)
 }
 
 /* In a column, in the file: what was there before stays, also for who has it mapped, and the next time gives what preparing anew gives. */
-static void killed_midway_it_goes_on(void **state)
+CASE(killed_midway_it_goes_on)
 {
-    struct prep_case *c = *state;
     bool model_read;
     json_t *first = prepare_first(c);
     char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns"), *folder = temp_path(c->folder, "kept"), why[200];
@@ -380,10 +371,9 @@ static void killed_midway_it_goes_on(void **state)
 }
 
 /* A file that there is no room for is not begun: the old one stays, nothing lies about, and with room it is made. */
-static void without_room_the_old_file_stays(void **state)
+CASE(without_room_the_old_file_stays)
 {
     static const char tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,,0.1,-1.2,0\n";
-    struct prep_case *c = *state;
     bool model_read;
     json_t *first = prepare_first(c);
     char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns");
@@ -406,9 +396,8 @@ static void without_room_the_old_file_stays(void **state)
     mem_free(names_folder);
 }
 
-static void what_nothing_needs_any_more_is_removed(void **state)
+CASE(what_nothing_needs_any_more_is_removed)
 {
-    struct prep_case *c = *state;
     bool model_read;
     json_decref(prepare_first(c));
     char *stock = kept_file(c, ".stock"), *surface = kept_file(c, ".surface"), *columns = kept_file(c, ".columns");
@@ -558,9 +547,8 @@ static void assert_shows_as_anew(struct prep_case *c, const struct prepared *mov
     json_decref(found);
 }
 
-static void one_of_many_sensors_is_split_for_alone(void **state)
+CASE(one_of_many_sensors_is_split_for_alone)
 {
-    struct prep_case *c = *state;
     struct prepared moved;
     bool model_read;
     const int moves = sweep(3, 2);
@@ -595,13 +583,12 @@ static void one_of_many_sensors_is_split_for_alone(void **state)
 
 /* --- the surface alone --------------------------------------------------------------------------------------------------------- */
 
-static void a_surface_comes_back_whole(void **state)
+TEST(a_surface_comes_back_whole)
 {
     struct cad torus = { 0 };
     struct cad_random chance = { 9 };
     struct text packed = { 0 };
     const double source[1][3] = { { 1.2, 0.3, 0.1 } };
-    (void)state;
     cad_torus(&torus, &chance, 40, 20, 0.3, 0.5);
     torus.triangles[3] = torus.triangles[4]; /* a triangle without area */
     struct surface *surface = surface_create(NULL, NULL, (const float(*)[3])torus.positions, torus.vertex_count, torus.triangles,
@@ -628,21 +615,4 @@ static void a_surface_comes_back_whole(void **state)
     cad_finish(&torus);
 }
 
-#define WITH_PLANT(test) cmocka_unit_test_setup(test, set_up)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        WITH_PLANT(a_changed_sensor_costs_its_own_distances),
-        WITH_PLANT(what_was_not_checked_is_checked_once_it_shows),
-        WITH_PLANT(what_is_damaged_is_made_anew),
-        WITH_PLANT(points_are_found_once),
-        WITH_PLANT(killed_midway_it_goes_on),
-        WITH_PLANT(without_room_the_old_file_stays),
-        WITH_PLANT(what_nothing_needs_any_more_is_removed),
-        WITH_PLANT(one_of_many_sensors_is_split_for_alone),
-        cmocka_unit_test(a_surface_comes_back_whole),
-    };
-    return cmocka_run_group_tests(tests, make_plant, remove_plant);
-}
+TEST_GROUP(make_plant, remove_plant)

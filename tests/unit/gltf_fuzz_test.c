@@ -2,10 +2,7 @@
 /* Replays the seeds of the model fuzzer, and what random changes make of them. `gltf_fuzz_test --write FOLDER` makes the seeds anew. */
 #include "tests/fuzz/gltf_fuzz.c"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "tests/support/model_seeds.h"
 #include "tests/support/replay.h"
@@ -13,9 +10,8 @@
 #define SEEDS "tests/fuzz/gltf"
 enum { BY_HAND = 3, FOUND = 2 };
 
-static void seeds_and_their_changes_keep_the_promises(void **state)
+TEST(seeds_and_their_changes_keep_the_promises)
 {
-    (void)state;
     assert_true(replay_folder(SEEDS, 150, LLVMFuzzerTestOneInput) >= SEED_COUNT + BY_HAND + FOUND);
 }
 
@@ -37,7 +33,5 @@ int main(int argc, char **argv)
 {
     if (argc == 3 && strcmp(argv[1], "--write") == 0)
         return write_seeds(argv[2]);
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = { cmocka_unit_test(seeds_and_their_changes_keep_the_promises) };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return tests_run(NULL);
 }

@@ -2,20 +2,16 @@
 /* Models: what glTF files may hold is read as it is meant, and what is wrong is refused by name. */
 #include "preprocess/geometry/geometry.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/glb.h"
 #include "tests/support/gltf_case.h"
 #include "tests/support/temp.h"
+
+#define CASE(name) TEST_ON(struct gltf_case *l, name, gltf_case_set_up, gltf_case_tear_down)
 
 /* One binary chunk for every model here; what lies where is said by the accessors below. */
 struct bin {
@@ -112,9 +108,8 @@ static void assert_square(const struct gltf_primitive *p)
             assert_float_equal(p->positions[i][axis], bin.square[i][axis], 1e-4);
 }
 
-static void every_kind_of_index_and_position_is_read(void **state)
+CASE(every_kind_of_index_and_position_is_read)
 {
-    struct gltf_case *l = *state;
     assert_int_equal(sizeof(bin), 308);
     good(l, HEAD PLAIN_NODES MESH(SQUARE) ACCESSORS "}");
     assert_square(&l->model.primitives[0]);
@@ -132,9 +127,8 @@ static void every_kind_of_index_and_position_is_read(void **state)
     assert_float_equal(l->model.primitives[0].texcoords[3][1], 1, 0);
 }
 
-static void lines_and_points_are_skipped_and_counted(void **state)
+CASE(lines_and_points_are_skipped_and_counted)
 {
-    struct gltf_case *l = *state;
     good(l,
          HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"mode\":1}," SQUARE
                                ",{\"attributes\":{\"POSITION\":0},\"mode\":0},{\"attributes\":{\"POSITION\":0},\"mode\":3}") ACCESSORS "}");
@@ -143,9 +137,8 @@ static void lines_and_points_are_skipped_and_counted(void **state)
     assert_int_equal(l->model.skipped_points, 1);
 }
 
-static void nodes_are_put_in_place(void **state)
+CASE(nodes_are_put_in_place)
 {
-    struct gltf_case *l = *state;
     good(l, HEAD
          "\"scenes\":[{\"nodes\":[1]}],\"nodes\":[{\"name\":\"b\",\"mesh\":0,\"translation\":[1,2,3]},"
          "{\"name\":\"a\",\"children\":[0,2],\"scale\":[2,2,2]},{\"name\":\"c\",\"rotation\":[0,0,0.70710678,0.70710678]}]," MESH(SQUARE)
@@ -168,9 +161,8 @@ static void nodes_are_put_in_place(void **state)
     HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"valve\",\"mesh\":0,\"rotation\":" rotation "}]," MESH(SQUARE) ACCESSORS "}"
 
 /* As a unit quaternion turns, other lengths do, and are counted; one without a length turns nowhere. */
-static void rotations_have_a_length(void **state)
+CASE(rotations_have_a_length)
 {
-    struct gltf_case *l = *state;
     good(l, TURNED("[0,0,0.7071,0.7071]"));
     assert_int_equal(l->model.scaled_rotations, 0);
     good(l, TURNED("[0,0,2,2]"));
@@ -182,9 +174,8 @@ static void rotations_have_a_length(void **state)
     refused(l, TURNED("[0,0,1e-9,0]"), "node 0 'valve': its rotation");
 }
 
-static void wrong_numbers_are_refused(void **state)
+CASE(wrong_numbers_are_refused)
 {
-    struct gltf_case *l = *state;
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":7}") ACCESSORS "}",
             "mesh 0 'm', primitive 0: indices: index 5 names vertex 4 of 4");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":6},\"indices\":1}") ACCESSORS "}", "POSITION: element 1 is not finite");
@@ -205,9 +196,8 @@ static void wrong_numbers_are_refused(void **state)
             "there is no material 3");
 }
 
-static void wrong_trees_are_refused(void **state)
+CASE(wrong_trees_are_refused)
 {
-    struct gltf_case *l = *state;
     refused(l,
             HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[1]},{\"name\":\"x\",\"children\":[0]}]," MESH(SQUARE) ACCESSORS
             "}",
@@ -228,9 +218,8 @@ static void wrong_trees_are_refused(void **state)
     text_finish(&deep);
 }
 
-static void unknown_extensions_are_refused(void **state)
+CASE(unknown_extensions_are_refused)
 {
-    struct gltf_case *l = *state;
     refused(l, HEAD "\"extensionsRequired\":[\"ACME_secret\"]," PLAIN_NODES MESH(SQUARE) ACCESSORS "}", "ACME_secret");
     refused(l, HEAD "\"extensionsRequired\":{\"ACME_secret\":1}," PLAIN_NODES MESH(SQUARE) ACCESSORS "}",
             "extensionsRequired is not a list");
@@ -242,9 +231,8 @@ static void unknown_extensions_are_refused(void **state)
     good(l, HEAD "\"extensionsRequired\":[\"KHR_mesh_quantization\"]," PLAIN_NODES MESH(SQUARE) ACCESSORS "}");
 }
 
-static void broken_files_are_refused(void **state)
+CASE(broken_files_are_refused)
 {
-    struct gltf_case *l = *state;
     size_t size;
     char *bytes = glb_build(HEAD PLAIN_NODES MESH(SQUARE) ACCESSORS "}", &bin, sizeof(bin), &size);
     for (size_t cut = 0; cut < size; cut += 1 + cut / 16) { /* everything but the whole file */
@@ -270,9 +258,8 @@ static void broken_files_are_refused(void **state)
     assert_false(l->good);
 }
 
-static void files_outside_the_folder_are_refused(void **state)
+CASE(files_outside_the_folder_are_refused)
 {
-    struct gltf_case *l = *state;
     const char *json = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"%s\",\"byteLength\":308}],\"bufferViews\":[{\"buffer\":0,"
                        "\"byteLength\":308},"
                        "{\"buffer\":0,\"byteOffset\":80,\"byteLength\":32,\"byteStride\":8}]," PLAIN_NODES MESH(SQUARE) ACCESSORS "}";
@@ -332,9 +319,8 @@ static void face_normal(const struct geometry *g, uint32_t tri, float out[3])
          "seal\",\"translation\":[0,0,1],\"mesh\":0},"                                                                                     \
          "{\"name\":\"E-7\",\"mesh\":0,\"translation\":[1000000,2000000,0]}]," MESH(SQUARE) ACCESSORS "}"
 
-static void nodes_are_chosen_by_pattern_and_taken_once(void **state)
+CASE(nodes_are_chosen_by_pattern_and_taken_once)
 {
-    struct gltf_case *l = *state;
     good(l, FACILITY);
     struct geometry g = cut(l, &(struct geometry_params){ .nodes = "P-101*", .unit_m = 1, .up = AXIS_Z });
     assert_int_equal(g.primitive_count, 3); /* the seal matches too, and comes once */
@@ -349,9 +335,8 @@ static void nodes_are_chosen_by_pattern_and_taken_once(void **state)
     assert_non_null(strstr(why, "no node's name matches 'X*'"));
 }
 
-static void units_and_axes_are_turned_to_metres_and_z_up(void **state)
+CASE(units_and_axes_are_turned_to_metres_and_z_up)
 {
-    struct gltf_case *l = *state;
     good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"p\",\"mesh\":0,\"translation\":[0,0,7000]}]," MESH(SQUARE) ACCESSORS
          "}");
     struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 0.001, .up = AXIS_Y });
@@ -363,9 +348,8 @@ static void units_and_axes_are_turned_to_metres_and_z_up(void **state)
     geometry_finish(&g);
 }
 
-static void mirrored_nodes_keep_their_outside(void **state)
+CASE(mirrored_nodes_keep_their_outside)
 {
-    struct gltf_case *l = *state;
     good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[-1,1,2]}]," MESH(
                 "{\"attributes\":{\"POSITION\":0,\"NORMAL\":8},\"indices\":1}") ACCESSORS "}");
     struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Z });
@@ -379,9 +363,8 @@ static void mirrored_nodes_keep_their_outside(void **state)
     geometry_finish(&g);
 }
 
-static void triangles_without_area_are_left_out(void **state)
+CASE(triangles_without_area_are_left_out)
 {
-    struct gltf_case *l = *state;
     good(l, HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"scale\":[1,0,1]}]," MESH(SQUARE) ACCESSORS "}");
     struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Z });
     assert_int_equal(g.index_count, 6);
@@ -390,9 +373,8 @@ static void triangles_without_area_are_left_out(void **state)
     geometry_finish(&g);
 }
 
-static void a_nodes_place_is_the_middle_of_its_meshes(void **state)
+CASE(a_nodes_place_is_the_middle_of_its_meshes)
 {
-    struct gltf_case *l = *state;
     double place[3];
     char why[MODEL_WHY_BYTES];
     struct geometry_params params = { .nodes = "P-101B", .unit_m = 1, .up = AXIS_Z };
@@ -415,9 +397,8 @@ static void a_nodes_place_is_the_middle_of_its_meshes(void **state)
     HEAD "\"scenes\":[{\"nodes\":[0,3]}],\"nodes\":[" NORTH PUMP(0) "," PUMP(10) "," SOUTH PUMP(20) "," NAMELESS "]," MESH(SQUARE)         \
         ACCESSORS "}"
 
-static void a_name_that_is_there_several_times_is_refused(void **state)
+CASE(a_name_that_is_there_several_times_is_refused)
 {
-    struct gltf_case *l = *state;
     double place[3];
     char why[MODEL_WHY_BYTES];
     struct geometry_params params = { .unit_m = 1, .up = AXIS_Z };
@@ -440,9 +421,8 @@ static void a_name_that_is_there_several_times_is_refused(void **state)
 }
 
 /* What cannot become an asset, though its file is whole. */
-static void what_cannot_be_cut_is_refused(void **state)
+CASE(what_cannot_be_cut_is_refused)
 {
-    struct gltf_case *l = *state;
     static const struct {
         const char *json, *reason;
     } cases[] = {
@@ -461,9 +441,8 @@ static void what_cannot_be_cut_is_refused(void **state)
     }
 }
 
-static void wrong_instances_and_sparse_elements_are_refused(void **state)
+CASE(wrong_instances_and_sparse_elements_are_refused)
 {
-    struct gltf_case *l = *state;
     static const struct {
         const char *attributes, *reason;
     } instances[] = {
@@ -514,13 +493,12 @@ static bool faces_outward(const struct geometry *g, uint32_t tri)
     return true;
 }
 
-static void real_models_go_through(void **state)
+CASE(real_models_go_through)
 {
     static const char *const names[] = {
         "plm_plant_equipment",        "plm_plant_5parts",     "plm_plant_hierarchy",       "huldra_wd1_psup",  "duplex_mep",
         "offshore_platform_overview", "cookie_factory_mixer", "cookie_factory_water_tank", "industrial_tanker"
     };
-    struct gltf_case *l = *state;
     if (access("../shared/data/models", R_OK) != 0) {
         print_message("# ../shared/data/models is not there\n");
         skip();
@@ -542,32 +520,4 @@ static void real_models_go_through(void **state)
         geometry_finish(&g);
         mem_free(path);
     }
-}
-
-#define WITH_MODEL(test) cmocka_unit_test_setup_teardown(test, gltf_case_set_up, gltf_case_tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        WITH_MODEL(every_kind_of_index_and_position_is_read),
-        WITH_MODEL(lines_and_points_are_skipped_and_counted),
-        WITH_MODEL(nodes_are_put_in_place),
-        WITH_MODEL(rotations_have_a_length),
-        WITH_MODEL(wrong_numbers_are_refused),
-        WITH_MODEL(wrong_trees_are_refused),
-        WITH_MODEL(unknown_extensions_are_refused),
-        WITH_MODEL(broken_files_are_refused),
-        WITH_MODEL(files_outside_the_folder_are_refused),
-        WITH_MODEL(nodes_are_chosen_by_pattern_and_taken_once),
-        WITH_MODEL(units_and_axes_are_turned_to_metres_and_z_up),
-        WITH_MODEL(mirrored_nodes_keep_their_outside),
-        WITH_MODEL(triangles_without_area_are_left_out),
-        WITH_MODEL(a_nodes_place_is_the_middle_of_its_meshes),
-        WITH_MODEL(a_name_that_is_there_several_times_is_refused),
-        WITH_MODEL(what_cannot_be_cut_is_refused),
-        WITH_MODEL(wrong_instances_and_sparse_elements_are_refused),
-        WITH_MODEL(real_models_go_through),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

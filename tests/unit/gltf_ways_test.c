@@ -3,15 +3,9 @@
    programs that people compress with. */
 #include "preprocess/geometry/geometry.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "plant/models/transform.h"
@@ -26,6 +20,8 @@ static int set_up(void **state)
     mem_free(temp_write_text(((struct gltf_case *)*state)->folder, "a picture.png", "no picture, and never looked at"));
     return 0;
 }
+
+#define CASE(name) TEST_ON(struct gltf_case *l, name, set_up, gltf_case_tear_down)
 
 static void try_bytes(struct gltf_case *l, char *bytes, size_t size)
 {
@@ -135,9 +131,8 @@ static const struct gltf_node *first_drawn(const struct gltf_model *model)
     return &model->nodes[n];
 }
 
-static void every_way_gives_the_same_surface(void **state)
+CASE(every_way_gives_the_same_surface)
 {
-    struct gltf_case *l = *state;
     struct sheet sheet;
     sheet_init(&sheet, 24, 10);
     for (int i = 0; i < SEED_COUNT; i++) {
@@ -152,9 +147,8 @@ static void every_way_gives_the_same_surface(void **state)
     sheet_finish(&sheet);
 }
 
-static void great_meshes_are_decompressed(void **state)
+CASE(great_meshes_are_decompressed)
 {
-    struct gltf_case *l = *state;
     static const char *const names[] = { "meshopt.glb", "meshopt_filters.glb", "draco_edgebreaker.glb", "draco_sequential.glb" };
     struct sheet sheet;
     sheet_init(&sheet, 300, 200); /* 120,000 triangles, 60,501 vertices */
@@ -234,30 +228,29 @@ static void try_packed(struct gltf_case *l, const char *program, const char *opt
     sheet_finish(&sheet);
 }
 
-static void what_gltfpack_writes_is_read(void **state)
+CASE(what_gltfpack_writes_is_read)
 {
     static const char *const options[] = { "-c", "-cc", "-cf", "-cc -vpn" };
     if (!has_program("gltfpack"))
         skip();
     for (size_t i = 0; i < sizeof(options) / sizeof(options[0]); i++)
-        try_packed(*state, "gltfpack", options[i], "EXT_meshopt_compression", 2e-4);
-    try_packed(*state, "gltfpack", "", "KHR_mesh_quantization", 2e-4);
+        try_packed(l, "gltfpack", options[i], "EXT_meshopt_compression", 2e-4);
+    try_packed(l, "gltfpack", "", "KHR_mesh_quantization", 2e-4);
 }
 
-static void what_draco_writes_is_read(void **state)
+CASE(what_draco_writes_is_read)
 {
     if (!has_program("draco_transcoder"))
         skip();
-    try_packed(*state, "draco_transcoder", "-qp 14 -qn 10", "KHR_draco_mesh_compression", 2e-4);
-    try_packed(*state, "draco_transcoder", "", "KHR_draco_mesh_compression", 1e-3);
+    try_packed(l, "draco_transcoder", "-qp 14 -qn 10", "KHR_draco_mesh_compression", 2e-4);
+    try_packed(l, "draco_transcoder", "", "KHR_draco_mesh_compression", 1e-3);
 }
 
 /* --- what is broken in them ---------------------------------------------------------------------------------------------- */
 
 /* Every byte of the compressed data in turn is another: never a crash, and what is accepted holds together. */
-static void broken_compression_is_refused_or_harmless(void **state)
+CASE(broken_compression_is_refused_or_harmless)
 {
-    struct gltf_case *l = *state;
     struct sheet sheet;
     sheet_init(&sheet, 6, 4);
     for (int i = 9; i <= 12; i++) {
@@ -304,9 +297,8 @@ static json_t *meshopt_of(struct maker *maker, int view)
     return json_object_get(json_object_get(maker_get(maker, "bufferViews", view), "extensions"), "EXT_meshopt_compression");
 }
 
-static void false_claims_of_compressed_views_are_refused(void **state)
+CASE(false_claims_of_compressed_views_are_refused)
 {
-    struct gltf_case *l = *state;
     struct sheet sheet;
     sheet_init(&sheet, 6, 4);
     const struct {
@@ -344,9 +336,8 @@ static json_t *primitive_of(struct maker *maker)
     return json_array_get(json_object_get(maker_get(maker, "meshes", 0), "primitives"), 0);
 }
 
-static void false_claims_of_draco_are_refused(void **state)
+CASE(false_claims_of_draco_are_refused)
 {
-    struct gltf_case *l = *state;
     struct sheet sheet;
     sheet_init(&sheet, 6, 4);
     struct maker maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
@@ -391,9 +382,8 @@ static void false_claims_of_draco_are_refused(void **state)
 
 /* --- what the seeds do not say ------------------------------------------------------------------------------------------- */
 
-static void vertices_that_are_not_used_are_left_out(void **state)
+CASE(vertices_that_are_not_used_are_left_out)
 {
-    struct gltf_case *l = *state;
     struct maker maker;
     float many[1000][3] = { { 0 } };
     for (int i = 0; i < 1000; i++)
@@ -411,9 +401,8 @@ static void vertices_that_are_not_used_are_left_out(void **state)
     assert_float_equal(p->positions[3][0], 810000, 0);
 }
 
-static void what_a_small_file_claims_is_bounded(void **state)
+CASE(what_a_small_file_claims_is_bounded)
 {
-    struct gltf_case *l = *state;
     struct maker maker;
     maker_init(&maker);
     int at = maker_accessor(&maker, -1, FLOAT, 4000000000u, "VEC3");
@@ -440,9 +429,8 @@ static void what_a_small_file_claims_is_bounded(void **state)
     assert_refused(l, "node 0 'n': EXT_mesh_gpu_instancing: 80000000 elements are more than");
 }
 
-static void wrong_types_and_references_are_refused_by_name(void **state)
+CASE(wrong_types_and_references_are_refused_by_name)
 {
-    struct gltf_case *l = *state;
     struct sheet sheet;
     sheet_init(&sheet, 2, 2);
     static const struct {
@@ -502,9 +490,8 @@ static void wrong_types_and_references_are_refused_by_name(void **state)
     sheet_finish(&sheet);
 }
 
-static void whole_numbers_may_be_written_as_reals(void **state)
+CASE(whole_numbers_may_be_written_as_reals)
 {
-    struct gltf_case *l = *state;
     struct sheet sheet;
     struct maker maker;
     sheet_init(&sheet, 2, 2);
@@ -517,9 +504,8 @@ static void whole_numbers_may_be_written_as_reals(void **state)
     sheet_finish(&sheet);
 }
 
-static void heads_are_checked(void **state)
+CASE(heads_are_checked)
 {
-    struct gltf_case *l = *state;
     static const struct {
         const char *json, *reason;
     } cases[] = {
@@ -544,9 +530,8 @@ static void heads_are_checked(void **state)
     }
 }
 
-static void colors_are_read_in_every_type(void **state)
+CASE(colors_are_read_in_every_type)
 {
-    struct gltf_case *l = *state;
     const float corners[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, reals[3][3] = { { 1, 0.5f, 0 }, { 0, 0, 0 }, { 2, -1, 1 } };
     const uint16_t shorts[3][4] = { { 65535, 32768, 0, 65535 }, { 0, 0, 0, 65535 }, { 65535, 0, 65535, 65535 } };
     for (int way = 0; way < 2; way++) {
@@ -604,9 +589,8 @@ static void second_texcoords_are_read(struct gltf_case *l, const struct sheet *s
     geometry_finish(&g);
 }
 
-static void textures_lie_where_their_transform_puts_them(void **state)
+CASE(textures_lie_where_their_transform_puts_them)
 {
-    struct gltf_case *l = *state;
     struct sheet sheet;
     struct maker maker;
     sheet_init(&sheet, 2, 2);
@@ -717,9 +701,8 @@ static void face_normal(const struct geometry *g, uint32_t triangle, double out[
         out[axis] = ab[(axis + 1) % 3] * ac[(axis + 2) % 3] - ab[(axis + 2) % 3] * ac[(axis + 1) % 3];
 }
 
-static void assets_are_cut_from_a_tree(void **state)
+CASE(assets_are_cut_from_a_tree)
 {
-    struct gltf_case *l = *state;
     struct sheet sheet;
     struct maker maker;
     char why[MODEL_WHY_BYTES];
@@ -768,9 +751,8 @@ static void assets_are_cut_from_a_tree(void **state)
     sheet_finish(&sheet);
 }
 
-static void mirrored_instances_keep_their_outside(void **state)
+CASE(mirrored_instances_keep_their_outside)
 {
-    struct gltf_case *l = *state;
     struct sheet sheet;
     sheet_init(&sheet, 4, 2);
     struct maker maker = seed_open(14, "instances.glb", &sheet);
@@ -790,9 +772,8 @@ static void mirrored_instances_keep_their_outside(void **state)
 }
 
 /* Fifty thousand nodes of a mesh of a thousand triangles, each a primitive of its own. */
-static void what_many_nodes_draw_is_bounded(void **state)
+CASE(what_many_nodes_draw_is_bounded)
 {
-    struct gltf_case *l = *state;
     struct maker maker;
     struct geometry g;
     char why[MODEL_WHY_BYTES];
@@ -814,9 +795,8 @@ static void what_many_nodes_draw_is_bounded(void **state)
     geometry_finish(&g);
 }
 
-static void a_name_is_meant_as_it_stands(void **state)
+CASE(a_name_is_meant_as_it_stands)
 {
-    struct gltf_case *l = *state;
     struct sheet sheet;
     struct maker maker;
     sheet_init(&sheet, 2, 2);
@@ -835,9 +815,8 @@ static void a_name_is_meant_as_it_stands(void **state)
     sheet_finish(&sheet);
 }
 
-static void lines_are_counted_for_the_asset_that_has_them(void **state)
+CASE(lines_are_counted_for_the_asset_that_has_them)
 {
-    struct gltf_case *l = *state;
     struct sheet sheet;
     struct maker maker;
     char why[MODEL_WHY_BYTES];
@@ -858,7 +837,7 @@ static void lines_are_counted_for_the_asset_that_has_them(void **state)
 
 /* --- real models --------------------------------------------------------------------------------------------------------- */
 
-static void real_models_have_the_triangles_that_they_are_known_to_have(void **state)
+CASE(real_models_have_the_triangles_that_they_are_known_to_have)
 {
     static const struct {
         const char *name;
@@ -870,7 +849,6 @@ static void real_models_have_the_triangles_that_they_are_known_to_have(void **st
         { "cookie_factory_mixer", 22083, 0, 0 },   { "cookie_factory_water_tank", 1275, 0, 0 },
         { "industrial_tanker", 3720, 0, 0 },
     };
-    struct gltf_case *l = *state;
     if (access("../shared/data/models", R_OK) != 0) {
         print_message("# ../shared/data/models is not there\n");
         skip();
@@ -915,9 +893,8 @@ static void measure(const struct gltf_model *model, double low[3], double high[3
 }
 
 /* The greatest primitive of a real plant, by every compression: as large, with the same area. */
-static void a_real_model_survives_compression(void **state)
+CASE(a_real_model_survives_compression)
 {
-    struct gltf_case *l = *state;
     static const int ways[] = { 8, 9, 11, 12 };
     struct model_source source;
     struct gltf_model real;
@@ -963,35 +940,4 @@ static void a_real_model_survives_compression(void **state)
     }
     mem_free(sheet.colors);
     gltf_free(&real);
-}
-
-#define WITH_MODEL(test) cmocka_unit_test_setup_teardown(test, set_up, gltf_case_tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        WITH_MODEL(every_way_gives_the_same_surface),
-        WITH_MODEL(great_meshes_are_decompressed),
-        WITH_MODEL(what_gltfpack_writes_is_read),
-        WITH_MODEL(what_draco_writes_is_read),
-        WITH_MODEL(broken_compression_is_refused_or_harmless),
-        WITH_MODEL(false_claims_of_compressed_views_are_refused),
-        WITH_MODEL(false_claims_of_draco_are_refused),
-        WITH_MODEL(vertices_that_are_not_used_are_left_out),
-        WITH_MODEL(what_a_small_file_claims_is_bounded),
-        WITH_MODEL(wrong_types_and_references_are_refused_by_name),
-        WITH_MODEL(whole_numbers_may_be_written_as_reals),
-        WITH_MODEL(heads_are_checked),
-        WITH_MODEL(textures_lie_where_their_transform_puts_them),
-        WITH_MODEL(assets_are_cut_from_a_tree),
-        WITH_MODEL(mirrored_instances_keep_their_outside),
-        WITH_MODEL(what_many_nodes_draw_is_bounded),
-        WITH_MODEL(colors_are_read_in_every_type),
-        WITH_MODEL(a_name_is_meant_as_it_stands),
-        WITH_MODEL(lines_are_counted_for_the_asset_that_has_them),
-        WITH_MODEL(real_models_have_the_triangles_that_they_are_known_to_have),
-        WITH_MODEL(a_real_model_survives_compression),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

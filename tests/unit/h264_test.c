@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* H.264: what libavcodec decodes is what went in, one for one; key frames come when they are asked for, and colours are described. */
+#include "tests/support/test.h"
 #include <errno.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "encode/encoder.h"
 
@@ -51,6 +47,8 @@ static int tear_down(void **state)
     mem_free(f);
     return 0;
 }
+
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
 
 /* level: of the field's patches; they lie on a grey ground with thin lines. */
 static struct frame *picture(int w, int h, int level)
@@ -117,18 +115,17 @@ static void check_size(struct fixture *f, int w, int h)
     frame_unref(&frame);
 }
 
-static void colours_are_kept_at_any_size(void **state)
+CASE(colours_are_kept_at_any_size)
 {
-    check_size(*state, 640, 360);
-    check_size(*state, 333, 77);
-    check_size(*state, 160, 91);
-    check_size(*state, 16, 16);
+    check_size(f, 640, 360);
+    check_size(f, 333, 77);
+    check_size(f, 160, 91);
+    check_size(f, 16, 16);
 }
 
 /* Rows that one converts, and those of another, make the picture that one alone makes. */
-static void many_make_the_same_picture(void **state)
+CASE(many_make_the_same_picture)
 {
-    struct fixture *f = *state;
     for (int odd = 0; odd < 2; odd++) {
         struct frame *frame = picture(322 - odd, 1042 + odd, 0);
         size_t bytes = (size_t)frame->width_px * 4 * (size_t)frame->height_px;
@@ -144,9 +141,8 @@ static void many_make_the_same_picture(void **state)
     }
 }
 
-static void colours_are_described(void **state)
+CASE(colours_are_described)
 {
-    struct fixture *f = *state;
     struct frame *frame = picture(320, 180, 0);
     pass(f, frame, 92, true, NULL);
     assert_int_equal(f->picture->color_range, AVCOL_RANGE_JPEG);
@@ -157,9 +153,8 @@ static void colours_are_described(void **state)
     frame_unref(&frame);
 }
 
-static void key_frames_come_on_demand_only(void **state)
+CASE(key_frames_come_on_demand_only)
 {
-    struct fixture *f = *state;
     for (int i = 0; i < 400; i++) {
         struct frame *frame = picture(160, 90, i % 3 * 30);
         pass(f, frame, 78, i == 200, NULL);
@@ -168,9 +163,8 @@ static void key_frames_come_on_demand_only(void **state)
     }
 }
 
-static void equal_pictures_are_not_sent_and_little_costs_little(void **state)
+CASE(equal_pictures_are_not_sent_and_little_costs_little)
 {
-    struct fixture *f = *state;
     struct frame *frame = picture(1280, 720, 0), *same = picture(1280, 720, 0), *near = picture(1280, 720, 0);
     memset(near->bgrx + 300 * (size_t)near->stride_bytes, 250, 64 * 4);
     pass(f, frame, 92, true, NULL);
@@ -184,9 +178,8 @@ static void equal_pictures_are_not_sent_and_little_costs_little(void **state)
 }
 
 /* A reading that creeps changes no picture by more than a step of quantisation: still the field stays right. */
-static void what_changes_slowly_arrives(void **state)
+CASE(what_changes_slowly_arrives)
 {
-    struct fixture *f = *state;
     struct frame *before = NULL;
     for (int i = 0; i < 50; i++) {
         struct frame *frame = picture(640, 360, i / 2);
@@ -199,9 +192,8 @@ static void what_changes_slowly_arrives(void **state)
     frame_unref(&before);
 }
 
-static void quality_can_change_between_pictures(void **state)
+CASE(quality_can_change_between_pictures)
 {
-    struct fixture *f = *state;
     size_t bytes[3];
     for (int i = 0; i < 3; i++) {
         struct frame *frame = picture(640, 360, 0);
@@ -239,9 +231,8 @@ static double mean_off(const struct fixture *f, const struct frame *frame)
 }
 
 /* However little quality there is room for: a picture shows where things are now, not where they were. */
-static void what_moves_leaves_nothing_behind(void **state)
+CASE(what_moves_leaves_nothing_behind)
 {
-    struct fixture *f = *state;
     static const int qualities[] = { 78, 42, 30, 25 };
     for (size_t q = 0; q < sizeof(qualities) / sizeof(qualities[0]); q++) {
         struct frame *first = building(640, 360, 0);
@@ -261,45 +252,18 @@ static void what_moves_leaves_nothing_behind(void **state)
     }
 }
 
-static void encoders_that_do_not_work_here_are_known(void **state)
+CASE(encoders_that_do_not_work_here_are_known)
 {
-    struct fixture *f = *state;
     assert_true(encoder_works(f->log, "h264", ENCODER_H264_LIBRARY));
     assert_false(encoder_works(f->log, "h264", "mjpeg")); /* of libavcodec, but of something else */
     assert_false(encoder_works(f->log, "h264", "h264_nothing"));
     assert_true(encoder_is_stream("h264") && !encoder_is_stream("jpeg"));
 }
-
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(colours_are_kept_at_any_size),
-        TEST(many_make_the_same_picture),
-        TEST(colours_are_described),
-        TEST(key_frames_come_on_demand_only),
-        TEST(equal_pictures_are_not_sent_and_little_costs_little),
-        TEST(what_changes_slowly_arrives),
-        TEST(quality_can_change_between_pictures),
-        TEST(what_moves_leaves_nothing_behind),
-        TEST(encoders_that_do_not_work_here_are_known),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
 #else
-static void there_is_none(void **state)
+TEST(there_is_none)
 {
     struct log *log = log_create(LOG_ERROR);
-    (void)state;
     assert_false(encoder_works(log, "h264", ENCODER_H264_LIBRARY));
     log_destroy(&log);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = { cmocka_unit_test(there_is_none) };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }
 #endif

@@ -2,13 +2,10 @@
 /* The first message of a session: whom its token stands for, the view it comes back to, and whether there is room. */
 #include "session/session.h"
 
+#include "tests/support/test.h"
 #include <jansson.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <string.h>
 #include <sys/stat.h>
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/files/atomic_file.h"
@@ -88,6 +85,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 static void say(struct fixture *f, struct session *session, const char *text)
 {
     session_on_message(session, text, strlen(text), f->now_ns, f->now_ns);
@@ -137,9 +136,8 @@ static void expect_welcome(struct fixture *f, struct session *session, const cha
     json_decref(message);
 }
 
-static void who_needs_a_token_is_told_and_sent_away(void **state)
+CASE(who_needs_a_token_is_told_and_sent_away)
 {
-    struct fixture *f = *state;
     struct session *none = open_session(f, ROLE_NOBODY, HELLO);
     expect_error(f, none, "token_needed", 1008);
     leave(f, &none);
@@ -154,9 +152,8 @@ static void who_needs_a_token_is_told_and_sent_away(void **state)
     leave(f, &early);
 }
 
-static void a_token_stands_for_its_role(void **state)
+CASE(a_token_stands_for_its_role)
 {
-    struct fixture *f = *state;
     struct session *bob = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_bob\"," SIZE "}");
     expect_welcome(f, bob, "viewer", false);
     say(f, bob, "{\"type\":\"params\",\"seq\":1,\"power\":3}");
@@ -174,9 +171,8 @@ static void a_token_stands_for_its_role(void **state)
     leave(f, &pushy);
 }
 
-static void a_revoked_token_ends_its_sessions_and_no_others(void **state)
+CASE(a_revoked_token_ends_its_sessions_and_no_others)
 {
-    struct fixture *f = *state;
     struct session *bob = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_bob\"," SIZE "}");
     struct session *alice = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_alice\"," SIZE "}");
     struct session *local = open_session(f, ROLE_ENGINEER, HELLO);
@@ -194,9 +190,8 @@ static void a_revoked_token_ends_its_sessions_and_no_others(void **state)
 }
 
 /* A good token that was held up is not judged, so that its holder has no part in the session. */
-static void a_login_that_is_held_up_keeps_no_holder(void **state)
+CASE(a_login_that_is_held_up_keeps_no_holder)
 {
-    struct fixture *f = *state;
     struct login_throttle *throttle = f->context.login_throttle = login_throttle_create();
     struct session *session;
     for (int i = 0; i < LOGIN_FAILURES + 1; i++) {
@@ -233,9 +228,8 @@ static void expect_view_of_before(const struct session *session)
     assert_int_equal(session->codec.current, WIRE_CODEC_JPEG);
 }
 
-static void who_comes_back_in_time_has_its_view(void **state)
+CASE(who_comes_back_in_time_has_its_view)
 {
-    struct fixture *f = *state;
     char secret[RESUME_CHARS + 1];
     struct session *first = open_session(f, ROLE_ENGINEER, VIEW), *again, *late;
     strcpy(secret, first->identity.resume_secret);
@@ -259,9 +253,8 @@ static void who_comes_back_in_time_has_its_view(void **state)
     leave(f, &late);
 }
 
-static void what_is_said_comes_on_top_of_the_view_of_before(void **state)
+CASE(what_is_said_comes_on_top_of_the_view_of_before)
 {
-    struct fixture *f = *state;
     struct session *first = open_session(f, ROLE_ENGINEER, VIEW), *again;
     char secret[RESUME_CHARS + 1];
     strcpy(secret, first->identity.resume_secret);
@@ -274,9 +267,8 @@ static void what_is_said_comes_on_top_of_the_view_of_before(void **state)
     leave(f, &again);
 }
 
-static void a_connection_that_only_seems_alive_gives_way(void **state)
+CASE(a_connection_that_only_seems_alive_gives_way)
 {
-    struct fixture *f = *state;
     struct session *first = open_session(f, ROLE_ENGINEER, VIEW), *again;
     come_back(f, ROLE_ENGINEER, first->identity.resume_secret, "", &again);
     expect_welcome(f, again, "engineer", true);
@@ -286,9 +278,8 @@ static void a_connection_that_only_seems_alive_gives_way(void **state)
     leave(f, &again);
 }
 
-static void a_view_belongs_to_a_token(void **state)
+CASE(a_view_belongs_to_a_token)
 {
-    struct fixture *f = *state;
     struct session *alice = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_alice\"," SIZE "}"), *bob, *again;
     char secret[RESUME_CHARS + 1];
     strcpy(secret, alice->identity.resume_secret);
@@ -301,9 +292,8 @@ static void a_view_belongs_to_a_token(void **state)
     leave(f, &again);
 }
 
-static void of_many_who_left_the_newest_are_kept(void **state)
+CASE(of_many_who_left_the_newest_are_kept)
 {
-    struct fixture *f = *state;
     char first[RESUME_CHARS + 1], last[RESUME_CHARS + 1];
     for (int i = 0; i <= RESUME_MAX_KEPT; i++) {
         struct session *session = open_session(f, ROLE_ENGINEER, HELLO);
@@ -319,9 +309,8 @@ static void of_many_who_left_the_newest_are_kept(void **state)
     leave(f, &kept);
 }
 
-static void without_room_a_session_is_told_when_to_come_again(void **state)
+CASE(without_room_a_session_is_told_when_to_come_again)
 {
-    struct fixture *f = *state;
     quotas_parse(&f->quotas, "pixels=300000");
     struct session *first = open_session(f, ROLE_ENGINEER, HELLO), *second = open_session(f, ROLE_ENGINEER, HELLO);
     expect_welcome(f, first, "engineer", false);
@@ -352,9 +341,8 @@ static void leave_share(struct fixture *f, struct session **session)
     admission_leave(&f->admission, share);
 }
 
-static void an_address_has_its_part_of_all_pixels(void **state)
+CASE(an_address_has_its_part_of_all_pixels)
 {
-    struct fixture *f = *state;
     struct address_share share = { .account = 1 }, other = { .account = 2 };
     quotas_parse(&f->quotas, "pixels=1000000");
     quotas_parse(&f->quotas, "address-pixels=300000");
@@ -369,9 +357,8 @@ static void an_address_has_its_part_of_all_pixels(void **state)
     assert_true(share.pixels == 0 && other.pixels == 0);
 }
 
-static void who_is_hidden_gives_its_place_back_and_takes_it_again(void **state)
+CASE(who_is_hidden_gives_its_place_back_and_takes_it_again)
 {
-    struct fixture *f = *state;
     struct address_share share = { .account = 1 }, other = { .account = 2 };
     struct frame_request request;
     quotas_parse(&f->quotas, "pixels=300000");
@@ -394,9 +381,8 @@ static void who_is_hidden_gives_its_place_back_and_takes_it_again(void **state)
     leave_share(f, &hidden);
 }
 
-static void a_view_has_its_own_limit(void **state)
+CASE(a_view_has_its_own_limit)
 {
-    struct fixture *f = *state;
     quotas_parse(&f->quotas, "session-pixels=100000");
     struct session *session = open_session(f, ROLE_ENGINEER, HELLO);
     expect_error(f, session, "limit", 0);
@@ -405,9 +391,8 @@ static void a_view_has_its_own_limit(void **state)
     leave(f, &session);
 }
 
-static void who_does_not_say_hello_is_sent_away(void **state)
+CASE(who_does_not_say_hello_is_sent_away)
 {
-    struct fixture *f = *state;
     struct session *session = open_session(f, ROLE_ENGINEER, "{\"type\":\"ping\",\"t\":1}"), *other = open_session(f, ROLE_ENGINEER, HELLO);
     f->now_ns += 10 * NS_PER_S - 1;
     session_on_tick(session, f->now_ns);
@@ -419,27 +404,4 @@ static void who_does_not_say_hello_is_sent_away(void **state)
     assert_int_equal(other->close.code, 0);
     leave(f, &session);
     leave(f, &other);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(who_needs_a_token_is_told_and_sent_away),
-        TEST(a_token_stands_for_its_role),
-        TEST(a_revoked_token_ends_its_sessions_and_no_others),
-        TEST(a_login_that_is_held_up_keeps_no_holder),
-        TEST(who_comes_back_in_time_has_its_view),
-        TEST(what_is_said_comes_on_top_of_the_view_of_before),
-        TEST(a_connection_that_only_seems_alive_gives_way),
-        TEST(a_view_belongs_to_a_token),
-        TEST(of_many_who_left_the_newest_are_kept),
-        TEST(without_room_a_session_is_told_when_to_come_again),
-        TEST(an_address_has_its_part_of_all_pixels),
-        TEST(who_is_hidden_gives_its_place_back_and_takes_it_again),
-        TEST(a_view_has_its_own_limit),
-        TEST(who_does_not_say_hello_is_sent_away),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

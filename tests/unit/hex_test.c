@@ -2,15 +2,10 @@
 /* Bytes as hexadecimal digits, and back. */
 #include "base/text/hex.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
-static void every_byte_goes_there_and_back(void **state)
+TEST(every_byte_goes_there_and_back)
 {
-    (void)state;
     uint8_t bytes[256], read[256];
     char text[2 * sizeof(bytes) + 1];
     for (size_t i = 0; i < sizeof(bytes); i++)
@@ -25,23 +20,12 @@ static void every_byte_goes_there_and_back(void **state)
     assert_string_equal(text, "");
 }
 
-static void all_else_is_refused(void **state)
+TEST(all_else_is_refused)
 {
-    (void)state;
     uint8_t bytes[2];
     assert_true(hex_read("aBCd", bytes, 2));
     assert_memory_equal(bytes, "\xab\xcd", 2);
     static const char *const wrong[] = { "", "abc", "abcde", "0xab", " abc", "ab-c", "abcg", "+abc", "abc " };
     for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++)
         assert_false(hex_read(wrong[i], bytes, 2));
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_byte_goes_there_and_back),
-        cmocka_unit_test(all_else_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

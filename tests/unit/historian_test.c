@@ -1,18 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The historian at work: what the store was told lies on disk a second later, also after kill -9, when the disk was full, read-only,
    slow or damaged, and when the clock was set. */
+#include "tests/support/test.h"
 #include <fcntl.h>
 #include <glob.h>
 #include <sched.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
@@ -20,7 +14,6 @@
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
-#include <cmocka.h>
 #include <sqlite3.h>
 
 #include "base/clock.h"
@@ -110,6 +103,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+
 /* Not on a line, whose inner points history does not keep. */
 static double bent(int i)
 {
@@ -192,9 +187,8 @@ static void wait_until_counted(struct setup *s, const char *name, double wanted)
 }
 
 /* Values without a deadband: every one of them is there, exactly, with links lost and found between. */
-static void all_that_was_told_is_there(void **state)
+CASE(all_that_was_told_is_there)
 {
-    struct setup *s = *state;
     int64_t times_ns[40], lost_ns = 0;
     struct snapshot *snapshot = snapshot_create(TAGS);
     start(s);
@@ -217,9 +211,8 @@ static void all_that_was_told_is_there(void **state)
     snapshot_destroy(&snapshot);
 }
 
-static void quiet_readers_see_the_last_second(void **state)
+CASE(quiet_readers_see_the_last_second)
 {
-    struct setup *s = *state;
     struct snapshot *snapshot = snapshot_create(TAGS);
     start(s);
     write_all(s, 42);
@@ -264,9 +257,8 @@ static double kill_one(struct setup *s, _Atomic int64_t *told, unsigned *seed)
 }
 
 /* KILLS=100 for make test-long. A second, and the writing: where the disk itself takes seconds, it is tried again. */
-static void a_kill_takes_at_most_a_second(void **state)
+CASE(a_kill_takes_at_most_a_second)
 {
-    struct setup *s = *state;
     unsigned seed = (unsigned)clock_mono_ns();
     int kills = getenv("KILLS") ? atoi(getenv("KILLS")) : 2, tries = 0, good = 0;
     _Atomic int64_t *told = mmap(NULL, sizeof(*told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -278,9 +270,8 @@ static void a_kill_takes_at_most_a_second(void **state)
 }
 
 /* The kernel itself refuses: no file may grow beyond what it has. Then it may again, and nothing is missing. */
-static void a_full_disk_loses_nothing(void **state)
+CASE(a_full_disk_loses_nothing)
 {
-    struct setup *s = *state;
     struct rlimit unlimited;
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &unlimited), 0);
@@ -305,9 +296,8 @@ static void a_full_disk_loses_nothing(void **state)
 }
 
 /* As where a folder is read-only for its owner: something else stands in its place. */
-static void a_folder_that_comes_later_is_used(void **state)
+CASE(a_folder_that_comes_later_is_used)
 {
-    struct setup *s = *state;
     char *path = temp_write_text(s->folder, "history", "not a folder");
     start(s);
     write_all(s, 5);
@@ -348,9 +338,8 @@ static void expect_spooled_run(struct setup *s, int64_t first_ns, int64_t last_n
 }
 
 /* The folder cannot be used until after the daemon has ended: what waits is kept where else there is room. */
-static void what_waits_at_the_end_comes_with_the_next_start(void **state)
+CASE(what_waits_at_the_end_comes_with_the_next_start)
 {
-    struct setup *s = *state;
     char *path = temp_write_text(s->folder, "history", "not a folder"), *spool = temp_path(s->folder, "history.spool");
     setenv("RUNTIME_DIRECTORY", s->folder, 1);
     start(s);
@@ -374,9 +363,8 @@ static void what_waits_at_the_end_comes_with_the_next_start(void **state)
 /* --- clocks ------------------------------------------------------------------------------------------------------------------- */
 
 /* An hour forward: what was read before and after is there, and nothing is drawn over the hour that never was. */
-static void a_clock_set_forward_leaves_its_hour_empty(void **state)
+CASE(a_clock_set_forward_leaves_its_hour_empty)
 {
-    struct setup *s = *state;
     struct snapshot *snapshot = snapshot_create(TAGS);
     struct history_series series;
     start(s);
@@ -403,9 +391,8 @@ static void a_clock_set_forward_leaves_its_hour_empty(void **state)
 }
 
 /* An hour back: nothing is lost of either time. */
-static void a_clock_set_back_loses_nothing(void **state)
+CASE(a_clock_set_back_loses_nothing)
 {
-    struct setup *s = *state;
     int64_t times_ns[6];
     struct history_series series;
     start(s);
@@ -427,7 +414,7 @@ static void a_clock_set_back_loses_nothing(void **state)
 }
 
 /* Where the plant's clocks go from 02:00 to 03:00, and from 03:00 to 02:00: time goes on as ever. */
-static void summer_time_comes_and_goes(void **state)
+TEST_WITH(summer_time_comes_and_goes, set_up, tear_down)
 {
     static const int64_t changes_s[] = { 1774746000, 1792890000 }; /* 2026-03-29T01:00Z and 2026-10-25T01:00Z, Europe/Berlin */
     setenv("TZ", "Europe/Berlin", 1);
@@ -483,9 +470,8 @@ static char *fill_disk(const char *folder)
 }
 
 /* Without another place than the disk that is full, and as after a reboot: what was reserved takes what waits. */
-static void a_full_disk_has_room_for_a_spool(void **state)
+CASE(a_full_disk_has_room_for_a_spool)
 {
-    struct setup *s = *state;
     char *folder = temp_path(s->folder, "history");
     if (!mount_disk(folder)) {
         print_message("# no file system can be mounted here\n");
@@ -529,9 +515,8 @@ static void a_full_disk_has_room_for_a_spool(void **state)
     mem_free(folder);
 }
 
-static void a_read_only_disk_loses_nothing(void **state)
+CASE(a_read_only_disk_loses_nothing)
 {
-    struct setup *s = *state;
     char *folder = temp_path(s->folder, "history");
     struct history_series series;
     int64_t times_ns[3];
@@ -581,9 +566,8 @@ static size_t count_set_aside(struct setup *s)
 }
 
 /* This month's file is rubbish when the daemon starts: it is put out of the way, and all that comes is recorded. */
-static void a_corrupt_month_is_set_aside_and_recording_goes_on(void **state)
+CASE(a_corrupt_month_is_set_aside_and_recording_goes_on)
 {
-    struct setup *s = *state;
     char path[300], *folder = temp_path(s->folder, "history");
     struct history_series series;
     assert_int_equal(mkdir(folder, 0777), 0);
@@ -605,9 +589,8 @@ static void a_corrupt_month_is_set_aside_and_recording_goes_on(void **state)
 }
 
 /* Somebody holds the database for longer than a second: who writes to the store, or looks at it, does not notice. */
-static void a_disk_that_hangs_holds_up_nobody(void **state)
+CASE(a_disk_that_hangs_holds_up_nobody)
 {
-    struct setup *s = *state;
     char path[300];
     sqlite3 *db;
     struct snapshot *snapshot = snapshot_create(TAGS);
@@ -640,25 +623,4 @@ static void a_disk_that_hangs_holds_up_nobody(void **state)
         assert_true(has_point(&series, times_ns[i], bent(i) + 3));
     history_series_finish(&series);
     snapshot_destroy(&snapshot);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(all_that_was_told_is_there, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(quiet_readers_see_the_last_second, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_kill_takes_at_most_a_second, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_full_disk_loses_nothing, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_waits_at_the_end_comes_with_the_next_start, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_folder_that_comes_later_is_used, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_clock_set_forward_leaves_its_hour_empty, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_clock_set_back_loses_nothing, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(summer_time_comes_and_goes, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_read_only_disk_loses_nothing, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_full_disk_has_room_for_a_spool, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_corrupt_month_is_set_aside_and_recording_goes_on, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_disk_that_hangs_holds_up_nobody, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

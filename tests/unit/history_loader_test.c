@@ -2,11 +2,8 @@
 /* The thread that reads instants: what it gives back is what was recorded; the newest wish of a client counts. */
 #include "service/history_loader.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -98,7 +95,7 @@ static struct reading read_at(struct setup *s, int64_t at_us)
     return reading;
 }
 
-static void test_an_instant_is_as_it_was(void **state)
+TEST_WITH(test_an_instant_is_as_it_was, set_up, tear_down)
 {
     struct setup *s = *state;
     struct reading middle = read_at(s, BEGIN + 20500000), gap = read_at(s, BEGIN + 55 * US_PER_S), before = read_at(s, BEGIN - 1);
@@ -109,7 +106,7 @@ static void test_an_instant_is_as_it_was(void **state)
     assert_true(history_loader_first_us(s->loader) == BEGIN);
 }
 
-static void test_only_the_newest_wish_of_a_client_counts(void **state)
+TEST_WITH(test_only_the_newest_wish_of_a_client_counts, set_up, tear_down)
 {
     struct setup *s = *state;
     enum { WISHES = 2000 };
@@ -131,14 +128,4 @@ static void test_only_the_newest_wish_of_a_client_counts(void **state)
         sleep_ns(5 * NS_PER_MS);
     }
     assert_true(other && last_us == BEGIN + WISHES && count < WISHES);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_an_instant_is_as_it_was, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_only_the_newest_wish_of_a_client_counts, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

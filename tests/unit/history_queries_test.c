@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Questions about the past: what may be asked, and that answers come, in order, with the points that were recorded. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 #include <jansson.h>
 
 #include "base/clock.h"
@@ -70,14 +64,15 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+
 static bool parse(struct setup *s, const char *const *args, size_t count, struct history_query *query, struct message_error *error)
 {
     return history_query_parse(s->plant, args, count, NOW, query, error);
 }
 
-static void queries_are_judged(void **state)
+CASE(queries_are_judged)
 {
-    struct setup *s = *state;
     static const struct {
         const char *args[3], *says;
     } bad[] = {
@@ -109,9 +104,8 @@ static void queries_are_judged(void **state)
     assert_true(query.from_us == NOW - 1800 * US_PER_S && query.to_us == NOW);
 }
 
-static void gaps_are_asked_by_time_alone(void **state)
+TEST(gaps_are_asked_by_time_alone)
 {
-    (void)state;
     struct history_query query;
     struct message_error error = { 0 };
     assert_true(history_query_parse_gaps((const char *const[]){ "from=-8h", "to=-1h" }, 2, NOW, &query, &error));
@@ -130,9 +124,8 @@ static struct history_answer *wait_for(struct setup *s, int count)
     return history_queries_collect(s->queries);
 }
 
-static void answers_hold_what_was_recorded(void **state)
+CASE(answers_hold_what_was_recorded)
 {
-    struct setup *s = *state;
     struct history_query query = { .client = 7, .tags = { 0, 1 }, .tag_count = 2, .max_points = 100 };
     query.from_us = NOW - 20 * US_PER_S;
     query.to_us = NOW;
@@ -156,9 +149,8 @@ static void answers_hold_what_was_recorded(void **state)
     history_answer_free(&answer);
 }
 
-static void csv_has_quotes_where_it_needs_them(void **state)
+CASE(csv_has_quotes_where_it_needs_them)
 {
-    struct setup *s = *state;
     struct history_query query = { .tags = { 0 }, .tag_count = 1, .max_points = 100, .csv = true };
     query.from_us = NOW - 2 * US_PER_S;
     query.to_us = NOW;
@@ -187,9 +179,8 @@ static void record_much(struct setup *s)
 }
 
 /* Who does not read has one piece, others have their turn, and the pieces are one answer. */
-static void long_answers_come_in_pieces(void **state)
+CASE(long_answers_come_in_pieces)
 {
-    struct setup *s = *state;
     struct history_query query = { .client = 7, .account = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000 };
     struct text all = { 0 };
     int pieces = 0;
@@ -218,9 +209,8 @@ static void long_answers_come_in_pieces(void **state)
     text_finish(&all);
 }
 
-static void who_is_forgotten_leaves_room(void **state)
+CASE(who_is_forgotten_leaves_room)
 {
-    struct setup *s = *state;
     struct history_query query = { .account = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000, .from_us = NOW };
     record_much(s);
     query.to_us = NOW + 3000 * US_PER_S;
@@ -237,9 +227,8 @@ static void who_is_forgotten_leaves_room(void **state)
     }
 }
 
-static void too_many_are_refused(void **state)
+CASE(too_many_are_refused)
 {
-    struct setup *s = *state;
     struct history_query query = { .tags = { 0 }, .tag_count = 1, .max_points = 100 };
     query.from_us = NOW - 20 * US_PER_S;
     query.to_us = NOW;
@@ -255,19 +244,4 @@ static void too_many_are_refused(void **state)
         next = answer->next;
         history_answer_free(&answer);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(queries_are_judged, set_up, tear_down),
-        cmocka_unit_test(gaps_are_asked_by_time_alone),
-        cmocka_unit_test_setup_teardown(answers_hold_what_was_recorded, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(csv_has_quotes_where_it_needs_them, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(long_answers_come_in_pieces, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(who_is_forgotten_leaves_room, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(too_many_are_refused, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

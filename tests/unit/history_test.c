@@ -1,18 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Month files and their reader: what was recorded comes back, over the borders of months, rolled up, at one instant, and when
    the file was damaged or the disk is full. */
+#include "tests/support/test.h"
 #include <errno.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
-#include <cmocka.h>
 #include <sqlite3.h>
 
 #include "base/files/atomic_file.h"
@@ -67,6 +60,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+
 static struct month_file *open_file(struct setup *s, int64_t t_us)
 {
     int error;
@@ -116,9 +111,8 @@ static void record(struct setup *s, int64_t begin_us, int seconds)
 
 /* --- tests -------------------------------------------------------------------------------------------------------------------- */
 
-static void what_was_recorded_comes_back(void **state)
+CASE(what_was_recorded_comes_back)
 {
-    struct setup *s = *state;
     const int seconds = 20000;
     struct history_series series;
     record(s, NOVEMBER, seconds);
@@ -142,9 +136,8 @@ static void what_was_recorded_comes_back(void **state)
     }
 }
 
-static void one_instant_is_as_it_was(void **state)
+CASE(one_instant_is_as_it_was)
 {
-    struct setup *s = *state;
     struct snapshot *snapshot = snapshot_create(TAGS);
     record(s, NOVEMBER, 20000);
     for (int i = 7; i < 20000; i += 997) {
@@ -161,9 +154,8 @@ static void one_instant_is_as_it_was(void **state)
 }
 
 /* A spike of one second and the time without a value are seen at every length. */
-static void long_times_keep_spikes_and_gaps(void **state)
+CASE(long_times_keep_spikes_and_gaps)
 {
-    struct setup *s = *state;
     struct history_series series;
     record(s, NOVEMBER, 40000);
     for (int max = 10; max <= 20000; max *= 2) {
@@ -201,9 +193,8 @@ static void long_times_keep_spikes_and_gaps(void **state)
     }
 }
 
-static void lines_cross_the_border_of_a_month(void **state)
+CASE(lines_cross_the_border_of_a_month)
 {
-    struct setup *s = *state;
     struct history_series series;
     struct snapshot *snapshot = snapshot_create(TAGS);
     struct history_point before = { NOVEMBER - 10 * S, 10, 0 }, after = { NOVEMBER + 10 * S, 30, 0 };
@@ -230,9 +221,8 @@ static void set_zone(const char *zone)
 }
 
 /* The plant's clock is put into another zone while it records, over the border of a month and the end of summer time. */
-static void time_zones_do_not_touch_what_is_recorded(void **state)
+CASE(time_zones_do_not_touch_what_is_recorded)
 {
-    struct setup *s = *state;
     const char *const zones[] = { "Pacific/Kiritimati", "Europe/Berlin", "America/Adak", "UTC" }, *before = getenv("TZ");
     char *kept = before ? mem_strdup(before) : NULL;
     const int64_t autumn = NOVEMBER - (6 * 86400 + 82800) * S; /* 2026-10-25T01:00Z: 3:00 in Berlin is 2:00 again */
@@ -274,9 +264,8 @@ static void time_zones_do_not_touch_what_is_recorded(void **state)
 }
 
 /* Older points than those that are there: the rollups are what they would have been. */
-static void an_import_is_rolled_up_again(void **state)
+CASE(an_import_is_rolled_up_again)
 {
-    struct setup *s = *state;
     enum { COUNT = 20000 };
     struct history_point *points = mem_array(COUNT, sizeof(*points));
     struct history_series once, twice;
@@ -301,9 +290,8 @@ static void an_import_is_rolled_up_again(void **state)
 }
 
 /* Nobody draws a line over the time when nobody recorded. */
-static void a_restart_leaves_a_gap(void **state)
+CASE(a_restart_leaves_a_gap)
 {
-    struct setup *s = *state;
     struct snapshot *snapshot = snapshot_create(TAGS);
     int64_t ended_us;
     record(s, NOVEMBER, 100);
@@ -323,9 +311,8 @@ static void a_restart_leaves_a_gap(void **state)
 }
 
 /* In October nobody recorded for ten seconds, nor over the turn of the month; in November the clock was set forward. */
-static void gaps_are_told_in_order_and_joined(void **state)
+CASE(gaps_are_told_in_order_and_joined)
 {
-    struct setup *s = *state;
     struct history_gaps gaps;
     int64_t october = NOVEMBER - 2 * 86400 * S;
     struct month_file *file = open_file(s, october);
@@ -361,9 +348,8 @@ static size_t count_damaged(const char *folder)
     return (size_t)count;
 }
 
-static void a_damaged_file_is_set_aside(void **state)
+CASE(a_damaged_file_is_set_aside)
 {
-    struct setup *s = *state;
     char *path = temp_path(s->folder, "history-2026-11.sqlite");
     static const char rubbish[20000] = "this was never a database";
     assert_int_equal(atomic_file_put(path, rubbish, sizeof(rubbish)), 0);
@@ -377,9 +363,8 @@ static void a_damaged_file_is_set_aside(void **state)
 }
 
 /* A page in its middle: found when it is used. */
-static void damage_inside_is_noticed(void **state)
+CASE(damage_inside_is_noticed)
 {
-    struct setup *s = *state;
     char *path = temp_path(s->folder, "history-2026-11.sqlite");
     record(s, NOVEMBER, 40000);
     FILE *file = fopen(path, "r+b");
@@ -405,9 +390,8 @@ static void damage_inside_is_noticed(void **state)
     mem_free(path);
 }
 
-static void a_newer_version_is_left_alone(void **state)
+CASE(a_newer_version_is_left_alone)
 {
-    struct setup *s = *state;
     char *path = temp_path(s->folder, "history-2026-11.sqlite"), *command;
     record(s, NOVEMBER, 10);
     command = mem_printf("/usr/bin/python3 -c \"import sqlite3; sqlite3.connect('%s').execute('PRAGMA user_version = 99')\"", path);
@@ -475,9 +459,8 @@ static void check_contents(sqlite3 *db)
 }
 
 /* Read as it is; brought up by whoever writes, with all that is in it; and written on. */
-static void an_older_version_is_read_and_brought_up(void **state)
+CASE(an_older_version_is_read_and_brought_up)
 {
-    struct setup *s = *state;
     char *path = temp_path(s->folder, "history-2026-11.sqlite");
     struct snapshot *snapshot = snapshot_create(TAGS);
     sqlite3 *db = open_database(path);
@@ -519,9 +502,8 @@ static int on_open(sqlite3 *db, const char **error, const void *api)
 }
 
 /* In its middle something goes wrong: the file is of the old version, whole. */
-static void what_cannot_be_brought_up_stays_as_it_was(void **state)
+CASE(what_cannot_be_brought_up_stays_as_it_was)
 {
-    struct setup *s = *state;
     char *path = temp_path(s->folder, "history-2026-11.sqlite");
     int error;
     sqlite3 *db = open_database(path);
@@ -543,9 +525,8 @@ static void make_month(const struct setup *s, const char *name, size_t bytes)
     mem_free(content);
 }
 
-static void old_and_large_months_go(void **state)
+CASE(old_and_large_months_go)
 {
-    struct setup *s = *state;
     size_t count;
     for (int m = 1; m <= 9; m++) {
         char *name = mem_printf("history-2026-%02d.sqlite", m);
@@ -622,9 +603,8 @@ static void check_what_is_left(struct setup *s, int64_t last_us)
 }
 
 /* Recording goes on for three times of what may be kept: the newest stays, the file never gets much larger than the limit. */
-static void a_month_that_is_too_large_loses_its_beginning(void **state)
+CASE(a_month_that_is_too_large_loses_its_beginning)
 {
-    struct setup *s = *state;
     int64_t from_us = NOVEMBER;
     for (int day = 0; day < 4; day++, from_us += LOT * US_PER_S) {
         record_a_lot(s, from_us);
@@ -641,9 +621,8 @@ static void a_month_that_is_too_large_loses_its_beginning(void **state)
 }
 
 /* Not the whole month goes as soon as the next one begins: it gives back what the next one takes. */
-static void a_month_that_is_over_shrinks(void **state)
+CASE(a_month_that_is_over_shrinks)
 {
-    struct setup *s = *state;
     int64_t december_us = month_begin_us(month_of(NOVEMBER) + 1);
     int error;
     record_a_lot(s, NOVEMBER);
@@ -690,9 +669,8 @@ static void record_to_send(struct setup *s, int64_t from_us, size_t count)
     mem_free(rows);
 }
 
-static void months_wait_for_what_is_to_be_sent(void **state)
+CASE(months_wait_for_what_is_to_be_sent)
 {
-    struct setup *s = *state;
     int november = month_of(NOVEMBER);
     int64_t march_us = month_begin_us(november + 4), unsent;
     size_t count;
@@ -737,9 +715,8 @@ static void months_wait_for_what_is_to_be_sent(void **state)
 }
 
 /* What cannot be read may hold something that waits. */
-static void months_that_cannot_be_read_are_not_too_old(void **state)
+CASE(months_that_cannot_be_read_are_not_too_old)
 {
-    struct setup *s = *state;
     int64_t march_us = month_begin_us(month_of(NOVEMBER) + 4), unsent;
     size_t count;
     char name[MONTH_NAME_BYTES];
@@ -761,9 +738,8 @@ static void months_that_cannot_be_read_are_not_too_old(void **state)
 }
 
 /* Also through a handle that sends nothing: an import, or a daemon whose plant file names no database any more. */
-static void what_waits_is_converted_with_the_rest(void **state)
+CASE(what_waits_is_converted_with_the_rest)
 {
-    struct setup *s = *state;
     int error;
     struct history_tag kelvin = { "TT-9", "K", false, 0, INT64_MAX }, celsius = { "TT-9", "degC", false, 0, INT64_MAX };
     struct month_file *file = month_file_open(s->log, s->folder, month_of(NOVEMBER), &kelvin, 1, &error);
@@ -783,31 +759,4 @@ static void what_waits_is_converted_with_the_rest(void **state)
     assert_float_equal(batch.rows[0].point.value, 100, 1e-4);
     month_outbox_batch_finish(&batch);
     month_outbox_close(&outbox);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(what_was_recorded_comes_back, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(one_instant_is_as_it_was, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(long_times_keep_spikes_and_gaps, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(lines_cross_the_border_of_a_month, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(time_zones_do_not_touch_what_is_recorded, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(an_import_is_rolled_up_again, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_restart_leaves_a_gap, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(gaps_are_told_in_order_and_joined, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_damaged_file_is_set_aside, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(damage_inside_is_noticed, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_newer_version_is_left_alone, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(an_older_version_is_read_and_brought_up, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_cannot_be_brought_up_stays_as_it_was, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(old_and_large_months_go, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_month_that_is_too_large_loses_its_beginning, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_month_that_is_over_shrinks, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(months_wait_for_what_is_to_be_sent, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(months_that_cannot_be_read_are_not_too_old, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_waits_is_converted_with_the_rest, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

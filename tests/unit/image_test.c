@@ -2,14 +2,10 @@
 /* Images: what their writers wrote comes back, shrunk where it is too large; what is cut off or claims too much is refused. */
 #include "base/image/image.h"
 
+#include "tests/support/test.h"
 #include <math.h>
 #include <png.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 #include <turbojpeg.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/temp.h"
@@ -68,9 +64,8 @@ static void assert_refused(const void *bytes, size_t size, const char *reason)
         fail_msg("%zu bytes: '%s', expected '%s'", size, why, reason);
 }
 
-static void png_of_every_kind_comes_back(void **state)
+TEST(png_of_every_kind_comes_back)
 {
-    (void)state;
     for (int channels = 1; channels <= 4; channels++) {
         struct encoded png = png_of(40, 30, channels);
         unsigned char *pixels = picture(40, 30, channels);
@@ -92,9 +87,8 @@ static void png_of_every_kind_comes_back(void **state)
     }
 }
 
-static void jpeg_comes_back_and_great_ones_shrink(void **state)
+TEST(jpeg_comes_back_and_great_ones_shrink)
 {
-    (void)state;
     struct encoded jpeg = jpeg_of(400, 200);
     for (uint32_t most = 100; most <= 400; most *= 4) {
         struct image image;
@@ -110,9 +104,8 @@ static void jpeg_comes_back_and_great_ones_shrink(void **state)
     free(jpeg.bytes);
 }
 
-static void webp_is_read(void **state)
+TEST(webp_is_read)
 {
-    (void)state;
     static const unsigned char webp[] = {
         /* 8 x 8, as libwebp made it from a slope of greys */
         82, 73, 70,  70,  70,  0,   0,   0,   87,  69,  66,  80,  86,  80,  56,  32,  58, 0,   0,   0,   176, 1,   0,  157, 1,  42,
@@ -130,9 +123,8 @@ static void webp_is_read(void **state)
     assert_refused(webp, 60, "webp: ");
 }
 
-static void cut_images_are_refused(void **state)
+TEST(cut_images_are_refused)
 {
-    (void)state;
     struct encoded all[] = { png_of(64, 64, 3), jpeg_of(64, 64) };
     for (int i = 0; i < 2; i++) {
         for (size_t size = 0; size + 1 < all[i].size; size += 1 + size / 40) { /* JPEG's last byte is no loss */
@@ -146,9 +138,8 @@ static void cut_images_are_refused(void **state)
     }
 }
 
-static void false_claims_are_refused(void **state)
+TEST(false_claims_are_refused)
 {
-    (void)state;
     struct encoded png = png_of(64, 64, 3);
     memcpy(png.bytes + 16, "\0\0\x1f\xff\0\0\x1f\xff", 8); /* 8191 x 8191 */
     png_const_bytep at = png.bytes;
@@ -168,9 +159,8 @@ static void false_claims_are_refused(void **state)
     assert_refused("", 0, "0 bytes are neither");
 }
 
-static void files_are_told_by_their_bytes(void **state)
+TEST(files_are_told_by_their_bytes)
 {
-    (void)state;
     char *folder = temp_folder_create();
     struct encoded png = png_of(300, 20, 3);
     char *path = temp_write(folder, "a.jpg", png.bytes, png.size), why[IMAGE_WHY_BYTES] = "";
@@ -197,9 +187,8 @@ static void files_are_told_by_their_bytes(void **state)
     temp_folder_destroy(&folder);
 }
 
-static void radiance_files_keep_their_light(void **state)
+TEST(radiance_files_keep_their_light)
 {
-    (void)state;
     static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x40\x20\x84\x80\x80\x80\x80";
     char *folder = temp_folder_create(), *path = temp_write(folder, "sky.hdr", hdr, sizeof(hdr) - 1), why[IMAGE_WHY_BYTES] = "";
     struct image_float image;
@@ -211,19 +200,4 @@ static void radiance_files_keep_their_light(void **state)
     mem_free(image.rgba);
     mem_free(path);
     temp_folder_destroy(&folder);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(png_of_every_kind_comes_back),
-        cmocka_unit_test(jpeg_comes_back_and_great_ones_shrink),
-        cmocka_unit_test(webp_is_read),
-        cmocka_unit_test(cut_images_are_refused),
-        cmocka_unit_test(false_claims_are_refused),
-        cmocka_unit_test(files_are_told_by_their_bytes),
-        cmocka_unit_test(radiance_files_keep_their_light),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Series out of CSV files: both forms, what is wrong with them, and the way out and in again. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 #include "base/text/text.h"
@@ -58,6 +52,8 @@ static int tear_down(void **state)
     temp_folder_destroy(&s->folder);
     return 0;
 }
+
+#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
 
 static bool import(struct setup *s, const char *folder_name, const char *csv, int64_t start_us, int64_t unit_us)
 {
@@ -114,9 +110,8 @@ static struct reading read_at(struct setup *s, const char *folder_name, int tag,
     return reading;
 }
 
-static void long_rows_are_taken(void **state)
+CASE(long_rows_are_taken)
 {
-    struct setup *s = *state;
     assert_true(import(s, "h",
                        "Tag;Time;Value;Quality\n"
                        "FT-1;2026-10-25T02:30:00+02:00;1.5;Good\n"
@@ -135,9 +130,8 @@ static void long_rows_are_taken(void **state)
     history_series_finish(&series);
 }
 
-static void wide_rows_count_from_a_start(void **state)
+CASE(wide_rows_count_from_a_start)
 {
-    struct setup *s = *state;
     assert_true(import(s, "h", "t_min,TT-1,unknown,FT-1\n0,1,x,2\n1,2,x,\n2,30,x,8\n", OCTOBER_25, 60 * US_PER_S));
     assert_int_equal(s->diag.warnings, 1);
     assert_int_equal(s->counts.samples, 6);
@@ -147,9 +141,8 @@ static void wide_rows_count_from_a_start(void **state)
     history_series_finish(&series);
 }
 
-static void everything_wrong_is_said_and_nothing_is_taken(void **state)
+CASE(everything_wrong_is_said_and_nothing_is_taken)
 {
-    struct setup *s = *state;
     assert_false(import(s, "h",
                         "Tag,Time,Value\n"
                         "FT-1,2026-10-25T00:00:00Z,1\n"
@@ -181,9 +174,8 @@ static void everything_wrong_is_said_and_nothing_is_taken(void **state)
 }
 
 /* Clocks of the plant: in the night that has an hour twice, rows go on; an hour that never was is refused. */
-static void times_without_a_zone_are_the_plant_s(void **state)
+CASE(times_without_a_zone_are_the_plant_s)
 {
-    struct setup *s = *state;
     timestamp_use_zone("Europe/Berlin");
     assert_true(import(s, "wide",
                        "time,FT-1\n2026-10-25 01:30,1\n2026-10-25 02:30,2\n2026-10-25 02:00,3\n2026-10-25 02:30,4\n"
@@ -203,9 +195,8 @@ static void times_without_a_zone_are_the_plant_s(void **state)
     timestamp_use_zone("UTC");
 }
 
-static void files_that_are_no_series_are_refused(void **state)
+CASE(files_that_are_no_series_are_refused)
 {
-    struct setup *s = *state;
     assert_false(import(s, "h", "a,b\n1,2\n", INT64_MIN, 0));
     assert_false(import(s, "h", "Time,b\n2026-10-25T00:00:00Z,2\n", INT64_MIN, 0));
     assert_false(import(s, "h", "", INT64_MIN, 0));
@@ -213,9 +204,8 @@ static void files_that_are_no_series_are_refused(void **state)
 }
 
 /* What is printed is what was there, and goes in again as it came out. */
-static void out_and_in_again_is_the_same(void **state)
+CASE(out_and_in_again_is_the_same)
 {
-    struct setup *s = *state;
     struct text csv = { 0 }, out = { 0 };
     text_add(&csv, "Time,TT-1\n");
     for (int i = 0; i < 5000; i++)
@@ -243,9 +233,8 @@ static void out_and_in_again_is_the_same(void **state)
 #define DAY_US (86400 * US_PER_S)
 static const char two_days[] = "Time,FT-1\n0,0\n10,0\n172800,100\n172810,100\n";
 
-static void a_gap_is_no_data(void **state)
+CASE(a_gap_is_no_data)
 {
-    struct setup *s = *state;
     assert_true(import(s, "h", two_days, OCTOBER_25 - 3 * DAY_US, US_PER_S));
     assert_int_equal(s->counts.gaps, 1);
     assert_int_equal(s->counts.longest_us[0], 100 * US_PER_S);
@@ -257,9 +246,8 @@ static void a_gap_is_no_data(void **state)
 }
 
 /* Buckets of a long time, and means of hours, have no data in the gap either. */
-static void a_gap_is_no_data_in_rollups(void **state)
+CASE(a_gap_is_no_data_in_rollups)
 {
-    struct setup *s = *state;
     double means[60];
     assert_true(import(s, "h", two_days, OCTOBER_25 - 2 * DAY_US, US_PER_S));
     char *folder = temp_path(s->folder, "h");
@@ -284,9 +272,8 @@ static void a_gap_is_no_data_in_rollups(void **state)
 }
 
 /* --longest-gap, then a stated Stale s, then the spacing; a Stale s that is shorter than the spacing does not count. */
-static void the_longest_gap_can_be_stated(void **state)
+CASE(the_longest_gap_can_be_stated)
 {
-    struct setup *s = *state;
     static const char series[] = "Time,FT-1\n0,1\n10,1\n20,1\n30,1\n90,2\n100,2\n";
     s->longest_gap_us = 50 * US_PER_S;
     assert_true(import(s, "stated", series, OCTOBER_25, US_PER_S));
@@ -306,9 +293,8 @@ static void the_longest_gap_can_be_stated(void **state)
     assert_int_equal(s->counts.longest_us[1], 100 * US_PER_S);
 }
 
-static void words_and_blanks_are_bad_samples(void **state)
+CASE(words_and_blanks_are_bad_samples)
 {
-    struct setup *s = *state;
     static const struct {
         const char *cell;
         uint32_t quality;
@@ -351,9 +337,8 @@ static void words_and_blanks_are_bad_samples(void **state)
     }
 }
 
-static void the_last_of_equal_times_counts(void **state)
+CASE(the_last_of_equal_times_counts)
 {
-    struct setup *s = *state;
     assert_true(import(s, "h", "Tag,Time,Value\nFT-1,0,1\nFT-1,10,2\nTT-1,10,5\nFT-1,10,3\nFT-1,10,4\nFT-1,20,Bad\nFT-1,20,6\n",
                        OCTOBER_25, US_PER_S));
     assert_int_equal(s->counts.duplicates, 3);
@@ -364,9 +349,8 @@ static void the_last_of_equal_times_counts(void **state)
 }
 
 /* Files of one series, in any order, leave gaps only where there is no data; importing with a longer gap removes those of before. */
-static void imports_that_follow_each_other_join(void **state)
+CASE(imports_that_follow_each_other_join)
 {
-    struct setup *s = *state;
     static const char parts[3][80] = { "Time,FT-1\n0,0\n10,1\n20,2\n", "Time,FT-1\n30,3\n40,4\n50,5\n", "Time,FT-1\n60,6\n70,7\n80,8\n" };
     static const int orders[][3] = { { 0, 1, 2 }, { 2, 1, 0 }, { 0, 2, 1 } };
     for (size_t k = 0; k < 3; k++) {
@@ -386,24 +370,4 @@ static void imports_that_follow_each_other_join(void **state)
     s->longest_gap_us = 0;
     assert_true(import(s, "again", "Time,FT-1\n864000,3\n864010,3\n864020,3\n", OCTOBER_25, US_PER_S));
     assert_int_equal(read_at(s, "again", 0, 5 * DAY_US).quality, QUALITY_BAD_NO_COMMUNICATION);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(long_rows_are_taken, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(wide_rows_count_from_a_start, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(everything_wrong_is_said_and_nothing_is_taken, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(times_without_a_zone_are_the_plant_s, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(files_that_are_no_series_are_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(out_and_in_again_is_the_same, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_gap_is_no_data, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_gap_is_no_data_in_rollups, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(the_longest_gap_can_be_stated, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(words_and_blanks_are_bad_samples, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(the_last_of_equal_times_counts, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(imports_that_follow_each_other_join, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is said of fields between the corners of drawn triangles holds at places by chance, for the readings that are worst there. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
@@ -206,43 +200,37 @@ static void holds(const struct case_of *of)
     cad_finish(&drawn.shape);
 }
 
-static void test_harmonic(void **state)
+TEST(test_harmonic)
 {
-    (void)state;
     holds(&(struct case_of){ make_sphere, solve_harmonic, 0, FEW });
     holds(&(struct case_of){ make_sphere, solve_harmonic, 0, MANY });
 }
 
-static void test_fin(void **state)
+TEST(test_fin)
 {
-    (void)state;
     holds(&(struct case_of){ make_sphere, solve_fin, 0.2, FEW });
 }
 
-static void test_gp(void **state)
+TEST(test_gp)
 {
-    (void)state;
     holds(&(struct case_of){ make_sphere, solve_gp, 0, FEW });
     holds(&(struct case_of){ make_sphere, solve_gp, 0, MANY });
 }
 
-static void test_parts_inside_each_other(void **state)
+TEST(test_parts_inside_each_other)
 {
-    (void)state;
     holds(&(struct case_of){ make_crossing, solve_harmonic, 0, FEW });
     holds(&(struct case_of){ make_crossing, solve_gp, 0, MANY });
 }
 
-static void test_bridged_cracks(void **state)
+TEST(test_bridged_cracks)
 {
-    (void)state;
     holds(&(struct case_of){ make_gaps, solve_fin, 0.2, FEW });
 }
 
 /* Triangles that lie elsewhere are not said to be good. */
-static void test_what_is_not_on_the_surface_is_unknown(void **state)
+TEST(test_what_is_not_on_the_surface_is_unknown)
 {
-    (void)state;
     const double places_m[1][3] = { { 1, 0, 0 } };
     struct cad shape = { 0 };
     struct influence_mesh mesh;
@@ -274,16 +262,4 @@ static void test_what_is_not_on_the_surface_is_unknown(void **state)
     cad_finish(&shape);
 }
 
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_harmonic),
-        cmocka_unit_test(test_fin),
-        cmocka_unit_test(test_gp),
-        cmocka_unit_test(test_parts_inside_each_other),
-        cmocka_unit_test(test_bridged_cracks),
-        cmocka_unit_test(test_what_is_not_on_the_surface_is_unknown),
-    };
-    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
-}
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Prepared interpolations from the plant file to the field: what is written, what is refused, what is added up, and what stays unknown. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "field/directions.h"
@@ -40,6 +33,8 @@ static int tear_down(void **state)
     log_destroy(&the_log);
     return prep_case_tear_down(state);
 }
+
+#define CASE(name) TEST_ON(struct prep_case *c, name, set_up, tear_down)
 
 static void write_model(const struct prep_case *c)
 {
@@ -144,9 +139,8 @@ static const struct scalar *look(struct plant_in_use *u, double x_m)
     return &u->scalars->at[best];
 }
 
-static void test_harmonic_is_straight_and_follows_readings(void **state)
+CASE(test_harmonic_is_straight_and_follows_readings)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     begin(&u, c, "", ", interpolation: harmonic, disc_m: 0.1", SENSORS);
     for (size_t i = 0; i < SENSORS; i++)
@@ -159,9 +153,8 @@ static void test_harmonic_is_straight_and_follows_readings(void **state)
 }
 
 /* Readings that came one by one leave what all at once give. */
-static void test_steps_and_lost_sensors_agree_with_all_anew(void **state)
+CASE(test_steps_and_lost_sensors_agree_with_all_anew)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u, fresh;
     begin(&u, c, ", thickness_m: 0.01", ", interpolation: fin, ambient: 20, disc_m: 0.1, prepare: [harmonic], fill: neighbours", SENSORS);
     assert_true(use(&fresh, c));
@@ -185,9 +178,8 @@ static void test_steps_and_lost_sensors_agree_with_all_anew(void **state)
     finish(&fresh);
 }
 
-static void test_lost_sensor_is_bridged_and_its_place_unknown(void **state)
+CASE(test_lost_sensor_is_bridged_and_its_place_unknown)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     begin(&u, c, "", ", interpolation: harmonic, disc_m: 0.1", SENSORS);
     u.snapshot->readings[4] = (struct reading){ .value = 5000, .quality = QUALITY_BAD };
@@ -206,9 +198,8 @@ static void test_lost_sensor_is_bridged_and_its_place_unknown(void **state)
 }
 
 /* sqrt(k t / h) = 0.236 m: what is 2.3 times as far from the last sensor is unknown. */
-static void test_fin_knows_how_far_it_sees(void **state)
+CASE(test_fin_knows_how_far_it_sees)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     begin(&u, c, ", thickness_m: 0.01", ", interpolation: fin, ambient: 20, disc_m: 0.1", 2);
     u.snapshot->readings[1].value = 100;
@@ -233,9 +224,8 @@ static void test_fin_knows_how_far_it_sees(void **state)
 }
 
 /* What the paper's way of finding distances says is what ours does, on a strip that is as wide as a sensor is from its edge. */
-static void test_distances_by_heat(void **state)
+CASE(test_distances_by_heat)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     float ours[64];
     begin(&u, c, "", ", geodesic: heat", 3);
@@ -323,9 +313,8 @@ static void expect_along(const struct direction *found, double x, double y)
 }
 
 /* Their sum by 1 / D^2, and what is not known of it. */
-static void test_directions(void **state)
+CASE(test_directions)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     write_model(c);
     write_plant(c, "", "", 1);
@@ -376,9 +365,8 @@ static void test_directions(void **state)
 #define GP_KEYS ", interpolation: gp, gp: { range_m: 3, noise: 0.5, deviation: 30 }, disc_m: 0.1"
 
 /* Readings as they are from sensor to sensor; a lost one leaves the field of the others, and a changed one is followed. */
-static void test_gp_meets_readings_and_lets_lost_ones_go(void **state)
+CASE(test_gp_meets_readings_and_lets_lost_ones_go)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     begin(&u, c, "", GP_KEYS, SENSORS);
     for (size_t i = 0; i < SENSORS; i++)
@@ -395,9 +383,8 @@ static void test_gp_meets_readings_and_lets_lost_ones_go(void **state)
 }
 
 /* It does not depend on what sensors say, grows where one is lost, and never passes what the prior allows. */
-static void test_uncertainty_depends_on_who_is_good(void **state)
+CASE(test_uncertainty_depends_on_who_is_good)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     double low, high;
     begin(&u, c, "", GP_KEYS, SENSORS);
@@ -421,9 +408,8 @@ static void test_uncertainty_depends_on_who_is_good(void **state)
 }
 
 /* Where sensors take away less than a tenth of the prior's variance, nothing is known. */
-static void test_gp_knows_how_far_it_sees(void **state)
+CASE(test_gp_knows_how_far_it_sees)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     begin(&u, c, "", ", interpolation: gp, gp: { range_m: 0.8, noise: 0.5, deviation: 30 }, disc_m: 0.1", 2);
     assert_int_equal(look(&u, place_of(1))->no_data, 0);
@@ -443,9 +429,8 @@ static double predicted_of(const struct plant_in_use *u, size_t sensor, double *
 }
 
 /* However many ask, it is worked out once a second. */
-static void test_what_others_say_is_kept_for_a_second(void **state)
+CASE(test_what_others_say_is_kept_for_a_second)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     struct neighbours_cache cache = { 0 };
     begin(&u, c, "", ", interpolation: gp, gp: { range_m: 0.8, noise: 0.5, deviation: 30 }, disc_m: 0.1", 2);
@@ -463,10 +448,9 @@ static void test_what_others_say_is_kept_for_a_second(void **state)
 }
 
 /* What the others say of a sensor is the same whether it is good, whatever it reads, or lost; with others lost, too. */
-static void test_others_do_not_hear_a_sensor_itself(void **state)
+CASE(test_others_do_not_hear_a_sensor_itself)
 {
     static const char *const keys[] = { GP_KEYS, ", prepare: [harmonic], disc_m: 0.1", ", prepare: [fin], ambient: 20, disc_m: 0.1", "" };
-    struct prep_case *c = *state;
     for (int k = 0; k < 4; k++) {
         struct plant_in_use u;
         double good, lost, deviation, other;
@@ -493,9 +477,8 @@ static void test_others_do_not_hear_a_sensor_itself(void **state)
 }
 
 /* Two neighbours 0.8 m away, two 1.6 m and so on, by 1 / D^2. */
-static void test_others_by_distance(void **state)
+CASE(test_others_by_distance)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     double sum = 0, whole = 0, deviation;
     begin(&u, c, "", "", SENSORS);
@@ -509,9 +492,8 @@ static void test_others_by_distance(void **state)
 }
 
 /* A twentieth of the range at a sensor, e^2 times that two sizes away, with what is good. */
-static void test_blind_places(void **state)
+CASE(test_blind_places)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     double low, high;
     begin(&u, c, "", ", hot_spot_m: 0.2", SENSORS);
@@ -531,9 +513,8 @@ static void test_blind_places(void **state)
 
 /* gp does not know what is far from its two sensors; that nobody would see a hot spot there is known all the same. Where nobody knows where
    sensors are, nothing is known of either. */
-static void test_blind_places_are_told_where_gp_knows_nothing(void **state)
+CASE(test_blind_places_are_told_where_gp_knows_nothing)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     begin(&u, c, "", ", interpolation: gp, gp: { range_m: 0.8, noise: 0.5, deviation: 30 }, disc_m: 0.1, hot_spot_m: 0.2", 2);
     assert_true(look(&u, STRIP_M - 0.5)->no_data);
@@ -555,9 +536,8 @@ static void test_blind_places_are_told_where_gp_knows_nothing(void **state)
 
 /* On a strip with two sensors at its beginning the first place is where it sees nothing for as long as it reaches, and each gains less than
    the one before; the best of all places, tried one by one, gains no more than that. */
-static void test_suggestions_gain_less_and_less(void **state)
+CASE(test_suggestions_gain_less_and_less)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     struct suggestion list[5];
     begin(&u, c, "", ", hot_spot_m: 0.4", 2);
@@ -592,9 +572,8 @@ static void test_suggestions_gain_less_and_less(void **state)
     finish(&u);
 }
 
-static void test_gp_bad_input(void **state)
+CASE(test_gp_bad_input)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     write_model(c);
     write_plant(c, "", ", prepare: [gp]", 2);
@@ -625,9 +604,8 @@ static void test_gp_bad_input(void **state)
 }
 
 /* Range, noise and deviation out of a file; a changed file is fitted anew. */
-static void test_gp_fitted_to_readings(void **state)
+CASE(test_gp_fitted_to_readings)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     struct text rows = { 0 };
     text_add(&rows, "time,T0,T1,T2,T3\n");
@@ -650,9 +628,8 @@ static void test_gp_fitted_to_readings(void **state)
     text_finish(&rows);
 }
 
-static void test_what_is_missing_is_said(void **state)
+CASE(test_what_is_missing_is_said)
 {
-    struct prep_case *c = *state;
     write_model(c);
     write_plant(c, "", ", prepare: [harmonic, fin]", 2);
     prep_case_expect(c, "$PLANT", 1);
@@ -666,9 +643,8 @@ static void test_what_is_missing_is_said(void **state)
     prep_case_says(&c->err, "thickness_m");
 }
 
-static void test_not_prepared_is_refused(void **state)
+CASE(test_not_prepared_is_refused)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     begin(&u, c, "", "", 2);
     u.params.interpolation = INTERPOLATION_HARMONIC;
@@ -684,9 +660,8 @@ static void test_not_prepared_is_refused(void **state)
 }
 
 /* Of an asset without sensors nothing is prepared, and its file is not missed. */
-static void test_without_sensors_no_file_is_missed(void **state)
+CASE(test_without_sensors_no_file_is_missed)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     write_model(c);
     write_plant(c, "", ", geodesic: heat", 0);
@@ -706,9 +681,8 @@ static void test_without_sensors_no_file_is_missed(void **state)
 }
 
 /* A file that is gone or damaged is made anew, and never taken. */
-static void test_damaged_file(void **state)
+CASE(test_damaged_file)
 {
-    struct prep_case *c = *state;
     struct plant_in_use u;
     uint64_t key;
     write_model(c);
@@ -734,33 +708,4 @@ static void test_damaged_file(void **state)
     prep_case_expect(c, "$PLANT", 0);
     assert_int_not_equal(access(path, F_OK), 0);
     mem_free(path);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_harmonic_is_straight_and_follows_readings, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_steps_and_lost_sensors_agree_with_all_anew, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_lost_sensor_is_bridged_and_its_place_unknown, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_fin_knows_how_far_it_sees, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_distances_by_heat, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_directions, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_gp_meets_readings_and_lets_lost_ones_go, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_uncertainty_depends_on_who_is_good, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_gp_knows_how_far_it_sees, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_what_others_say_is_kept_for_a_second, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_others_do_not_hear_a_sensor_itself, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_others_by_distance, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_suggestions_gain_less_and_less, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_blind_places, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_blind_places_are_told_where_gp_knows_nothing, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_gp_bad_input, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_gp_fitted_to_readings, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_what_is_missing_is_said, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_not_prepared_is_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_without_sensors_no_file_is_missed, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_damaged_file, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Influence by conduction against closed forms: a rod, a fin, a sphere; lost sensors; places that are awkward. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "field/influence_fill.h"
@@ -69,9 +63,8 @@ static void make_strip(struct solved *s)
 /* Half of what a disc covers along the strip, on average over its width. */
 static const double covered_m = 0.0957;
 
-static void test_rod_is_straight_between_sensors(void **state)
+TEST(test_rod_is_straight_between_sensors)
 {
-    (void)state;
     struct solved s = { 0 };
     const double readings[3] = { 20, 100, 60 };
     make_strip(&s);
@@ -90,9 +83,8 @@ static void test_rod_is_straight_between_sensors(void **state)
 }
 
 /* Between two sensors as sinh, beyond the last one as exp: Incropera, Fundamentals of Heat and Mass Transfer, 3.6. */
-static void test_fin_falls_by_its_decay_length(void **state)
+TEST(test_fin_falls_by_its_decay_length)
 {
-    (void)state;
     struct solved s = { 0 };
     const double decay_m = 0.8, readings[3] = { 80, 80, 80 };
     make_strip(&s);
@@ -113,9 +105,8 @@ static void test_fin_falls_by_its_decay_length(void **state)
 }
 
 /* On a sphere the temperature between two caps is linear in ln tan(theta / 2). */
-static void test_sphere_between_caps(void **state)
+TEST(test_sphere_between_caps)
 {
-    (void)state;
     struct solved s = { 0 };
     const double disc_m = 0.1, cap = 2 * asin(disc_m / 2), places[2][3] = { { 0, 0, 1 }, { 0, 0, -1 } }, readings[2] = { 1, 0 };
     double worst = 0;
@@ -133,9 +124,8 @@ static void test_sphere_between_caps(void **state)
     finish(&s);
 }
 
-static void test_shares_are_those_of_an_average(void **state)
+TEST(test_shares_are_those_of_an_average)
 {
-    (void)state;
     struct solved s = { 0 };
     const double places[4][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { -0.577, -0.577, 0.577 } };
     cad_sphere(&s.shape, &chance, 16);
@@ -149,9 +139,8 @@ static void test_shares_are_those_of_an_average(void **state)
     finish(&s);
 }
 
-static void test_readings_are_met(void **state)
+TEST(test_readings_are_met)
 {
-    (void)state;
     struct solved s = { 0 };
     const double places[2][3] = { { 1, 0, 0 }, { -1, 0, 0 } }, readings[2] = { 100, 0 };
     double best = 1;
@@ -165,9 +154,8 @@ static void test_readings_are_met(void **state)
 }
 
 /* What is left without a sensor is what there would be had it never been there; of its disc of metal, a little is left. */
-static void test_lost_sensor_leaves_the_field_of_the_others(void **state)
+TEST(test_lost_sensor_leaves_the_field_of_the_others)
 {
-    (void)state;
     struct solved all = { 0 }, others = { 0 };
     double readings[3] = { 20, 0, 60 };
     const double two[2][3] = { { 1, 0.05, 0 }, { 9, 0.05, 0 } };
@@ -186,9 +174,8 @@ static void test_lost_sensor_leaves_the_field_of_the_others(void **state)
     finish(&others);
 }
 
-static void test_two_sensors_at_one_place_share_it(void **state)
+TEST(test_two_sensors_at_one_place_share_it)
 {
-    (void)state;
     struct solved s = { 0 };
     const double places[3][3] = { { 1, 0.05, 0 }, { 1, 0.05, 0 }, { 9, 0.05, 0 } };
     double readings[3] = { 20, 40, 60 };
@@ -203,9 +190,8 @@ static void test_two_sensors_at_one_place_share_it(void **state)
     finish(&s);
 }
 
-static void test_one_sensor_and_bodies_apart(void **state)
+TEST(test_one_sensor_and_bodies_apart)
 {
-    (void)state;
     struct solved s = { 0 };
     const double places[1][3] = { { 0, 0, 1 } }, reading[1] = { 50 };
     cad_sphere(&s.shape, &chance, 10);
@@ -227,9 +213,8 @@ static void test_one_sensor_and_bodies_apart(void **state)
 }
 
 /* More than one block of right-hand sides, the last one smaller, and other blocks on one thread than on several. */
-static void test_many_sensors_are_solved_in_blocks(void **state)
+TEST(test_many_sensors_are_solved_in_blocks)
 {
-    (void)state;
     enum { MANY = 75 };
     struct solved s = { 0 };
     double places[MANY][3], ones[MANY];
@@ -257,9 +242,8 @@ static void test_many_sensors_are_solved_in_blocks(void **state)
 }
 
 /* Nothing follows for those that are lost together with all others of their body. */
-static void test_all_lost(void **state)
+TEST(test_all_lost)
 {
-    (void)state;
     const double precision[4] = { 1, -1, -1, 1 };
     double values[2] = { 7, 7 };
     struct influence_fill *fill = influence_fill_create(precision, 2, (const uint8_t[2]){ 0, 0 });
@@ -268,20 +252,4 @@ static void test_all_lost(void **state)
     influence_fill_destroy(&fill);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rod_is_straight_between_sensors),
-        cmocka_unit_test(test_fin_falls_by_its_decay_length),
-        cmocka_unit_test(test_sphere_between_caps),
-        cmocka_unit_test(test_shares_are_those_of_an_average),
-        cmocka_unit_test(test_readings_are_met),
-        cmocka_unit_test(test_lost_sensor_leaves_the_field_of_the_others),
-        cmocka_unit_test(test_two_sensors_at_one_place_share_it),
-        cmocka_unit_test(test_one_sensor_and_bodies_apart),
-        cmocka_unit_test(test_many_sensors_are_solved_in_blocks),
-        cmocka_unit_test(test_all_lost),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
-}
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

@@ -2,19 +2,14 @@
 /* Triangles that stand across a thin part: inside it, unless they alone join what is seen. */
 #include "surface/repair/interior.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 /* A ring of four quadrangles. One stands across a thin part: without it the others hang together, so it is inside. Of two, facing each
    other, each joins what else does not, so they are seen. */
-static void what_alone_joins_is_seen(void **state)
+TEST(what_alone_joins_is_seen)
 {
     enum { AROUND = 4 };
-    (void)state;
     for (int across = 1; across <= 2; across++) {
         struct trimesh ring = { 0 };
         char hidden[2 * AROUND] = { 0 };
@@ -32,13 +27,4 @@ static void what_alone_joins_is_seen(void **state)
             assert_int_equal(hidden[t], across == 1 && t < 2 ? INTERIOR_INSIDE : INTERIOR_NOT);
         trimesh_finish(&ring);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_alone_joins_is_seen),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,12 +2,8 @@
 /* Sums over sensors against plain loops in double precision. */
 #include "preprocess/subdivision/interp_weights.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include "tests/support/cad.h"
 
@@ -77,10 +73,9 @@ static void make(struct trial *trial, bool decays)
                                           .count = trial->padded };
 }
 
-static void shepards_shares_are_those_of_a_plain_loop(void **state)
+TEST(shepards_shares_are_those_of_a_plain_loop)
 {
     const float powers[5] = { 1, 2, 3, 2.5f, 12 };
-    (void)state;
     for (int n = 0; n < 2000; n++) {
         struct trial trial;
         float shares[MOST];
@@ -117,9 +112,8 @@ static void shepards_shares_are_those_of_a_plain_loop(void **state)
     }
 }
 
-static void papers_shares_are_those_of_a_plain_loop(void **state)
+TEST(papers_shares_are_those_of_a_plain_loop)
 {
-    (void)state;
     for (int n = 0; n < 2000; n++) {
         struct trial trial;
         float shares[MOST], radius_m = (float)exp(4 * cad_random(&chance) - 1);
@@ -150,9 +144,8 @@ static void papers_shares_are_those_of_a_plain_loop(void **state)
 }
 
 /* Nearer and farther at random, but nobody over the radius, whatever the sensors read. */
-static void no_value_changes_faster_than_is_said(void **state)
+TEST(no_value_changes_faster_than_is_said)
 {
-    (void)state;
     for (int n = 0; n < 2000; n++) {
         struct trial trial;
         float shares[2][MOST], radius_m = (float)exp(4 * cad_random(&chance) - 1), step_m = 1e-3f * radius_m;
@@ -183,9 +176,8 @@ static void no_value_changes_faster_than_is_said(void **state)
     }
 }
 
-static void distances_and_errors_are_those_of_a_plain_loop(void **state)
+TEST(distances_and_errors_are_those_of_a_plain_loop)
 {
-    (void)state;
     for (int n = 0; n < 500; n++) {
         float values[7][MOST], distance_m[MOST], point[3], weights[3];
         const size_t count = 8 * (1 + (size_t)(cad_random(&chance) * 5));
@@ -216,14 +208,4 @@ static void distances_and_errors_are_those_of_a_plain_loop(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shepards_shares_are_those_of_a_plain_loop),
-        cmocka_unit_test(papers_shares_are_those_of_a_plain_loop),
-        cmocka_unit_test(no_value_changes_faster_than_is_said),
-        cmocka_unit_test(distances_and_errors_are_those_of_a_plain_loop),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, set_up, NULL);
-}
+TEST_GROUP(set_up, NULL)

@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The journal of alarms as it is asked: pages, and how each alarm was at an instant, held against a plain walk over all rows. */
+#include "tests/support/test.h"
 #include <inttypes.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "alarm/journal_file.h"
 #include "base/clock.h"
@@ -81,6 +74,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+
 struct found {
     int64_t ids[ROWS];
     int count;
@@ -115,9 +110,8 @@ static void check_at(struct setup *s, int64_t t_us)
     assert_int_equal(found.count, wanted);
 }
 
-static void each_alarm_is_as_it_was_then(void **state)
+CASE(each_alarm_is_as_it_was_then)
 {
-    struct setup *s = *state;
     check_at(s, BEGIN_US - 1);
     check_at(s, INT64_MAX);
     for (int i = 0; i < ROWS; i += 37) {
@@ -148,9 +142,8 @@ static void check_pages(struct setup *s, const char *tag, int64_t from_us, int64
         assert_true(s->rows[at].t_us < from_us || s->rows[at].t_us > to_us || (tag && s->rows[at].tag != atoi(tag + 2)));
 }
 
-static void pages_follow_each_other(void **state)
+CASE(pages_follow_each_other)
 {
-    struct setup *s = *state;
     check_pages(s, NULL, INT64_MIN, INT64_MAX, 7);
     check_pages(s, NULL, s->rows[700].t_us, s->rows[2100].t_us, 100);
     check_pages(s, "T-3", INT64_MIN, INT64_MAX, 11);
@@ -159,9 +152,8 @@ static void pages_follow_each_other(void **state)
 }
 
 /* Rows that a page ended with may be forgotten before the next is asked for. */
-static void a_page_after_rows_that_are_gone(void **state)
+CASE(a_page_after_rows_that_are_gone)
 {
-    struct setup *s = *state;
     struct found found = { .count = 0 };
     const struct journal_query query = { INT64_MIN, INT64_MAX, 500, NULL, ROWS };
     assert_int_equal(journal_file_forget(s->file, INT64_MAX), 0);
@@ -169,15 +161,4 @@ static void a_page_after_rows_that_are_gone(void **state)
     assert_int_equal(found.count, 0);
     assert_int_equal(journal_file_at(s->file, INT64_MAX, on_row, &found), 0);
     assert_int_equal(found.count, 0);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(each_alarm_is_as_it_was_then, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(pages_follow_each_other, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_page_after_rows_that_are_gone, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shaded colours: only lightness changes, by no more than is allowed, and never out of sRGB. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "field/colormap.h"
 #include "field/lab.h"
@@ -28,9 +22,8 @@ static void lab_of(const uint8_t rgb[3], double lab[3])
     lab[2] = 200 * (f[1] - f[2]);
 }
 
-static void test_only_lightness_changes(void **state)
+TEST(test_only_lightness_changes)
 {
-    (void)state;
     for (size_t m = 0; m < colormap_count(); m++)
         for (int i = 0; i < 256; i += 5)
             for (double offset = -COLORMAP_SHADING; offset <= COLORMAP_SHADING; offset += 1.75) {
@@ -45,9 +38,8 @@ static void test_only_lightness_changes(void **state)
             }
 }
 
-static void test_maps_for_relief_have_room_for_shading(void **state)
+TEST(test_maps_for_relief_have_room_for_shading)
 {
-    (void)state;
     for (int i = 0; i < 512; i++)
         for (int sign = -1; sign <= 1; sign += 2) {
             const uint8_t *rgb = colormap_at((size_t)(i / 256))->rgb[i % 256];
@@ -60,10 +52,9 @@ static void test_maps_for_relief_have_room_for_shading(void **state)
         }
 }
 
-static void test_no_shading_leaves_the_color(void **state)
+TEST(test_no_shading_leaves_the_color)
 {
     static const uint8_t colors[][3] = { { 0, 0, 0 }, { 255, 255, 255 }, { 255, 0, 0 }, { 1, 2, 3 } };
-    (void)state;
     for (int i = 0; i < 4; i++) {
         uint8_t out[3];
         lab_shade(colors[i], 0, out);
@@ -74,9 +65,8 @@ static void test_no_shading_leaves_the_color(void **state)
 }
 
 /* What the files say is what the colours bear. */
-static void test_shading_and_safety(void **state)
+TEST(test_shading_and_safety)
 {
-    (void)state;
     for (size_t m = 0; m < colormap_count(); m++) {
         struct colormap judged = *colormap_at(m);
         colormap_rate_shading(&judged);
@@ -87,10 +77,9 @@ static void test_shading_and_safety(void **state)
     assert_true(colormap_operator()->shading == COLORMAP_SHADING);
 }
 
-static void test_maps_that_cannot_be_read_are_not_safe(void **state)
+TEST(test_maps_that_cannot_be_read_are_not_safe)
 {
     struct colormap there_and_back = { .name = "" }, green_to_red = { .name = "" };
-    (void)state;
     for (int i = 0; i < 256; i++) {
         memset(there_and_back.rgb[i], 2 * (i < 128 ? i : 255 - i), 3);
         memcpy(green_to_red.rgb[i], (uint8_t[]){ (uint8_t)(60 + i / 2), (uint8_t)(140 - i / 3), 60 }, 3); /* about as light all along */
@@ -99,17 +88,4 @@ static void test_maps_that_cannot_be_read_are_not_safe(void **state)
     assert_true(!there_and_back.safe && there_and_back.shading >= 2);
     colormap_rate_shading(&green_to_red);
     assert_true(!green_to_red.safe && green_to_red.shading >= 2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_only_lightness_changes),
-        cmocka_unit_test(test_maps_for_relief_have_room_for_shading),
-        cmocka_unit_test(test_no_shading_leaves_the_color),
-        cmocka_unit_test(test_shading_and_safety),
-        cmocka_unit_test(test_maps_that_cannot_be_read_are_not_safe),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

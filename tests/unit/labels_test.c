@@ -2,15 +2,10 @@
 /* Labels by the rule of protocol/LABELS.md, against the vectors that the browser's are tested with too. */
 #include "render/overlay/labels.h"
 
+#include "tests/support/test.h"
 #include <dirent.h>
 #include <jansson.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/synthetic.h"
@@ -76,9 +71,8 @@ static void check_vector(const char *name)
     json_decref(vector);
 }
 
-static void places_labels_as_the_vectors_say(void **state)
+TEST(places_labels_as_the_vectors_say)
 {
-    (void)state;
     int count = 0;
     DIR *folder = opendir(FOLDER);
     assert_non_null(folder);
@@ -92,9 +86,8 @@ static void places_labels_as_the_vectors_say(void **state)
 }
 
 /* Thousands are placed in no time, and never over one another. */
-static void many_labels_do_not_overlap(void **state)
+TEST(many_labels_do_not_overlap)
 {
-    (void)state;
     enum { COUNT = 4096 };
     static struct label_item items[COUNT];
     static struct label_place places[COUNT];
@@ -122,14 +115,4 @@ static void many_labels_do_not_overlap(void **state)
         shown++;
     }
     assert_true(shown > 3);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(places_labels_as_the_vectors_say),
-        cmocka_unit_test(many_labels_do_not_overlap),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Two never lead at once: three nodes and a database whose connections are cut, whose messages come late or twice too late, whose clocks
    run apart, and which are killed, stopped for seconds and started again, by chance. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "corelink/lease.h"
 #include "tests/support/sweep.h"
@@ -327,9 +320,8 @@ static void run(struct world *world, int64_t ns)
     }
 }
 
-static void never_two_and_one_in_the_end(void **state)
+TEST(never_two_and_one_in_the_end)
 {
-    (void)state;
     unsigned seed = (unsigned)sweep_seed();
     int terms = 0;
     struct world *world = malloc(sizeof(*world));
@@ -364,9 +356,8 @@ static struct lease follower(const char *node, const struct lease_row *row, int6
     return lease;
 }
 
-static void a_follower_waits_for_what_binds_it(void **state)
+TEST(a_follower_waits_for_what_binds_it)
 {
-    (void)state;
     const struct lease_row free_row = { 0 }, led = { .epoch = 3, .beat = 9, .instance = 5, .leader = "a", .standby = "b" };
     struct lease b = follower("b", &free_row, S);
     assert_false(lease_may_bid(&b, 4 * S - 1)); /* who gave it back, or whether the database was made anew, it does not say */
@@ -389,9 +380,8 @@ static void a_follower_waits_for_what_binds_it(void **state)
     assert_true(lease_may_bid(&a, 13 * S)); /* started again */
 }
 
-static void a_leader_counts_the_standby_that_the_row_names(void **state)
+TEST(a_leader_counts_the_standby_that_the_row_names)
 {
-    (void)state;
     const struct lease_row none = { 0 };
     struct lease a = follower("a", &none, S);
     lease_bid(&a);
@@ -416,9 +406,8 @@ static void a_leader_counts_the_standby_that_the_row_names(void **state)
 }
 
 /* A database that was restored has a row of the same leader from before: who wins it next, nobody may have seen. */
-static void a_leader_whose_row_is_of_another_epoch_has_lost_it(void **state)
+TEST(a_leader_whose_row_is_of_another_epoch_has_lost_it)
 {
-    (void)state;
     const struct lease_row none = { 0 };
     struct lease a = follower("a", &none, S);
     lease_bid(&a);
@@ -432,9 +421,8 @@ static void a_leader_whose_row_is_of_another_epoch_has_lost_it(void **state)
     assert_false(lease_acts(&a, 2 * S));
 }
 
-static void a_bid_whose_answer_is_lost_is_found_in_the_row(void **state)
+TEST(a_bid_whose_answer_is_lost_is_found_in_the_row)
 {
-    (void)state;
     const struct lease_row none = { 0 };
     struct lease a = follower("a", &none, S);
     lease_bid(&a);
@@ -444,17 +432,4 @@ static void a_bid_whose_answer_is_lost_is_found_in_the_row(void **state)
     assert_false(lease_acts(&a, 2 * S)); /* when it was, nobody knows: a renewal says */
     lease_renewed(&a, "", 2 * S);
     assert_true(lease_acts(&a, 2 * S));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_follower_waits_for_what_binds_it),
-        cmocka_unit_test(a_leader_counts_the_standby_that_the_row_names),
-        cmocka_unit_test(a_leader_whose_row_is_of_another_epoch_has_lost_it),
-        cmocka_unit_test(a_bid_whose_answer_is_lost_is_found_in_the_row),
-        cmocka_unit_test(never_two_and_one_in_the_end),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

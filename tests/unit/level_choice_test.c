@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which level of detail is drawn: the coarsest that errs by less than asked for where the asset is nearest; and what is asked for, which is
    less where a picture has room for more triangles. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 #include "render/plan/lod_selection.h"
@@ -29,9 +25,8 @@ static size_t chosen(double away_m, double pixel_per_radian)
     return chosen_within(1, away_m, pixel_per_radian);
 }
 
-static void levels_change_within_a_pixel(void **state)
+TEST(levels_change_within_a_pixel)
 {
-    (void)state;
     assert_int_equal(chosen(-1, 1000), 0); /* the camera is inside the box */
     assert_int_equal(chosen(0, 1000), 0);
     assert_int_equal(chosen(0.9, 1000), 0); /* 1 mm at 0.9 m: 1.1 pixels */
@@ -76,9 +71,8 @@ static double error_among(size_t assets, int fewer, enum tier tier)
     return error_px;
 }
 
-static void pictures_with_room_are_drawn_finer(void **state)
+TEST(pictures_with_room_are_drawn_finer)
 {
-    (void)state;
     assert_float_equal(error_among(3, 1, TIER_REFINED), 0, 0);       /* all that it may have, and no more */
     assert_float_equal(error_among(4, 1, TIER_REFINED), 0.35, 1e-9); /* 2 mm */
     assert_float_equal(error_among(10, 1, TIER_REFINED), 0.35, 1e-9);
@@ -90,14 +84,4 @@ static void pictures_with_room_are_drawn_finer(void **state)
     assert_float_equal(error_among(31, 10, TIER_PREVIEW), 1, 1e-9);
     assert_float_equal(error_among(1000, 10, TIER_PREVIEW), 1, 1e-9);
     assert_float_equal(error_among(0, 1, TIER_PREVIEW), 0, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(levels_change_within_a_pixel),
-        cmocka_unit_test(pictures_with_room_are_drawn_finer),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

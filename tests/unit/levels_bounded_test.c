@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Edge collapses within a bound: as few triangles as it takes, no farther than is said, borders and seams in place. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
@@ -128,9 +123,8 @@ static double angle_of(uint32_t i)
 }
 
 /* A flat disc of 1 m, a sheet: a polygon that stays within half of the error takes n corners, and n - 2 triangles. */
-static void a_disc_takes_few_triangles(void **state)
+TEST(a_disc_takes_few_triangles)
 {
-    (void)state;
     for (double error_m = 0.005; error_m < 0.2; error_m *= 2) {
         struct shape s;
         shape_begin(&s);
@@ -150,11 +144,10 @@ static void a_disc_takes_few_triangles(void **state)
 }
 
 /* A tube of rings with a bend, closed by nothing: what is asked for next is never finer, and each stays within its error. */
-static void errors_grow_with_what_is_asked(void **state)
+TEST(errors_grow_with_what_is_asked)
 {
     struct shape s;
     size_t before = SIZE_MAX;
-    (void)state;
     shape_begin(&s);
     for (uint32_t r = 0; r < 40; r++)
         for (uint32_t i = 0; i < 24; i++) {
@@ -201,9 +194,8 @@ static size_t count_open(const struct shape *s)
 }
 
 /* Tori of ever more corners stay closed, and touch themselves along no edge, also where the error is larger than they are thick. */
-static void what_is_closed_stays_so(void **state)
+TEST(what_is_closed_stays_so)
 {
-    (void)state;
     for (uint32_t around = 5; around <= 12; around++) {
         struct shape s;
         shape_begin(&s);
@@ -232,11 +224,10 @@ static void what_is_closed_stays_so(void **state)
 }
 
 /* Two materials on one plate meet along a wave: the border stays within half of the error, and no triangle has both. */
-static void seams_stay(void **state)
+TEST(seams_stay)
 {
     struct shape s;
     const double error_m = 0.05;
-    (void)state;
     shape_begin(&s);
     for (uint32_t side = 0; side < 2; side++) {
         uint32_t first = s.g.vertex_count;
@@ -277,16 +268,4 @@ static void seams_stay(void **state)
     }
     mem_free(left);
     shape_finish(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_disc_takes_few_triangles),
-        cmocka_unit_test(errors_grow_with_what_is_asked),
-        cmocka_unit_test(what_is_closed_stays_so),
-        cmocka_unit_test(seams_stay),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Levels of detail: nested, without cracks, true to their error; vertices in the order that the asset file wants. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "base/math/vec.h"
@@ -90,7 +85,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-static void levels_grow_coarser(void **state)
+TEST_WITH(levels_grow_coarser, set_up, tear_down)
 {
     const struct set_of *s = *state;
     assert_true(s->levels.count >= 4);
@@ -107,7 +102,7 @@ static void levels_grow_coarser(void **state)
 }
 
 /* Where many are drawn in one picture: 1.4 times the error, or twice the step of 1.3 where what lies between has hardly fewer triangles. */
-static void levels_lie_close(void **state)
+TEST_WITH(levels_lie_close, set_up, tear_down)
 {
     const struct set_of *s = *state;
     const double size_m = 2 * (MAJOR_M + MINOR_M) * sqrt(2);
@@ -122,7 +117,7 @@ static void levels_lie_close(void **state)
     assert_true(pairs >= 6);
 }
 
-static void levels_are_nested(void **state)
+TEST_WITH(levels_are_nested, set_up, tear_down)
 {
     const struct set_of *s = *state;
     char *used = mem_array(s->g.vertex_count, 1);
@@ -137,7 +132,7 @@ static void levels_are_nested(void **state)
 }
 
 /* Every edge has two faces, which run along it in opposite directions. */
-static void closed_stays_closed(void **state)
+TEST_WITH(closed_stays_closed, set_up, tear_down)
 {
     const struct set_of *s = *state;
     for (size_t l = 0; l < s->levels.count; l++) {
@@ -162,7 +157,7 @@ static void closed_stays_closed(void **state)
 }
 
 /* The border between the materials lies in two planes through the axis. */
-static void materials_keep_their_border(void **state)
+TEST_WITH(materials_keep_their_border, set_up, tear_down)
 {
     const struct set_of *s = *state;
     for (size_t l = 0; l < s->levels.count; l++) {
@@ -223,7 +218,7 @@ static double stray(const struct set_of *s, const struct level *from, const stru
     return most;
 }
 
-static void error_is_a_bound(void **state)
+TEST_WITH(error_is_a_bound, set_up, tear_down)
 {
     const struct set_of *s = *state;
     uint32_t seed = 7;
@@ -250,7 +245,7 @@ static void add_lone(struct geometry *g)
     }
 }
 
-static void a_level_is_a_prefix(void **state)
+TEST_WITH(a_level_is_a_prefix, set_up, tear_down)
 {
     struct set_of *s = *state;
     struct asset_level file[LEVELS_MAX];
@@ -344,11 +339,10 @@ static size_t vertices_above(const struct geometry *g, const struct level *level
 }
 
 /* Bolts that stand 2 cm out of a slab of 10 m go once a level errs by that. */
-static void bolts_go_where_they_hardly_stand_out(void **state)
+TEST(bolts_go_where_they_hardly_stand_out)
 {
     struct geometry g;
     struct levels levels;
-    (void)state;
     begin_boxes(&g, 101);
     add_box(&g, 0, 0, 0, 10, 10, 0.5);
     for (int i = 0; i < 100; i++)
@@ -364,12 +358,11 @@ static void bolts_go_where_they_hardly_stand_out(void **state)
 }
 
 /* Nuts stand 2 cm out of a slab, under a torus that has a level for each error: none that errs by more than a tenth more has nuts. */
-static void nuts_go_once_they_stand_out_by_less(void **state)
+TEST(nuts_go_once_they_stand_out_by_less)
 {
     struct geometry g;
     struct levels levels;
     size_t with = 0, without = 0;
-    (void)state;
     begin_boxes(&g, 101 + AROUND * TUBE / 4);
     g.primitive_count = 0;
     add_part(&g, 0, AROUND, 0);
@@ -391,11 +384,10 @@ static void nuts_go_once_they_stand_out_by_less(void **state)
 }
 
 /* A block of 5 cm alone, 20 m away, goes with levels that err by its size or more. A grating of as small bars is no small thing. */
-static void what_is_alone_and_small_goes_but_no_crowd(void **state)
+TEST(what_is_alone_and_small_goes_but_no_crowd)
 {
     struct geometry g;
     struct levels levels;
-    (void)state;
     begin_boxes(&g, 402);
     add_box(&g, 0, 0, 0, 10, 2, 2);
     add_box(&g, 30, 0, 0, 0.05, 0.05, 0.05);
@@ -444,12 +436,11 @@ static size_t looking_away(const struct geometry *g, const struct level *level)
 }
 
 /* Levels that err by more than a deck is thick have faces above and below all the same, each on vertices of its own side. */
-static void thin_plates_keep_their_sides(void **state)
+TEST(thin_plates_keep_their_sides)
 {
     struct set_of s = { 0 };
     uint32_t seed = 11;
     size_t thinner = 0;
-    (void)state;
     begin_boxes(&s.g, 60);
     for (int i = 0; i < 60; i++)
         add_box(&s.g, 1.02 * (i % 10), 1.02 * (i / 10), 0.001 * i, 1, 1, 0.02 + 0.001 * (i % 7));
@@ -468,23 +459,4 @@ static void thin_plates_keep_their_sides(void **state)
     levels_are_nested(&of_plates);
     levels_finish(&s.levels);
     geometry_finish(&s.g);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(levels_grow_coarser, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(levels_lie_close, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(levels_are_nested, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(closed_stays_closed, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(materials_keep_their_border, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(error_is_a_bound, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_level_is_a_prefix, set_up, tear_down),
-        cmocka_unit_test(bolts_go_where_they_hardly_stand_out),
-        cmocka_unit_test(nuts_go_once_they_stand_out_by_less),
-        cmocka_unit_test(what_is_alone_and_small_goes_but_no_crowd),
-        cmocka_unit_test(thin_plates_keep_their_sides),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,14 +2,8 @@
 /* Rods near thin sheets: joined to the side that looks at them, as far as the tolerance, and never through the sheet. */
 #include "surface/repair/line_of_sight.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "surface/surface.h"
@@ -118,10 +112,9 @@ static void test_pair(const char *name, const struct pair *pair, bool below, boo
 }
 
 /* Half the sheet's thickness is less than the gap; to its far side, too, it is less than the tolerance. */
-static void a_rod_is_joined_to_the_side_that_looks_at_it(void **state)
+TEST(a_rod_is_joined_to_the_side_that_looks_at_it)
 {
     static const double gaps[] = { 0, 0.4, 0.6 }; /* tolerances */
-    (void)state;
     for (int i = 0; i < 12; i++) {
         struct pair pair;
         bool below = i % 2, thin = i / 2 % 2;
@@ -136,9 +129,8 @@ static void a_rod_is_joined_to_the_side_that_looks_at_it(void **state)
     }
 }
 
-static void a_rod_farther_than_the_tolerance_hangs_apart(void **state)
+TEST(a_rod_farther_than_the_tolerance_hangs_apart)
 {
-    (void)state;
     for (int below = 0; below < 2; below++) {
         struct pair pair;
         double thick = 0.3 * TOLERANCE, rod = 6 * TOLERANCE, z = below ? -1.2 * TOLERANCE_MOST - rod : thick + 1.2 * TOLERANCE_MOST;
@@ -149,10 +141,9 @@ static void a_rod_farther_than_the_tolerance_hangs_apart(void **state)
 }
 
 /* From there both sides are as near. */
-static void a_rod_is_joined_to_the_rim(void **state)
+TEST(a_rod_is_joined_to_the_rim)
 {
     static const double gaps[] = { 0, 0.4, 0.8 };
-    (void)state;
     for (int i = 0; i < 3; i++) {
         struct pair pair;
         double thick = 0.3 * TOLERANCE, rod = 4 * TOLERANCE, x = 0.3 + 0.1 * cad_random(&chance), y = -gaps[i] * TOLERANCE - rod;
@@ -162,13 +153,4 @@ static void a_rod_is_joined_to_the_rim(void **state)
     }
 }
 
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_rod_is_joined_to_the_side_that_looks_at_it),
-        cmocka_unit_test(a_rod_farther_than_the_tolerance_hangs_apart),
-        cmocka_unit_test(a_rod_is_joined_to_the_rim),
-    };
-    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
-}
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

@@ -3,14 +3,9 @@
    (shared/data/models). */
 #include "surface/surface.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
@@ -99,11 +94,10 @@ static void check_shape(const char *name, struct cad *clean, int faults)
     cad_finish(clean);
 }
 
-static void shapes(void **state)
+TEST(shapes)
 {
     const double middle[3] = { 0, 0, 0 };
     struct cad cad = { 0 };
-    (void)state;
     cad_plate(&cad, &chance, 40, 30, 1.2, 1, 0.5);
     check_shape("plate", &cad, CAD_FAULTS);
     cad_slotted_plate(&cad, &chance, 40, 30, 1.3, 1, 12 + (int)draw(12), 1, 20);
@@ -125,10 +119,9 @@ static void shapes(void **state)
 }
 
 /* Rods in two layers that cross, and touch. Their area says 15,000 samples, of which one layer alone would take more. */
-static void a_grating_of_rods(void **state)
+TEST(a_grating_of_rods)
 {
     struct cad cad = { 0 };
-    (void)state;
     for (int i = 0; i < 200; i++) {
         const double along = 0.05 * (i / 2 - 50) + 0.01 * cad_random(&chance);
         const double centre[3] = { i % 2 ? along : 0, i % 2 ? 0 : along, i % 2 ? 0.0101 : 0 };
@@ -184,33 +177,22 @@ static void check_model(const char *path, const char *const *parts, const double
 }
 
 /* From this corner of the first frame, distances to a tenth of it were shorter, by up to 0.2 m of 1.1 m: long rods of it had no samples. */
-static void supports(void **state)
+TEST(supports)
 {
     static const char *const parts[] = { "/PS/WD1/0003", "/PS/WD1/0022", "/PS/WD1/0036", NULL };
-    (void)state;
     check_model(MODELS "huldra_wd1_psup.glb", parts, (const double[3]){ -8.7267, 8.7477, 1.8313 });
 }
 
-static void plant_room(void **state)
+TEST(plant_room)
 {
     static const char *const parts[] = { "/-HZ-05--C", "/-HZ", NULL };
-    (void)state;
     check_model(MODELS "plm_plant_5parts.glb", parts, NULL);
 }
 
-static void platform(void **state)
+TEST(platform)
 {
     static const char *const parts[] = { "*", NULL };
-    (void)state;
     check_model(MODELS "offshore_platform_overview.glb", parts, NULL);
 }
 
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shapes),     cmocka_unit_test(a_grating_of_rods), cmocka_unit_test(supports),
-        cmocka_unit_test(plant_room), cmocka_unit_test(platform),
-    };
-    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
-}
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

@@ -2,17 +2,12 @@
 /* The log in its formats, and datagrams to a service manager. */
 #include "base/log/log.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <jansson.h>
 
 #include "base/clock.h"
@@ -77,7 +72,7 @@ static char *written(enum log_format format, const char *socket_path, enum log_l
     return text;
 }
 
-static void an_entry_of_the_journal_has_its_priority_plant_and_message_id(void **state)
+TEST_WITH(an_entry_of_the_journal_has_its_priority_plant_and_message_id, set_up, tear_down)
 {
     const struct place *place = *state;
     char got[2048], want[2048];
@@ -91,7 +86,7 @@ static void an_entry_of_the_journal_has_its_priority_plant_and_message_id(void *
     free(text);
 }
 
-static void a_message_of_two_lines_is_one_entry(void **state)
+TEST_WITH(a_message_of_two_lines_is_one_entry, set_up, tear_down)
 {
     const struct place *place = *state;
     char got[2048];
@@ -102,9 +97,8 @@ static void a_message_of_two_lines_is_one_entry(void **state)
     free(text);
 }
 
-static void without_the_journals_socket_lines_begin_with_their_priority(void **state)
+TEST(without_the_journals_socket_lines_begin_with_their_priority)
 {
-    (void)state;
     static const char *const want[] = { "<3>text\n", "<4>text\n", "<6>text\n" };
     for (int level = LOG_ERROR; level <= LOG_INFO; level++) {
         char *text = written(LOG_JOURNAL, "/nowhere/socket", (enum log_level)level, EVENT_NONE, "text");
@@ -113,9 +107,8 @@ static void without_the_journals_socket_lines_begin_with_their_priority(void **s
     }
 }
 
-static void a_line_of_json_is_one_object_whatever_the_text(void **state)
+TEST(a_line_of_json_is_one_object_whatever_the_text)
 {
-    (void)state;
     char *text = written(LOG_JSON, NULL, LOG_WARN, EVENT_CERTIFICATE_EXPIRES, "\"a\"\n\xff\xc3\xa4\x01");
     assert_ptr_equal(strchr(text, '\n'), text + strlen(text) - 1);
     json_t *object = json_loads(text, 0, NULL);
@@ -130,9 +123,8 @@ static void a_line_of_json_is_one_object_whatever_the_text(void **state)
     free(text);
 }
 
-static void every_event_has_a_name_and_an_id_of_its_own(void **state)
+TEST(every_event_has_a_name_and_an_id_of_its_own)
 {
-    (void)state;
     assert_null(log_event_name(EVENT_NONE));
     for (int i = 1; i < EVENT_COUNT; i++) {
         assert_int_equal(strspn(log_event_id((enum log_event)i), "0123456789abcdef"), 32);
@@ -142,7 +134,7 @@ static void every_event_has_a_name_and_an_id_of_its_own(void **state)
     }
 }
 
-static void the_journal_is_known_by_its_stream(void **state)
+TEST_WITH(the_journal_is_known_by_its_stream, set_up, tear_down)
 {
     const struct place *place = *state;
     struct stat st;
@@ -156,7 +148,7 @@ static void the_journal_is_known_by_its_stream(void **state)
     assert_false(service_is_journal(place->fd));
 }
 
-static void the_manager_is_told_and_asked_for_patience(void **state)
+TEST_WITH(the_manager_is_told_and_asked_for_patience, set_up, tear_down)
 {
     const struct place *place = *state;
     char got[256];
@@ -178,9 +170,8 @@ static void the_manager_is_told_and_asked_for_patience(void **state)
     assert_null(patience);
 }
 
-static void a_watchdog_is_ours_only_if_it_names_this_process(void **state)
+TEST(a_watchdog_is_ours_only_if_it_names_this_process)
 {
-    (void)state;
     char pid[32];
     setenv("WATCHDOG_USEC", "5000000", 1);
     assert_int_equal(service_watchdog_ns(), 5 * NS_PER_S);
@@ -193,20 +184,4 @@ static void a_watchdog_is_ours_only_if_it_names_this_process(void **state)
     assert_int_equal(service_watchdog_ns(), 0);
     unsetenv("WATCHDOG_USEC");
     unsetenv("WATCHDOG_PID");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(an_entry_of_the_journal_has_its_priority_plant_and_message_id, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_message_of_two_lines_is_one_entry, set_up, tear_down),
-        cmocka_unit_test(without_the_journals_socket_lines_begin_with_their_priority),
-        cmocka_unit_test(a_line_of_json_is_one_object_whatever_the_text),
-        cmocka_unit_test(every_event_has_a_name_and_an_id_of_its_own),
-        cmocka_unit_test_setup_teardown(the_journal_is_known_by_its_stream, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(the_manager_is_told_and_asked_for_patience, set_up, tear_down),
-        cmocka_unit_test(a_watchdog_is_ours_only_if_it_names_this_process),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

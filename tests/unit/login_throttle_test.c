@@ -2,12 +2,8 @@
 /* The login throttle: when an address is slowed, for how long, and whom that does not touch. */
 #include "access/login_throttle.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 
@@ -28,9 +24,10 @@ static int tear_down(void **state)
     return 0;
 }
 
-static void ten_wrong_tokens_within_a_minute_slow_an_address(void **state)
+#define CASE(name) TEST_ON(struct login_throttle *throttle, name, set_up, tear_down)
+
+CASE(ten_wrong_tokens_within_a_minute_slow_an_address)
 {
-    struct login_throttle *throttle = *state;
     for (int i = 0; i < 9; i++)
         assert_int_equal(login_throttle_judge(throttle, HERE, NULL, i * 6 * S), LOGIN_WRONG);
     assert_int_equal(login_throttle_failures(throttle, HERE, 49 * S), 9);
@@ -48,16 +45,14 @@ static void ten_wrong_tokens_within_a_minute_slow_an_address(void **state)
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 119 * S), LOGIN_WRONG);
 }
 
-static void ten_in_more_than_a_minute_do_not(void **state)
+CASE(ten_in_more_than_a_minute_do_not)
 {
-    struct login_throttle *throttle = *state;
     for (int i = 0; i < 100; i++)
         assert_int_equal(login_throttle_judge(throttle, HERE, NULL, i * 7 * S), LOGIN_WRONG);
 }
 
-static void who_was_let_in_before_is_not_held_up(void **state)
+CASE(who_was_let_in_before_is_not_held_up)
 {
-    struct login_throttle *throttle = *state;
     assert_int_equal(login_throttle_judge(throttle, HERE, WALL, 0), LOGIN_GOOD_NEW);
     for (int i = 0; i < 12; i++)
         login_throttle_judge(throttle, HERE, NULL, S);
@@ -66,9 +61,8 @@ static void who_was_let_in_before_is_not_held_up(void **state)
     assert_int_equal(login_throttle_judge(throttle, THERE, DESK, 2 * S), LOGIN_GOOD_NEW);
 }
 
-static void a_login_is_news_every_ten_minutes(void **state)
+CASE(a_login_is_news_every_ten_minutes)
 {
-    struct login_throttle *throttle = *state;
     assert_int_equal(login_throttle_judge(throttle, HERE, WALL, 0), LOGIN_GOOD_NEW);
     assert_int_equal(login_throttle_judge(throttle, HERE, DESK, S), LOGIN_GOOD_NEW);
     assert_int_equal(login_throttle_judge(throttle, HERE, WALL, 599 * S), LOGIN_GOOD);
@@ -77,9 +71,8 @@ static void a_login_is_news_every_ten_minutes(void **state)
 }
 
 /* Memory is bounded, and who is wrong now is not forgotten for those of long ago. */
-static void as_many_addresses_as_there_is_room_for(void **state)
+CASE(as_many_addresses_as_there_is_room_for)
 {
-    struct login_throttle *throttle = *state;
     uint8_t other[16] = { 0x20, 0x01 };
     for (int i = 0; i < 3 * LOGIN_ADDRESSES; i++) {
         other[6] = (uint8_t)(i >> 8);
@@ -92,9 +85,8 @@ static void as_many_addresses_as_there_is_room_for(void **state)
 }
 
 /* Refused answers of an identity provider. */
-static void what_is_judged_elsewhere_counts_alike(void **state)
+CASE(what_is_judged_elsewhere_counts_alike)
 {
-    struct login_throttle *throttle = *state;
     assert_int_equal(login_throttle_begin(throttle, HERE, 0), LOGIN_NONE);
     for (int i = 0; i < 9; i++)
         assert_int_equal(login_throttle_fail(throttle, HERE, i * S), LOGIN_WRONG);
@@ -105,19 +97,4 @@ static void what_is_judged_elsewhere_counts_alike(void **state)
     assert_int_equal(login_throttle_begin(throttle, THERE, 10 * S), LOGIN_NONE);
     assert_int_equal(login_throttle_begin(throttle, HERE, 14 * S), LOGIN_NONE);
     assert_int_equal(login_throttle_begin(throttle, HERE, 15 * S), LOGIN_HELD);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(ten_wrong_tokens_within_a_minute_slow_an_address),
-        TEST(ten_in_more_than_a_minute_do_not),
-        TEST(who_was_let_in_before_is_not_held_up),
-        TEST(a_login_is_news_every_ten_minutes),
-        TEST(what_is_judged_elsewhere_counts_alike),
-        TEST(as_many_addresses_as_there_is_room_for),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,17 +2,11 @@
 /* What was proven outlives the daemon, is void once the tag is another, and no line of it is ever lost. */
 #include "loopcheck/loop_checks.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/plant_by_hand.h"
@@ -78,7 +72,7 @@ static void expect_unproven(const struct fixture *f, bool first, bool second)
     assert_false(loop_checks_unproven(f->loop_checks, COMPUTED));
 }
 
-static void test_unproven_is_said_only_once_somebody_began(void **state)
+TEST_WITH(test_unproven_is_said_only_once_somebody_began, set_up, tear_down)
 {
     struct fixture *f = *state;
     assert_false(loop_checks_begun(f->loop_checks));
@@ -95,7 +89,7 @@ static void test_unproven_is_said_only_once_somebody_began(void **state)
     assert_int_equal(loop_checks_number_of(f->loop_checks, 1), 0);
 }
 
-static void test_a_proof_outlives_the_daemon(void **state)
+TEST_WITH(test_a_proof_outlives_the_daemon, set_up, tear_down)
 {
     struct fixture *f = *state;
     assert_null(loop_checks_add(f->loop_checks, 0, &passed));
@@ -110,7 +104,7 @@ static void test_a_proof_outlives_the_daemon(void **state)
     expect_unproven(f, false, true);
 }
 
-static void test_a_tag_that_is_another_is_unproven_again(void **state)
+TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
 {
     struct fixture *f = *state;
     struct plant_tag *tag = &f->plant->tags[0], was = *tag;
@@ -147,7 +141,7 @@ static char *read_file(const struct fixture *f)
     return text;
 }
 
-static void test_a_line_that_was_cut_off_spoils_no_other(void **state)
+TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
 {
     struct fixture *f = *state;
     assert_null(loop_checks_add(f->loop_checks, 0, &passed));
@@ -171,7 +165,7 @@ static void test_a_line_that_was_cut_off_spoils_no_other(void **state)
     mem_free(path);
 }
 
-static void test_what_cannot_be_kept_is_refused_and_counts_for_nothing(void **state)
+TEST_WITH(test_what_cannot_be_kept_is_refused_and_counts_for_nothing, set_up, tear_down)
 {
     struct fixture *f = *state;
     bool root = geteuid() == 0;
@@ -187,7 +181,7 @@ static void test_what_cannot_be_kept_is_refused_and_counts_for_nothing(void **st
     assert_false(loop_checks_begun(f->loop_checks));
 }
 
-static void test_the_folder_is_made_where_nobody_has_yet(void **state)
+TEST_WITH(test_the_folder_is_made_where_nobody_has_yet, set_up, tear_down)
 {
     struct fixture *f = *state;
     assert_int_equal(rmdir(f->folder), 0);
@@ -196,7 +190,7 @@ static void test_the_folder_is_made_where_nobody_has_yet(void **state)
     assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
 }
 
-static void test_all_tags_with_a_source_are_told(void **state)
+TEST_WITH(test_all_tags_with_a_source_are_told, set_up, tear_down)
 {
     struct fixture *f = *state;
     struct text text = { 0 };
@@ -208,19 +202,4 @@ static void test_all_tags_with_a_source_are_told(void **state)
     assert_non_null(strstr(text.at, "\n,\"TI-2\",none,,\"\",,,\"\",\"\","));
     assert_null(strstr(text.at, "SUM"));
     text_finish(&text);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_unproven_is_said_only_once_somebody_began, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_a_proof_outlives_the_daemon, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_what_cannot_be_kept_is_refused_and_counts_for_nothing, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_the_folder_is_made_where_nobody_has_yet, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_all_tags_with_a_source_are_told, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("proofs", tests, NULL, NULL);
 }

@@ -2,13 +2,7 @@
 /* Matching tags to equipment, way by way; names taken apart; plant files changed as a person would. */
 #include "preprocess/match/matcher.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 #include "preprocess/match/isa.h"
@@ -66,6 +60,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 /* asset NULL: none. why: in the reason. */
 static void expect(struct fixture *f, const char *name, const char *description, enum match_status status, const char *asset,
                    const char *why)
@@ -83,9 +79,8 @@ static void expect(struct fixture *f, const char *name, const char *description,
     tag_export_finish(&list);
 }
 
-static void test_by_name(void **state)
+CASE(test_by_name)
 {
-    struct fixture *f = *state;
     expect(f, "TT-1011.PV", "", MATCH_SURE, "E-101", "node 'TT-1011' has its name");
     expect(f, "E101_TIC_01", "", MATCH_SURE, "E-101", "its name has 'E-101' in it");
     expect(f, "Plant/e_101/PT-7", "", MATCH_SURE, "E-101", "its name has 'E-101' in it");
@@ -98,9 +93,8 @@ static void test_by_name(void **state)
     expect(f, "1105BA_LT", "", MATCH_SURE, "-ART1105BA-", "");
 }
 
-static void test_by_number(void **state)
+CASE(test_by_number)
 {
-    struct fixture *f = *state;
     expect(f, "TE-330A", "", MATCH_SURE, "20-V-330", "loop 330: equipment number 330");
     expect(f, "20-LT-3302", "", MATCH_SURE, "20-V-330", "loop 3302: equipment number 330");
     expect(f, "40-LT-330", "", MATCH_LIKELY, "20-V-330", "what stands before it is not of that equipment");
@@ -114,9 +108,8 @@ static void test_by_number(void **state)
     expect(f, "ART1705BA_TT330", "", MATCH_NONE, NULL, ""); /* the number of equipment that is not there counts, not the instrument's */
 }
 
-static void test_by_text(void **state)
+CASE(test_by_text)
 {
-    struct fixture *f = *state;
     char *path, why[MATCH_WHY_BYTES];
     expect(f, "10-FT-7788", "", MATCH_SURE, "E-101", "an attribute of 'E-101'");
     expect(f, "XT_9", "from P-101 to E-101", MATCH_NONE, NULL, "P-101 or E-101");
@@ -138,7 +131,7 @@ static void test_by_text(void **state)
     expect(f, "XT_77", "", MATCH_SURE, "E-101", "rule 2");
 }
 
-static void test_isa_names(void **state)
+TEST(test_isa_names)
 {
     static const struct {
         const char *name, *letters, *number, *suffix;
@@ -151,7 +144,6 @@ static void test_isa_names(void **state)
         { "E101_TT_07", "TT", "7", "", 'T', ISA_MEASURED },      { "FV-101", "FV", "101", "", 'F', ISA_SETTING },
         { "P-101.RUN", NULL, NULL, "", 0, ISA_STATE },
     };
-    (void)state;
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         struct isa_name name;
         isa_read(&name, cases[i].name);
@@ -167,7 +159,7 @@ static void test_isa_names(void **state)
 }
 
 /* Unit, description, words of the name, letters: in this order, none against the unit. */
-static void test_quantities(void **state)
+TEST(test_quantities)
 {
     static const struct {
         const char *name, *unit, *description, *quantity; /* "": none */
@@ -203,7 +195,6 @@ static void test_quantities(void **state)
         { "VI-101", "mm/s", "", "Vibration" },
     };
     struct plant plant = { 0 };
-    (void)state;
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         struct export_tag tag = { 0 };
         struct tag_export list = { .tags = &tag, .count = 1 };
@@ -223,13 +214,12 @@ static void test_quantities(void **state)
 }
 
 /* Dashes, widths and blanks do not part a tag from its equipment. */
-static void test_folded_names(void **state)
+TEST(test_folded_names)
 {
     static const char *const written[] = { "TI–101", "TI‑101", "TI−101", "TI－101", "ＴＩ-101", "TI-１０１",
                                           "TI\u00a0101", "\u200bTI-101" };
     struct name_tokens plain, tokens;
     char want[NAME_KEY_BYTES], key[NAME_KEY_BYTES];
-    (void)state;
     name_tokens_read(&plain, "TI-101");
     name_tokens_key(&plain, 0, plain.count, want);
     for (size_t i = 0; i < sizeof(written) / sizeof(*written); i++) {
@@ -239,9 +229,8 @@ static void test_folded_names(void **state)
     }
 }
 
-static void test_slips(void **state)
+TEST(test_slips)
 {
-    (void)state;
     assert_int_equal(name_slip("ARTBA", "ARTBA"), NAME_SAME);
     assert_int_equal(name_slip("ARRTBA", "ARTBA"), NAME_SLIP);
     assert_int_equal(name_slip("ATBA", "ARTBA"), NAME_SLIP);
@@ -257,11 +246,10 @@ static void expect_text(char *got, const char *want)
     mem_free(got);
 }
 
-static void test_plant_files_keep_what_people_wrote(void **state)
+TEST(test_plant_files_keep_what_people_wrote)
 {
     static const char before[] =
         "# mine\ngroups: # all\n    - { id: a }   # first\n\n    # second\n    - { id: b }\n\n# then\ntags: t.csv\n";
-    (void)state;
     expect_text(
         plant_edit_append(before, "groups", "", "  - { id: c }\n"),
         "# mine\ngroups: # all\n    - { id: a }   # first\n\n    # second\n    - { id: b }\n    - { id: c }\n\n# then\ntags: t.csv\n");
@@ -271,20 +259,4 @@ static void test_plant_files_keep_what_people_wrote(void **state)
                 "# From where.\nsources:\n  - { id: s }\n\ntags: t.csv\n");
     assert_null(plant_edit_append("groups: [{ id: a }]\n", "groups", "", "- { id: c }\n"));
     expect_text(plant_edit_remove_line("a\n  - b\nc\n", "  - b"), "a\nc\n");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_by_name, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_by_number, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_by_text, set_up, tear_down),
-        cmocka_unit_test(test_isa_names),
-        cmocka_unit_test(test_quantities),
-        cmocka_unit_test(test_folded_names),
-        cmocka_unit_test(test_slips),
-        cmocka_unit_test(test_plant_files_keep_what_people_wrote),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("match", tests, NULL, NULL);
 }

@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Matrices of the renderer, against what they are defined to do. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "render/matrix.h"
 
@@ -30,9 +23,8 @@ static void assert_close(const double *a, const double *b, int count, double tol
         assert_true(fabs(a[i] - b[i]) <= tolerance);
 }
 
-static void test_inverse_undoes(void **state)
+TEST(test_inverse_undoes)
 {
-    (void)state;
     srand(1);
     for (int round = 0; round < 200; round++) {
         double m[16], inverse[16], product[16], identity[16];
@@ -44,9 +36,8 @@ static void test_inverse_undoes(void **state)
     }
 }
 
-static void test_product_is_one_after_the_other(void **state)
+TEST(test_product_is_one_after_the_other)
 {
-    (void)state;
     double a[16], b[16], both[16], p[3] = { 0.3, -2, 5 }, first[4], second[4], at_once[4];
     any_matrix(a);
     any_matrix(b);
@@ -62,9 +53,8 @@ static void test_product_is_one_after_the_other(void **state)
 }
 
 /* A normal stays at right angles to the surface's tangents, and outside stays outside, mirrored or not. */
-static void test_normals_stay_normal(void **state)
+TEST(test_normals_stay_normal)
 {
-    (void)state;
     for (int round = 0; round < 100; round++) {
         double m[16], u[3] = { any(), any(), any() }, v[3] = { any(), any(), any() }, turned_u[3], turned_v[3];
         any_matrix(m);
@@ -85,9 +75,8 @@ static void test_normals_stay_normal(void **state)
     }
 }
 
-static void test_parallel_view(void **state)
+TEST(test_parallel_view)
 {
-    (void)state;
     double center[3] = { 5, -3, 2 }, towards[3] = { 0.6, 0, 0.8 }, clip[16], texture[16], out[4];
     matrix_parallel(center, 10, towards, clip);
     matrix_point(clip, center, out);
@@ -100,16 +89,4 @@ static void test_parallel_view(void **state)
     matrix_parallel(center, 10, (double[]){ 0, 0, 1 }, clip); /* straight down has no side of its own */
     matrix_point(clip, (double[]){ 5, -3, 12 }, out);
     assert_close(out, (double[]){ 0, 0, 1, 1 }, 4, 1e-12);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_inverse_undoes),
-        cmocka_unit_test(test_product_is_one_after_the_other),
-        cmocka_unit_test(test_normals_stay_normal),
-        cmocka_unit_test(test_parallel_view),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

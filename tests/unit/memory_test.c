@@ -1,28 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What this process takes is seen, and what is freed goes back to the machine. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "base/system/memory.h"
 
 enum { PIECES = 4096, PIECE_BYTES = 16 * 1024 };
 
-static void the_default_suits_the_machine(void **state)
+TEST(the_default_suits_the_machine)
 {
-    (void)state;
     size_t bytes = memory_default_bytes();
     assert_true(bytes > 0 && bytes <= (size_t)2 << 30);
 }
 
 /* Small pieces, between which one stays: what is free lies below it, where free() alone gives nothing back. */
-static void what_is_freed_goes_back(void **state)
+TEST(what_is_freed_goes_back)
 {
-    (void)state;
     static void *pieces[PIECES];
     struct memory_use before, full, after;
     size_t all = (size_t)PIECES * PIECE_BYTES;
@@ -46,14 +40,4 @@ static void what_is_freed_goes_back(void **state)
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     assert_true(after.anonymous <= before.anonymous + all / 10);
 #endif
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_default_suits_the_machine),
-        cmocka_unit_test(what_is_freed_goes_back),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

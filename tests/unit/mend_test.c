@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What exports get wrong so that a picture has holes, mended when an asset is cut out: hair gaps and flipped faces. And that splitting
    opens nothing: on the demo plant every open edge is one of the model's own. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
@@ -120,24 +114,21 @@ static void assert_closes(double gap_m, double tolerance_m, bool closes)
     geometry_finish(&before);
 }
 
-static void gaps_that_nobody_sees_are_closed(void **state)
+TEST(gaps_that_nobody_sees_are_closed)
 {
-    (void)state;
     assert_closes(0.0004, 0, true);
     assert_closes(0.0009, 0, true);
 }
 
-static void wider_ones_are_left(void **state)
+TEST(wider_ones_are_left)
 {
-    (void)state;
     assert_closes(0.003, 0, false);
     assert_closes(0.0009, 0.0005, false); /* as the plant file says */
 }
 
-static void sheets_that_lie_on_each_other_are_left(void **state)
+TEST(sheets_that_lie_on_each_other_are_left)
 {
     struct geometry g = empty();
-    (void)state;
     add_plate(&g, 0, 0, 0, 4, PLATE);
     add_plate(&g, 0, 0, 0.0004, 4, PLATE);
     assert_int_equal(close_gaps(&g, 0), 0);
@@ -160,12 +151,11 @@ static size_t mend(struct geometry *g)
     return turned;
 }
 
-static void flipped_faces_are_turned_back(void **state)
+TEST(flipped_faces_are_turned_back)
 {
     struct geometry g = empty(), good = empty();
     uint64_t seed = sweep_seed();
     size_t flipped = 0;
-    (void)state;
     add_plate(&g, 0, 0, 0, 4, PLATE);
     add_plate(&good, 0, 0, 0, 4, PLATE);
     for (uint32_t t = 0; t < g.index_count / 3; t++) {
@@ -183,10 +173,9 @@ static void flipped_faces_are_turned_back(void **state)
     geometry_finish(&good);
 }
 
-static void neither_half_is_right(void **state)
+TEST(neither_half_is_right)
 {
     struct geometry g = empty();
-    (void)state;
     add_plate(&g, 0, 0, 0, 4, PLATE);
     for (uint32_t i = 0; i < g.index_count / 2; i += 3)
         flip(g.indices + i);
@@ -194,11 +183,10 @@ static void neither_half_is_right(void **state)
     geometry_finish(&g);
 }
 
-static void what_has_one_side_is_left(void **state)
+TEST(what_has_one_side_is_left)
 {
     struct geometry g = empty();
     enum { PIECES = 24 };
-    (void)state;
     for (int i = 0; i < PIECES; i++) { /* a Moebius strip */
         const double a = 2 * M_PI * i / PIECES;
         for (int side = -1; side <= 1; side += 2)
@@ -276,7 +264,7 @@ static void assert_open_at_ends(const struct asset_view *view, const char *node)
     fail_msg("%s is not there", node);
 }
 
-static void splitting_opens_nothing(void **state)
+TEST_WITH(splitting_opens_nothing, gltf_case_set_up, gltf_case_tear_down)
 {
     struct gltf_case *c = *state;
     struct diag diag = { 0 };
@@ -314,19 +302,4 @@ static void splitting_opens_nothing(void **state)
     plant_destroy(&plant);
     diag_finish(&diag);
     log_destroy(&log);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gaps_that_nobody_sees_are_closed),
-        cmocka_unit_test(wider_ones_are_left),
-        cmocka_unit_test(sheets_that_lie_on_each_other_are_left),
-        cmocka_unit_test(flipped_faces_are_turned_back),
-        cmocka_unit_test(neither_half_is_right),
-        cmocka_unit_test(what_has_one_side_is_left),
-        cmocka_unit_test_setup_teardown(splitting_opens_nothing, gltf_case_set_up, gltf_case_tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,14 +2,10 @@
 /* What clients say: the vectors, the merging of parameters, the query of snapshots, and text that was damaged at random. */
 #include "message/message_parse.h"
 
+#include "tests/support/test.h"
 #include <dirent.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"
@@ -83,9 +79,8 @@ static void check_vector(const char *file, int *accepted, int *refused)
     mem_free(path);
 }
 
-static void vectors_are_taken_or_refused(void **state)
+TEST(vectors_are_taken_or_refused)
 {
-    (void)state;
     int accepted = 0, refused = 0;
     DIR *folder = opendir(FOLDER);
     assert_non_null(folder);
@@ -105,9 +100,8 @@ static struct message parse(const char *text)
     return message;
 }
 
-static void fields_arrive(void **state)
+TEST(fields_arrive)
 {
-    (void)state;
     struct message m = parse("{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"av1\",\"png\",\"jpeg\",\"png\"],"
                              "\"camera\":{\"seq\":9,\"eye\":[1,2,3],\"target\":[4,5,6],\"fov\":50}}");
     assert_int_equal(m.type, MESSAGE_HELLO);
@@ -136,9 +130,8 @@ static struct view changed(struct view view, const char *text)
     return view;
 }
 
-static void what_is_left_out_stays(void **state)
+TEST(what_is_left_out_stays)
 {
-    (void)state;
     struct view view;
     view_default(small_scene(), 640, 360, &view);
     view = changed(view, "{\"type\":\"params\",\"seq\":1,\"power\":4,\"colormap\":\"viridis\",\"selected\":\"P-101A\",\"light\":[0,0,9]}");
@@ -151,9 +144,8 @@ static void what_is_left_out_stays(void **state)
     assert_true(isinf(view.field.reach_m));
 }
 
-static void a_new_group_brings_its_settings(void **state)
+TEST(a_new_group_brings_its_settings)
 {
-    (void)state;
     struct view view;
     view_default(small_scene(), 640, 360, &view);
     view = changed(view, "{\"type\":\"params\",\"seq\":1,\"power\":4,\"range\":[0,50],\"ramp_interval\":5,\"colormap\":\"viridis\"}");
@@ -168,9 +160,8 @@ static void a_new_group_brings_its_settings(void **state)
     assert_int_equal(other.colormap, view.colormap);
 }
 
-static void a_plant_may_begin_with_limits(void **state)
+TEST(a_plant_may_begin_with_limits)
 {
-    (void)state;
     struct plant *ours = (struct plant *)plant();
     struct view view;
     ours->show = PLANT_SHOW_OPERATOR;
@@ -192,9 +183,8 @@ static struct view both_changed(struct view view, const char *text)
     return view;
 }
 
-static void bands_and_lines(void **state)
+TEST(bands_and_lines)
 {
-    (void)state;
     struct view view;
     view_default(small_scene(), 640, 360, &view);
     view = changed(view, "{\"type\":\"params\",\"seq\":1,\"ramp_interval\":5,\"isolines\":[30,70]}");
@@ -213,9 +203,8 @@ static void bands_and_lines(void **state)
     assert_true(!view.color_scale.log && view.color_scale.break_count == 2 && view.range_max == 16);
 }
 
-static void a_view_splits(void **state)
+TEST(a_view_splits)
 {
-    (void)state;
     struct view view, half;
     view_default(small_scene(), 641, 360, &view);
     view = both_changed(view, "{\"type\":\"params\",\"seq\":1,\"colormap\":\"viridis\",\"split\":{\"distance\":\"euclidean\"}}");
@@ -244,9 +233,8 @@ static void refuse(const struct view *view, const char *text, const char *word)
     assert_int_equal(strncmp(error.text, word, strlen(word)), 0);
 }
 
-static void what_is_shown_brings_its_own_range_and_colors(void **state)
+TEST(what_is_shown_brings_its_own_range_and_colors)
 {
-    (void)state;
     struct view view;
     view_default(small_scene(), 640, 360, &view);
     view = changed(view, "{\"type\":\"params\",\"seq\":1,\"range\":[0,50],\"ramp_interval\":5,\"colormap\":\"viridis\"}");
@@ -270,9 +258,8 @@ static void what_is_shown_brings_its_own_range_and_colors(void **state)
     refuse(&distance, "{\"type\":\"params\",\"seq\":9,\"sensor\":null}", "sensor");
 }
 
-static void overrides_of_sensors_are_merged(void **state)
+TEST(overrides_of_sensors_are_merged)
 {
-    (void)state;
     struct view view, first;
     view_default(small_scene(), 640, 360, &first);
     view = changed(first, "{\"type\":\"params\",\"seq\":1,\"sensors\":{\"TI-1\":{\"strength\":2}}}");
@@ -289,9 +276,8 @@ static void overrides_of_sensors_are_merged(void **state)
     refuse(&view, "{\"type\":\"params\",\"seq\":6,\"sensors\":{\"PI-1\":{\"decay\":1}}}", "sensors");
 }
 
-static void baselines_are_set_shown_and_forgotten(void **state)
+TEST(baselines_are_set_shown_and_forgotten)
 {
-    (void)state;
     struct view view;
     struct baseline list[BASELINES_NAMED];
     view_default(small_scene(), 640, 360, &view);
@@ -322,9 +308,8 @@ static bool query(const char *const *args, size_t count, struct view *view, stru
     return view_query_parse(&of_query, ROLE_ENGINEER, args, count, view, NULL, error);
 }
 
-static void queries_make_views(void **state)
+TEST(queries_make_views)
 {
-    (void)state;
     static const char *const args[] = { "width=320",      "height=200",  "camera=1,2,3,4,5,6,50",
                                         "group=pressure", "range=1,2.5", "reach_m=3",
                                         "selected=E-101", "look=flat",   "light=0,0,2" };
@@ -364,9 +349,8 @@ static void queries_make_views(void **state)
 }
 
 /* TI-1 is the only one on E-101. */
-static void what_is_not_drawn_truly_on_whole_triangles_is_refused(void **state)
+TEST(what_is_not_drawn_truly_on_whole_triangles_is_refused)
 {
-    (void)state;
     static const char *const paper[] = { "interpolation=paper" }, *const split[] = { "split=interpolation=paper" };
     static const char *const far[] = { "show=distance", "sensor=TI-1" }, *const other[] = { "group=pressure" };
     struct plant_group *group = &small_scene()->plant->groups[0];
@@ -387,9 +371,8 @@ static void what_is_not_drawn_truly_on_whole_triangles_is_refused(void **state)
     group->cuts_singles = true;
 }
 
-static void what_is_fitted_lies_beside_the_legend(void **state)
+TEST(what_is_fitted_lies_beside_the_legend)
 {
-    (void)state;
     static const char *const args[] = { "fit=E-101", "side=front", "look=materials", "split=colormap=viridis;look=default" };
     const struct params_context bare = { .scene = small_scene(), .bare = true };
     struct message_error error = { 0 };
@@ -409,9 +392,8 @@ static void what_is_fitted_lies_beside_the_legend(void **state)
 }
 
 /* The plant file's view is chosen for a wide picture; halves would cut the plant off. */
-static void halves_show_what_the_plants_own_view_does(void **state)
+TEST(halves_show_what_the_plants_own_view_does)
 {
-    (void)state;
     static const char *const args[] = { "split=colormap=viridis", "camera=0,-9,3,0,0,0,40" };
     struct plant *plant = (struct plant *)small_scene()->plant;
     const struct params_context bare = { .scene = small_scene(), .bare = true };
@@ -439,9 +421,8 @@ static void halves_show_what_the_plants_own_view_does(void **state)
 }
 
 /* As signed frames say what they show. */
-static void views_are_written_as_queries(void **state)
+TEST(views_are_written_as_queries)
 {
-    (void)state;
     static const char *const views[][4] = {
         { "width=640", "language=ko" },
         { "group=pressure", "range=1,2.5", "reach_m=3", "selected=E-101" },
@@ -470,9 +451,8 @@ static void views_are_written_as_queries(void **state)
     }
 }
 
-static void what_no_query_says_is_refused(void **state)
+TEST(what_no_query_says_is_refused)
 {
-    (void)state;
     const struct params_context of_query = { .scene = small_scene(), .baselines = context.baselines };
     struct message_error error;
     struct view_address said;
@@ -495,9 +475,8 @@ static void what_no_query_says_is_refused(void **state)
     view_address_finish(&said);
 }
 
-static void bad_queries_are_named(void **state)
+TEST(bad_queries_are_named)
 {
-    (void)state;
     static const char *const bad[] = { "width=0",
                                        "width=1e9",
                                        "width=",
@@ -562,9 +541,8 @@ static void bad_queries_are_named(void **state)
 }
 
 /* Damaged text never makes a view that the renderer must not see. */
-static void damaged_messages_stay_harmless(void **state)
+TEST(damaged_messages_stay_harmless)
 {
-    (void)state;
     static const char *const seeds[] = {
         "{\"type\":\"camera\",\"seq\":17,\"eye\":[12.5,-20.25,8],\"target\":[0,1.5,2],\"up\":[0,0,1],\"fov\":45}",
         "{\"type\":\"params\",\"seq\":3,\"group\":\"pressure\",\"power\":3,\"reach_m\":4,\"range\":[0,12.5],\"light\":[0.3,-0.4,0.8]}",
@@ -591,7 +569,7 @@ static void damaged_messages_stay_harmless(void **state)
     assert_true(taken > 1000);
 }
 
-static void a_refused_number_is_told_why(void **state)
+TEST(a_refused_number_is_told_why)
 {
     static const char *const said[][2] = {
         { "\"range\":[1e-300,1e300]", "range: a number from -1e+12 to 1e+12 expected" },
@@ -605,7 +583,6 @@ static void a_refused_number_is_told_why(void **state)
         { "\"isolines\":1e13", "isolines: a number from 0 to 1e+12 expected" },
         { "\"isolines\":-1", "isolines: at most 32 numbers, ascending, or a step above 0, or null expected" },
     };
-    (void)state;
     for (size_t i = 0; i < sizeof(said) / sizeof(said[0]); i++) {
         struct message_error error = { 0 };
         char *text = mem_printf("{\"type\":\"params\",\"seq\":1,%s}", said[i][0]);
@@ -615,10 +592,9 @@ static void a_refused_number_is_told_why(void **state)
     }
 }
 
-static void no_number_is_minus_nought(void **state)
+TEST(no_number_is_minus_nought)
 {
     struct pick_answer answer = { .pick = { .sensor = -1, .state = PICK_BETWEEN, .value = -0.0, .position_m = { -0.0, 2, -0.0 } } };
-    (void)state;
     view_default(small_scene(), 640, 360, &answer.query.view);
     char *text = reply_picked_text(plant(), &answer);
     assert_non_null(strstr(text, "\"position\":[0.0,2.0,0.0]"));
@@ -687,7 +663,7 @@ static double time_message(const struct plant *many, const struct text *said, st
 }
 
 /* The loop serves everybody: no message may hold it for long. Each is as long as one may be. */
-static void no_long_message_is_slow(void **state)
+TEST(no_long_message_is_slow)
 {
     static const struct {
         const char *begin, *each, *end; /* each: with its number, or not */
@@ -703,7 +679,6 @@ static void no_long_message_is_slow(void **state)
         { "{\"type\":\"params\",\"seq\":1,\"isolines\":[", "%d", "]}", 0, 1, 11000, "numbers" },
     };
     struct plant *many = load_many();
-    (void)state;
     for (size_t k = 0; k < sizeof(all) / sizeof(all[0]); k++) {
         struct text said = { 0 };
         struct message message;
@@ -724,31 +699,4 @@ static void no_long_message_is_slow(void **state)
     plant_destroy(&many);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_long_message_is_slow),
-        cmocka_unit_test(vectors_are_taken_or_refused),
-        cmocka_unit_test(fields_arrive),
-        cmocka_unit_test(what_is_left_out_stays),
-        cmocka_unit_test(a_new_group_brings_its_settings),
-        cmocka_unit_test(a_plant_may_begin_with_limits),
-        cmocka_unit_test(bands_and_lines),
-        cmocka_unit_test(a_view_splits),
-        cmocka_unit_test(what_is_not_drawn_truly_on_whole_triangles_is_refused),
-        cmocka_unit_test(what_is_fitted_lies_beside_the_legend),
-        cmocka_unit_test(halves_show_what_the_plants_own_view_does),
-        cmocka_unit_test(queries_make_views),
-        cmocka_unit_test(views_are_written_as_queries),
-        cmocka_unit_test(what_no_query_says_is_refused),
-        cmocka_unit_test(bad_queries_are_named),
-        cmocka_unit_test(a_refused_number_is_told_why),
-        cmocka_unit_test(no_number_is_minus_nought),
-        cmocka_unit_test(damaged_messages_stay_harmless),
-        cmocka_unit_test(what_is_shown_brings_its_own_range_and_colors),
-        cmocka_unit_test(overrides_of_sensors_are_merged),
-        cmocka_unit_test(baselines_are_set_shown_and_forgotten),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_GROUP(set_up, tear_down)

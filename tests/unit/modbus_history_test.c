@@ -1,19 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A real series, sixty times as fast as it was recorded, through Modbus into history, and what history gives back: spikes, gaps,
    quality and all. REPLAY_S says for how many seconds; `make test-long` says an hour. */
+#include "tests/support/test.h"
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -209,10 +202,9 @@ static void free_replay(struct replay *r)
     close(r->stop_fd);
 }
 
-static void history_gives_back_what_the_device_held(void **state)
+TEST(history_gives_back_what_the_device_held)
 {
     static struct replay r;
-    (void)state;
     if (access(data_path, R_OK) != 0) {
         print_message("# %s is not there\n", data_path);
         skip();
@@ -253,11 +245,4 @@ static void history_gives_back_what_the_device_held(void **state)
     log_destroy(&log);
     temp_folder_destroy(&folder);
     free_replay(&r);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = { cmocka_unit_test(history_gives_back_what_the_device_held) };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

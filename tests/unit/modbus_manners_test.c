@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Modbus devices that want their connections in a way of their own: the source finds out and reads all of them, without a key. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -45,6 +38,8 @@ static int tear_down(void **state)
     fclose(said);
     return status;
 }
+
+#define CASE(name) TEST_ON(struct modbus_case *s, name, set_up, tear_down)
 
 static int lines_with(const char *words)
 {
@@ -110,9 +105,8 @@ static void expect_steady(struct modbus_case *s, double within_s, int requests)
 
 /* --- connections that end ---------------------------------------------------------------------------------------------------- */
 
-static void a_device_that_closes_after_each_answer(void **state)
+CASE(a_device_that_closes_after_each_answer)
 {
-    struct modbus_case *s = *state;
     s->device.answers_per_connection = 1;
     start(s);
     expect_steady(s, 5, 30);
@@ -122,27 +116,24 @@ static void a_device_that_closes_after_each_answer(void **state)
     assert_int_equal(lines_with("reading"), 2); /* this one, and that it reads */
 }
 
-static void a_device_that_resets_after_each_answer(void **state)
+CASE(a_device_that_resets_after_each_answer)
 {
-    struct modbus_case *s = *state;
     s->device.answers_per_connection = 1;
     s->device.resets = true;
     start(s);
     expect_steady(s, 5, 30);
 }
 
-static void a_device_that_closes_after_two_answers(void **state)
+CASE(a_device_that_closes_after_two_answers)
 {
-    struct modbus_case *s = *state;
     s->device.answers_per_connection = 2;
     start(s);
     expect_steady(s, 5, 30);
     assert_int_equal(lines_with("closes connections that it has answered on"), 1);
 }
 
-static void a_device_that_is_silent_after_one_answer(void **state)
+CASE(a_device_that_is_silent_after_one_answer)
 {
-    struct modbus_case *s = *state;
     s->device.answers_per_connection = 1;
     s->device.hushes = true;
     start(s);
@@ -150,9 +141,8 @@ static void a_device_that_is_silent_after_one_answer(void **state)
     expect_steady(s, 5, 30);
 }
 
-static void a_device_that_closes_in_rtu_over_tcp(void **state)
+CASE(a_device_that_closes_in_rtu_over_tcp)
 {
-    struct modbus_case *s = *state;
     s->device.answers_per_connection = 1;
     s->device.wire = DEVICE_RTU_TCP;
     s->plant->sources[0].transport = TRANSPORT_RTU_TCP;
@@ -160,9 +150,8 @@ static void a_device_that_closes_in_rtu_over_tcp(void **state)
     expect_steady(s, 5, 30);
 }
 
-static void a_device_that_frees_its_connection_late(void **state)
+CASE(a_device_that_frees_its_connection_late)
 {
-    struct modbus_case *s = *state;
     s->device.answers_per_connection = 1;
     s->device.away_ms = 120;
     start(s);
@@ -170,18 +159,16 @@ static void a_device_that_frees_its_connection_late(void **state)
     expect_steady(s, 20, 20);
 }
 
-static void a_device_that_closes_idle_connections(void **state)
+CASE(a_device_that_closes_idle_connections)
 {
-    struct modbus_case *s = *state;
     s->device.idle_ms = 40;
     start(s);
     expect_steady(s, 5, 30);
     assert_int_equal(lines_with("no readings"), 0);
 }
 
-static void one_request_per_connection_by_key(void **state)
+CASE(one_request_per_connection_by_key)
 {
-    struct modbus_case *s = *state;
     add_blocks(s);
     s->plant->sources[0].close_between_polls = true;
     device_start(&s->device);
@@ -194,18 +181,16 @@ static void one_request_per_connection_by_key(void **state)
 
 /* --- slow starts ------------------------------------------------------------------------------------------------------------- */
 
-static void a_device_that_drops_what_comes_at_once(void **state)
+CASE(a_device_that_drops_what_comes_at_once)
 {
-    struct modbus_case *s = *state;
     s->device.deaf_ms = 1000;
     start(s);
     expect_steady(s, 15, 15);
     await_line("`connect_delay_ms: ", 5);
 }
 
-static void a_delay_by_key(void **state)
+CASE(a_delay_by_key)
 {
-    struct modbus_case *s = *state;
     add_blocks(s);
     s->device.deaf_ms = 400;
     s->plant->sources[0].connect_delay_ms = 500;
@@ -216,9 +201,8 @@ static void a_delay_by_key(void **state)
     assert_int_equal(s->device.connections, 1);
 }
 
-static void a_device_in_rtu_over_tcp_that_drops_what_comes_at_once(void **state)
+CASE(a_device_in_rtu_over_tcp_that_drops_what_comes_at_once)
 {
-    struct modbus_case *s = *state;
     s->device.deaf_ms = 400;
     s->device.wire = DEVICE_RTU_TCP;
     s->plant->sources[0].transport = TRANSPORT_RTU_TCP;
@@ -226,9 +210,8 @@ static void a_device_in_rtu_over_tcp_that_drops_what_comes_at_once(void **state)
     expect_steady(s, 15, 15);
 }
 
-static void a_slow_first_answer(void **state)
+CASE(a_slow_first_answer)
 {
-    struct modbus_case *s = *state;
     s->device.first_late_ms = 1000;
     start(s);
     expect_steady(s, 20, 15);
@@ -237,18 +220,16 @@ static void a_slow_first_answer(void **state)
 
 /* --- units and addresses ----------------------------------------------------------------------------------------------------- */
 
-static void an_answer_that_names_unit_0(void **state)
+CASE(an_answer_that_names_unit_0)
 {
-    struct modbus_case *s = *state;
     s->device.manner = DEVICE_RENAMED;
     start(s);
     expect_steady(s, 5, 60);
     assert_int_equal(lines_with("answers as unit 0 to requests for unit 1"), 1); /* of more than 60 */
 }
 
-static void unit_0_is_nobody_s_where_several_units_are_read(void **state)
+CASE(unit_0_is_nobody_s_where_several_units_are_read)
 {
-    struct modbus_case *s = *state;
     s->device.manner = DEVICE_RENAMED;
     add_blocks(s);
     s->plant->tags[2].modbus_unit = 7;
@@ -261,9 +242,8 @@ static void unit_0_is_nobody_s_where_several_units_are_read(void **state)
     assert_int_equal(lines_with("no readings"), 1); /* one line, however often it is tried */
 }
 
-static void an_address_that_is_never_answered_leaves_the_others_alone(void **state)
+CASE(an_address_that_is_never_answered_leaves_the_others_alone)
 {
-    struct modbus_case *s = *state;
     add_blocks(s);
     plant_by_hand_tag(s->plant, "mute neighbour", TABLE_HOLDING, 501, DATA_INT16);
     s->device.mute_register = 501;
@@ -277,9 +257,8 @@ static void an_address_that_is_never_answered_leaves_the_others_alone(void **sta
 }
 
 /* A gateway with one connection at a time, a unit that is silent, and answers that end it: the others are read. */
-static void a_dead_unit_at_a_closing_gateway(void **state)
+CASE(a_dead_unit_at_a_closing_gateway)
 {
-    struct modbus_case *s = *state;
     s->device.answers_per_connection = 1;
     s->device.silent_unit = 7;
     add_blocks(s);
@@ -293,30 +272,4 @@ static void a_dead_unit_at_a_closing_gateway(void **state)
     }
     assert_true(quality_is_bad(modbus_case_look(s, 2)->quality));
     assert_int_equal(lines_with("unit 7 does not answer"), 1);
-}
-
-#define manners_test(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        manners_test(a_device_that_closes_after_each_answer),
-        manners_test(a_device_that_resets_after_each_answer),
-        manners_test(a_device_that_closes_after_two_answers),
-        manners_test(a_device_that_is_silent_after_one_answer),
-        manners_test(a_device_that_closes_in_rtu_over_tcp),
-        manners_test(a_device_that_frees_its_connection_late),
-        manners_test(a_device_that_closes_idle_connections),
-        manners_test(one_request_per_connection_by_key),
-        manners_test(a_device_that_drops_what_comes_at_once),
-        manners_test(a_delay_by_key),
-        manners_test(a_device_in_rtu_over_tcp_that_drops_what_comes_at_once),
-        manners_test(a_slow_first_answer),
-        manners_test(an_answer_that_names_unit_0),
-        manners_test(unit_0_is_nobody_s_where_several_units_are_read),
-        manners_test(an_address_that_is_never_answered_leaves_the_others_alone),
-        manners_test(a_dead_unit_at_a_closing_gateway),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

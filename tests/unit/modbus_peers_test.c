@@ -1,17 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Modbus between us and programs that others wrote: pymodbus is read by our source, mbpoll reads our simulator. And what our programs
    could say to a device at all. */
-#include <setjmp.h>
+#include "tests/support/test.h"
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -102,12 +95,12 @@ static void read_pymodbus(struct modbus_case *s, const char *framer)
     modbus_case_expect(s, 199, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 5);
 }
 
-static void pymodbus_is_read(void **state)
+TEST_WITH(pymodbus_is_read, modbus_case_set_up, modbus_case_tear_down)
 {
     read_pymodbus(*state, "tcp");
 }
 
-static void pymodbus_is_read_in_rtu_over_tcp(void **state)
+TEST_WITH(pymodbus_is_read_in_rtu_over_tcp, modbus_case_set_up, modbus_case_tear_down)
 {
     read_pymodbus(*state, "rtu");
 }
@@ -162,10 +155,9 @@ static void assert_prints(const char *words, const char *fmt, int port)
     mem_free(out);
 }
 
-static void mbpoll_reads_the_simulator(void **state)
+TEST(mbpoll_reads_the_simulator)
 {
     int port = free_port();
-    (void)state;
     if (access("/usr/bin/mbpoll", X_OK) != 0) {
         print_message("# mbpoll is not installed\n");
         skip();
@@ -180,10 +172,9 @@ static void mbpoll_reads_the_simulator(void **state)
     temp_folder_destroy(&folder);
 }
 
-static void a_probe_shows_every_type_and_order(void **state)
+TEST(a_probe_shows_every_type_and_order)
 {
     int port = free_port();
-    (void)state;
     char *folder = temp_folder_create(), *path = program("plantcast");
     pid_t pid = simulate(folder, port);
     char *command = mem_printf("%s tags --probe 127.0.0.1:%d hr:2 2>&1", path, port), *out = ask_until_answered(command);
@@ -207,11 +198,10 @@ static void a_probe_shows_every_type_and_order(void **state)
 }
 
 /* Everything that libmodbus could write with, or send unseen. A program that does not import it cannot call it. */
-static void programs_import_nothing_that_writes(void **state)
+TEST(programs_import_nothing_that_writes)
 {
     static const char *const programs[] = { "plantcastd", "plantcast", "plantcast-prep" };
     static const char *const writers[] = { "modbus_write", "modbus_mask_write", "modbus_send_raw", "modbus_report_slave_id" };
-    (void)state;
     for (size_t i = 0; i < sizeof(programs) / sizeof(*programs); i++) {
         int status;
         char *path = program(programs[i]), *command = mem_printf("nm -D --undefined-only %s", path), *out = output_of(command, &status);
@@ -223,17 +213,4 @@ static void programs_import_nothing_that_writes(void **state)
         mem_free(command);
         mem_free(out);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        modbus_test(pymodbus_is_read),
-        modbus_test(pymodbus_is_read_in_rtu_over_tcp),
-        cmocka_unit_test(mbpoll_reads_the_simulator),
-        cmocka_unit_test(a_probe_shows_every_type_and_order),
-        cmocka_unit_test(programs_import_nothing_that_writes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The Modbus source against a real Modbus TCP server: what the store says while devices come, go and misbehave. */
+#include "tests/support/test.h"
 #include <arpa/inet.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -20,6 +13,8 @@
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
 #include "value/quality.h"
+
+#define CASE(name) TEST_ON(struct modbus_case *s, name, modbus_case_set_up, modbus_case_tear_down)
 
 static int64_t count_of(struct modbus_case *s, const char *line_start)
 {
@@ -33,9 +28,8 @@ static int64_t count_of(struct modbus_case *s, const char *line_start)
     return count;
 }
 
-static void values_arrive(void **state)
+CASE(values_arrive)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 3);
     plant_by_hand_tag(s->plant, "input", TABLE_INPUT, 7, DATA_UINT16);
     plant_by_hand_tag(s->plant, "coil", TABLE_COIL, 3, DATA_BIT);
@@ -58,9 +52,8 @@ static void values_arrive(void **state)
     assert_int_equal(count_of(s, "plantcast_source_up{source=\"plc\"} "), 1);
 }
 
-static void many_tags_take_few_requests(void **state)
+CASE(many_tags_take_few_requests)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 300);
     s->plant->sources[0].poll_ms = 60000;
     device_start(&s->device);
@@ -72,9 +65,8 @@ static void many_tags_take_few_requests(void **state)
     assert_int_equal(s->device.requests, 3);
 }
 
-static void is_asked_at_its_scan_time(void **state)
+CASE(is_asked_at_its_scan_time)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 1); /* each 100 ms */
     device_start(&s->device);
     modbus_case_start(s);
@@ -85,9 +77,8 @@ static void is_asked_at_its_scan_time(void **state)
     assert_in_range(asked, 3, 12);
 }
 
-static void absent_at_start_then_appears(void **state)
+CASE(absent_at_start_then_appears)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 2);
     modbus_case_start(s);
     modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 3);
@@ -97,9 +88,8 @@ static void absent_at_start_then_appears(void **state)
     assert_true(store_link_is_up(s->store, 0));
 }
 
-static void dies_and_returns(void **state)
+CASE(dies_and_returns)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 2);
     s->plant->tags[0].stale_s = s->plant->tags[1].stale_s = 1.0;
     device_start(&s->device);
@@ -116,9 +106,8 @@ static void dies_and_returns(void **state)
     assert_int_equal(count_of(s, "plantcast_source_connects_total{source=\"plc\"} "), 2);
 }
 
-static void silent_device_loses_the_link_though_it_accepts(void **state)
+CASE(silent_device_loses_the_link_though_it_accepts)
 {
-    struct modbus_case *s = *state;
     modbus_case_be_impatient(s);
     modbus_case_add_registers(s, 2);
     device_start(&s->device);
@@ -133,9 +122,8 @@ static void silent_device_loses_the_link_though_it_accepts(void **state)
     modbus_case_expect(s, 1, QUALITY_GOOD, 8);
 }
 
-static void resets_do_no_harm(void **state)
+CASE(resets_do_no_harm)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 2);
     s->device.manner = DEVICE_RESETTING;
     device_start(&s->device);
@@ -147,9 +135,8 @@ static void resets_do_no_harm(void **state)
     modbus_case_expect(s, 1, QUALITY_GOOD, 8);
 }
 
-static void dripping_device_holds_no_longer_than_the_deadline(void **state)
+CASE(dripping_device_holds_no_longer_than_the_deadline)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 20);
     s->plant->sources[0].timeout_ms = 1000; /* the answer would take 49 x 0.3 s */
     s->device.manner = DEVICE_DRIPPING;
@@ -162,9 +149,8 @@ static void dripping_device_holds_no_longer_than_the_deadline(void **state)
     assert_in_range(took_ns, 900 * NS_PER_MS, 3000 * NS_PER_MS);
 }
 
-static void late_reply_does_not_poison(void **state)
+CASE(late_reply_does_not_poison)
 {
-    struct modbus_case *s = *state;
     modbus_case_be_impatient(s);
     modbus_case_add_registers(s, 1);
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16); /* a second request of the same shape */
@@ -183,9 +169,8 @@ static void late_reply_does_not_poison(void **state)
     }
 }
 
-static void reply_sent_twice_does_not_poison(void **state)
+CASE(reply_sent_twice_does_not_poison)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 1);
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     s->device.manner = DEVICE_TWICE;
@@ -202,9 +187,8 @@ static void reply_sent_twice_does_not_poison(void **state)
 }
 
 /* It comes after the next question, with the number of the one before. */
-static void late_twin_of_a_reply_does_not_disconnect(void **state)
+CASE(late_twin_of_a_reply_does_not_disconnect)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 1);
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     s->device.manner = DEVICE_TWICE;
@@ -216,9 +200,8 @@ static void late_twin_of_a_reply_does_not_disconnect(void **state)
     assert_int_equal(count_of(s, "plantcast_source_connects_total{source=\"plc\"} "), 1);
 }
 
-static void reply_to_an_older_request_is_never_taken(void **state)
+CASE(reply_to_an_older_request_is_never_taken)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 1);
     s->device.manner = DEVICE_BEHIND;
     device_start(&s->device);
@@ -233,9 +216,8 @@ static void reply_to_an_older_request_is_never_taken(void **state)
     assert_true(modbus_case_look(s, 0)->value == 0);
 }
 
-static void one_bad_register_does_not_lose_the_rest(void **state)
+CASE(one_bad_register_does_not_lose_the_rest)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 120);
     s->device.bad_register = 57;
     s->device.bad_code = 2;
@@ -256,9 +238,8 @@ static void one_bad_register_does_not_lose_the_rest(void **state)
     assert_true(store_link_is_up(s->store, 0));
 }
 
-static void what_was_refused_is_asked_anew_when_the_link_is_back(void **state)
+CASE(what_was_refused_is_asked_anew_when_the_link_is_back)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 20);
     s->device.bad_register = 7;
     s->device.bad_code = 2;
@@ -277,7 +258,7 @@ static void what_was_refused_is_asked_anew_when_the_link_is_back(void **state)
     modbus_case_expect(s, 7, QUALITY_GOOD, 8);
 }
 
-static void exceptions_become_qualities(void **state)
+CASE(exceptions_become_qualities)
 {
     const struct {
         int code;
@@ -286,7 +267,6 @@ static void exceptions_become_qualities(void **state)
         { 1, QUALITY_BAD_CONFIGURATION },  { 2, QUALITY_BAD_CONFIGURATION },    { 3, QUALITY_BAD_CONFIGURATION },
         { 4, QUALITY_BAD_DEVICE_FAILURE }, { 10, QUALITY_BAD_NO_COMMUNICATION }, { 11, QUALITY_BAD_NO_COMMUNICATION },
     };
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 1);
     device_start(&s->device);
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
@@ -301,9 +281,8 @@ static void exceptions_become_qualities(void **state)
 }
 
 /* A controller that restarts a task says no once. */
-static void one_refusal_loses_nothing(void **state)
+CASE(one_refusal_loses_nothing)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 10);
     device_start(&s->device);
     modbus_case_start(s);
@@ -321,9 +300,8 @@ static void one_refusal_loses_nothing(void **state)
     assert_int_equal(s->device.most, 10); /* and nothing was cut */
 }
 
-static void what_was_refused_is_asked_again_after_seconds(void **state)
+CASE(what_was_refused_is_asked_again_after_seconds)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 10);
     s->device.bad_code = 1;
     device_start(&s->device);
@@ -333,9 +311,8 @@ static void what_was_refused_is_asked_again_after_seconds(void **state)
     modbus_case_expect(s, 9, QUALITY_GOOD, 4);
 }
 
-static void device_failure_is_asked_again(void **state)
+CASE(device_failure_is_asked_again)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 10);
     s->device.bad_register = 4;
     s->device.bad_code = 4;
@@ -347,9 +324,8 @@ static void device_failure_is_asked_again(void **state)
     modbus_case_expect(s, 4, QUALITY_GOOD, 3);
 }
 
-static void busy_is_no_verdict(void **state)
+CASE(busy_is_no_verdict)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 2);
     s->plant->tags[0].stale_s = s->plant->tags[1].stale_s = 0.6;
     device_start(&s->device);
@@ -377,9 +353,8 @@ static void check_other_unit_lives(struct modbus_case *s)
     modbus_case_expect(s, 1, QUALITY_GOOD, 12);
 }
 
-static void dead_unit_behind_a_gateway_leaves_the_others_alone(void **state)
+CASE(dead_unit_behind_a_gateway_leaves_the_others_alone)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 2);
     s->plant->tags[1].modbus_unit = 7;
     s->device.dead_unit = 7;
@@ -388,9 +363,8 @@ static void dead_unit_behind_a_gateway_leaves_the_others_alone(void **state)
     check_other_unit_lives(s);
 }
 
-static void silent_unit_behind_a_gateway_leaves_the_others_alone(void **state)
+CASE(silent_unit_behind_a_gateway_leaves_the_others_alone)
 {
-    struct modbus_case *s = *state;
     modbus_case_be_impatient(s);
     modbus_case_add_registers(s, 2);
     s->plant->tags[1].modbus_unit = 7;
@@ -400,9 +374,8 @@ static void silent_unit_behind_a_gateway_leaves_the_others_alone(void **state)
     check_other_unit_lives(s);
 }
 
-static void stops_while_the_device_hangs(void **state)
+CASE(stops_while_the_device_hangs)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 2);
     s->plant->sources[0].timeout_ms = 20000;
     s->device.manner = DEVICE_SILENT;
@@ -438,9 +411,8 @@ static void full_close(struct full *full)
     close(full->listener);
 }
 
-static void stops_while_a_connection_hangs(void **state)
+CASE(stops_while_a_connection_hangs)
 {
-    struct modbus_case *s = *state;
     struct full full;
     full_open(&full, s->device.port);
     modbus_case_add_registers(s, 1);
@@ -452,9 +424,8 @@ static void stops_while_a_connection_hangs(void **state)
     full_close(&full);
 }
 
-static void connecting_ends_by_its_deadline(void **state)
+CASE(connecting_ends_by_its_deadline)
 {
-    struct modbus_case *s = *state;
     struct full full;
     full_open(&full, s->device.port);
     modbus_case_be_impatient(s);
@@ -464,9 +435,8 @@ static void connecting_ends_by_its_deadline(void **state)
     full_close(&full);
 }
 
-static void names_are_looked_up(void **state)
+CASE(names_are_looked_up)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 1);
     mem_free(s->plant->sources[0].hosts[0]);
     s->plant->sources[0].hosts[0] = mem_strdup("localhost");
@@ -475,9 +445,8 @@ static void names_are_looked_up(void **state)
     modbus_case_expect(s, 0, QUALITY_GOOD, 5);
 }
 
-static void two_sources_may_name_one_device(void **state)
+CASE(two_sources_may_name_one_device)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 1);
     plant_by_hand_source(s->plant, "again", s->device.port);
     plant_by_hand_tag(s->plant, "second", TABLE_HOLDING, 11, DATA_INT16);
@@ -492,10 +461,9 @@ static void two_sources_may_name_one_device(void **state)
 }
 
 /* libmodbus waits with select(), which knows no descriptor from 1024 on; a daemon with many viewers has them. */
-static void reconnects_with_a_thousand_files_open(void **state)
+CASE(reconnects_with_a_thousand_files_open)
 {
     enum { FILES = 1100, LOW = 4 };
-    struct modbus_case *s = *state;
     struct rlimit limit;
     int files[FILES];
     getrlimit(RLIMIT_NOFILE, &limit);
@@ -517,9 +485,8 @@ static void reconnects_with_a_thousand_files_open(void **state)
         close(files[i]);
 }
 
-static void unknown_kind_is_refused(void **state)
+CASE(unknown_kind_is_refused)
 {
-    struct modbus_case *s = *state;
     mem_free(s->plant->sources[0].kind);
     s->plant->sources[0].kind = mem_strdup("telepathy");
     s->store = store_create(s->plant);
@@ -527,9 +494,8 @@ static void unknown_kind_is_refused(void **state)
 }
 
 /* The promise that the daemon only reads can be checked: nothing in it calls what could write. */
-static void calls_nothing_that_writes(void **state)
+TEST(calls_nothing_that_writes)
 {
-    (void)state;
     static const char *const writers[] = { "modbus_write", "modbus_mask_write", "modbus_send_raw" };
     const char *folder = getenv("PLANTCAST_OUT");
     size_t bytes;
@@ -544,41 +510,4 @@ static void calls_nothing_that_writes(void **state)
         assert_null(memmem(archive, bytes, writers[i], strlen(writers[i])));
     mem_free(archive);
     mem_free(path);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        modbus_test(values_arrive),
-        modbus_test(many_tags_take_few_requests),
-        modbus_test(is_asked_at_its_scan_time),
-        modbus_test(absent_at_start_then_appears),
-        modbus_test(dies_and_returns),
-        modbus_test(silent_device_loses_the_link_though_it_accepts),
-        modbus_test(resets_do_no_harm),
-        modbus_test(dripping_device_holds_no_longer_than_the_deadline),
-        modbus_test(late_reply_does_not_poison),
-        modbus_test(reply_sent_twice_does_not_poison),
-        modbus_test(late_twin_of_a_reply_does_not_disconnect),
-        modbus_test(reply_to_an_older_request_is_never_taken),
-        modbus_test(one_bad_register_does_not_lose_the_rest),
-        modbus_test(what_was_refused_is_asked_anew_when_the_link_is_back),
-        modbus_test(exceptions_become_qualities),
-        modbus_test(one_refusal_loses_nothing),
-        modbus_test(what_was_refused_is_asked_again_after_seconds),
-        modbus_test(device_failure_is_asked_again),
-        modbus_test(busy_is_no_verdict),
-        modbus_test(dead_unit_behind_a_gateway_leaves_the_others_alone),
-        modbus_test(silent_unit_behind_a_gateway_leaves_the_others_alone),
-        modbus_test(stops_while_the_device_hangs),
-        modbus_test(stops_while_a_connection_hangs),
-        modbus_test(connecting_ends_by_its_deadline),
-        modbus_test(names_are_looked_up),
-        modbus_test(two_sources_may_name_one_device),
-        modbus_test(reconnects_with_a_thousand_files_open),
-        modbus_test(unknown_kind_is_refused),
-        cmocka_unit_test(calls_nothing_that_writes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

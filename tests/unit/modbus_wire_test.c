@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Modbus by TCP, by RTU frames in a socket and on a line, with hosts that stand in, limits of devices, and hostile answers. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -13,6 +8,8 @@
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
 #include "value/quality.h"
+
+#define CASE(name) TEST_ON(struct modbus_case *s, name, modbus_case_set_up, modbus_case_tear_down)
 
 static void use_wire(struct modbus_case *s, enum device_wire wire)
 {
@@ -44,14 +41,14 @@ static void check_rtu(struct modbus_case *s, enum device_wire wire)
     modbus_case_expect(s, 2, QUALITY_GOOD, 8);
 }
 
-static void rtu_over_tcp_is_read(void **state)
+CASE(rtu_over_tcp_is_read)
 {
-    check_rtu(*state, DEVICE_RTU_TCP);
+    check_rtu(s, DEVICE_RTU_TCP);
 }
 
-static void a_serial_line_is_read(void **state)
+CASE(a_serial_line_is_read)
 {
-    check_rtu(*state, DEVICE_LINE);
+    check_rtu(s, DEVICE_LINE);
 }
 
 /* RTU frames carry no number: a late answer looks just like that to the next question. */
@@ -78,19 +75,18 @@ static void check_late_rtu(struct modbus_case *s, enum device_wire wire)
     modbus_case_expect(s, 1, QUALITY_GOOD, 4);
 }
 
-static void late_replies_do_not_poison_rtu_over_tcp(void **state)
+CASE(late_replies_do_not_poison_rtu_over_tcp)
 {
-    check_late_rtu(*state, DEVICE_RTU_TCP);
+    check_late_rtu(s, DEVICE_RTU_TCP);
 }
 
-static void late_replies_do_not_poison_a_serial_line(void **state)
+CASE(late_replies_do_not_poison_a_serial_line)
 {
-    check_late_rtu(*state, DEVICE_LINE);
+    check_late_rtu(s, DEVICE_LINE);
 }
 
-static void an_absent_line_is_tried_again(void **state)
+CASE(an_absent_line_is_tried_again)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 1);
     s->plant->sources[0].transport = TRANSPORT_RTU;
     s->plant->sources[0].device = "/dev/plantcast-no-such-line";
@@ -104,9 +100,8 @@ static int host_of(struct modbus_case *s)
     return (int)*counters_add(s->counters, "plantcast_source_host{source=\"plc\"}", "gauge", "");
 }
 
-static void the_second_host_stands_in(void **state)
+CASE(the_second_host_stands_in)
 {
-    struct modbus_case *s = *state;
     struct device second = { .address = "127.0.0.2", .port = s->device.port };
     struct plant_source *source = &s->plant->sources[0];
     modbus_case_add_registers(s, 1);
@@ -139,9 +134,8 @@ static void the_second_host_stands_in(void **state)
     device_stop(&second);
 }
 
-static void requests_keep_to_the_device_s_limits(void **state)
+CASE(requests_keep_to_the_device_s_limits)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 40);
     s->plant->sources[0].max_registers = 10;
     s->plant->sources[0].pause_ms = 30;
@@ -155,9 +149,8 @@ static void requests_keep_to_the_device_s_limits(void **state)
 }
 
 /* A small PLC refuses a request over a hole; the hole is found once, and what lies on both sides of it is read on. */
-static void a_hole_is_refused_once(void **state)
+CASE(a_hole_is_refused_once)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 10);
     for (int i = 14; i < 20; i++)
         plant_by_hand_tag(s->plant, "beyond", TABLE_HOLDING, i, DATA_INT16);
@@ -175,9 +168,8 @@ static void a_hole_is_refused_once(void **state)
     assert_true(modbus_case_look(s, 0)->age_ns < NS_PER_S && modbus_case_look(s, 15)->age_ns < NS_PER_S);
 }
 
-static void busy_is_asked_again_soon(void **state)
+CASE(busy_is_asked_again_soon)
 {
-    struct modbus_case *s = *state;
     modbus_case_add_registers(s, 1);
     s->plant->sources[0].poll_ms = 20000;
     s->device.bad_code = 6;
@@ -209,77 +201,49 @@ static void check_hostile(struct modbus_case *s, enum device_wire wire, int mann
     assert_true(modbus_case_look(s, 20)->value == 500);
 }
 
-static void short_answers(void **state)
+CASE(short_answers)
 {
-    check_hostile(*state, DEVICE_TCP, DEVICE_SHORT);
+    check_hostile(s, DEVICE_TCP, DEVICE_SHORT);
 }
-static void long_answers(void **state)
+CASE(long_answers)
 {
-    check_hostile(*state, DEVICE_TCP, DEVICE_LONG);
+    check_hostile(s, DEVICE_TCP, DEVICE_LONG);
 }
-static void garbage(void **state)
+CASE(garbage)
 {
-    check_hostile(*state, DEVICE_TCP, DEVICE_GARBAGE);
+    check_hostile(s, DEVICE_TCP, DEVICE_GARBAGE);
 }
-static void garbage_on_a_line(void **state)
+CASE(garbage_on_a_line)
 {
-    check_hostile(*state, DEVICE_LINE, DEVICE_GARBAGE);
+    check_hostile(s, DEVICE_LINE, DEVICE_GARBAGE);
 }
-static void answers_of_other_units(void **state)
+CASE(answers_of_other_units)
 {
-    check_hostile(*state, DEVICE_TCP, DEVICE_FOREIGN);
+    check_hostile(s, DEVICE_TCP, DEVICE_FOREIGN);
 }
-static void answers_of_other_units_on_a_line(void **state)
+CASE(answers_of_other_units_on_a_line)
 {
-    check_hostile(*state, DEVICE_LINE, DEVICE_FOREIGN);
+    check_hostile(s, DEVICE_LINE, DEVICE_FOREIGN);
 }
-static void answers_of_other_units_in_rtu_over_tcp(void **state)
+CASE(answers_of_other_units_in_rtu_over_tcp)
 {
-    check_hostile(*state, DEVICE_RTU_TCP, DEVICE_FOREIGN);
+    check_hostile(s, DEVICE_RTU_TCP, DEVICE_FOREIGN);
 }
-static void answers_of_no_length(void **state)
+CASE(answers_of_no_length)
 {
-    check_hostile(*state, DEVICE_TCP, DEVICE_MEASURED);
+    check_hostile(s, DEVICE_TCP, DEVICE_MEASURED);
 }
-static void answers_of_length_1(void **state)
+CASE(answers_of_length_1)
 {
-    ((struct modbus_case *)*state)->device.said_length = 1;
-    check_hostile(*state, DEVICE_TCP, DEVICE_MEASURED);
+    ((struct modbus_case *)s)->device.said_length = 1;
+    check_hostile(s, DEVICE_TCP, DEVICE_MEASURED);
 }
-static void answers_of_length_65535(void **state)
+CASE(answers_of_length_65535)
 {
-    ((struct modbus_case *)*state)->device.said_length = 65535;
-    check_hostile(*state, DEVICE_TCP, DEVICE_MEASURED);
+    ((struct modbus_case *)s)->device.said_length = 65535;
+    check_hostile(s, DEVICE_TCP, DEVICE_MEASURED);
 }
-static void short_answers_in_rtu_over_tcp(void **state)
+CASE(short_answers_in_rtu_over_tcp)
 {
-    check_hostile(*state, DEVICE_RTU_TCP, DEVICE_SHORT);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        modbus_test(rtu_over_tcp_is_read),
-        modbus_test(a_serial_line_is_read),
-        modbus_test(late_replies_do_not_poison_rtu_over_tcp),
-        modbus_test(late_replies_do_not_poison_a_serial_line),
-        modbus_test(an_absent_line_is_tried_again),
-        modbus_test(the_second_host_stands_in),
-        modbus_test(requests_keep_to_the_device_s_limits),
-        modbus_test(a_hole_is_refused_once),
-        modbus_test(busy_is_asked_again_soon),
-        modbus_test(short_answers),
-        modbus_test(long_answers),
-        modbus_test(garbage),
-        modbus_test(garbage_on_a_line),
-        modbus_test(answers_of_other_units),
-        modbus_test(answers_of_other_units_on_a_line),
-        modbus_test(answers_of_other_units_in_rtu_over_tcp),
-        modbus_test(answers_of_no_length),
-        modbus_test(answers_of_length_1),
-        modbus_test(answers_of_length_65535),
-        modbus_test(short_answers_in_rtu_over_tcp),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    check_hostile(s, DEVICE_RTU_TCP, DEVICE_SHORT);
 }

@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What --check finds in the heads of models and of recorded series. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"
@@ -18,6 +11,8 @@
 #include "tests/support/plant_case.h"
 #include "tests/support/temp.h"
 #include "value/series_check.h"
+
+#define CASE(name) TEST_ON(struct plant_case *c, name, plant_case_set_up, plant_case_tear_down)
 
 /* Two pumps of 743 x 200 x 400 in their own units, y up, 1,000 apart; the second is turned by a quarter about y and half as large. */
 static const char model[] =
@@ -51,9 +46,8 @@ static void check(struct plant_case *c, const char *assets, const char *sources,
         free(text);
 }
 
-static void sizes_are_printed_and_doubted(void **state)
+CASE(sizes_are_printed_and_doubted)
 {
-    struct plant_case *c = *state;
     char *printed;
     check(c, "  - { id: A, model: m.gltf, nodes: '#1', units: mm }\n  - { id: B, model: m.gltf, nodes: P-101B, units: mm, up: z }\n"
              "  - { id: C, model: m.gltf, nodes: '#1' }\n"
@@ -66,9 +60,8 @@ static void sizes_are_printed_and_doubted(void **state)
     free(printed);
 }
 
-static void what_is_no_model_is_said_so(void **state)
+CASE(what_is_no_model_is_said_so)
 {
-    struct plant_case *c = *state;
     mem_free(temp_write_text(c->folder, "s.step", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\n"));
     mem_free(temp_write_text(c->folder, "o.obj", "v 0 0 0\nv 1 0 0\n"));
     mem_free(temp_write(c->folder, "cut.glb", "glTF\2\0\0\0\0\1\0\0\0\1\0\0JSON{", 21));
@@ -78,7 +71,7 @@ static void what_is_no_model_is_said_so(void **state)
           { "plant.yaml", 5, 0, "cut.glb' is cut off: its JSON should have 256 bytes" });
 }
 
-static void what_no_memory_holds_is_refused(void **state)
+TEST_WITH(what_no_memory_holds_is_refused, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state;
     char *more = mem_strdup(model), *count = strstr(more, "\"count\":3,");
@@ -108,9 +101,8 @@ static void what_no_memory_holds_is_refused(void **state)
     mem_free(huge);
 }
 
-static void nodes_are_looked_up(void **state)
+CASE(nodes_are_looked_up)
 {
-    struct plant_case *c = *state;
     check(c, "  - { id: A, model: m.gltf, units: mm }\n  - { id: B, model: m.gltf, nodes: P-102B, units: mm }\n", "[]",
           "Tag Name,Group,Asset,Node\nT1,g,A,P-101B\nT2,g,A,P101B\nT3,g,A,P-101A\nT4,g,A,#9\nT5,g,A,#3\n", NULL);
     FOUND(c, { "plant.yaml", 4, 0, "asset B: nodes: no node's name matches 'P-102B': did you mean 'P-101B'?" },
@@ -120,7 +112,7 @@ static void nodes_are_looked_up(void **state)
 }
 
 /* Coordinates on the equipment tell which way it lies and what it is measured in. */
-static void sensors_tell_units_and_axes(void **state)
+CASE(sensors_tell_units_and_axes)
 {
     static const struct {
         const char *asset, *says;
@@ -132,7 +124,6 @@ static void sensors_tell_units_and_axes(void **state)
         { "{ id: A, model: m.gltf, nodes: '#1', units: cm, placement: { translate: [99, 0, 0] } }",
           "are units, up, placement and sensor_frame right?" },
     };
-    struct plant_case *c = *state;
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         char *assets = mem_printf("  - %s\n", cases[i].asset);
         check(c, assets, "[]", "Tag Name,Group,Asset,X,Y,Z\nT1,g,A,1,-3.9,0.1\nT2,g,A,7,-3.8,0.2\nT3,g,A,3,-3.7,1.9\n", NULL);
@@ -145,9 +136,8 @@ static void sensors_tell_units_and_axes(void **state)
     }
 }
 
-static void series_are_looked_up(void **state)
+CASE(series_are_looked_up)
 {
-    struct plant_case *c = *state;
     static const char assets[] = "  - { id: A, model: m.gltf, units: mm }\n";
     mem_free(temp_write_text(c->folder, "wide.csv", "Time,TI_101,TI_102\n2026-10-25T00:00:00Z,1,2\n"));
     mem_free(temp_write_text(c->folder, "long.csv", "1000,x,pump,flow,7,,\n1000,x,pump,temp,70,,\n"));
@@ -163,9 +153,8 @@ static void series_are_looked_up(void **state)
 }
 
 /* Whatever stands in a file, it is read or refused with a reason. */
-static void broken_models_are_refused(void **state)
+CASE(broken_models_are_refused)
 {
-    struct plant_case *c = *state;
     unsigned seed = 7;
     int read = 0;
     char *path = temp_path(c->folder, "m.gltf"), *text = mem_strdup(model);
@@ -188,19 +177,4 @@ static void broken_models_are_refused(void **state)
     assert_true(read > 100 && read < 1900);
     mem_free(text);
     mem_free(path);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(sizes_are_printed_and_doubted, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(what_is_no_model_is_said_so, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(what_no_memory_holds_is_refused, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(nodes_are_looked_up, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(sensors_tell_units_and_axes, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(series_are_looked_up, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(broken_models_are_refused, plant_case_set_up, plant_case_tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The report on real models (shared/data/models), held against what is known of them and against itself. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/prep_case.h"

@@ -1,21 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Payloads of MQTT messages: which texts are numbers, paths in JSON, stated times and qualities. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "plant/sources/json_path.h"
 #include "value/mqtt/mqtt_payload.h"
 #include "value/quality.h"
 
-static void only_one_number_is_a_number(void **state)
+TEST(only_one_number_is_a_number)
 {
-    (void)state;
     static const struct {
         const char *text;
         double value;
@@ -35,9 +28,8 @@ static void only_one_number_is_a_number(void **state)
     assert_false(mqtt_number_read(many, sizeof(many), &value));
 }
 
-static void paths_are_as_written(void **state)
+TEST(paths_are_as_written)
 {
-    (void)state;
     static const char *const good[] = {
         "a",
         "$",
@@ -71,9 +63,8 @@ static void paths_are_as_written(void **state)
     assert_true(json_path_check("@.t", true, why));
 }
 
-static void paths_to_several_values_are_refused(void **state)
+TEST(paths_to_several_values_are_refused)
 {
-    (void)state;
     static const struct {
         const char *path, *why;
     } wrong[] = {
@@ -156,9 +147,8 @@ static void check(const struct plant_mqtt *mqtt, const struct expected *expected
     json_decref(root);
 }
 
-static void values_are_found_by_path(void **state)
+TEST(values_are_found_by_path)
 {
-    (void)state;
     static const struct plant_mqtt plain = { .payload = MQTT_JSON }, named = { .payload = MQTT_JSON, .value = "d[1]" };
     static const struct expected plainly[] = {
         { "21.5", "", MQTT_FOUND, 21.5, 0, 0 },
@@ -181,9 +171,8 @@ static void values_are_found_by_path(void **state)
 }
 
 /* Each path selects exactly one value, or none is taken. The tag is T1. */
-static void a_value_of_another_member_is_never_taken(void **state)
+TEST(a_value_of_another_member_is_never_taken)
 {
-    (void)state;
     static const char T2[] = "{\"values\": [{\"id\": \"A.T2\", \"v\": 22}]}";
     static const char BOTH[] = "{\"values\": [{\"id\": \"A.T1\", \"v\": 21}, {\"id\": \"A.T2\", \"v\": 22}]}";
     static const char TWICE[] = "{\"values\": [{\"id\": \"A.T1\", \"v\": 21}, {\"id\": \"A.T1\", \"v\": 22}]}";
@@ -233,9 +222,8 @@ static void a_value_of_another_member_is_never_taken(void **state)
         check(&plain, &cases[i]);
 }
 
-static void time_and_quality_are_those_beside_the_value(void **state)
+TEST(time_and_quality_are_those_beside_the_value)
 {
-    (void)state;
     static const char ALL[] = "{\"t\": 5, \"values\": [{\"id\": \"A.T2\", \"v\": 22, \"q\": true, \"t\": 1795341600500},"
                               "{\"id\": \"A.T1\", \"v\": 21, \"q\": false, \"t\": 1795341600600}]}";
     static const int64_t T_NS = 1795341600500000000;
@@ -251,9 +239,8 @@ static void time_and_quality_are_those_beside_the_value(void **state)
     check(&many, &(struct expected){ ALL, "values[?id=='A.T1'].v", MQTT_FOUND, 21, 0, 0 });
 }
 
-static void times_and_qualities_are_as_stated(void **state)
+TEST(times_and_qualities_are_as_stated)
 {
-    (void)state;
     static const struct plant_mqtt timed = { .payload = MQTT_JSON, .time = "t" }, judged = { .payload = MQTT_JSON, .quality = "q" };
     static const int64_t T_NS = 1795341600500000000;
     static const struct expected at[] = {
@@ -285,9 +272,8 @@ static void times_and_qualities_are_as_stated(void **state)
         check(&judged, &how[i]);
 }
 
-static void what_is_no_json_is_refused(void **state)
+TEST(what_is_no_json_is_refused)
 {
-    (void)state;
     static const char *const wrong[] = { "", "{", "{\"a\": 1e999}", "nan", "{\"a\": 1} x", "\xff\xfe", "{\"v\": 1, \"v\": 2}" };
     char why[200] = "", deep[100000];
     for (size_t i = 0; i < sizeof(wrong) / sizeof(*wrong); i++)
@@ -295,20 +281,4 @@ static void what_is_no_json_is_refused(void **state)
     memset(deep, '[', sizeof(deep));
     assert_null(mqtt_json_parse(deep, sizeof(deep), why));
     assert_non_null(strstr(why, "no JSON"));
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(only_one_number_is_a_number),
-        cmocka_unit_test(paths_are_as_written),
-        cmocka_unit_test(paths_to_several_values_are_refused),
-        cmocka_unit_test(values_are_found_by_path),
-        cmocka_unit_test(a_value_of_another_member_is_never_taken),
-        cmocka_unit_test(time_and_quality_are_those_beside_the_value),
-        cmocka_unit_test(times_and_qualities_are_as_stated),
-        cmocka_unit_test(what_is_no_json_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

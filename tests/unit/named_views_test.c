@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Views with names outlive the daemon, keep what they were, and share an order; those of the plant file stay as they are there. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 #include <jansson.h>
 
 #include "base/mem.h"
@@ -47,6 +40,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 static void open_again(struct fixture *f)
 {
     named_views_close(&f->views);
@@ -81,9 +76,8 @@ static size_t versions_of(struct fixture *f, const char *id, size_t index)
     return count;
 }
 
-static void they_are_kept_in_order(void **state)
+CASE(they_are_kept_in_order)
 {
-    struct fixture *f = *state;
     uint64_t number = named_views_number(f->views);
     assert_true(number == 1);
     assert_null(save(f, "b", "B", -1));
@@ -102,9 +96,8 @@ static void they_are_kept_in_order(void **state)
     assert_order(f, "all b a");
 }
 
-static void what_they_were_is_kept(void **state)
+CASE(what_they_were_is_kept)
 {
-    struct fixture *f = *state;
     char title[8];
     assert_null(save(f, "a", "0", -1));
     assert_int_equal(versions_of(f, "a", 1), 0);
@@ -119,9 +112,8 @@ static void what_they_were_is_kept(void **state)
     assert_int_equal(versions_of(f, NULL, 1), 0);
 }
 
-static void the_plant_file_has_its_own(void **state)
+CASE(the_plant_file_has_its_own)
 {
-    struct fixture *f = *state;
     assert_non_null(save(f, "all", "Mine", -1));
     assert_non_null(named_views_remove(f->views, "all"));
     assert_null(save(f, "mine", "Mine", -1));
@@ -131,9 +123,8 @@ static void the_plant_file_has_its_own(void **state)
     assert_order(f, "all mine");
 }
 
-static void there_is_a_limit(void **state)
+CASE(there_is_a_limit)
 {
-    struct fixture *f = *state;
     char id[16];
     for (int i = 0; i < NAMED_VIEWS; i++) {
         snprintf(id, sizeof(id), "v%d", i);
@@ -143,13 +134,12 @@ static void there_is_a_limit(void **state)
     assert_null(save(f, "v0", "Other", -1));
 }
 
-static void what_cannot_be_read_is_not_written_over(void **state)
+CASE(what_cannot_be_read_is_not_written_over)
 {
     static const char *const files[] = {
         "{", "[]", "{\"views\":[{\"id\":\"a\"}]}",
         "{\"views\":[{\"id\":\"a b\",\"title\":\"\",\"view\":\"\",\"by\":\"\",\"time_us\":1,\"before\":[]}]}",
     };
-    struct fixture *f = *state;
     for (size_t i = 0; i < sizeof(files) / sizeof(*files); i++) {
         char *path = temp_write_text(f->folder, "history/" NAMED_VIEWS_FILE, files[i]), text[200] = "";
         open_again(f);
@@ -164,9 +154,8 @@ static void what_cannot_be_read_is_not_written_over(void **state)
     }
 }
 
-static void without_a_folder_none_is_saved(void **state)
+CASE(without_a_folder_none_is_saved)
 {
-    struct fixture *f = *state;
     struct named_views *views = named_views_open(f->log, &f->plant, NULL);
     struct named_view_edit edit = { .id = "a", .title = "A", .address = "group=t", .at = -1 };
     assert_non_null(named_views_save(views, &edit, "kim", 1));
@@ -174,18 +163,4 @@ static void without_a_folder_none_is_saved(void **state)
     edit.title[0] = (char)0xff; /* no UTF-8: refused, and nothing changes */
     assert_non_null(named_views_save(f->views, &edit, "kim", 1));
     assert_order(f, "all");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(they_are_kept_in_order, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_they_were_is_kept, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(the_plant_file_has_its_own, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(there_is_a_limit, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_cannot_be_read_is_not_written_over, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(without_a_folder_none_is_saved, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

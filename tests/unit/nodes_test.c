@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which nodes patterns take and name. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <setjmp.h>
-#include <stdio.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "plant/models/nodes.h"
 
@@ -45,9 +39,8 @@ static const char *found(const char *pattern)
     return count ? text : why;
 }
 
-static void patterns_take_sub_trees_and_leave_others_out(void **state)
+TEST(patterns_take_sub_trees_and_leave_others_out)
 {
-    (void)state;
     assert_string_equal(taken(NULL), "abcdefghijkl");
     assert_string_equal(taken("P-1"), "cd");
     assert_string_equal(taken("P-[12]\n!motor"), "ce");
@@ -63,9 +56,8 @@ static void patterns_take_sub_trees_and_leave_others_out(void **state)
     assert_string_equal(taken("site\n!area*"), "a");
 }
 
-static void what_matches_nothing_is_named(void **state)
+TEST(what_matches_nothing_is_named)
 {
-    (void)state;
     assert_string_equal(taken("P-1\nmotr"), "no node's name matches 'motr': did you mean 'motor'?");
     assert_string_equal(taken("P-1\n!X*"), "no node's name matches '!X*'");
     assert_string_equal(taken("#99"), "the scene has no node '#99'");
@@ -75,9 +67,8 @@ static void what_matches_nothing_is_named(void **state)
     assert_string_equal(taken("P-3/motor"), "no node's name or path matches 'P-3/motor'");
 }
 
-static void single_nodes_are_found_however_they_are_named(void **state)
+TEST(single_nodes_are_found_however_they_are_named)
 {
-    (void)state;
     assert_string_equal(found("motor"), "df");
     assert_string_equal(found("P-1/motor"), "d");
     assert_string_equal(found("#25"), "f");
@@ -85,15 +76,4 @@ static void single_nodes_are_found_however_they_are_named(void **state)
     assert_string_equal(found("P-3"), "j"); /* instances are one node */
     assert_string_equal(found("motr"), "the model has no node 'motr': did you mean 'motor'?");
     assert_string_equal(found("!P-1"), "the model has no node '!P-1': did you mean 'P-1'?");
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(patterns_take_sub_trees_and_leave_others_out),
-        cmocka_unit_test(what_matches_nothing_is_named),
-        cmocka_unit_test(single_nodes_are_found_however_they_are_named),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

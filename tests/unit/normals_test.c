@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Normals at places where many faces meet: as the plain sum over all pairs says, and in time that hardly grows faster than their number. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "preprocess/geometry/normals.h"
@@ -101,9 +95,8 @@ static void assert_plain_sum(const struct fan *fan)
     mem_free(angles);
 }
 
-static void sums_are_those_of_all_pairs(void **state)
+TEST(sums_are_those_of_all_pairs)
 {
-    (void)state;
     static const struct {
         size_t count;
         double height, rough;
@@ -119,9 +112,8 @@ static void sums_are_those_of_all_pairs(void **state)
     }
 }
 
-static void a_large_fan_takes_no_quadratic_time(void **state)
+TEST(a_large_fan_takes_no_quadratic_time)
 {
-    (void)state;
     static const double heights[] = { 0, 0.1, 1, 10 };
     for (size_t i = 0; i < sizeof(heights) / sizeof(heights[0]); i++) {
         struct fan fan;
@@ -131,14 +123,4 @@ static void a_large_fan_takes_no_quadratic_time(void **state)
         assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < 20); /* all pairs are 9e10 */
         fan_finish(&fan);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sums_are_those_of_all_pairs),
-        cmocka_unit_test(a_large_fan_takes_no_quadratic_time),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("normals", tests, NULL, NULL);
 }

@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Notes outlive the daemon, end by their time or by hand, and are bounded; what was in force in a shift is told. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 #include <jansson.h>
 
 #include "base/mem.h"
@@ -46,6 +39,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 static void open_again(struct fixture *f)
 {
     notes_close(&f->notes);
@@ -70,9 +65,8 @@ static void assert_notes(char *text, const char *expected)
     assert_string_equal(found, expected);
 }
 
-static void they_end_by_their_time_or_by_hand(void **state)
+CASE(they_end_by_their_time_or_by_hand)
 {
-    struct fixture *f = *state;
     char first[NOTE_ID_BYTES];
     assert_int_equal(notes_number(f->notes), 0);
     assert_null(add(f, "stays", NOON, 0));
@@ -96,9 +90,8 @@ static void they_end_by_their_time_or_by_hand(void **state)
     assert_notes(notes_text_between(f->notes, NOON - 4000 * S, NOON - S), "");
 }
 
-static void there_is_a_limit(void **state)
+CASE(there_is_a_limit)
 {
-    struct fixture *f = *state;
     for (int i = 0; i < NOTES; i++)
         assert_null(add(f, "n", NOON, NOON + 60 * S));
     assert_non_null(add(f, "more", NOON, 0));
@@ -114,9 +107,8 @@ static void there_is_a_limit(void **state)
     mem_free(text);
 }
 
-static void they_are_at_what_they_say(void **state)
+CASE(they_are_at_what_they_say)
 {
-    struct fixture *f = *state;
     const double place[3] = { 1, 2.5, -3 };
     assert_null(notes_add(f->notes, &(struct note){ .text = "p", .position_m = place }, "kim", NOON, f->id));
     assert_null(notes_add(f->notes, &(struct note){ .text = "a", .asset = "E-1" }, "kim", NOON, f->id));
@@ -127,11 +119,10 @@ static void they_are_at_what_they_say(void **state)
     mem_free(text);
 }
 
-static void what_cannot_be_read_is_not_written_over(void **state)
+CASE(what_cannot_be_read_is_not_written_over)
 {
     static const char *const files[] = { "{", "{\"notes\":[{\"id\":\"a\"}]}",
                                          "{\"notes\":[{\"id\":\"a\",\"text\":\"t\",\"by\":\"\",\"time_us\":1}]}" };
-    struct fixture *f = *state;
     for (size_t i = 0; i < sizeof(files) / sizeof(*files); i++) {
         char *path = temp_write_text(f->folder, "history/" NOTES_FILE, files[i]), text[200] = "";
         open_again(f);
@@ -147,23 +138,9 @@ static void what_cannot_be_read_is_not_written_over(void **state)
     assert_non_null(notes_add(f->notes, &(struct note){ .text = "\xff", .tag = "t" }, "kim", NOON, f->id));
 }
 
-static void without_a_folder_none_is_made(void **state)
+CASE(without_a_folder_none_is_made)
 {
-    struct fixture *f = *state;
     struct notes *notes = notes_open(f->log, NULL);
     assert_non_null(notes_add(notes, &(struct note){ .text = "a", .tag = "t" }, "kim", NOON, f->id));
     notes_close(&notes);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(they_end_by_their_time_or_by_hand, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(there_is_a_limit, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(they_are_at_what_they_say, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_cannot_be_read_is_not_written_over, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(without_a_folder_none_is_made, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

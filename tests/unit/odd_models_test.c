@@ -1,19 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* plantcast-prep on models that are far away, tiny, narrow, or there many times over; and that it ends when it is told to. */
+#include "tests/support/test.h"
 #include <fcntl.h>
 #include <jansson.h>
 #include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -22,6 +15,8 @@
 #include "tests/support/prep_case.h"
 #include "tests/support/sweep.h"
 #include "tests/support/temp.h"
+
+#define CASE(name) TEST_ON(struct prep_case *c, name, prep_case_set_up, prep_case_tear_down)
 
 #define PLANT(asset)                                                                                                                       \
     "plant: { name: Odd }\n"                                                                                                               \
@@ -88,10 +83,9 @@ static size_t read_distances(struct prep_case *c, struct row *rows, size_t most)
     return count;
 }
 
-static void where_a_survey_has_it_distances_are_as_at_the_origin(void **state)
+CASE(where_a_survey_has_it_distances_are_as_at_the_origin)
 {
     static const double far_off_m[3] = { 412345, 5512345, 120 };
-    struct prep_case *c = *state;
     struct row near[66], far[66], home[66];
     write_plates(c, 10, 5, (double[]){ 2, 1 }, 1, here);
     prep_case_plant(c, PLANT("tag: A"));
@@ -116,10 +110,9 @@ static void where_a_survey_has_it_distances_are_as_at_the_origin(void **state)
 
 /* --- tiny, narrow ----------------------------------------------------------------------------------------------------------- */
 
-static void a_speck_is_refused(void **state)
+CASE(a_speck_is_refused)
 {
     static const double sizes_m[] = { 1e-30, 1e-24, 1e-7 };
-    struct prep_case *c = *state;
     prep_case_plant(c, PLANT("tag: A"));
     prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,0,0,0\n");
     for (size_t i = 0; i < sizeof(sizes_m) / sizeof(sizes_m[0]); i++) {
@@ -134,9 +127,8 @@ static void a_speck_is_refused(void **state)
     prep_case_expect(c, "$PLANT", 0);
 }
 
-static void why_there_are_no_distances_is_said(void **state)
+CASE(why_there_are_no_distances_is_said)
 {
-    struct prep_case *c = *state;
     prep_case_plant(c, PLANT("tag: A"));
     prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,0,0,0\n");
     write_plates(c, 10, 1, (double[]){ 1, 1e-7 }, 1, here);
@@ -148,9 +140,8 @@ static void why_there_are_no_distances_is_said(void **state)
 
 /* --- many times over -------------------------------------------------------------------------------------------------------- */
 
-static void copies_in_one_place_are_counted_and_measured_once(void **state)
+CASE(copies_in_one_place_are_counted_and_measured_once)
 {
-    struct prep_case *c = *state;
     prep_case_plant(c, PLANT("tag: A"));
     prep_case_tags(c, "");
     write_plates(c, 4, 4, (double[]){ 1, 1 }, 400, here);
@@ -201,10 +192,9 @@ static double seconds_of(pid_t child)
 }
 
 /* Two million triangles take longer than the program goes on with what is begun. */
-static void what_is_told_to_end_ends(void **state)
+CASE(what_is_told_to_end_ends)
 {
     static const int signals[] = { SIGTERM, SIGINT };
-    struct prep_case *c = *state;
     prep_case_plant(c, PLANT("tag: A"));
     prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,0,0,0\n");
     write_plates(c, 1200, 800, (double[]){ 12, 8 }, 1, here);
@@ -234,19 +224,4 @@ static void what_is_told_to_end_ends(void **state)
     char *drafts = mem_printf("ls '%s'/plant.prepared/*.new 2>/dev/null", c->folder);
     assert_int_not_equal(system(drafts), 0);
     mem_free(drafts);
-}
-
-#define WITH_FOLDER(test) cmocka_unit_test_setup_teardown(test, prep_case_set_up, prep_case_tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        WITH_FOLDER(where_a_survey_has_it_distances_are_as_at_the_origin),
-        WITH_FOLDER(a_speck_is_refused),
-        WITH_FOLDER(why_there_are_no_distances_is_said),
-        WITH_FOLDER(copies_in_one_place_are_counted_and_measured_once),
-        WITH_FOLDER(what_is_told_to_end_ends),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* OPC UA: addresses of nodes; values as readings: numbers of every type, status codes and times bit by bit, and what holds no number. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "plant/sources/opcua_address.h"
@@ -31,9 +25,8 @@ static bool resolve(const char *address, char *of_source, struct plant_tag *tag,
     return good;
 }
 
-static void addresses_are_as_written(void **state)
+TEST(addresses_are_as_written)
 {
-    (void)state;
     static const struct {
         const char *address, *uri, *id;
         int element;
@@ -66,9 +59,8 @@ static void addresses_are_as_written(void **state)
 #ifdef PLANTCAST_OPCUA
 static const int64_t NOW_UTC_NS = 1795000000 * 1000000000LL, NOW_MONO_NS = 90000 * 1000000000LL;
 
-static void every_number_is_read(void **state)
+TEST(every_number_is_read)
 {
-    (void)state;
     UA_Boolean yes = true;
     UA_SByte sbyte = -5;
     UA_UInt16 word = 65535;
@@ -93,9 +85,8 @@ static void every_number_is_read(void **state)
     }
 }
 
-static void what_is_no_number_is_bad(void **state)
+TEST(what_is_no_number_is_bad)
 {
-    (void)state;
     UA_Double numbers[3] = { 1, 2, 3 };
     UA_String text = UA_STRING("warm");
     UA_DataValue data = { .hasValue = true };
@@ -117,9 +108,8 @@ static void what_is_no_number_is_bad(void **state)
 }
 
 /* Through to the snapshot that pictures are drawn from. */
-static void status_codes_and_times_stay_as_they_are(void **state)
+TEST(status_codes_and_times_stay_as_they_are)
 {
-    (void)state;
     static const uint32_t codes[] = { 0, 0x00960000, 0x00000480, 0x40930000, 0x40A50480, 0x40000001, 0x808C0000, 0x80AB0000, 0xC0000000 };
     struct plant *plant = plant_by_hand_create(1);
     plant_by_hand_source(plant, "plc", 4840);
@@ -151,9 +141,8 @@ static void status_codes_and_times_stay_as_they_are(void **state)
 }
 
 /* A machine that was started a minute ago is told of readings of an hour ago. */
-static void what_is_older_than_the_machine_s_start_is_as_old_as_it_is(void **state)
+TEST(what_is_older_than_the_machine_s_start_is_as_old_as_it_is)
 {
-    (void)state;
     static const int64_t minute_ns = 60 * 1000000000LL;
     struct plant *plant = plant_by_hand_create(1);
     plant_by_hand_source(plant, "plc", 4840);
@@ -177,18 +166,3 @@ static void what_is_older_than_the_machine_s_start_is_as_old_as_it_is(void **sta
     plant_by_hand_destroy(&plant);
 }
 #endif
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(addresses_are_as_written),
-#ifdef PLANTCAST_OPCUA
-        cmocka_unit_test(every_number_is_read),
-        cmocka_unit_test(what_is_no_number_is_bad),
-        cmocka_unit_test(status_codes_and_times_stay_as_they_are),
-        cmocka_unit_test(what_is_older_than_the_machine_s_start_is_as_old_as_it_is),
-#endif
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}

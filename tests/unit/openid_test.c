@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* ID tokens that are accepted, and those that are not; log-ins that wait; the file of --openid. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <unistd.h>
 #include <cjose/cjose.h>
-#include <cmocka.h>
 
 #include "access/openid/id_token.h"
 #include "access/openid/openid_config.h"
@@ -72,6 +65,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 static char *sign(const cjose_jwk_t *key, const char *alg, const char *kid, const char *claims)
 {
     cjose_header_t *header = cjose_header_new(NULL);
@@ -120,9 +115,8 @@ static char *changed(const struct fixture *f, const char *name, const char *valu
     return token;
 }
 
-static void test_signatures(void **state)
+CASE(test_signatures)
 {
-    struct fixture *f = *state;
     expect(f, sign(f->key, "RS256", "k1", CLAIMS), "n1", NULL, NULL);
     expect(f, sign(f->key, "PS256", "k1", CLAIMS), "n1", "s1", NULL);
     expect(f, sign(f->key, "RS256", NULL, CLAIMS), "n1", NULL, NULL);
@@ -153,9 +147,8 @@ static void test_signatures(void **state)
 }
 
 /* {"alg":"none"} and a signature that was made with the public key, which everybody knows, as a secret. */
-static void test_algorithms(void **state)
+CASE(test_algorithms)
 {
-    struct fixture *f = *state;
     static const char none[] = "eyJhbGciOiJub25lIn0.";
     char *good = sign(f->key, "RS256", "k1", CLAIMS), *claims = strchr(good, '.') + 1;
     expect(f, mem_printf("%s%.*s.", none, (int)strcspn(claims, "."), claims), "n1", NULL, "not signed");
@@ -175,9 +168,8 @@ static void test_algorithms(void **state)
     expect(f, longest, "n1", NULL, "not signed");
 }
 
-static void test_claims(void **state)
+CASE(test_claims)
 {
-    struct fixture *f = *state;
     static const struct {
         const char *name, *value, *why;
     } cases[] = { { "iss", "\"https://id.example/\"", "another issuer" },
@@ -210,9 +202,8 @@ static void test_claims(void **state)
 }
 
 /* A core accepts the tokens of its renderers' people for the hours of a log-in, which may be more than a day. */
-static void test_older_tokens(void **state)
+CASE(test_older_tokens)
 {
-    struct fixture *f = *state;
     struct id_token_expected expected = { .config = &f->config, .jwks = f->jwks, .sub = "s1", .now_s = NOW_S + 2 * 24 * 3600 };
     char *token = sign(f->key, "RS256", "k1", CLAIMS);
     for (int hours = 40; hours <= 72; hours += 32) {
@@ -226,9 +217,8 @@ static void test_older_tokens(void **state)
     mem_free(token);
 }
 
-static void test_roles_and_names(void **state)
+CASE(test_roles_and_names)
 {
-    struct fixture *f = *state;
     char name[TOKEN_NAME_BYTES];
     json_t *claims = json_loads(CLAIMS, 0, NULL);
     assert_int_equal(id_token_role(&f->config, claims), ROLE_OPERATOR);
@@ -253,9 +243,8 @@ static void test_roles_and_names(void **state)
     json_decref(claims);
 }
 
-static void test_log_ins(void **state)
+TEST(test_log_ins)
 {
-    (void)state;
     struct sign_ins *table = sign_ins_create();
     uint8_t here[16] = { 1 }, there[16] = { 2 };
     char challenge[SIGN_IN_SECRET_CHARS + 1];
@@ -284,9 +273,8 @@ static void test_log_ins(void **state)
     sign_ins_destroy(&table);
 }
 
-static void test_return_paths(void **state)
+TEST(test_return_paths)
 {
-    (void)state;
     struct sign_ins *table = sign_ins_create();
     uint8_t here[16] = { 1 };
     for (const char *const *path = (const char *const[]){ "/", "/b/?x=1#y", "/?to=//a", NULL }; *path; path++)
@@ -307,9 +295,8 @@ static struct person person_of(const char *sub)
     };
 }
 
-static void test_people(void **state)
+TEST(test_people)
 {
-    (void)state;
     struct sign_ins *table = sign_ins_create();
     char first[SIGN_IN_SECRET_CHARS + 1], cookie[SIGN_IN_SECRET_CHARS + 1], *left;
     struct person kim = person_of("kim");
@@ -353,9 +340,8 @@ static struct openid_config *read_config(const char *text)
     return config;
 }
 
-static void test_file(void **state)
+TEST(test_file)
 {
-    (void)state;
     static const char good[] = "issuer: https://id.example\nclient_id: plant\nurl: https://p.example:8443\nclient_secret_file: secret\n"
                                "roles: [{ group: ops, role: operator }, { group: ops, role: viewer }]\n";
     struct openid_config *config = read_config(good);
@@ -377,21 +363,4 @@ static void test_file(void **state)
         assert_null(read_config(text));
         mem_free(text);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_signatures, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_algorithms, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_claims, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_older_tokens, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_roles_and_names, set_up, tear_down),
-        cmocka_unit_test(test_log_ins),
-        cmocka_unit_test(test_return_paths),
-        cmocka_unit_test(test_people),
-        cmocka_unit_test(test_file),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The operator's view: places between limits, the field of them, tags without limits, and alarms. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "field/field.h"
 #include "field/limits.h"
@@ -28,9 +24,8 @@ static void expect(const struct plant_tag *tag, double value, double place)
         fail_msg("%g with %g %g %g %g: %g, expected %g", value, tag->limits[0], tag->limits[1], tag->limits[2], tag->limits[3], got, place);
 }
 
-static void test_all_limits(void **state)
+TEST(test_all_limits)
 {
-    (void)state;
     struct plant_tag tag = with_limits(10, 20, 60, 90);
     static const double values[][2] = { { 10, -2 }, { 20, -1 }, { 60, 1 }, { 90, 2 }, { 40, 0 }, { 50, 0.5 }, { 15, -1.5 }, { 75, 1.5 },
                                         { 120, 3 }, { 1e9, 3 }, { 0, -3 }, { -1e9, -3 }, { 105, 2.5 } };
@@ -38,9 +33,8 @@ static void test_all_limits(void **state)
         expect(&tag, values[i][0], values[i][1]);
 }
 
-static void test_limits_that_are_missing(void **state)
+TEST(test_limits_that_are_missing)
 {
-    (void)state;
     struct plant_tag high = with_limits(NAN, NAN, 80, 90), alone = with_limits(NAN, NAN, 80, NAN), last = with_limits(NAN, NAN, NAN, 80);
     expect(&high, 0, 0);
     expect(&high, 40, 0.5);
@@ -69,9 +63,8 @@ static void test_limits_that_are_missing(void **state)
     assert_true(isnan(limit_place(&range_0_100, &none, 5)));
 }
 
-static void test_places_rise_with_readings(void **state)
+TEST(test_places_rise_with_readings)
 {
-    (void)state;
     uint64_t random = 7;
     for (int i = 0; i < 300; i++) {
         double limits[LIMIT_COUNT], at = -50;
@@ -96,9 +89,8 @@ static void test_places_rise_with_readings(void **state)
     }
 }
 
-static void test_alarms_need_usable_readings(void **state)
+TEST(test_alarms_need_usable_readings)
 {
-    (void)state;
     struct plant_tag tag = with_limits(NAN, 20, 60, 90);
     struct reading reading = { .value = 95 };
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_HH);
@@ -156,16 +148,14 @@ static void compare(enum interpolation interpolation, double least_place, double
     synthetic_destroy(&places);
 }
 
-static void test_places_are_interpolated_with_the_same_weights(void **state)
+TEST(test_places_are_interpolated_with_the_same_weights)
 {
-    (void)state;
     compare(INTERPOLATION_SHEPARD, -2.5, 2.5);
     compare(INTERPOLATION_PAPER, 0, 1); /* the other plant would clamp what lies beyond */
 }
 
-static void test_tags_without_limits_have_no_place(void **state)
+TEST(test_tags_without_limits_have_no_place)
 {
-    (void)state;
     struct synthetic *plant = synthetic_create(.vertices = VERTICES, .sensors = 3, .max = 100);
     struct workers *workers = workers_create(1);
     struct field *field = field_create(workers, &plant->scene);
@@ -197,18 +187,4 @@ static void test_tags_without_limits_have_no_place(void **state)
     field_destroy(&field);
     workers_destroy(&workers);
     synthetic_destroy(&plant);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_all_limits),
-        cmocka_unit_test(test_limits_that_are_missing),
-        cmocka_unit_test(test_places_rise_with_readings),
-        cmocka_unit_test(test_alarms_need_usable_readings),
-        cmocka_unit_test(test_places_are_interpolated_with_the_same_weights),
-        cmocka_unit_test(test_tags_without_limits_have_no_place),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

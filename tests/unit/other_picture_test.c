@@ -2,22 +2,16 @@
 /* What another plant's server may answer: headers that say how old its readings are, and PNG files that are whole. */
 #include "views/other_picture.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 #include <zlib.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"
 
-static void headers_are_read(void **state)
+TEST(headers_are_read)
 {
     struct other_picture about;
     char header[1000];
-    (void)state;
     assert_true(other_picture_read_header("data_time_us=12, oldest_age_ms=250, plant=Werk%20%C3%84%2C%202", &about));
     assert_int_equal(about.oldest_age_ms, 250);
     assert_string_equal(about.name, "Werk \u00c4, 2");
@@ -82,10 +76,9 @@ static bool is_png(const struct text *png, size_t count)
     return good;
 }
 
-static void png_files_are_whole(void **state)
+TEST(png_files_are_whole)
 {
     struct text png = make_png();
-    (void)state;
     assert_true(is_png(&png, png.length));
     assert_false(other_picture_is_png((const uint8_t *)png.at, png.length, 144, 256));
     for (size_t count = 0; count < png.length; count++)
@@ -102,11 +95,4 @@ static void png_files_are_whole(void **state)
     add_chunk(&png, "IEND", "", 0);
     assert_false(is_png(&png, png.length));
     text_finish(&png);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = { cmocka_unit_test(headers_are_read), cmocka_unit_test(png_files_are_whole) };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

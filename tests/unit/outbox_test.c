@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who is told of which alarms: floods, shifts and areas, escalation, outages, restarts; and what the messages say. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"
@@ -70,6 +63,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 enum { LOCAL, DISPLAY };
 
 static struct alarm alarm_of(const struct fixture *f, int tag, int mode, bool active, bool unacknowledged, int64_t raised_us)
@@ -113,9 +108,8 @@ static void restart(struct fixture *f)
     json_decref(saved);
 }
 
-static void a_flood_is_one_message(void **state)
+CASE(a_flood_is_one_message)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: ops }\n  - { id: too, priority: 2, to: ops }\n");
     for (int i = 0; i < 500; i++)
         put(f, i, LOCAL, true, true, T0, T0 + i * S / 500);
@@ -126,9 +120,8 @@ static void a_flood_is_one_message(void **state)
     assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
 }
 
-static void what_is_more_urgent_does_not_wait_for_the_pause(void **state)
+CASE(what_is_more_urgent_does_not_wait_for_the_pause)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: ops }\n");
     put(f, 3, LOCAL, true, true, T0, T0); /* priority 4 */
     assert_int_equal(deliver(f, OPS, T0 + 3 * S), 1);
@@ -141,9 +134,8 @@ static void what_is_more_urgent_does_not_wait_for_the_pause(void **state)
     assert_int_equal(deliver(f, OPS, T0 + 73 * S), 1);
 }
 
-static void rules_choose_by_priority_area_and_shift(void **state)
+CASE(rules_choose_by_priority_area_and_shift)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: urgent, priority: 1, to: ops }\n"
             "  - { id: tanks, areas: \"Tank*\", hours: \"06:00-14:00\", days: mon-fri, to: boss }\n");
     const struct plant *plant = f->c->plant;
@@ -164,9 +156,8 @@ static bool on(const struct notify_shift *shift, const char *utc)
     return shift_is_on(shift, (int64_t)timegm(&tm) * S);
 }
 
-static void shifts_keep_to_the_wall_clock(void **state)
+CASE(shifts_keep_to_the_wall_clock)
 {
-    (void)state;
     const struct notify_shift friday_night = { .days = 1 << 4, .from_min = 22 * 60, .to_min = 6 * 60 };
     assert_false(on(&friday_night, "2026-11-20T20:59")); /* Friday, 21:59 in Berlin */
     assert_true(on(&friday_night, "2026-11-20T21:00"));
@@ -181,9 +172,8 @@ static void shifts_keep_to_the_wall_clock(void **state)
     assert_false(on(&all_day, "2026-11-23T10:00"));
 }
 
-static void it_escalates_until_acknowledged(void **state)
+CASE(it_escalates_until_acknowledged)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: ops, escalate: [{ after_min: 10, to: boss }, { after_min: 20, to: [ops, boss] }] }\n");
     put(f, 0, LOCAL, true, true, T0, T0);
     put(f, 1, LOCAL, true, true, T0, T0);
@@ -204,9 +194,8 @@ static void it_escalates_until_acknowledged(void **state)
     assert_int_equal(deliver(f, OPS, T0 + 91 * MIN + 3 * S), 1);
 }
 
-static void nobody_is_told_twice_after_a_restart(void **state)
+CASE(nobody_is_told_twice_after_a_restart)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: [ops, boss] }\n");
     put(f, 0, LOCAL, true, true, T0, T0);
     assert_int_equal(deliver(f, OPS, T0 + 3 * S), 1);
@@ -229,9 +218,8 @@ static void nobody_is_told_twice_after_a_restart(void **state)
     assert_int_equal(deliver(f, OPS, T0 + 300 * S), 0);
 }
 
-static void an_outage_delays_and_does_not_multiply(void **state)
+CASE(an_outage_delays_and_does_not_multiply)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: ops }\n");
     struct outbox_message message;
     int tries = 0;
@@ -255,9 +243,8 @@ static void an_outage_delays_and_does_not_multiply(void **state)
     assert_int_equal(outbox_counts(f->outbox, OPS).lost, 0);
 }
 
-static void what_waits_is_bounded_and_said(void **state)
+CASE(what_waits_is_bounded_and_said)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: ops }\n");
     struct outbox_message message;
     put(f, 5999, LOCAL, true, true, T0, T0);
@@ -279,9 +266,8 @@ static void what_waits_is_bounded_and_said(void **state)
     assert_int_equal(outbox_counts(f->outbox, OPS).lost, 1000);
 }
 
-static void what_chatters_is_told_once_in_ten_minutes(void **state)
+CASE(what_chatters_is_told_once_in_ten_minutes)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: ops }\n");
     size_t told = 0;
     for (int s = 0; s < 1500; s++) {
@@ -291,9 +277,8 @@ static void what_chatters_is_told_once_in_ten_minutes(void **state)
     assert_int_equal(told, 3);
 }
 
-static void what_came_and_went_between_two_looks_is_told(void **state)
+CASE(what_came_and_went_between_two_looks_is_told)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: ops }\n");
     put(f, 0, DISPLAY, false, false, T0, T0 + S / 2);
     struct outbox_message message;
@@ -302,7 +287,7 @@ static void what_came_and_went_between_two_looks_is_told(void **state)
     assert_true(message.items[0].ended_us > 0);
 }
 
-static void what_is_set_aside_is_not_told(void **state)
+TEST_WITH(what_is_set_aside_is_not_told, set_up, tear_down)
 {
     struct fixture *f = *state;
     load(f, "  - { id: all, to: ops }\n");
@@ -315,9 +300,8 @@ static void what_is_set_aside_is_not_told(void **state)
     assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
 }
 
-static void alertmanager_hears_what_stands_and_what_has_ended(void **state)
+CASE(alertmanager_hears_what_stands_and_what_has_ended)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: am }\n");
     struct outbox_message message;
     put(f, 0, LOCAL, true, true, T0, T0);
@@ -343,9 +327,8 @@ static void alertmanager_hears_what_stands_and_what_has_ended(void **state)
     assert_int_equal(deliver(f, AM, T0 + 83 * S), 1);
 }
 
-static void what_ended_while_nobody_looked_is_over(void **state)
+CASE(what_ended_while_nobody_looked_is_over)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: [ops, am], escalate: [{ after_min: 10, to: boss }] }\n");
     put(f, 0, LOCAL, true, true, T0, T0);
     put(f, 1, LOCAL, true, true, T0, T0);
@@ -361,9 +344,8 @@ static void what_ended_while_nobody_looked_is_over(void **state)
     assert_int_equal(deliver(f, AM, T0 + 30 * MIN), 1);
 }
 
-static void it_escalates_after_the_clock_was_set_back(void **state)
+CASE(it_escalates_after_the_clock_was_set_back)
 {
-    struct fixture *f = *state;
     int64_t before = T0 - 24 * 60 * MIN;
     load(f, "  - { id: all, to: ops, escalate: [{ after_min: 10, to: boss }] }\n");
     put(f, 0, LOCAL, true, true, T0, T0);
@@ -373,9 +355,8 @@ static void it_escalates_after_the_clock_was_set_back(void **state)
     assert_int_equal(deliver(f, BOSS, before + 10 * MIN + 3 * S), 1);
 }
 
-static void a_clock_that_jumps_ahead_loses_nothing_later(void **state)
+CASE(a_clock_that_jumps_ahead_loses_nothing_later)
 {
-    struct fixture *f = *state;
     struct outbox_message message;
     int64_t later = T0 + 48 * 60 * MIN;
     load(f, "  - { id: all, to: [ops, am] }\n");
@@ -407,9 +388,8 @@ static char *decoded(const char *base64)
     return out.at;
 }
 
-static void a_mail_says_what_and_since_when(void **state)
+CASE(a_mail_says_what_and_since_when)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: [ops, boss] }\n");
     struct outbox_message message;
     struct text mail = { 0 };
@@ -434,9 +414,8 @@ static void a_mail_says_what_and_since_when(void **state)
     text_finish(&mail);
 }
 
-static void a_damaged_file_is_refused(void **state)
+CASE(a_damaged_file_is_refused)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: ops }\n");
     static const char *const texts[] = { "{}", "[]", "{\"version\":2}",
                                          "{\"version\":1,\"alarms\":[1,{\"name\":\"T0000\",\"kind\":\"XX\"},{\"name\":\"T0000\",\"kind\":"
@@ -453,9 +432,8 @@ static void a_damaged_file_is_refused(void **state)
 }
 
 /* Only then the notifier may sleep until it is told of a change. */
-static void it_rests_when_time_changes_nothing(void **state)
+CASE(it_rests_when_time_changes_nothing)
 {
-    struct fixture *f = *state;
     load(f, "  - { id: all, to: [ops, am] }\n");
     outbox_tick(f->outbox, T0);
     assert_true(outbox_rests(f->outbox));
@@ -468,30 +446,4 @@ static void it_rests_when_time_changes_nothing(void **state)
     deliver(f, AM, T0 + 9 * S);
     outbox_tick(f->outbox, T0 + 24 * 60 * MIN);
     assert_true(outbox_rests(f->outbox));
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_flood_is_one_message, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_is_more_urgent_does_not_wait_for_the_pause, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(rules_choose_by_priority_area_and_shift, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(shifts_keep_to_the_wall_clock, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(it_escalates_until_acknowledged, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(nobody_is_told_twice_after_a_restart, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(an_outage_delays_and_does_not_multiply, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_waits_is_bounded_and_said, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_chatters_is_told_once_in_ten_minutes, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_came_and_went_between_two_looks_is_told, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_is_set_aside_is_not_told, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(alertmanager_hears_what_stands_and_what_has_ended, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_ended_while_nobody_looked_is_over, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(it_escalates_after_the_clock_was_set_back, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_clock_that_jumps_ahead_loses_nothing_later, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_mail_says_what_and_since_when, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(it_rests_when_time_changes_nothing, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_damaged_file_is_refused, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,14 +2,9 @@
 /* What is drawn over pictures: alarms that no mark shows are listed, those in sight are not; nothing covers what is fitted. */
 #include "render/overlay/overlay.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "render/overlay/overlay_pen.h"
@@ -74,9 +69,8 @@ static bool lists(int tag, bool occluded, bool split)
     return found;
 }
 
-static void alarms_out_of_sight_are_listed(void **state)
+TEST(alarms_out_of_sight_are_listed)
 {
-    (void)state;
     struct reading *reading = &stand.snapshot->readings[2];
     for (int split = 0; split < 2; split++) {
         reading->alarm = ALARM_NONE;
@@ -90,9 +84,8 @@ static void alarms_out_of_sight_are_listed(void **state)
     reading->alarm = ALARM_NONE;
 }
 
-static void any_number_of_alarms_fits(void **state)
+TEST(any_number_of_alarms_fits)
 {
-    (void)state;
     for (size_t i = 0; i < stand.snapshot->count; i++)
         stand.snapshot->readings[i].alarm = ALARM_BAD;
     struct frame *frame = draw(0, true, false), *small = frame_create(16, 16);
@@ -126,9 +119,8 @@ static struct frame *draw_bare(double value, enum alarm_kind alarm)
     return frame;
 }
 
-static void a_bare_one_tells_of_no_sensor(void **state)
+TEST(a_bare_one_tells_of_no_sensor)
 {
-    (void)state;
     struct frame *one = draw_bare(1, ALARM_NONE), *other = draw_bare(77, ALARM_HH), *full = draw(2, false, false);
     size_t bytes = (size_t)one->stride_bytes * HEIGHT;
     assert_memory_equal(one->bgrx, other->bgrx, bytes);
@@ -140,9 +132,8 @@ static void a_bare_one_tells_of_no_sensor(void **state)
     frame_unref(&full);
 }
 
-static void the_window_is_what_is_left_free(void **state)
+TEST(the_window_is_what_is_left_free)
 {
-    (void)state;
     struct view view;
     struct camera_window whole, half, none;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
@@ -171,10 +162,9 @@ static int legend_px(const struct frame *frame, int half)
     return count;
 }
 
-static void halves_share_a_legend_that_says_the_same(void **state)
+TEST(halves_share_a_legend_that_says_the_same)
 {
     struct view right;
-    (void)state;
     enum { SAME, DISTANCE, RANGE, MAP, LINES, LOOK, SHOWN, WAYS };
     for (int way = 0; way < WAYS; way++) {
         view_default(&stand.toy->scene, WIDTH, HEIGHT, &right);
@@ -211,9 +201,8 @@ static int legend_differs_px(enum look look)
 }
 
 /* Values read from it may be wrong: two lines of words say so. */
-static void the_legend_says_glossy(void **state)
+TEST(the_legend_says_glossy)
 {
-    (void)state;
     assert_int_equal(legend_differs_px(LOOK_FLAT), 0);
     assert_true(legend_differs_px(LOOK_GLOSSY) > 500);
 }
@@ -243,9 +232,8 @@ static int arrow_legends_differ_px(const struct frame_label *label, const struct
     return count;
 }
 
-static void the_legend_lists_unknown_directions_where_there_are_any(void **state)
+TEST(the_legend_lists_unknown_directions_where_there_are_any)
 {
-    (void)state;
     const struct frame_label east = { .x_px = 200, .y_px = 200, .value = 50, .arrow = true, .dx = 1 };
     struct frame_label north = east, nowhere = east, still = east;
     north.dx = 0;
@@ -259,9 +247,8 @@ static void the_legend_lists_unknown_directions_where_there_are_any(void **state
     stand.toy->plant.groups[0].directed = false;
 }
 
-static void what_rounds_to_nought_has_no_sign(void **state)
+TEST(what_rounds_to_nought_has_no_sign)
 {
-    (void)state;
     assert_true(pen_rounded(-0.04, 1) == 0 && !signbit(pen_rounded(-0.04, 1)) && pen_rounded(0.04, 1) == 0);
     assert_true(pen_rounded(-0.06, 1) == -0.06 && pen_rounded(-0.4, 0) == 0 && pen_rounded(-0.0, 6) == 0);
 }
@@ -292,9 +279,8 @@ static void differ(struct view *right, int way)
 }
 
 /* Two pictures that are made otherwise say how; the legend does not tell one from the other. */
-static void halves_say_what_they_differ_in(void **state)
+TEST(halves_say_what_they_differ_in)
 {
-    (void)state;
     struct frame *plain = draw(0, false, true);
     for (int x = 0; x < 240; x++) /* nothing to say */
         assert_int_equal(plain->bgrx[20 * plain->stride_bytes + 4 * (WIDTH / 2 + 4 + x)], 255);
@@ -322,14 +308,13 @@ static unsigned sum_of(const struct frame *frame, const struct box *box)
 }
 
 /* Header, captions of both halves, list of alarms, legend, each apart; what a picture of the past says. */
-static void all_speaks_the_language(void **state)
+TEST(all_speaks_the_language)
 {
     static const struct box parts[] = {
         { 0, 0, 300, 56 }, { 8, 70, 300, 60 }, { WIDTH / 2 + 8, 10, 300, 60 }, { 0, 500, 300, 220 }, { 1020, 0, 260, HEIGHT }
     };
     enum { PARTS = sizeof(parts) / sizeof(parts[0]) };
     unsigned sums[LANGUAGES][PARTS + 1];
-    (void)state;
     stand.snapshot->readings[1].alarm = ALARM_H;
     for (int i = 0; i < LANGUAGES; i++) {
         struct view view, right;
@@ -357,11 +342,10 @@ static void all_speaks_the_language(void **state)
 }
 
 /* And leaves the plant as much room as it then takes. */
-static void a_longer_legend_takes_more_room(void **state)
+TEST(a_longer_legend_takes_more_room)
 {
     struct view view; /* whose title is a sentence */
     struct camera_window english, german;
-    (void)state;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
     view.field.show = SHOW_DISTANCE;
     view.field.sensor = 0;
@@ -379,10 +363,9 @@ static int count_places(const char *text)
     return count;
 }
 
-static void each_word_is_in_all_languages(void **state)
+TEST(each_word_is_in_all_languages)
 {
     enum language found;
-    (void)state;
     for (int word = 0; word < OVERLAY_WORDS; word++) {
         const char *english = overlay_word(LANGUAGE_EN, (enum overlay_word)word);
         for (int i = 0; i < LANGUAGES; i++) {
@@ -395,10 +378,9 @@ static void each_word_is_in_all_languages(void **state)
     assert_false(overlay_language_find("fr", &found));
 }
 
-static void values_are_put_in(void **state)
+TEST(values_are_put_in)
 {
     char text[80], small[8];
-    (void)state;
     overlay_say(LANGUAGE_EN, WORD_HOT_SPOT_SIZE, "2", "30", text, sizeof(text));
     assert_string_equal(text, "of 2 m, as 30 % of the range");
     overlay_say(LANGUAGE_EN, WORD_ALARMS, "12", NULL, text, sizeof(text));
@@ -411,26 +393,10 @@ static void values_are_put_in(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(halves_say_what_they_differ_in),
-        cmocka_unit_test(halves_share_a_legend_that_says_the_same),
-        cmocka_unit_test(alarms_out_of_sight_are_listed),
-        cmocka_unit_test(any_number_of_alarms_fits),
-        cmocka_unit_test(a_bare_one_tells_of_no_sensor),
-        cmocka_unit_test(the_legend_says_glossy),
-        cmocka_unit_test(the_legend_lists_unknown_directions_where_there_are_any),
-        cmocka_unit_test(all_speaks_the_language),
-        cmocka_unit_test(a_longer_legend_takes_more_room),
-        cmocka_unit_test(each_word_is_in_all_languages),
-        cmocka_unit_test(values_are_put_in),
-        cmocka_unit_test(what_rounds_to_nought_has_no_sign),
-        cmocka_unit_test(the_window_is_what_is_left_free),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
     stand.toy = toy_unit();
     stand.snapshot = toy_snapshot(stand.toy);
     toy_fill(stand.snapshot, 0);
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = tests_run(NULL);
     snapshot_destroy(&stand.snapshot);
     toy_destroy(&stand.toy);
     return failed;

@@ -2,11 +2,8 @@
 /* Pictures under way: the window, acknowledgements in and out of order and of what was never sent; and a network that is simulated. */
 #include "session/pacing/pacer.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "tests/support/sweep.h"
@@ -29,9 +26,8 @@ static uint32_t send_one(struct pacer *pacer, size_t bytes, int64_t now_ns)
     return seq;
 }
 
-static void window_closes_until_acknowledged(void **state)
+TEST(window_closes_until_acknowledged)
 {
-    (void)state;
     struct pacer pacer = fresh();
     assert_true(pacer_may_ask(&pacer, 0));
     assert_int_equal(send_one(&pacer, 100, 1 * MS), 1);
@@ -43,9 +39,8 @@ static void window_closes_until_acknowledged(void **state)
     assert_true(pacer_may_ask(&pacer, 6 * MS));
 }
 
-static void what_is_asked_for_counts(void **state)
+TEST(what_is_asked_for_counts)
 {
-    (void)state;
     struct pacer pacer = fresh();
     for (int i = 0; i < PACER_LEAST; i++)
         pacer_asked(&pacer);
@@ -54,9 +49,8 @@ static void what_is_asked_for_counts(void **state)
     assert_true(pacer_may_ask(&pacer, 0));
 }
 
-static void nothing_is_asked_for_while_the_socket_is_full(void **state)
+TEST(nothing_is_asked_for_while_the_socket_is_full)
 {
-    (void)state;
     struct pacer pacer = fresh();
     struct pacer_note note = { 0 };
     pacer_asked(&pacer);
@@ -69,9 +63,8 @@ static void nothing_is_asked_for_while_the_socket_is_full(void **state)
     assert_true(pacer_may_ask(&pacer, 6 * MS));
 }
 
-static void a_picture_cut_short_is_not_waited_for(void **state)
+TEST(a_picture_cut_short_is_not_waited_for)
 {
-    (void)state;
     struct pacer pacer = fresh();
     struct pacer_note note = { 0 };
     pacer_asked(&pacer);
@@ -85,9 +78,8 @@ static void a_picture_cut_short_is_not_waited_for(void **state)
     assert_int_equal(send_one(&pacer, 1, 60 * NS_PER_S), 2);
 }
 
-static void a_newer_ack_stands_for_older_frames(void **state)
+TEST(a_newer_ack_stands_for_older_frames)
 {
-    (void)state;
     struct pacer pacer = fresh();
     send_one(&pacer, 1, 0);
     send_one(&pacer, 1, 0);
@@ -97,9 +89,8 @@ static void a_newer_ack_stands_for_older_frames(void **state)
     assert_int_equal(pacer_acked(&pacer, 2, -1, 0), PACER_ACK_OLD);
 }
 
-static void an_ack_for_nothing_opens_nothing(void **state)
+TEST(an_ack_for_nothing_opens_nothing)
 {
-    (void)state;
     struct pacer pacer = fresh();
     assert_int_equal(pacer_acked(&pacer, 1, -1, 0), PACER_ACK_NEVER_SENT);
     send_one(&pacer, 1, 1);
@@ -110,18 +101,16 @@ static void an_ack_for_nothing_opens_nothing(void **state)
     assert_false(pacer_may_ask(&pacer, 1));
 }
 
-static void numbers_go_round_and_leave_out_zero(void **state)
+TEST(numbers_go_round_and_leave_out_zero)
 {
-    (void)state;
     struct pacer pacer = fresh();
     pacer.last_seq = UINT32_MAX;
     assert_int_equal(send_one(&pacer, 1, 0), 1);
     assert_int_equal(pacer_acked(&pacer, 1, -1, 0), PACER_ACK_NEW);
 }
 
-static void silence_is_a_stall_and_then_the_end(void **state)
+TEST(silence_is_a_stall_and_then_the_end)
 {
-    (void)state;
     struct pacer pacer = fresh();
     assert_int_equal(pacer_state(&pacer, 3600 * NS_PER_S), PACER_FLOWS); /* nothing is under way */
     send_one(&pacer, 100, 3600 * NS_PER_S);
@@ -202,9 +191,8 @@ static double rate(const struct world *world)
     return world->frames * 1e9 / (double)(world->now_ns - world->begin_ns);
 }
 
-static void a_fast_network_gets_the_best(void **state)
+TEST(a_fast_network_gets_the_best)
 {
-    (void)state;
     struct pacer pacer = fresh();
     struct world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .decode_ns = 8 * MS, .pixels = 1920 * 1080, .now_ns = NS_PER_S };
     run_world(&world, &pacer, 1);
@@ -214,9 +202,8 @@ static void a_fast_network_gets_the_best(void **state)
     assert_true(rate(&world) > 45 && world.oldest_ns < 30 * MS);
 }
 
-static void a_long_way_does_not_cost_rate(void **state)
+TEST(a_long_way_does_not_cost_rate)
 {
-    (void)state;
     struct pacer pacer = fresh();
     struct world world = { .bytes_per_s = 50e6, .rtt_ns = 200 * MS, .decode_ns = 5 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
     run_world(&world, &pacer, 3);
@@ -227,9 +214,8 @@ static void a_long_way_does_not_cost_rate(void **state)
 }
 
 /* 1 Mbit/s and 200 ms. */
-static void a_slow_network_gets_small_pictures_in_time(void **state)
+TEST(a_slow_network_gets_small_pictures_in_time)
 {
-    (void)state;
     struct pacer pacer = fresh();
     struct world world = { .bytes_per_s = 125e3, .rtt_ns = 200 * MS, .decode_ns = 8 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
     run_world(&world, &pacer, 5);
@@ -241,9 +227,8 @@ static void a_slow_network_gets_small_pictures_in_time(void **state)
 }
 
 /* Decoding takes 150 ms: fewer pixels, not less quality, and no more than one waits there. */
-static void a_slow_decoder_gets_fewer_pixels(void **state)
+TEST(a_slow_decoder_gets_fewer_pixels)
 {
-    (void)state;
     struct pacer pacer = fresh();
     struct world world = { .bytes_per_s = 100e6, .rtt_ns = 2 * MS, .decode_ns = 150 * MS, .pixels = 1920 * 1080, .now_ns = NS_PER_S };
     run_world(&world, &pacer, 10);
@@ -253,9 +238,8 @@ static void a_slow_decoder_gets_fewer_pixels(void **state)
     assert_true(rate(&world) > 12 && world.oldest_ns < 200 * MS);
 }
 
-static void what_recovers_gets_its_quality_back(void **state)
+TEST(what_recovers_gets_its_quality_back)
 {
-    (void)state;
     struct pacer pacer = fresh();
     struct world world = { .bytes_per_s = 20e6, .rtt_ns = 20 * MS, .decode_ns = 8 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
     run_world(&world, &pacer, 5);
@@ -278,9 +262,8 @@ static void run_busy(struct world *world, struct pacer *pacer, int64_t busy_ns, 
 }
 
 /* A page that loads its parts, beside much else that the machine does: neither the network nor the decoder is slow. */
-static void a_client_that_is_busy_for_a_moment_keeps_its_quality(void **state)
+TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
 {
-    (void)state;
     struct pacer pacer = fresh();
     struct world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .decode_ns = 4 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
     channel_on_bytes(&pacer.channel, 1000000, 2500 * MS); /* the first texts, while it begins */
@@ -297,9 +280,8 @@ static void a_client_that_is_busy_for_a_moment_keeps_its_quality(void **state)
 }
 
 /* One picture that takes long to decode, as the first of a new codec does, where few others come. */
-static void a_decoder_that_begins_is_not_slow(void **state)
+TEST(a_decoder_that_begins_is_not_slow)
 {
-    (void)state;
     struct pacer pacer = fresh();
     struct world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .pixels = 1280 * 720, .draw_ns = 200 * MS };
     world.now_ns = NS_PER_S + MS;
@@ -315,9 +297,8 @@ static void a_decoder_that_begins_is_not_slow(void **state)
 }
 
 /* At the edge between two steps it must not swing. */
-static void steps_do_not_swing(void **state)
+TEST(steps_do_not_swing)
 {
-    (void)state;
     for (int kbit_per_s = 500; kbit_per_s <= 64000; kbit_per_s = kbit_per_s * 5 / 4) {
         struct pacer pacer = fresh();
         struct world world = { .bytes_per_s = kbit_per_s * 125.0, .rtt_ns = 40 * MS, .decode_ns = 5 * MS, .pixels = 1280 * 720 };
@@ -334,9 +315,8 @@ static void steps_do_not_swing(void **state)
     }
 }
 
-static void who_see_the_same_take_one_step(void **state)
+TEST(who_see_the_same_take_one_step)
 {
-    (void)state;
     struct quality_ladder ladder = { .step = 1 }, seen = { 0 };
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 1, 0, 1 }), -1);
     int common = quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 60, 30, 5, 0, 0, 5 });
@@ -358,9 +338,8 @@ static void who_see_the_same_take_one_step(void **state)
 }
 
 /* Whatever a client acknowledges, the window is never exceeded, and a good acknowledgement always opens it. */
-static void random_clients(void **state)
+TEST(random_clients)
 {
-    (void)state;
     unsigned seed = (unsigned)sweep_seed();
     struct pacer pacer = fresh();
     pacer.last_seq = 100;
@@ -375,30 +354,4 @@ static void random_clients(void **state)
     pacer_acked(&pacer, pacer.last_seq, -1, 100000 * MS);
     assert_int_equal(pacer.flight_count, 0);
     assert_true(pacer_may_ask(&pacer, 100000 * MS));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(window_closes_until_acknowledged),
-        cmocka_unit_test(what_is_asked_for_counts),
-        cmocka_unit_test(nothing_is_asked_for_while_the_socket_is_full),
-        cmocka_unit_test(a_picture_cut_short_is_not_waited_for),
-        cmocka_unit_test(a_newer_ack_stands_for_older_frames),
-        cmocka_unit_test(an_ack_for_nothing_opens_nothing),
-        cmocka_unit_test(numbers_go_round_and_leave_out_zero),
-        cmocka_unit_test(silence_is_a_stall_and_then_the_end),
-        cmocka_unit_test(a_fast_network_gets_the_best),
-        cmocka_unit_test(a_long_way_does_not_cost_rate),
-        cmocka_unit_test(a_slow_network_gets_small_pictures_in_time),
-        cmocka_unit_test(a_slow_decoder_gets_fewer_pixels),
-        cmocka_unit_test(what_recovers_gets_its_quality_back),
-        cmocka_unit_test(a_client_that_is_busy_for_a_moment_keeps_its_quality),
-        cmocka_unit_test(a_decoder_that_begins_is_not_slow),
-        cmocka_unit_test(steps_do_not_swing),
-        cmocka_unit_test(who_see_the_same_take_one_step),
-        cmocka_unit_test(random_clients),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

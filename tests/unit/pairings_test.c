@@ -2,14 +2,9 @@
 /* Displays that are let in by six digits: kept over a restart, revoked, and how many may wait and be guessed at. */
 #include "access/pairings.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <sys/stat.h>
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/files/atomic_file.h"
@@ -44,6 +39,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 static void print_secret(int i, char secret[TOKEN_MAX_CHARS + 1])
 {
     snprintf(secret, TOKEN_MAX_CHARS + 1, "pc_%064x", (unsigned)i);
@@ -76,9 +73,8 @@ static const char *approve(struct fixture *f, const char *digits, int64_t now_ns
     return pairings_approve(f->pairings, digits, "eve", now_ns, 7, id);
 }
 
-static void a_device_is_bound_kept_and_revoked(void **state)
+CASE(a_device_is_bound_kept_and_revoked)
 {
-    struct fixture *f = *state;
     char digits[PAIRING_DIGITS + 1], again[PAIRING_DIGITS + 1], secret[TOKEN_MAX_CHARS + 1], path[512];
     struct token_holder holder;
     assert_int_equal(ask(f, 1, NS_PER_S, digits), PAIRING_WAITS);
@@ -122,9 +118,8 @@ static void a_device_is_bound_kept_and_revoked(void **state)
     tokens_destroy(&tokens);
 }
 
-static void digits_expire(void **state)
+CASE(digits_expire)
 {
-    struct fixture *f = *state;
     char digits[PAIRING_DIGITS + 1], others[PAIRING_DIGITS + 1];
     ask(f, 1, 0, digits);
     assert_non_null(approve(f, digits, PAIRING_QUIET_S * NS_PER_S)); /* it has not asked since */
@@ -139,9 +134,8 @@ static void digits_expire(void **state)
     assert_null(approve(f, others, now_ns));
 }
 
-static void few_wait_and_few_guesses_are_judged(void **state)
+CASE(few_wait_and_few_guesses_are_judged)
 {
-    struct fixture *f = *state;
     char digits[PAIRING_DIGITS + 1], more[PAIRING_DIGITS + 1];
     for (int i = 0; i < PAIRINGS; i++)
         assert_int_equal(ask(f, i, 0, digits), PAIRING_WAITS);
@@ -186,9 +180,8 @@ static void mirror(const struct fixture *f, struct pairings *renderer, int64_t n
 }
 
 /* The renderer has no folder, and another clock. */
-static void a_renderer_asks_its_core(void **state)
+CASE(a_renderer_asks_its_core)
 {
-    struct fixture *f = *state;
     struct pairings *renderer = pairings_open(f->log, NULL);
     char secret[TOKEN_MAX_CHARS + 1], digits[PAIRING_DIGITS + 1], there[PAIRING_DIGITS + 1];
     print_secret(3, secret);
@@ -226,9 +219,8 @@ static void a_renderer_asks_its_core(void **state)
     pairings_close(&renderer);
 }
 
-static void what_is_not_kept_lets_nobody_in(void **state)
+CASE(what_is_not_kept_lets_nobody_in)
 {
-    struct fixture *f = *state;
     char path[512];
     pairings_close(&f->pairings);
     f->pairings = pairings_open(f->log, NULL);
@@ -242,17 +234,4 @@ static void what_is_not_kept_lets_nobody_in(void **state)
     assert_non_null(pairings_refusal(f->pairings));
     assert_false(pairings_secret_valid("pc_1234"));
     assert_false(pairings_secret_valid(""));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_device_is_bound_kept_and_revoked, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(digits_expire, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(few_wait_and_few_guesses_are_judged, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_renderer_asks_its_core, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_is_not_kept_lets_nobody_in, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("pairings", tests, NULL, NULL);
 }

@@ -2,16 +2,10 @@
 /* Sets of moved sensors: a trial at once, another one when the ways along the surface are there; what cannot be is refused whole. */
 #include "placing/placing.h"
 
+#include "tests/support/test.h"
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/temp.h"
@@ -79,6 +73,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 /* The next answer about gaps; or NULL, once none of the set waits. */
 static struct sensor_coverage_answer *collect(struct fixture *f, bool gaps)
 {
@@ -108,7 +104,7 @@ static bool move(struct fixture *f, const struct place_move *moves, size_t count
     return moved;
 }
 
-static void test_a_move_is_a_trial_at_once_and_a_better_one_later(void **state)
+TEST_WITH(test_a_move_is_a_trial_at_once_and_a_better_one_later, set_up, tear_down)
 {
     struct fixture *f = *state;
     const struct placed *placed;
@@ -137,7 +133,7 @@ static void test_a_move_is_a_trial_at_once_and_a_better_one_later(void **state)
     trials_give(placing_trials(f->placing), &trial);
 }
 
-static void test_what_stays_keeps_its_distances(void **state)
+TEST_WITH(test_what_stays_keeps_its_distances, set_up, tear_down)
 {
     struct fixture *f = *state;
     struct place_move moves[TAGS] = { { .tag = 0, .position_m = { 10.5, 0.5, 1 } }, { .tag = 1, .position_m = { 10.5, 0.5, 0 } } };
@@ -153,9 +149,8 @@ static void test_what_stays_keeps_its_distances(void **state)
     assert_int_equal(place_set_trial(f->set), 0);
 }
 
-static void test_what_cannot_be_is_refused_and_nothing_moves(void **state)
+CASE(test_what_cannot_be_is_refused_and_nothing_moves)
 {
-    struct fixture *f = *state;
     struct place_move here = { .tag = 0, .position_m = { 10.5, 0.5, 1 } }, far = { .tag = 1, .position_m = { 60, 0, 0 } };
     const struct placed *placed;
     move(f, &here, 1, NULL);
@@ -170,9 +165,8 @@ static void test_what_cannot_be_is_refused_and_nothing_moves(void **state)
     assert_int_equal(place_set_trial(f->set), trial);
 }
 
-static void test_gaps_are_of_what_the_set_has_moved(void **state)
+CASE(test_gaps_are_of_what_the_set_has_moved)
 {
-    struct fixture *f = *state;
     move(f, &(struct place_move){ .tag = 0, .position_m = { 11, 0.5, 0.4 } }, 1, NULL); /* beside the other one */
     collect(f, false);
     for (int moved = 0; moved < 2; moved++) {
@@ -188,9 +182,8 @@ static void test_gaps_are_of_what_the_set_has_moved(void **state)
 }
 
 /* Whoever leaves while something is on its way is not waited for, and gets nothing. */
-static void test_a_set_that_goes_takes_its_questions_along(void **state)
+CASE(test_a_set_that_goes_takes_its_questions_along)
 {
-    struct fixture *f = *state;
     for (int i = 0; i < 20; i++) {
         struct place_set *other = place_set_create(f->placing);
         char why[160];
@@ -206,17 +199,4 @@ static void test_a_set_that_goes_takes_its_questions_along(void **state)
             sensor_coverage_answer_free(answer);
             answers++;
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_a_move_is_a_trial_at_once_and_a_better_one_later, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_what_stays_keeps_its_distances, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_what_cannot_be_is_refused_and_nothing_moves, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_gaps_are_of_what_the_set_has_moved, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_a_set_that_goes_takes_its_questions_along, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("placing", tests, NULL, NULL);
 }

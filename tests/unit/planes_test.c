@@ -2,13 +2,9 @@
 /* Halved chroma: colours keep to their rims, and what has none stays as it was. */
 #include "encode/planes.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 #include <libyuv.h>
 
 #include "base/mem.h"
@@ -64,9 +60,8 @@ static int chroma_of(const uint8_t bgr[3], int c)
 }
 
 /* Lines one pixel wide, at every place of a block, upright and lying. */
-static void thin_lines_keep_their_colour(void **state)
+TEST(thin_lines_keep_their_colour)
 {
-    (void)state;
     for (int turn = 0; turn < 2; turn++)
         for (int at = 30; at < 36; at++) {
             struct encoded_frame picture;
@@ -86,11 +81,10 @@ static void thin_lines_keep_their_colour(void **state)
 }
 
 /* Where two colours meet, neither takes the other's beyond the block that both are in. */
-static void colours_beside_each_other_stay(void **state)
+TEST(colours_beside_each_other_stay)
 {
     static const uint8_t amber[3] = { 85, 155, 233 };
     struct encoded_frame picture;
-    (void)state;
     picture_init(&picture, 64, 48);
     for (int y = 0; y < 48; y++)
         for (int x = 0; x < 64; x++)
@@ -112,10 +106,9 @@ static void plain(const struct encoded_frame *of, uint8_t *bytes)
 }
 
 /* Of any size, cut in any way. */
-static void cuts_make_no_difference(void **state)
+TEST(cuts_make_no_difference)
 {
     static const int sizes[][2] = { { 1, 1 }, { 2, 3 }, { 31, 17 }, { 130, 95 }, { 333, 77 } };
-    (void)state;
     srand(7);
     for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
         int width = sizes[i][0], height = sizes[i][1];
@@ -140,11 +133,10 @@ static void cuts_make_no_difference(void **state)
     }
 }
 
-static void gentle_colours_are_left_alone(void **state)
+TEST(gentle_colours_are_left_alone)
 {
     struct encoded_frame picture;
     uint8_t *mean = mem_array(320 * 100 * 3 / 2, 1);
-    (void)state;
     picture_init(&picture, 320, 100);
     for (int y = 0; y < 100; y++)
         for (int x = 0; x < 320; x++)
@@ -154,16 +146,4 @@ static void gentle_colours_are_left_alone(void **state)
     assert_memory_equal(picture.bytes, mean, 320 * 100 * 3 / 2);
     picture_finish(&picture);
     mem_free(mean);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(thin_lines_keep_their_colour),
-        cmocka_unit_test(colours_beside_each_other_stay),
-        cmocka_unit_test(cuts_make_no_difference),
-        cmocka_unit_test(gentle_colours_are_left_alone),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

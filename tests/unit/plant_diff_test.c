@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Two plants side by side: what is said to have come, gone and changed; and what makes a configuration another one. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "plant/plant_diff.h"
 #include "tests/support/plant_case.h"
 #include "tests/support/temp.h"
+
+#define CASE(name) TEST_ON(struct plant_case *c, name, plant_case_set_up, plant_case_tear_down)
 
 #define YAML(groups, more) \
     "plant: { name: P }\nassets:\n  - { id: E-101, model: m.glb }\ngroups:\n" groups \
@@ -40,9 +36,8 @@ static void assert_diff(struct plant_case *c, struct plant *before, struct plant
     plant_diff_finish(&diff);
 }
 
-static void each_difference_is_said(void **state)
+CASE(each_difference_is_said)
 {
-    struct plant_case *c = *state;
     struct plant *before = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\nB,40002,bar,\nGONE,40003,bar,\n");
     struct plant *after = load(c, YAML("  - { id: temp, unit: bar, min: 0, max: 120 }\n  - { id: flow, unit: m, min: 0, max: 1 }\n",
                                        "alarms: local\n"),
@@ -58,9 +53,8 @@ static void each_difference_is_said(void **state)
     plant_destroy(&after);
 }
 
-static void another_start_of_an_asset_is_said(void **state)
+CASE(another_start_of_an_asset_is_said)
 {
-    struct plant_case *c = *state;
     struct plant *before = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n");
     struct plant *after = load(c,
                                "plant: { name: P }\nassets:\n  - { id: E-101, model: m.glb, start: ghost }\ngroups:\n" TEMP
@@ -71,9 +65,8 @@ static void another_start_of_an_asset_is_said(void **state)
     plant_destroy(&after);
 }
 
-static void the_same_files_have_the_same_hash(void **state)
+CASE(the_same_files_have_the_same_hash)
 {
-    struct plant_case *c = *state;
     struct plant *one = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n"), *two = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n");
     struct plant *moved = load(c, YAML(TEMP, "\n"), TAGS "A,40001,bar,90\n");
     assert_string_equal(one->hash, two->hash);
@@ -84,9 +77,8 @@ static void the_same_files_have_the_same_hash(void **state)
     plant_destroy(&moved);
 }
 
-static void what_a_daemon_cannot_change_is_named(void **state)
+CASE(what_a_daemon_cannot_change_is_named)
 {
-    struct plant_case *c = *state;
     struct plant *one = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n");
     struct plant *elsewhere = load(c, YAML(TEMP, "history: { folder: there }\n"), TAGS "A,40001,bar,90\n");
     struct plant *off = load(c, YAML(TEMP, "history: { record: no }\n"), TAGS "A,40001,bar,90\n");
@@ -97,9 +89,8 @@ static void what_a_daemon_cannot_change_is_named(void **state)
     plant_destroy(&off);
 }
 
-static void many_differences_end_in_their_number(void **state)
+CASE(many_differences_end_in_their_number)
 {
-    struct plant_case *c = *state;
     struct text tags = { 0 };
     text_add(&tags, TAGS);
     for (int i = 0; i < 500; i++)
@@ -113,19 +104,4 @@ static void many_differences_end_in_their_number(void **state)
     text_finish(&tags);
     plant_destroy(&before);
     plant_destroy(&after);
-}
-
-#define TEST(f) cmocka_unit_test_setup_teardown(f, plant_case_set_up, plant_case_tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        TEST(each_difference_is_said),
-        TEST(another_start_of_an_asset_is_said),
-        TEST(the_same_files_have_the_same_hash),
-        TEST(what_a_daemon_cannot_change_is_named),
-        TEST(many_differences_end_in_their_number),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

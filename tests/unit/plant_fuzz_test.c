@@ -2,10 +2,8 @@
 /* Replays the fuzzer's seeds and what a few thousand random changes make of them. */
 #include "tests/fuzz/plant_fuzz.c"
 
+#include "tests/support/test.h"
 #include <dirent.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <cmocka.h>
 
 #include "base/text/text.h"
 
@@ -54,9 +52,8 @@ static void replay(const char *path, unsigned seed)
     mem_free(text);
 }
 
-static void seeds_and_their_changes_keep_the_promises(void **state)
+TEST(seeds_and_their_changes_keep_the_promises)
 {
-    (void)state;
     DIR *seed_folder = opendir(SEEDS);
     int seeds = 0;
     assert_non_null(seed_folder);
@@ -71,11 +68,4 @@ static void seeds_and_their_changes_keep_the_promises(void **state)
     }
     closedir(seed_folder);
     assert_true(seeds >= 7);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = { cmocka_unit_test(seeds_and_their_changes_keep_the_promises) };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,15 +2,10 @@
 /* Bringing a plant in: which names of files are taken, uploads that end and that do not, and orders one after the other. */
 #include "importing/plant_import.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <jansson.h>
 
 #include "base/files/atomic_file.h"
@@ -54,9 +49,8 @@ static int tear_down(void **state)
     return 0;
 }
 
-static void test_names(void **state)
+TEST(test_names)
 {
-    (void)state;
     static const char *const good[] = { "plant.rvm", "열교환기 도면.ifc", "-x.glb", "a b (1).STEP", "Behälter #3.csv" };
     static const char *const bad[] = { "",         ".",         "..",       ".hidden.glb", "a/b.glb",    "../x.csv",     "a\\b.glb",
                                        "a\nb.glb", "a\x7f.glb", "\xff.glb", "/x",          "a\x01.json", "caf\xc3.step", "x\xed\xa0\x80" };
@@ -92,7 +86,7 @@ static int put(const struct fixture *f, const char *name, const char *text, bool
     return 0;
 }
 
-static void test_uploads(void **state)
+TEST_WITH(test_uploads, set_up, tear_down)
 {
     const struct fixture *f = *state;
     struct export_list list = { 0 };
@@ -143,7 +137,7 @@ static void check_told(const struct fixture *f, const char *phase, const char *s
     json_decref(object);
 }
 
-static void test_orders(void **state)
+TEST_WITH(test_orders, set_up, tear_down)
 {
     struct fixture *f = *state;
     struct import_order order = { .models = true, .units = "mm", .up = "z" }, taken;
@@ -184,7 +178,7 @@ static const char *units_told(const struct fixture *f, char out[8])
     return out;
 }
 
-static void test_units_in_force_are_told_also_after_a_restart(void **state)
+TEST_WITH(test_units_in_force_are_told_also_after_a_restart, set_up, tear_down)
 {
     struct fixture *f = *state;
     char is[8];
@@ -208,9 +202,8 @@ static void test_units_in_force_are_told_also_after_a_restart(void **state)
     assert_string_equal(units_told(f, is), "/y");
 }
 
-static void test_sources(void **state)
+TEST(test_sources)
 {
-    (void)state;
     static const struct import_source good[] = { { .host = "plc-1.site.example", .port = "502", .unit = "0", .order = "CDAB", .base = "0" },
                                                  { .host = "10.0.0.7" } };
     static const struct import_source bad[] = { { .host = "" },
@@ -227,17 +220,4 @@ static void test_sources(void **state)
         assert_true(import_source_good(&good[i]));
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++)
         assert_false(import_source_good(&bad[i]));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_names),
-        cmocka_unit_test_setup_teardown(test_uploads, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_orders, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_units_in_force_are_told_also_after_a_restart, set_up, tear_down),
-        cmocka_unit_test(test_sources),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("plant_import", tests, NULL, NULL);
 }

@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The plant file's `notify`: what is read, and that what is wrong is said at its place. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "plant/sections/notification.h"
 #include "tests/support/plant_case.h"
+
+#define CASE(name) TEST_ON(struct plant_case *c, name, plant_case_set_up, plant_case_tear_down)
 
 static void load(struct plant_case *c, const char *notify)
 {
@@ -21,9 +19,8 @@ static void load(struct plant_case *c, const char *notify)
     text_finish(&yaml);
 }
 
-static void all_keys_are_read(void **state)
+CASE(all_keys_are_read)
 {
-    struct plant_case *c = *state;
     load(c, "sources: [{ id: a, type: modbus, host: h }]\n"
             "notify:\n"
             "  link: https://p.example/\n  gather_s: 2\n  pause_s: 30\n  timeout_s: 5\n"
@@ -58,9 +55,8 @@ static void all_keys_are_read(void **state)
     assert_int_equal(nights->steps[2].to, 6);
 }
 
-static void secrets_do_not_stand_in_the_file(void **state)
+CASE(secrets_do_not_stand_in_the_file)
 {
-    struct plant_case *c = *state;
     load(c, "notify:\n  mail: { server: \"smtps://me:secret@m.example\", from: p@p.example, password: secret }\n"
             "  recipients:\n  - { id: a, webhook: \"https://u:p@h.example/\" }\n"
             "  - { id: b, webhook: \"http://h.example/\", token_file: t }\n  rules: [{ id: r, to: a }]");
@@ -69,9 +65,8 @@ static void secrets_do_not_stand_in_the_file(void **state)
           { "plant.yaml", 9, 56, "a token is sent over https:// only" });
 }
 
-static void what_is_wrong_is_said_at_its_place(void **state)
+CASE(what_is_wrong_is_said_at_its_place)
 {
-    struct plant_case *c = *state;
     load(c, "notify:\n  gather_s: -1\n  recipients:\n  - { id: a, email: nobody }\n  - { id: a, webhook: \"ftp://h/\" }\n  - { id: c }\n"
             "  rules:\n  - { id: r, to: [b], days: [mon-foo], hours: 6-14 }\n"
             "  - { id: r, to: a, priority: 5, escalate: [{ after_min: 9, to: c }, { after_min: 9, to: c }] }\n  - { id: s }");
@@ -84,23 +79,10 @@ static void what_is_wrong_is_said_at_its_place(void **state)
           { "plant.yaml", 14, 5, "a rule needs the key 'to'" });
 }
 
-static void it_needs_the_history(void **state)
+CASE(it_needs_the_history)
 {
-    struct plant_case *c = *state;
     load(c, "history: { record: no }\nnotify: { recipients: [{ id: a, webhook: \"https://h/\" }], rules: [{ id: r, to: a }] }");
     FOUND(c, { "plant.yaml", 6, 9, "notify needs `record: yes`" });
     load(c, "notify: []");
     FOUND(c, { "plant.yaml", 5, 9, "notify: expected a mapping" });
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(all_keys_are_read, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(secrets_do_not_stand_in_the_file, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(what_is_wrong_is_said_at_its_place, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(it_needs_the_history, plant_case_set_up, plant_case_tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

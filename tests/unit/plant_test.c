@@ -2,23 +2,18 @@
 /* Plant files: what a good one means, and every kind of mistake with its line, column and words. */
 #include "plant/plant.h"
 
+#include "tests/support/test.h"
 #include <locale.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "plant/sensors.h"
 #include "tests/support/plant_case.h"
 #include "tests/support/temp.h"
+
+#define CASE(name) TEST_ON(struct plant_case *f, name, plant_case_set_up, plant_case_tear_down)
 
 /* --- good input ------------------------------------------------------------------------------------------------------------- */
 
@@ -29,9 +24,8 @@ static const char small_yaml[] = "plant: { name: P }\n"
                                  "tags: tags.csv\n";
 static const char small_csv[] = "Tag Name,Address\nT1,40001\n";
 
-static void defaults_are_as_documented(void **state)
+CASE(defaults_are_as_documented)
 {
-    struct plant_case *f = *state;
     plant_case_load(f, small_yaml, small_csv);
     plant_case_assert_loaded(f, 0);
     const struct plant *p = f->plant;
@@ -69,9 +63,8 @@ static void defaults_are_as_documented(void **state)
     mem_free(expected);
 }
 
-static void everything_is_read(void **state)
+CASE(everything_is_read)
 {
-    struct plant_case *f = *state;
     plant_case_load(f,
          "plant:\n"
          "  name: Werk Süd\n"
@@ -125,9 +118,8 @@ static void everything_is_read(void **state)
     assert_int_equal(plant_find_tag(p, "AB"), -1);
 }
 
-static void names_of_a_long_list_are_found(void **state)
+CASE(names_of_a_long_list_are_found)
 {
-    struct plant_case *f = *state;
     struct text csv = { 0 };
     text_add(&csv, "Tag Name,Address\n");
     for (int i = 0; i < 500; i++)
@@ -139,9 +131,8 @@ static void names_of_a_long_list_are_found(void **state)
     text_finish(&csv);
 }
 
-static void nodes_are_a_pattern_or_a_list(void **state)
+CASE(nodes_are_a_pattern_or_a_list)
 {
-    struct plant_case *f = *state;
     static const char rest[] = "plant: { name: P }\ngroups: [{ id: g, unit: K, min: 0, max: 1 }]\ntags: tags.csv\nassets:\n";
     char *good = mem_printf("%s- { id: A, model: m.glb, nodes: [P-1, '!motor', '#12', 'mesh:cap*', north/P-2] }\n"
                             "- { id: B, model: m.glb, nodes: 'P*' }\n",
@@ -179,9 +170,8 @@ static const char placed_csv[] = "Tag Name,Address,Group,Asset,Node,X,Y,Z\n"
                                  "N,hr:2,g,A,TI,,,\n"
                                  "-,hr:3,,A,,1,2,3\n";
 
-static void sensors_are_given_in_the_asset_frame(void **state)
+CASE(sensors_are_given_in_the_asset_frame)
 {
-    struct plant_case *f = *state;
     struct plant_sensor *s;
     plant_case_load(f,
          "plant: { name: P }\n"
@@ -206,9 +196,8 @@ static void sensors_are_given_in_the_asset_frame(void **state)
     mem_free(s);
 }
 
-static void an_assumed_place_is_another_than_the_same_place_known(void **state)
+CASE(an_assumed_place_is_another_than_the_same_place_known)
 {
-    struct plant_case *f = *state;
     struct plant_sensor *s;
     plant_case_load(f,
          "plant: { name: P }\nassets: [{ id: A, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0, max: 1 }]\n"
@@ -228,9 +217,8 @@ static void an_assumed_place_is_another_than_the_same_place_known(void **state)
     mem_free(s);
 }
 
-static void an_asset_stands_upright_in_a_plant_that_is_y_up(void **state)
+CASE(an_asset_stands_upright_in_a_plant_that_is_y_up)
 {
-    struct plant_case *f = *state;
     struct plant_sensor *s;
     plant_case_load(f,
          "assets: [{ id: A, model: m.glb, placement: { translate: [0, 10, 0] } }, { id: B, model: m.glb }]\n"
@@ -245,9 +233,8 @@ static void an_asset_stands_upright_in_a_plant_that_is_y_up(void **state)
     mem_free(s);
 }
 
-static void the_locale_changes_nothing(void **state)
+CASE(the_locale_changes_nothing)
 {
-    struct plant_case *f = *state;
     char *command = mem_printf("localedef -i de_DE -f UTF-8 %s/de_DE.UTF-8 2>&1", f->folder);
     setenv("LOCPATH", f->folder, 1);
     bool german = system(command) == 0 && setlocale(LC_NUMERIC, "de_DE.UTF-8");
@@ -292,9 +279,8 @@ static void load_with(struct plant_case *f, int line, const char *text)
     assert_null(f->plant);
 }
 
-static void unknown_keys_are_named(void **state)
+CASE(unknown_keys_are_named)
 {
-    struct plant_case *f = *state;
     load_with(f, 1, "plant: { name: P, timezone: UTC }");
     FOUND(f, { "plant.yaml", 1, 19, "unknown key 'timezone' in plant; did you mean 'time_zone'?" });
     load_with(f, 1, "plant: { name: P, colour: red }");
@@ -306,9 +292,8 @@ static void unknown_keys_are_named(void **state)
 }
 
 /* Radiance HDR of one white pixel, and a black one that is no picture of anything. */
-static void surroundings_are_read(void **state)
+CASE(surroundings_are_read)
 {
-    struct plant_case *f = *state;
     static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x80\x80\x81\x80\x80\x80\x81";
     char *one = temp_write(f->folder, "hall.hdr", hdr, sizeof(hdr) - 1), *two = temp_write(f->folder, "sky.hdr", hdr, sizeof(hdr) - 1);
     char *text = temp_write_text(f->folder, "yard.exr", "no picture");
@@ -331,9 +316,8 @@ static void surroundings_are_read(void **state)
     mem_free(text);
 }
 
-static void links_are_templates_of_addresses(void **state)
+CASE(links_are_templates_of_addresses)
 {
-    struct plant_case *f = *state;
     load_csv_with(f, 1,
                   "plant: { name: P }\nlinks: [{ name: Maintenance, url: 'https://cmms.example/e?id={id}&in={area}' },"
                   " { name: DCS, of: tag, url: 'http://dcs.example:81/{name}' }]",
@@ -354,9 +338,8 @@ static void links_are_templates_of_addresses(void **state)
           { "plant.yaml", 8, 29, "it names no server" }, { "plant.yaml", 9, 28, "in braces there may be {name}, {asset} and {group}" });
 }
 
-static void assets_have_properties_of_their_own(void **state)
+CASE(assets_have_properties_of_their_own)
 {
-    struct plant_case *f = *state;
     load_csv_with(f, 2,
                   "assets: [{ id: E-1, model: m.glb, properties: { Maker: Example Works, Built: 2011, Länge: '3 m', None: ~ } }, "
                   "{ id: E-2, model: m.glb }]",
@@ -376,9 +359,8 @@ static void assets_have_properties_of_their_own(void **state)
     FOUND(f, { "plant.yaml", 2, 47, "properties: expected a mapping" });
 }
 
-static void missing_keys_are_named(void **state)
+CASE(missing_keys_are_named)
 {
-    struct plant_case *f = *state;
     plant_case_load(f, "plant: {}\n", small_csv);
     assert_null(f->plant);
     FOUND(f, { "plant.yaml", 1, 1, "needs the key 'assets'" }, { "plant.yaml", 1, 1, "needs the key 'groups'" },
@@ -391,9 +373,8 @@ static void missing_keys_are_named(void **state)
     FOUND(f, { "plant.yaml", 2, 9, "assets: expected at least one" });
 }
 
-static void wrong_types_are_named(void **state)
+CASE(wrong_types_are_named)
 {
-    struct plant_case *f = *state;
     load_with(f, 1, "plant: P");
     FOUND(f, { "plant.yaml", 1, 8, "plant: expected a mapping (key: value), found 'P'" });
     load_with(f, 2, "assets: { id: E-1 }");
@@ -424,9 +405,8 @@ static void wrong_types_are_named(void **state)
           { "plant.yaml", 3, 92, "scale: a logarithmic one needs min above 0, found 0" });
 }
 
-static void bad_choices_list_the_allowed(void **state)
+CASE(bad_choices_list_the_allowed)
 {
-    struct plant_case *f = *state;
     load_with(f, 2, "assets: [{ id: E, model: m.glb, units: yd, up: x, sensor_frame: world, start: away }]");
     FOUND(f, { "plant.yaml", 2, 40, "units: expected m, mm, cm, in or ft, found 'yd'" },
           { "plant.yaml", 2, 48, "up: expected z or y, found 'x'" },
@@ -442,9 +422,8 @@ static void bad_choices_list_the_allowed(void **state)
           { "plant.yaml", 4, 74, "address_base: expected a whole number from 0 to 1, found '2'" });
 }
 
-static void assets_may_start_out_of_the_way(void **state)
+CASE(assets_may_start_out_of_the_way)
 {
-    struct plant_case *f = *state;
     struct text yaml = { 0 };
     load_csv_with(f, 2, "assets: [{ id: E, model: m.glb, start: hidden }, { id: F, model: m.glb, start: ghost }, { id: G, model: m.glb }]",
                   small_csv);
@@ -460,9 +439,8 @@ static void assets_may_start_out_of_the_way(void **state)
     FOUND(f, { "plant.yaml", 4099, 37, "start: only the first 4096 assets can be hidden or ghosts" });
 }
 
-static void sources_say_how_they_are_reached(void **state)
+CASE(sources_say_how_they_are_reached)
 {
-    struct plant_case *f = *state;
     load_with(f, 4,
               "sources:\n"
               "- { id: a, type: modbus, hosts: [10.0.0.1, 10.0.0.2], max_registers: 60, max_bits: 100, max_gap: 8, pause_ms: 20 }\n"
@@ -491,9 +469,8 @@ static void sources_say_how_they_are_reached(void **state)
     assert_string_equal(f->plant->tags[2].address, "Shell inlet");
 }
 
-static void keys_without_meaning_are_errors(void **state)
+CASE(keys_without_meaning_are_errors)
 {
-    struct plant_case *f = *state;
     load_csv_with(f, 4,
                   "sources:\n"
                   "- { id: a, type: modbus, host: h, baud: 9600, file: x }\n"
@@ -516,9 +493,8 @@ static void keys_without_meaning_are_errors(void **state)
           { "plant.yaml", 12, 66, "longest_s: expected a number from 0.1 to 86400" });
 }
 
-static void numbers_have_ranges(void **state)
+CASE(numbers_have_ranges)
 {
-    struct plant_case *f = *state;
     load_with(f, 3, "groups: [{ id: g, unit: K, min: .nan, max: .inf, strength: -1, power: 99, reach_m: 0, radius_m: 1e999 }]");
     FOUND(f, { "plant.yaml", 3, 33, "min: expected a finite number, found '.nan'" },
           { "plant.yaml", 3, 44, "max: expected a finite number, found '.inf'" },
@@ -539,9 +515,8 @@ static void numbers_have_ranges(void **state)
           { "plant.yaml", 2, 77, "scale: expected" });
 }
 
-static void meaning_is_checked(void **state)
+CASE(meaning_is_checked)
 {
-    struct plant_case *f = *state;
     load_with(f, 3, "groups:\n- id: temp\n  unit: K\n  min: 100\n  max: 100");
     FOUND(f, { "plant.yaml", 6, 8, "min: expected less than max, which is 100, found 100" });
     load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 9, limits: { LL: 1, L: 1, H: 8, HH: 7.5 } }]");
@@ -562,9 +537,8 @@ static void meaning_is_checked(void **state)
     FOUND(f, { "plant.yaml", 5, 7, "no.csv' cannot be read: No such file or directory" });
 }
 
-static void time_zones_are_looked_up(void **state)
+CASE(time_zones_are_looked_up)
 {
-    struct plant_case *f = *state;
     static const char *const wrong[] = { "Europe/Berln", "Europe", "../zoneinfo/UTC", "/usr/share/zoneinfo/UTC", "tzdata.zi", "CEST+1?" };
     if (access("/usr/share/zoneinfo/Europe/Berlin", R_OK) != 0) {
         print_message("# no time zone database is installed\n");
@@ -578,9 +552,8 @@ static void time_zones_are_looked_up(void **state)
     }
 }
 
-static void all_errors_come_at_once(void **state)
+CASE(all_errors_come_at_once)
 {
-    struct plant_case *f = *state;
     plant_case_load(f,
          "plant: { nam: P }\n"
          "assets: [{ id: A, model: gone.glb, units: yd }]\n"
@@ -601,9 +574,8 @@ static void all_errors_come_at_once(void **state)
 
 /* --- plant.yaml, not YAML --------------------------------------------------------------------------------------------------- */
 
-static void syntax_errors_have_a_place(void **state)
+CASE(syntax_errors_have_a_place)
 {
-    struct plant_case *f = *state;
     load_with(f, 2, "assets: [{ id: A, model: m.glb }");
     FOUND(f, { "plant.yaml", 3, 1, "not YAML: did not find expected ',' or ']', while parsing a flow sequence that begins at line 2" });
     load_with(f, 1, "plant: { name: 'P }");
@@ -618,18 +590,16 @@ static void syntax_errors_have_a_place(void **state)
     FOUND(f, { "plant.yaml", 7, 1, "a second document begins here" });
 }
 
-static void keys_that_come_twice_are_named(void **state)
+CASE(keys_that_come_twice_are_named)
 {
-    struct plant_case *f = *state;
     load_with(f, 1, "plant:\n  name: P\n  name: Q");
     FOUND(f, { "plant.yaml", 3, 3, "key 'name' is there twice (first at line 2)" });
     load_with(f, 5, "tags: tags.csv\nplant: { name: Q }");
     FOUND(f, { "plant.yaml", 6, 1, "key 'plant' is there twice (first at line 1)" });
 }
 
-static void what_is_not_utf8_text_has_a_place(void **state)
+CASE(what_is_not_utf8_text_has_a_place)
 {
-    struct plant_case *f = *state;
     load_with(f, 1, "plant: { name: K\xFChler } # \xFC");
     FOUND(f, { "plant.yaml", 1, 17, "byte 0xFC is not UTF-8 text" });
     load_with(f, 3, "groups: [{ id: ä, unit: \xB0"
@@ -646,9 +616,8 @@ static void what_is_not_utf8_text_has_a_place(void **state)
     FOUND(f, { "plant.yaml", 1, 8, "needs the key 'name'" }, { "plant.yaml", 1, 10, "did you mean 'name'?" });
 }
 
-static void files_without_content_are_refused(void **state)
+CASE(files_without_content_are_refused)
 {
-    struct plant_case *f = *state;
     plant_case_load(f, "", small_csv);
     FOUND(f, { "plant.yaml", 1, 1, "is empty" });
     plant_case_load(f, " \n\n", small_csv);
@@ -661,9 +630,8 @@ static void files_without_content_are_refused(void **state)
     FOUND(f, { "tags.csv", 1, 1, "is empty" });
 }
 
-static void files_that_cannot_be_read_are_named(void **state)
+CASE(files_that_cannot_be_read_are_named)
 {
-    struct plant_case *f = *state;
     f->plant = plant_load(f->path, &f->diag);
     assert_null(f->plant);
     FOUND(f, { "plant.yaml", 0, 0, "cannot be read: No such file or directory" });
@@ -697,9 +665,8 @@ static char *write_image(struct plant_case *f, const char *name, int width, int 
     return path;
 }
 
-static void colour_maps_come_from_images(void **state)
+CASE(colour_maps_come_from_images)
 {
-    struct plant_case *f = *state;
     static const uint8_t lying[3 * 3] = { 0, 0, 0, 200, 100, 0, 200, 200, 200 }, standing[2 * 3] = { 255, 0, 0, 0, 0, 255 };
     mem_free(write_image(f, "lying.ppm", 3, 1, lying));
     mem_free(write_image(f, "standing.ppm", 1, 2, standing));
@@ -716,9 +683,8 @@ static void colour_maps_come_from_images(void **state)
     text_finish(&yaml);
 }
 
-static void bad_colour_maps_are_named(void **state)
+CASE(bad_colour_maps_are_named)
 {
-    struct plant_case *f = *state;
     static const uint8_t dot[3] = { 1, 2, 3 };
     mem_free(write_image(f, "dot.ppm", 1, 1, dot));
     mem_free(temp_write_text(f->folder, "text.png", "no image"));
@@ -729,43 +695,4 @@ static void bad_colour_maps_are_named(void **state)
           { "plant.yaml", 6, 37, "none.png': No such file or directory" }, { "plant.yaml", 6, 67, "dot.ppm': one pixel only" },
           { "plant.yaml", 7, 11, "name: there is a colour map 'b' already" }, { "plant.yaml", 7, 21, "text.png': " },
           { "plant.yaml", 7, 33, "image" }, { "plant.yaml", 7, 64, "': not a file" });
-}
-
-#define TEST(function) cmocka_unit_test_setup_teardown(function, plant_case_set_up, plant_case_tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        TEST(defaults_are_as_documented),
-        TEST(everything_is_read),
-        TEST(names_of_a_long_list_are_found),
-        TEST(nodes_are_a_pattern_or_a_list),
-        TEST(sensors_are_given_in_the_asset_frame),
-        TEST(an_assumed_place_is_another_than_the_same_place_known),
-        TEST(an_asset_stands_upright_in_a_plant_that_is_y_up),
-        TEST(the_locale_changes_nothing),
-        TEST(unknown_keys_are_named),
-        TEST(surroundings_are_read),
-        TEST(links_are_templates_of_addresses),
-        TEST(assets_have_properties_of_their_own),
-        TEST(missing_keys_are_named),
-        TEST(wrong_types_are_named),
-        TEST(bad_choices_list_the_allowed),
-        TEST(assets_may_start_out_of_the_way),
-        TEST(sources_say_how_they_are_reached),
-        TEST(keys_without_meaning_are_errors),
-        TEST(numbers_have_ranges),
-        TEST(meaning_is_checked),
-        TEST(time_zones_are_looked_up),
-        TEST(all_errors_come_at_once),
-        TEST(syntax_errors_have_a_place),
-        TEST(keys_that_come_twice_are_named),
-        TEST(what_is_not_utf8_text_has_a_place),
-        TEST(files_without_content_are_refused),
-        TEST(files_that_cannot_be_read_are_named),
-        TEST(colour_maps_come_from_images),
-        TEST(bad_colour_maps_are_named),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

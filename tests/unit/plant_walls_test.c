@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The plant file's `views` and `walls`: what is read, and that what is wrong is said at its place. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "message/views_message.h"
 #include "plant/walls/wall.h"
 #include "tests/support/plant_case.h"
+
+#define CASE(name) TEST_ON(struct plant_case *c, name, plant_case_set_up, plant_case_tear_down)
 
 static void load(struct plant_case *c, const char *more)
 {
@@ -23,9 +20,8 @@ static void load(struct plant_case *c, const char *more)
     text_finish(&yaml);
 }
 
-static void all_keys_are_read(void **state)
+CASE(all_keys_are_read)
 {
-    struct plant_case *c = *state;
     load(c, "walls:\n"
             "- id: room\n  dim_hours: 22:00-06:30\n  dim_percent: 40\n  inches: 65\n  distance_m: 4.5\n  displays:\n"
             "  - grid: [main main side, main main low]\n    panes:\n"
@@ -61,9 +57,8 @@ static void all_keys_are_read(void **state)
     mem_free(text);
 }
 
-static void tiles_are_the_first_displays(void **state)
+CASE(tiles_are_the_first_displays)
 {
-    struct plant_case *c = *state;
     load(c, "views: [{ id: all, view: group=t }]\n"
             "walls:\n- { id: big, tile: { columns: 3, rows: 2, bezel_mm: [8, 6.5], views: all, every_s: 9, on_alarm: yes },\n"
             "    displays: [{ grid: [a], panes: [{ area: a, clock: yes }] }] }\n"
@@ -88,9 +83,8 @@ static void tiles_are_the_first_displays(void **state)
     mem_free(text);
 }
 
-static void other_plants_are_read(void **state)
+CASE(other_plants_are_read)
 {
-    struct plant_case *c = *state;
     load(c, "other_plants:\n- { id: tanks, url: \"https://tanks.example/\", view: all, every_s: 10, width: 1920, height: 1080 }\n"
             "- { id: pier, url: \"http://localhost:8080\" }\n"
             "walls: [{ id: room, displays: [{ grid: [a b], panes: [{ area: a, snapshot: tanks }, { area: b, snapshot: [pier] }] }] }]");
@@ -108,9 +102,8 @@ static void other_plants_are_read(void **state)
     mem_free(text);
 }
 
-static void wrong_other_plants_are_said_at_their_place(void **state)
+CASE(wrong_other_plants_are_said_at_their_place)
 {
-    struct plant_case *c = *state;
     load(c, "other_plants:\n- { id: a, url: \"ftp://h/\" }\n- { id: b, url: \"http://h/\", token_file: t }\n"
             "- { id: b, url: \"https://u:p@h/\" }\n- { id: c, url: \"https://h/?x\", every_s: 1, width: 100 }\n"
             "- { id: c d, url: \"https://h/\", view: a&b }\n- { url: \"https://h/\" }");
@@ -122,9 +115,8 @@ static void wrong_other_plants_are_said_at_their_place(void **state)
           { "plant.yaml", 12, 3, "id" });
 }
 
-static void what_a_snapshot_names_is_checked(void **state)
+CASE(what_a_snapshot_names_is_checked)
 {
-    struct plant_case *c = *state;
     load(c, "other_plants: [{ id: tanks, url: \"https://h/\" }]\nwalls:\n- id: r\n  displays:\n  - grid: [a b]\n    panes:\n"
             "    - { area: a, snapshot: tank }\n    - { area: b, snapshot: [tanks, tanks] }");
     FOUND(c, { "plant.yaml", 13, 28, "snapshot: expected one, found 2" });
@@ -133,9 +125,8 @@ static void what_a_snapshot_names_is_checked(void **state)
     FOUND(c, { "plant.yaml", 12, 28, "snapshot: `other_plants` has no 'tank'; did you mean 'tanks'?" });
 }
 
-static void wrong_tiles_are_said_at_their_place(void **state)
+CASE(wrong_tiles_are_said_at_their_place)
 {
-    struct plant_case *c = *state;
     load(c, "views: [{ id: all, view: group=t }]\nwalls:\n- { id: a, tile: { columns: 1, rows: 1, views: all } }\n"
             "- { id: b, tile: { columns: 5, rows: 4, views: all } }\n- { id: c, tile: { columns: 2, rows: 2 } }\n"
             "- { id: d, tile: { columns: 2, rows: 2, bezel_mm: 900, views: all } }\n"
@@ -150,16 +141,14 @@ static void wrong_tiles_are_said_at_their_place(void **state)
           { "plant.yaml", 16, 29, "columns" });
 }
 
-static void what_a_tile_names_is_checked_once(void **state)
+CASE(what_a_tile_names_is_checked_once)
 {
-    struct plant_case *c = *state;
     load(c, "walls:\n- { id: a, tile: { columns: 2, rows: 2, tour: rond } }");
     FOUND(c, { "plant.yaml", 7, 47, "tour: `tours` has no 'rond'" });
 }
 
-static void what_is_wrong_is_said_at_its_place(void **state)
+CASE(what_is_wrong_is_said_at_its_place)
 {
-    struct plant_case *c = *state;
     load(c, "views:\n- { id: a b, view: x }\n- { id: v, view: \"a b\" }\n- { id: v, view: \"#x\" }\n- { id: w }\n"
             "walls:\n- { id: r, displays: [] }\n- id: r\n  inches: 5\n  dim_hours: night\n"
             "  displays:\n  - grid: [A b]\n    panes: [{ area: b }]\n"
@@ -176,9 +165,8 @@ static void what_is_wrong_is_said_at_its_place(void **state)
           { "plant.yaml", 13, 7, "wall 'r' is there twice" });
 }
 
-static void a_grid_is_made_of_rectangles(void **state)
+CASE(a_grid_is_made_of_rectangles)
 {
-    struct plant_case *c = *state;
     load(c, "walls:\n- id: r\n  displays:\n  - { grid: [a a b, a c], panes: [] }\n  - { grid: [a a, a b], panes: [] }\n"
             "  - { grid: [a b a], panes: [] }\n  - { grid: [\" \"], panes: [] }\n  - { grid: [. a a, b a a, b . .], panes: [] }");
     FOUND(c, { "plant.yaml", 9, 13, "grid: expected as many areas in each row, found 3 in the first and 2 in 'a c'" },
@@ -186,9 +174,8 @@ static void a_grid_is_made_of_rectangles(void **state)
           { "plant.yaml", 12, 13, "grid: expected as many areas in each row, found 0" });
 }
 
-static void what_panes_name_must_be_there(void **state)
+CASE(what_panes_name_must_be_there)
 {
-    struct plant_case *c = *state;
     load(c, "walls:\n- id: r\n  displays:\n  - grid: [a b]\n    panes: [{ area: a, tiles: [TI-1, TI-3] }, { area: b, trend: none }]");
     FOUND(c, { "plant.yaml", 10, 38, "tiles: there is no tag 'TI-3'; did you mean 'TI-1'?" },
           { "plant.yaml", 10, 65, "trend: there is no tag 'none'" });
@@ -196,9 +183,8 @@ static void what_panes_name_must_be_there(void **state)
     plant_case_assert_loaded(c, 1); /* it may be saved in the page */
 }
 
-static void what_tours_name_must_be_there(void **state)
+CASE(what_tours_name_must_be_there)
 {
-    struct plant_case *c = *state;
     load(c, "views: [{ id: all, view: x }]\ntours:\n- id: a b\n  stops: [{ view: al, dwell_s: 0 }]\n- id: t\n  stops: []\n"
             "- id: u\n  stops: [{ text: x }, { view: all, dwell_s: 5 }, { view: none }]\n- id: u\n  stops: [{ view: all }]\n"
             "walls:\n- id: r\n  displays:\n  - grid: [a b c]\n    panes: [{ area: a, tour: round }, { area: b, tour: u, every_s: 9 },"
@@ -211,23 +197,4 @@ static void what_tours_name_must_be_there(void **state)
             "walls:\n- id: r\n  displays:\n  - grid: [a]\n    panes: [{ area: a, tour: raund }]");
     FOUND(c, { "plant.yaml", 7, 38, "view: `views` has no 'al'; did you mean 'all'?" }, { "plant.yaml", 7, 52, "`views` has no 'none'" },
           { "plant.yaml", 12, 30, "tour: `tours` has no 'raund'; did you mean 'round'?" });
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(all_keys_are_read, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(tiles_are_the_first_displays, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(other_plants_are_read, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(wrong_other_plants_are_said_at_their_place, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(what_a_snapshot_names_is_checked, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(wrong_tiles_are_said_at_their_place, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(what_a_tile_names_is_checked_once, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(what_is_wrong_is_said_at_its_place, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(a_grid_is_made_of_rectangles, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(what_tours_name_must_be_there, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(what_panes_name_must_be_there, plant_case_set_up, plant_case_tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("walls", tests, NULL, NULL);
 }

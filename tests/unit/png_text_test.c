@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Texts in PNG files: put in, found again, and nothing found in what is cut or damaged. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 #include <png.h>
 
 #include "base/mem.h"
@@ -25,9 +20,8 @@ static struct file picture(void)
     return file;
 }
 
-static void a_text_is_found_again(void **state)
+TEST(a_text_is_found_again)
 {
-    (void)state;
     struct file file = picture();
     char long_text[10000];
     memset(long_text, 'x', sizeof(long_text));
@@ -54,9 +48,8 @@ static void a_text_is_found_again(void **state)
     mem_free(with);
 }
 
-static void of_two_with_one_keyword_none_is_taken(void **state)
+TEST(of_two_with_one_keyword_none_is_taken)
 {
-    (void)state;
     struct file file = picture();
     const struct png_text texts[] = { { "One", "first", 5 }, { "One", "second", 6 } };
     size_t count, length;
@@ -65,9 +58,8 @@ static void of_two_with_one_keyword_none_is_taken(void **state)
     mem_free(with);
 }
 
-static void what_is_cut_or_damaged_is_refused(void **state)
+TEST(what_is_cut_or_damaged_is_refused)
 {
-    (void)state;
     struct file file = picture();
     const struct png_text text = { "One", "first", 5 };
     size_t count, length;
@@ -87,15 +79,4 @@ static void what_is_cut_or_damaged_is_refused(void **state)
     assert_true(png_is_plain(with, count, &text.keyword, 1, why));
     mem_free(with);
     assert_null(png_text_add((const uint8_t *)"GIF89a", 6, &text, 1, &count));
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_text_is_found_again),
-        cmocka_unit_test(of_two_with_one_keyword_none_is_taken),
-        cmocka_unit_test(what_is_cut_or_damaged_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

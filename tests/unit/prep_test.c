@@ -1,20 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* plantcast-prep as a program: what it makes, what it leaves alone, what it makes anew, and what it says is wrong. */
+#include "tests/support/test.h"
 #include <fcntl.h>
 #include <jansson.h>
 #include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
@@ -94,6 +87,8 @@ static int set_up(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct prep_case *s, name, set_up, prep_case_tear_down)
+
 static const json_t *asset_of(const json_t *report, size_t i)
 {
     return json_array_get(json_object_get(report, "assets"), i);
@@ -126,9 +121,8 @@ static char *file_of(struct prep_case *s, size_t asset)
     return name;
 }
 
-static void a_plant_is_prepared(void **state)
+CASE(a_plant_is_prepared)
 {
-    struct prep_case *s = *state;
     prep_case_expect(s, "$PLANT", 0);
     prep_case_says(&s->err, "tag T5: 0.400 m from the surface of asset C (more than 0.250 m)");
     prep_case_says(&s->err, "tags.csv:6: warning");
@@ -160,9 +154,8 @@ static void a_plant_is_prepared(void **state)
     mem_free(c);
 }
 
-static void a_second_run_does_nothing(void **state)
+CASE(a_second_run_does_nothing)
 {
-    struct prep_case *s = *state;
     struct stat before, after;
     assert_states(s, "built", "shared", "built");
     char *a = file_of(s, 0);
@@ -173,9 +166,8 @@ static void a_second_run_does_nothing(void **state)
     mem_free(a);
 }
 
-static void damaged_files_are_made_anew_and_said(void **state)
+CASE(damaged_files_are_made_anew_and_said)
 {
-    struct prep_case *s = *state;
     prep_case_expect(s, "$PLANT", 0);
     char *a = file_of(s, 0), *c = file_of(s, 2);
     assert_int_equal(truncate(a, 1000), 0);
@@ -192,9 +184,8 @@ static void damaged_files_are_made_anew_and_said(void **state)
     mem_free(c);
 }
 
-static void only_what_changed_is_made_anew(void **state)
+CASE(only_what_changed_is_made_anew)
 {
-    struct prep_case *s = *state;
     prep_case_expect(s, "$PLANT", 0);
     char *old = file_of(s, 0);
     prep_case_tags(s, "T1,400001,Float,plc,temperature,A,,0.5,0,0\nT5,400009,Float,plc,temperature,C,,1,0.5,0.4\n");
@@ -212,9 +203,8 @@ static void group_says(struct prep_case *s, const char *more)
 }
 
 /* Triangles are cut where its field bends, and that is also where a reach ends; a limit bends nothing. */
-static void another_reach_is_another_file(void **state)
+CASE(another_reach_is_another_file)
 {
-    struct prep_case *s = *state;
     assert_states(s, "built", "shared", "built");
     group_says(s, ", limits: { H: 0.5 }");
     assert_states(s, "unchanged", "shared", "unchanged");
@@ -225,9 +215,8 @@ static void another_reach_is_another_file(void **state)
     assert_states(s, "unchanged", "shared", "unchanged");
 }
 
-static void two_at_a_time_take_turns(void **state)
+CASE(two_at_a_time_take_turns)
 {
-    struct prep_case *s = *state;
     char *program = prep_case_program();
     char *both = mem_printf("'%s' '%s' --report json >'%s/first' & '%s' '%s' --report json >'%s/second' && wait $!", program, s->plant,
                             s->folder, program, s->plant, s->folder);
@@ -245,9 +234,8 @@ static void two_at_a_time_take_turns(void **state)
     mem_free(both);
 }
 
-static void who_waits_says_for_whom_and_can_be_stopped(void **state)
+CASE(who_waits_says_for_whom_and_can_be_stopped)
 {
-    struct prep_case *s = *state;
     char *program = prep_case_program(), *folder = temp_path(s->folder, "plant.prepared"), words[100];
     assert_int_equal(mkdir(folder, 0777), 0);
     struct log *log = log_create(LOG_ERROR);
@@ -278,9 +266,8 @@ static void who_waits_says_for_whom_and_can_be_stopped(void **state)
     mem_free(program);
 }
 
-static void distances_are_printed(void **state)
+CASE(distances_are_printed)
 {
-    struct prep_case *s = *state;
     prep_case_expect(s, "distances $PLANT --asset B --sensor T3", 0);
     prep_case_says(&s->out, "x,y,z,geodesic_m,euclidean_m\n");
     size_t lines = 0;
@@ -299,9 +286,9 @@ static void distances_are_printed(void **state)
 }
 
 /* The program reads images by a module beside it, which most plants never need. */
-static void textures_are_read(void **state)
+CASE(textures_are_read)
 {
-    struct prep_case *c = *state;
+    struct prep_case *c = s;
     struct sheet sheet;
     struct seed seed = { 0 };
     sheet_init(&sheet, 8, 4);
@@ -340,9 +327,9 @@ static void textures_are_read(void **state)
 }
 
 /* By shepard, a single sensor has all of a value everywhere. */
-static void a_field_that_is_constant_needs_no_triangles(void **state)
+CASE(a_field_that_is_constant_needs_no_triangles)
 {
-    struct prep_case *c = *state;
+    struct prep_case *c = s;
     static const char plant[] = "plant: { name: Singles }\nassets: [{ id: A, model: model.glb, nodes: plate-1, up: z }]\n"
                                 "groups: [{ id: t, unit: K, min: 0, max: 1 }, { id: p, unit: bar, min: 0, max: 1%s }]\n"
                                 "sources: [{ id: plc, type: modbus, host: h, byte_order: CDAB, address_base: 1 }]\ntags: tags.csv\n";
@@ -367,9 +354,9 @@ static void a_field_that_is_constant_needs_no_triangles(void **state)
 }
 
 /* Sensors that stand for their whole asset need neither a surface nor triangles of their own; beside one whose place is known they do. */
-static void assumed_places_need_no_surface(void **state)
+CASE(assumed_places_need_no_surface)
 {
-    struct prep_case *c = *state;
+    struct prep_case *c = s;
     static const char rows[] = "Tag Name,Address,Data Type,Source,Group,Asset,Node,X,Y,Z,Place\n"
                                "T1,400001,Float,plc,temperature,A,,0.31,0.42,0.1,equipment\n"
                                "T2,400003,Float,plc,temperature,A,,1.63,0.57,0,%s\n";
@@ -409,9 +396,8 @@ static void assumed_places_need_no_surface(void **state)
     }
 }
 
-static void a_new_revision_costs_what_it_changes(void **state)
+CASE(a_new_revision_costs_what_it_changes)
 {
-    struct prep_case *s = *state;
     assert_states(s, "built", "shared", "built");
     write_model(s, next_nodes);
     assert_states(s, "unchanged", "shared", "built"); /* the second plate is elsewhere */
@@ -422,9 +408,8 @@ static void a_new_revision_costs_what_it_changes(void **state)
     assert_states(s, "built", "shared", "unchanged");
 }
 
-static void what_is_wrong_is_said_with_its_place(void **state)
+CASE(what_is_wrong_is_said_with_its_place)
 {
-    struct prep_case *s = *state;
     prep_case_tags(s, "T1,400001,Float,plc,temperature,A,,0,0,0\nT2,400003,Float,plc,temperature,A,TT-99,,,\n");
     prep_case_expect(s, "$PLANT", 1);
     prep_case_says(&s->err, "tags.csv:3: error: tag T2: asset A: the model has no node 'TT-99'");
@@ -458,9 +443,8 @@ static void what_is_wrong_is_said_with_its_place(void **state)
     prep_case_says(&s->err, "cannot be made");
 }
 
-static void wrong_use_is_told_from_wrong_input(void **state)
+CASE(wrong_use_is_told_from_wrong_input)
 {
-    struct prep_case *s = *state;
     prep_case_expect(s, "--help", 0);
     prep_case_says(&s->out, "usage: plantcast-prep PLANT.yaml");
     prep_case_expect(s, "", 2);
@@ -469,28 +453,4 @@ static void wrong_use_is_told_from_wrong_input(void **state)
     prep_case_expect(s, "$PLANT --report xml", 2);
     prep_case_expect(s, "$PLANT --memory much", 2);
     prep_case_expect(s, "/no/such/plant.yaml", 1);
-}
-
-#define WITH_PLANT(test) cmocka_unit_test_setup_teardown(test, set_up, prep_case_tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        WITH_PLANT(a_plant_is_prepared),
-        WITH_PLANT(a_second_run_does_nothing),
-        WITH_PLANT(damaged_files_are_made_anew_and_said),
-        WITH_PLANT(only_what_changed_is_made_anew),
-        WITH_PLANT(another_reach_is_another_file),
-        WITH_PLANT(two_at_a_time_take_turns),
-        WITH_PLANT(who_waits_says_for_whom_and_can_be_stopped),
-        WITH_PLANT(a_field_that_is_constant_needs_no_triangles),
-        WITH_PLANT(assumed_places_need_no_surface),
-        WITH_PLANT(a_new_revision_costs_what_it_changes),
-        WITH_PLANT(distances_are_printed),
-        WITH_PLANT(textures_are_read),
-        WITH_PLANT(what_is_wrong_is_said_with_its_place),
-        WITH_PLANT(wrong_use_is_told_from_wrong_input),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of colours that previews look up: equal ones are kept once, and there are never too many. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 #include "render/soft/ramp_rows.h"
@@ -50,9 +44,8 @@ static void set(struct setup *s, size_t material, uint32_t color, uint32_t grey)
     }
 }
 
-static void equal_ones_are_kept_once(void **state)
+TEST(equal_ones_are_kept_once)
 {
-    (void)state;
     struct setup s;
     begin(&s, 5000);
     for (size_t i = 0; i < s.count; i++) {
@@ -68,9 +61,8 @@ static void equal_ones_are_kept_once(void **state)
     end(&s);
 }
 
-static void too_many_share_those_that_are_near(void **state)
+TEST(too_many_share_those_that_are_near)
 {
-    (void)state;
     struct setup s;
     begin(&s, 20000);
     for (size_t i = 0; i < s.count; i++)
@@ -85,9 +77,8 @@ static void too_many_share_those_that_are_near(void **state)
     end(&s);
 }
 
-static void as_many_as_may_be_are_kept_apart(void **state)
+TEST(as_many_as_may_be_are_kept_apart)
 {
-    (void)state;
     struct setup s;
     begin(&s, MOST);
     for (size_t i = 0; i < s.count; i++)
@@ -97,15 +88,4 @@ static void as_many_as_may_be_are_kept_apart(void **state)
         assert_int_equal(s.rows[i], i);
     end(&s);
     assert_int_equal(ramp_rows_pack(NULL, NULL, 0, STEPS, MOST, NULL), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equal_ones_are_kept_once),
-        cmocka_unit_test(too_many_share_those_that_are_near),
-        cmocka_unit_test(as_many_as_may_be_are_kept_apart),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

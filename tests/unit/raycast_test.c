@@ -2,16 +2,9 @@
 /* Rays against a loop over every triangle of the plant. */
 #include "scene/raycast.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "tests/support/synthetic.h"
 #include "tests/support/toy.h"
@@ -136,9 +129,8 @@ static void random_visibility(struct visibility *visibility)
                  (double[3]){ between(1.1, 6), between(0.1, 3), between(1.1, 4) });
 }
 
-static void rays_find_what_a_loop_finds(void **state)
+TEST(rays_find_what_a_loop_finds)
 {
-    (void)state;
     int hits = 0, insides = 0, caps = 0;
     for (int round = 0; round < 4000; round++) {
         struct visibility visibility;
@@ -179,9 +171,8 @@ static void rays_find_what_a_loop_finds(void **state)
     assert_true(hits > 150 && insides > 5 && caps > 10);
 }
 
-static void a_picture_of_rays_agrees_with_the_camera(void **state)
+TEST(a_picture_of_rays_agrees_with_the_camera)
 {
-    (void)state;
     struct camera camera = { .eye_m = { 8, -9, 6 }, .target_m = { 1, 1, 1 }, .up = { 0, 0, 1 }, .fov_deg = 40 };
     for (int parallel = 0; parallel < 2; parallel++) {
         camera.height_m = parallel * 7;
@@ -219,12 +210,4 @@ static int tear_down(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_find_what_a_loop_finds),
-        cmocka_unit_test(a_picture_of_rays_agrees_with_the_camera),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_GROUP(set_up, tear_down)

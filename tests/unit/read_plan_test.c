@@ -1,13 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plan: which registers are asked for together, on random tag lists against the rules counted out one by one. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 #include "tests/support/plant_by_hand.h"
@@ -36,9 +29,8 @@ static void assert_block(const struct read_plan *plan, size_t index, int first, 
     assert_int_equal(plan->blocks[index].tag_count, tags);
 }
 
-static void neighbours_go_together_and_gaps_part(void **state)
+TEST(neighbours_go_together_and_gaps_part)
 {
-    (void)state;
     struct read_plan plan;
     struct plant *plant = plant_of_registers((int[]){ 14, 10, 12, 20, 22, 18 }, 6, TABLE_HOLDING, DATA_FLOAT32);
     read_plan_init(&plan, plant, 0);
@@ -51,9 +43,8 @@ static void neighbours_go_together_and_gaps_part(void **state)
     plant_by_hand_destroy(&plant);
 }
 
-static void units_tables_scans_and_sources_part(void **state)
+TEST(units_tables_scans_and_sources_part)
 {
-    (void)state;
     struct read_plan plan;
     struct plant *plant = plant_of_registers((int[]){ 0, 1, 2, 3, 4 }, 5, TABLE_HOLDING, DATA_INT16);
     plant->tags[1].modbus_unit = 7;
@@ -91,9 +82,8 @@ static void many(enum register_table table, enum data_type type, int width, int 
     mem_free(registers);
 }
 
-static void a_request_is_full_at_its_limit_and_splits_no_value(void **state)
+TEST(a_request_is_full_at_its_limit_and_splits_no_value)
 {
-    (void)state;
     many(TABLE_HOLDING, DATA_INT16, 1, 125, (int[]){ 125 }, 1);
     many(TABLE_HOLDING, DATA_INT16, 1, 126, (int[]){ 125, 1 }, 2);
     many(TABLE_INPUT, DATA_INT16, 1, 251, (int[]){ 125, 125, 1 }, 3);
@@ -103,9 +93,8 @@ static void a_request_is_full_at_its_limit_and_splits_no_value(void **state)
     many(TABLE_DISCRETE, DATA_BIT, 1, 2001, (int[]){ 2000, 1 }, 2);
 }
 
-static void gaps_are_bridged_up_to_the_device_s_limit(void **state)
+TEST(gaps_are_bridged_up_to_the_device_s_limit)
 {
-    (void)state;
     struct read_plan plan;
     struct plant *plant = plant_of_registers((int[]){ 0, 6, 13, 23 }, 4, TABLE_HOLDING, DATA_FLOAT32);
     plant->sources[0].max_gap = 5;
@@ -125,9 +114,8 @@ static void gaps_are_bridged_up_to_the_device_s_limit(void **state)
     plant_by_hand_destroy(&plant);
 }
 
-static void two_tags_may_share_registers(void **state)
+TEST(two_tags_may_share_registers)
 {
-    (void)state;
     struct read_plan plan;
     struct plant *plant = plant_of_registers((int[]){ 10, 10, 11, 10 }, 4, TABLE_HOLDING, DATA_FLOAT32);
     plant->tags[1].type = DATA_BIT; /* bits of one register */
@@ -144,9 +132,8 @@ static void two_tags_may_share_registers(void **state)
     plant_by_hand_destroy(&plant);
 }
 
-static void splitting_ends_at_single_tags(void **state)
+TEST(splitting_ends_at_single_tags)
 {
-    (void)state;
     struct read_plan plan;
     struct plant *plant = plant_of_registers((int[]){ 0, 2, 4, 6, 8 }, 5, TABLE_HOLDING, DATA_FLOAT32);
     read_plan_init(&plan, plant, 0);
@@ -197,9 +184,8 @@ static void check_rules(const struct plant *plant, const struct read_plan *plan)
     assert_int_equal(seen, plan->tag_count);
 }
 
-static void random_tag_lists_obey_the_rules(void **state)
+TEST(random_tag_lists_obey_the_rules)
 {
-    (void)state;
     const enum data_type types[] = { DATA_INT16, DATA_FLOAT32, DATA_FLOAT64 };
     unsigned seed = 20240617;
     print_message("# seed %u\n", seed);
@@ -232,9 +218,8 @@ static void random_tag_lists_obey_the_rules(void **state)
     }
 }
 
-static void a_plan_is_put_in_words(void **state)
+TEST(a_plan_is_put_in_words)
 {
-    (void)state;
     struct text text = { 0 };
     struct plant *plant = plant_of_registers((int[]){ 0, 2, 10, 7 }, 4, TABLE_HOLDING, DATA_FLOAT32);
     plant->tags[3].table = TABLE_INPUT;
@@ -267,9 +252,8 @@ static void a_plan_is_put_in_words(void **state)
     plant_by_hand_destroy(&plant);
 }
 
-static void backoff_grows_from_half_a_second_to_ten(void **state)
+TEST(backoff_grows_from_half_a_second_to_ten)
 {
-    (void)state;
     struct backoff backoff = { 0 };
     int64_t first_ns = backoff_next_ns(&backoff, 1), spread_ns = 0, last_ns = 0;
     assert_true(first_ns >= 500000000 && first_ns <= 750000000);
@@ -285,21 +269,4 @@ static void backoff_grows_from_half_a_second_to_ten(void **state)
     assert_true(spread_ns > 1000000000); /* jitter */
     backoff = (struct backoff){ 0 };
     assert_true(backoff_next_ns(&backoff, 5) <= 750000000);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(neighbours_go_together_and_gaps_part),
-        cmocka_unit_test(units_tables_scans_and_sources_part),
-        cmocka_unit_test(a_request_is_full_at_its_limit_and_splits_no_value),
-        cmocka_unit_test(gaps_are_bridged_up_to_the_device_s_limit),
-        cmocka_unit_test(two_tags_may_share_registers),
-        cmocka_unit_test(splitting_ends_at_single_tags),
-        cmocka_unit_test(random_tag_lists_obey_the_rules),
-        cmocka_unit_test(a_plan_is_put_in_words),
-        cmocka_unit_test(backoff_grows_from_half_a_second_to_ten),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,11 +2,8 @@
 /* Which of the frames drawn last will do for who asks a moment later. */
 #include "service/recent_frames.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 
@@ -27,9 +24,8 @@ static void draw(struct recent_frames *recent, int view_number, uint64_t content
     frame_unref(&frame);
 }
 
-static void a_view_is_found_while_nothing_newer_was_said_of_its_readings(void **state)
+TEST(a_view_is_found_while_nothing_newer_was_said_of_its_readings)
 {
-    (void)state;
     struct recent_frames recent = { 0 };
     struct view view = view_of(1), other = view_of(2);
     draw(&recent, 1, 7, NOW_NS);
@@ -42,9 +38,8 @@ static void a_view_is_found_while_nothing_newer_was_said_of_its_readings(void **
     recent_frames_finish(&recent);
 }
 
-static void the_newest_of_a_view_comes_first_and_few_are_kept(void **state)
+TEST(the_newest_of_a_view_comes_first_and_few_are_kept)
 {
-    (void)state;
     struct recent_frames recent = { 0 };
     struct view view = view_of(1), gone = view_of(0);
     draw(&recent, 0, 1, NOW_NS);
@@ -55,14 +50,4 @@ static void the_newest_of_a_view_comes_first_and_few_are_kept(void **state)
     assert_null(recent_frames_find_view(&recent, &gone, 0, NOW_NS + 10 * MS));
     assert_null(recent_frames_find(&recent, 1, NOW_NS + 10 * MS));
     recent_frames_finish(&recent);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_view_is_found_while_nothing_newer_was_said_of_its_readings),
-        cmocka_unit_test(the_newest_of_a_view_comes_first_and_few_are_kept),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,17 +2,11 @@
 /* Sensors moved on a loaded asset: the distances that plantcast-prep would store, each ask answered once, and what is refused. */
 #include "surface/relocation.h"
 
+#include "tests/support/test.h"
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/files/cache_file.h"
@@ -231,7 +225,7 @@ static void try_sensors(const struct asset *asset, const struct relocation_shape
     assert_null(relocation);
 }
 
-static void a_moved_sensor_has_the_distances_that_would_be_stored(void **state)
+TEST(a_moved_sensor_has_the_distances_that_would_be_stored)
 {
     static const struct most as_stored[] = { { 2e-4, 0.02, 2e-3 }, { 1e-3, 0.07, 0.0065 } }; /* at most where two parts lie in each other */
     static const struct most as_made_anew[] = { { 5e-4, 0.05, 0.015 }, { 2e-3, 0.08, 0.014 } };
@@ -258,13 +252,12 @@ static struct relocation_shape shape_of(const struct cad *cad)
                                       .triangle_count = cad->triangle_count };
 }
 
-static void a_point_that_is_far_away_is_refused(void **state)
+TEST(a_point_that_is_far_away_is_refused)
 {
     struct cad plate = { 0 };
     struct cad_random chance = { 5 };
     struct relocation_place place;
     struct box box;
-    (void)state;
     box_init(&box);
     cad_plate(&plate, &chance, 20, 20, 1, 1, 0);
     struct relocation_shape shape = shape_of(&plate);
@@ -280,14 +273,13 @@ static void a_point_that_is_far_away_is_refused(void **state)
     cad_finish(&plate);
 }
 
-static void an_asset_without_surface_is_said_to_be_broken(void **state)
+TEST(an_asset_without_surface_is_said_to_be_broken)
 {
     const float line[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 } };
     const uint32_t flat[3] = { 0, 1, 2 };
     struct relocation_shape shapes[2] = { { .positions_m = line, .vertex_count = 3, .triangles = flat, .triangle_count = 1 },
                                           { .positions_m = line, .vertex_count = 3, .triangles = flat } };
     struct relocation_place place;
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct box box;
         box_init(&box);
@@ -355,7 +347,7 @@ static void try_walks_without_memory(struct relocation *relocation, const struct
     assert_true(failed >= 3);
 }
 
-static void without_memory_it_says_so_and_goes_on(void **state)
+TEST(without_memory_it_says_so_and_goes_on)
 {
     struct prep_case *c = *state;
     struct cad plate = { 0 };
@@ -406,13 +398,12 @@ static void hold(void *arg)
     pthread_mutex_unlock(arg);
 }
 
-static void what_waits_is_cancelled(void **state)
+TEST(what_waits_is_cancelled)
 {
     struct cad plate = { 0 };
     struct cad_random chance = { 6 };
     struct box kept, cancelled, dropped;
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
-    (void)state;
     box_init(&kept);
     box_init(&cancelled);
     box_init(&dropped);
@@ -469,14 +460,13 @@ static void *drag(void *arg)
     return NULL;
 }
 
-static void every_ask_is_answered_once(void **state)
+TEST(every_ask_is_answered_once)
 {
     struct cad plate = { 0 };
     struct cad_random chance = { 7 };
     struct box box;
     pthread_t threads[3];
     struct crowd crowds[3];
-    (void)state;
     box_init(&box);
     cad_plate(&plate, &chance, 30, 30, 1, 1, 0);
     struct relocation_shape shape = shape_of(&plate);
@@ -495,16 +485,4 @@ static void every_ask_is_answered_once(void **state)
     cad_finish(&plate);
 }
 
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_moved_sensor_has_the_distances_that_would_be_stored),
-        cmocka_unit_test(a_point_that_is_far_away_is_refused),
-        cmocka_unit_test(an_asset_without_surface_is_said_to_be_broken),
-        cmocka_unit_test(without_memory_it_says_so_and_goes_on),
-        cmocka_unit_test(what_waits_is_cancelled),
-        cmocka_unit_test(every_ask_is_answered_once),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_GROUP(set_up, tear_down)

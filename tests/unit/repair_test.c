@@ -2,12 +2,7 @@
 /* Seams between faces that have gaps: each gap is closed with what is across it, and not with what it runs over. */
 #include "surface/repair/repair.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "base/mem.h"
 
@@ -44,7 +39,7 @@ static bool sheets_share(const struct trimesh *mesh)
 }
 
 /* Below, a gap runs up, its left side at x = 0. Above, two gaps cross, and two of the four corners there lie just on that side. */
-static void a_gap_is_not_set_into_one_that_it_runs_over(void **state)
+TEST(a_gap_is_not_set_into_one_that_it_runs_over)
 {
     static const float corners[QUADS][8] = {
         { -2, -3, 0, -3, 0, 3, -2, 3 },                        /* below: left */
@@ -59,7 +54,6 @@ static void a_gap_is_not_set_into_one_that_it_runs_over(void **state)
     struct trimesh mesh = { 0 };
     struct repair_report report = { 0 };
     size_t degenerate = 0, repeated = 0;
-    (void)state;
     for (int i = 0; i < 4 * QUADS; i++)
         memcpy(positions[i], corners[i / 4] + 2 * (i % 4), 2 * sizeof(float));
     for (uint32_t i = 0; i < 6 * QUADS; i++)
@@ -75,7 +69,7 @@ static void a_gap_is_not_set_into_one_that_it_runs_over(void **state)
 
 /* Two faces at a gap along x = 0, and two just on them that fit those to the left, all cut along the gap: left closes with right, not with
    what lies on it. */
-static void a_gap_is_closed_across_not_with_what_lies_on_it(void **state)
+TEST(a_gap_is_closed_across_not_with_what_lies_on_it)
 {
     static const float corners[4][8] = {
         { -1, 0, 0, 0, 0, 1, -1, 1 },
@@ -88,7 +82,6 @@ static void a_gap_is_closed_across_not_with_what_lies_on_it(void **state)
     struct trimesh mesh = { 0 };
     struct repair_report report = { 0 };
     size_t degenerate = 0, repeated = 0;
-    (void)state;
     for (uint32_t q = 0; q < 4; q++) {
         static const uint32_t turned[2][6] = { { 0, 1, 2, 0, 2, 3 }, { 0, 1, 3, 1, 2, 3 } };
         for (int i = 0; i < 8; i++)
@@ -108,14 +101,4 @@ static void a_gap_is_closed_across_not_with_what_lies_on_it(void **state)
     assert_int_equal(open_edges(&mesh), 0);
     mem_free(report.made);
     trimesh_finish(&mesh);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_gap_is_not_set_into_one_that_it_runs_over),
-        cmocka_unit_test(a_gap_is_closed_across_not_with_what_lies_on_it),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Replays: every recorded sample comes through the store, in its order and at its time, once or again and again. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -60,6 +53,8 @@ static int tear_down(void **state)
     return plant_case_tear_down(&c);
 }
 
+#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+
 static void on_sample_event(void *arg, const struct sample_event *event)
 {
     struct event_log *all = arg;
@@ -108,9 +103,8 @@ static size_t of_tag(const struct setup *s, int tag, struct sample_event *out, s
     return count;
 }
 
-static void every_sample_comes_at_its_time(void **state)
+CASE(every_sample_comes_at_its_time)
 {
-    struct setup *s = *state;
     struct sample_event got[20];
     const double values[] = { 1, 2.5, -3, 0, 4 }, at_s[] = { 0, 10, 20, 50, 60 };
     play(s, "speed: 100", "time_s,shell,TT 2\n0,1,5\n10,2.5,\n20,-3,\n50,0,6\n60,4,7\n", "Tag Name,Address\nTT-1,shell\nTT 2,\n");
@@ -126,9 +120,8 @@ static void every_sample_comes_at_its_time(void **state)
     wait_for_link(s, false);                    /* it has ended: nothing pretends to be live */
 }
 
-static void a_loop_goes_on(void **state)
+CASE(a_loop_goes_on)
 {
-    struct setup *s = *state;
     struct sample_event got[MOST];
     play(s, "speed: 1000, loop: yes", "t_s,a\n0,0\n10,1\n20,2\n", "Tag Name,Address\nA,a\n");
     wait_for_heard(s, 30);
@@ -140,9 +133,8 @@ static void a_loop_goes_on(void **state)
     }
 }
 
-static void a_long_file_is_read(void **state)
+CASE(a_long_file_is_read)
 {
-    struct setup *s = *state;
     struct sample_event got[5];
     play(s, "speed: 10", "1000,x,pump,flow,7,,\n1000,x,pump,temp,70,,\n1500,x,pump,flow,8,,\n2000,x,tank,flow,9,,\n",
          "Tag Name,Address\nF,pump/flow\nT,pump/temp\n");
@@ -153,9 +145,8 @@ static void a_long_file_is_read(void **state)
     assert_true(got[0].value == 70);
 }
 
-static void what_is_not_in_the_file_is_bad(void **state)
+CASE(what_is_not_in_the_file_is_bad)
 {
-    struct setup *s = *state;
     play(s, "speed: 1", "t_s,a\n0,0\n10,1\n", "Tag Name,Address\nA,a\nB,b\n");
     wait_for_heard(s, 2);
     assert_true(s->events.at[0].tag == 1 && s->events.at[0].quality == QUALITY_BAD_CONFIGURATION);
@@ -166,9 +157,8 @@ static void what_is_not_in_the_file_is_bad(void **state)
     assert_true(clock_mono_ns() - begin_ns < 2 * NS_PER_S);
 }
 
-static void nothing_in_the_file_is_ours(void **state)
+CASE(nothing_in_the_file_is_ours)
 {
-    struct setup *s = *state;
     play(s, "speed: 1", "t_s,a\n0,0\n", "Tag Name,Address\nB,b\n");
     wait_for_heard(s, 1);
     sleep_ns(50 * NS_PER_MS);
@@ -189,14 +179,13 @@ static void check_series(const char *path, const char *name, size_t count, doubl
 }
 
 /* As historians write them: with a zone, with an offset, or as the plant's clocks went, an hour of one night twice. */
-static void times_may_be_instants(void **state)
+CASE(times_may_be_instants)
 {
     static const char *const wide[] = {
         "t_start,Time,a\n9,2026-10-25T00:00:00Z,1\n9,2026-10-25T01:00:00.5Z,2\n",
         "delay_s;Timestamp;a\n5;2026-10-25T00:00:00Z;1\n0;\"2026-10-25T02:00:00.5+01:00\";2\n",
         "\xEF\xBB\xBFwhen,a\r\n2026-10-25 02:00,1\r\n\r\n2026-10-25 02:00:00.5,2\r\n",
     };
-    struct setup *s = *state;
     timestamp_use_zone("Europe/Berlin");
     for (size_t i = 0; i < 3; i++) {
         char *path = temp_write_text(s->c->folder, "series.csv", wide[i]);
@@ -220,9 +209,8 @@ static void times_may_be_instants(void **state)
     timestamp_use_zone("UTC");
 }
 
-static void a_file_with_units_is_converted(void **state)
+CASE(a_file_with_units_is_converted)
 {
-    struct setup *s = *state;
     struct sample_event got[2] = { 0 };
     play(s, "speed: 1", "Tag,Time,Value,Unit\nA,2026-10-25T00:00:00Z,20,degC\nB,2026-10-25T00:00:00Z,3,bar\n",
          "Tag Name,Address,Group,Asset,X,Y,Z\nA,,g,A,0,0,0\nB,,g,A,0,0,0\n");
@@ -230,19 +218,4 @@ static void a_file_with_units_is_converted(void **state)
     assert_int_equal(of_tag(s, 0, got, 1), 1);
     assert_true(fabs(got[0].value - 293.15) < 1e-9);
     assert_true(s->events.at[0].tag == 1 && s->events.at[0].quality == QUALITY_BAD_CONFIGURATION);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(every_sample_comes_at_its_time, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_loop_goes_on, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_long_file_is_read, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_is_not_in_the_file_is_bad, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(nothing_in_the_file_is_ours, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(times_may_be_instants, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_file_with_units_is_converted, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The report of plantcast-prep, on models whose numbers are known. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "preprocess/pipeline/progress.h"
@@ -59,7 +53,7 @@ static int set_up(void **state)
     return 0;
 }
 
-static void numbers_are_those_of_the_model(void **state)
+TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
 {
     struct prep_case *c = *state;
     static const struct {
@@ -126,7 +120,7 @@ static void numbers_are_those_of_the_model(void **state)
     json_decref(report);
 }
 
-static void what_is_wrong_comes_first(void **state)
+TEST_WITH(what_is_wrong_comes_first, set_up, prep_case_tear_down)
 {
     struct prep_case *c = *state;
     prep_case_expect(c, "$PLANT --report json", 0);
@@ -146,7 +140,7 @@ static void what_is_wrong_comes_first(void **state)
 }
 
 /* What was built before is reported as if it had been built now, but for the time. */
-static void an_unchanged_asset_keeps_its_report(void **state)
+TEST_WITH(an_unchanged_asset_keeps_its_report, set_up, prep_case_tear_down)
 {
     struct prep_case *c = *state;
     prep_case_expect(c, "$PLANT --report json", 0);
@@ -181,7 +175,7 @@ static void an_unchanged_asset_keeps_its_report(void **state)
 }
 
 /* Half a metre is a gap or not as the plant file says; only that asset is built again. */
-static void the_plant_file_sets_the_tolerance(void **state)
+TEST_WITH(the_plant_file_sets_the_tolerance, set_up, prep_case_tear_down)
 {
     struct prep_case *c = *state;
     prep_case_expect(c, "$PLANT", 0);
@@ -200,12 +194,11 @@ static void the_plant_file_sets_the_tolerance(void **state)
     json_decref(report);
 }
 
-static void tables_fit_what_is_in_them(void **state)
+TEST(tables_fit_what_is_in_them)
 {
     static const struct text_table_column columns[] = { { "name", false }, { "empty", false }, { "number", true } };
     struct text_table table = { .columns = columns, .column_count = 3 };
     char text[400] = { 0 };
-    (void)state;
     FILE *out = fmemopen(text, sizeof(text), "w");
     for (int row = 0; row < 3; row++) {
         text_table_add(&table, "%s", row == 0 ? "K\xc3\xbchler" : "P");
@@ -221,12 +214,11 @@ static void tables_fit_what_is_in_them(void **state)
     assert_string_equal(text_table_number(1000).text, "1,000");
 }
 
-static void the_time_left_follows_the_work(void **state)
+TEST(the_time_left_follows_the_work)
 {
     struct progress progress;
     const int64_t s = 1000000000;
     char text[1000] = { 0 };
-    (void)state;
     FILE *out = fmemopen(text, sizeof(text), "w");
     progress_begin(&progress, out, 10, 4, 0);
     assert_true(progress_left_s(&progress, s) < 0);
@@ -244,17 +236,4 @@ static void the_time_left_follows_the_work(void **state)
     fclose(out);
     assert_string_equal(text, "6 of 10 assets to prepare; the others are there already\n"
                               "6 of 10 assets, 0.4 a second, about 7 s left\n");
-}
-
-#define WITH_PLANT(test) cmocka_unit_test_setup_teardown(test, set_up, prep_case_tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        WITH_PLANT(numbers_are_those_of_the_model),      WITH_PLANT(what_is_wrong_comes_first),
-        WITH_PLANT(an_unchanged_asset_keeps_its_report), WITH_PLANT(the_plant_file_sets_the_tolerance),
-        cmocka_unit_test(tables_fit_what_is_in_them),    cmocka_unit_test(the_time_left_follows_the_work),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A facility is prepared, interrupted in every way, and continued where it was. */
+#include "tests/support/test.h"
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <pty.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -40,6 +34,8 @@ static int set_up(void **state)
     c->plant = temp_path(c->folder, "facility.yaml");
     return status;
 }
+
+#define CASE(name) TEST_ON(struct prep_case *c, name, set_up, prep_case_tear_down)
 
 /* Files in the prepared folder whose names end so. */
 static size_t count_files(const struct prep_case *c, const char *ending)
@@ -105,9 +101,8 @@ static void assert_continued(struct prep_case *c, size_t there)
     json_decref(report);
 }
 
-static void killed_at_once_it_goes_on(void **state)
+CASE(killed_at_once_it_goes_on)
 {
-    struct prep_case *c = *state;
     int status;
     for (size_t wanted = 5; wanted <= 15; wanted += 10) {
         pid_t pid = start(c, -1);
@@ -123,9 +118,8 @@ static void killed_at_once_it_goes_on(void **state)
     assert_continued(c, there);
 }
 
-static void interrupted_it_finishes_what_it_has_begun(void **state)
+CASE(interrupted_it_finishes_what_it_has_begun)
 {
-    struct prep_case *c = *state;
     const int signals[2] = { SIGINT, SIGTERM };
     size_t there = 0;
     for (int i = 0; i < 2; i++) {
@@ -151,9 +145,8 @@ static void interrupted_it_finishes_what_it_has_begun(void **state)
 }
 
 /* On a terminal, one line that changes, and nothing of it is left. */
-static void a_terminal_shows_one_line(void **state)
+CASE(a_terminal_shows_one_line)
 {
-    struct prep_case *c = *state;
     struct text seen = { 0 };
     char bytes[4096];
     int master, terminal, status;
@@ -171,17 +164,4 @@ static void a_terminal_shows_one_line(void **state)
     prep_case_says(&seen, " left\033[K");
     assert_string_equal(seen.at + seen.length - 4, "\r\033[K");
     text_finish(&seen);
-}
-
-#define WITH_FACILITY(test) cmocka_unit_test_setup_teardown(test, set_up, prep_case_tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        WITH_FACILITY(killed_at_once_it_goes_on),
-        WITH_FACILITY(interrupted_it_finishes_what_it_has_begun),
-        WITH_FACILITY(a_terminal_shows_one_line),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,21 +2,15 @@
 /* Files of a plant that are replaced together: killed, or out of disk, at each step; and the plant file's own text. */
 #include "preprocess/import/revision/revision_files.h"
 
+#include "tests/support/test.h"
 #include <errno.h>
 #include <fcntl.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "plant/plant_folder.h"
@@ -125,10 +119,9 @@ static bool all(const char *folder, bool new)
 
 /* --- tests ------------------------------------------------------------------------------------------------------------------- */
 
-static void all_files_come_and_go_together(void **state)
+TEST(all_files_come_and_go_together)
 {
     char *folder = temp_folder_create();
-    (void)state;
     begin(folder);
     assert_int_equal(apply(folder), 0);
     assert_true(all(folder, true));
@@ -139,10 +132,9 @@ static void all_files_come_and_go_together(void **state)
     temp_folder_destroy(&folder);
 }
 
-static void what_people_changed_since_is_not_undone_unless_forced(void **state)
+TEST(what_people_changed_since_is_not_undone_unless_forced)
 {
     char *folder = temp_folder_create();
-    (void)state;
     begin(folder);
     assert_int_equal(apply(folder), 0);
     mem_free(temp_write_text(folder, "tags.csv", "mine"));
@@ -154,10 +146,9 @@ static void what_people_changed_since_is_not_undone_unless_forced(void **state)
     temp_folder_destroy(&folder);
 }
 
-static void what_was_saved_meanwhile_is_not_replaced(void **state)
+TEST(what_was_saved_meanwhile_is_not_replaced)
 {
     char *folder = temp_folder_create();
-    (void)state;
     begin(folder);
     mem_free(temp_write_text(folder, "plant.yaml", "mine"));
     assert_int_equal(apply_to(folder, "old"), -ESTALE);
@@ -166,10 +157,9 @@ static void what_was_saved_meanwhile_is_not_replaced(void **state)
     temp_folder_destroy(&folder);
 }
 
-static void what_only_was_remembered_comes_back_too(void **state)
+TEST(what_only_was_remembered_comes_back_too)
 {
     char *folder = temp_folder_create();
-    (void)state;
     begin(folder);
     assert_int_equal(apply(folder), 0);
     mem_free(temp_write_text(folder, "matches.csv", "others'"));
@@ -180,11 +170,10 @@ static void what_only_was_remembered_comes_back_too(void **state)
     temp_folder_destroy(&folder);
 }
 
-static void rights_of_a_file_stay(void **state)
+TEST(rights_of_a_file_stay)
 {
     char *folder = temp_folder_create(), *path;
     struct stat st;
-    (void)state;
     begin(folder);
     path = mem_printf("%s/plant.yaml", folder);
     assert_int_equal(chmod(path, 0640), 0);
@@ -236,22 +225,19 @@ static void sweep(bool killed)
     }
 }
 
-static void killed_at_any_step_it_is_all_or_nothing(void **state)
+TEST(killed_at_any_step_it_is_all_or_nothing)
 {
-    (void)state;
     sweep(true);
 }
 
-static void out_of_disk_at_any_step_it_is_all_or_nothing(void **state)
+TEST(out_of_disk_at_any_step_it_is_all_or_nothing)
 {
-    (void)state;
     sweep(false);
 }
 
-static void an_undoing_that_was_killed_while_tidying_up_is_done(void **state)
+TEST(an_undoing_that_was_killed_while_tidying_up_is_done)
 {
     char *folder = temp_folder_create(), *left = mem_printf("%s/.revision.undoing", folder), *old = mem_printf("%s/old", left);
-    (void)state;
     assert_int_equal(mkdir(left, 0777), 0);
     assert_int_equal(mkdir(old, 0777), 0);
     int lock = take(folder, NULL);
@@ -263,10 +249,9 @@ static void an_undoing_that_was_killed_while_tidying_up_is_done(void **state)
     temp_folder_destroy(&folder);
 }
 
-static void one_program_at_a_time(void **state)
+TEST(one_program_at_a_time)
 {
     char *folder = temp_folder_create();
-    (void)state;
     int lock = take(folder, NULL);
     assert_true(lock >= 0);
     assert_int_equal(take(folder, NULL), -EWOULDBLOCK);
@@ -274,7 +259,7 @@ static void one_program_at_a_time(void **state)
     temp_folder_destroy(&folder);
 }
 
-static void the_plant_file_stays_as_people_wrote_it(void **state)
+TEST(the_plant_file_stays_as_people_wrote_it)
 {
     static const char text[] = "plant: { name: \"Größe\" }\n"
                                "assets:\n"
@@ -296,7 +281,6 @@ static void the_plant_file_stays_as_people_wrote_it(void **state)
     const struct asset_edit edits[] = {
         { .tag = mem_strdup("E-102") }, { .nodes = pump, .node_count = 2 }, { .nodes = vessel, .node_count = 2 }, { .removed = true }
     };
-    (void)state;
     char *out = asset_edit_apply(text, edits, 4, "  - { id: \"new\" }\n", why);
     assert_string_equal(out, "plant: { name: \"Größe\" }\n"
                              "assets:\n"
@@ -321,7 +305,7 @@ static void the_plant_file_stays_as_people_wrote_it(void **state)
     mem_free(edits[0].tag);
 }
 
-static void an_asset_goes_with_all_its_keys(void **state)
+TEST(an_asset_goes_with_all_its_keys)
 {
     static const char text[] = "assets:\n"
                                "  - id: P-1\n"
@@ -343,7 +327,6 @@ static void an_asset_goes_with_all_its_keys(void **state)
                                "tags: tags.csv\n";
     const struct asset_edit edits[] = { { 0 }, { .removed = true }, { 0 }, { .removed = true } };
     char why[ASSET_EDIT_WHY_BYTES], *out = asset_edit_apply(text, edits, 4, NULL, why);
-    (void)state;
     assert_string_equal(out, "assets:\n"
                              "  - id: P-1\n"
                              "    model: m.glb\n"
@@ -354,23 +337,4 @@ static void an_asset_goes_with_all_its_keys(void **state)
                              "    model: m.glb\n"
                              "tags: tags.csv\n");
     mem_free(out);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_files_come_and_go_together),
-        cmocka_unit_test(what_people_changed_since_is_not_undone_unless_forced),
-        cmocka_unit_test(what_was_saved_meanwhile_is_not_replaced),
-        cmocka_unit_test(what_only_was_remembered_comes_back_too),
-        cmocka_unit_test(rights_of_a_file_stay),
-        cmocka_unit_test(killed_at_any_step_it_is_all_or_nothing),
-        cmocka_unit_test(out_of_disk_at_any_step_it_is_all_or_nothing),
-        cmocka_unit_test(an_undoing_that_was_killed_while_tidying_up_is_done),
-        cmocka_unit_test(one_program_at_a_time),
-        cmocka_unit_test(the_plant_file_stays_as_people_wrote_it),
-        cmocka_unit_test(an_asset_goes_with_all_its_keys),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rollups: against a plain sum over very short steps; months: their names and borders. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "history/month.h"
 #include "history/rollup.h"
@@ -72,9 +66,8 @@ static int make_points(struct history_point *points, unsigned seed)
     return POINTS;
 }
 
-static void buckets_are_the_integral(void **state)
+TEST(buckets_are_the_integral)
 {
-    (void)state;
     int compared = 0;
     for (unsigned seed = 1; seed <= 20; seed++) {
         struct history_point points[POINTS];
@@ -92,9 +85,8 @@ static void buckets_are_the_integral(void **state)
     assert_true(compared > 200);
 }
 
-static void merged_buckets_are_longer_ones(void **state)
+TEST(merged_buckets_are_longer_ones)
 {
-    (void)state;
     struct history_bucket a = { .low = 1, .high = 2, .mean = 1.5, .first = 1, .last = 2, .good_us = 10 };
     struct history_bucket b = { .low = 0, .high = 9, .mean = 4, .first = 2, .last = 9, .good_us = 30, .bad_us = 5, .quality = 7 };
     struct history_bucket none = { .low = NAN, .high = NAN, .mean = NAN, .first = NAN, .last = NAN, .bad_us = 100, .quality = 8 };
@@ -109,9 +101,8 @@ static void merged_buckets_are_longer_ones(void **state)
 }
 
 /* From 0 at 100 s to 30 at 400 s: the part from 200 s to 300 s. */
-static void a_bridge_is_a_straight_line(void **state)
+TEST(a_bridge_is_a_straight_line)
 {
-    (void)state;
     struct history_bucket a = { .t_us = 90 * US_PER_S, .last = 0 }, b = { .t_us = 400 * US_PER_S, .first = 30 };
     struct history_bucket into = { .low = 12, .high = 14, .mean = 13, .first = 12, .last = 14, .good_us = 100 * US_PER_S };
     rollup_bridge(&into, &a, 100 * US_PER_S, &b, 200 * US_PER_S, 300 * US_PER_S);
@@ -121,9 +112,8 @@ static void a_bridge_is_a_straight_line(void **state)
     assert_int_equal(into.bad_us, 40 * US_PER_S);
 }
 
-static void months_follow_each_other(void **state)
+TEST(months_follow_each_other)
 {
-    (void)state;
     char name[MONTH_NAME_BYTES];
     int month;
     for (int m = -30; m < 1200; m++) {
@@ -138,16 +128,4 @@ static void months_follow_each_other(void **state)
     assert_false(month_parse("history-2026-13.sqlite", &month));
     assert_false(month_parse("history-2026-11.sqlite-wal", &month));
     assert_false(month_parse("history-2026-11.damaged-20261120T000000Z.sqlite", &month));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(buckets_are_the_integral),
-        cmocka_unit_test(merged_buckets_are_longer_ones),
-        cmocka_unit_test(a_bridge_is_a_straight_line),
-        cmocka_unit_test(months_follow_each_other),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

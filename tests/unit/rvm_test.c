@@ -2,15 +2,8 @@
 /* RVM files put together here, byte by byte: areas and volumes against formulas, joints that are closed, files that are broken. */
 #include "preprocess/import/rvm.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
@@ -164,9 +157,8 @@ static void check_normals(const struct cad_node *node)
 
 static const double sphere_area = 4 * M_PI * 0.25, sphere_volume = 4 / 3.0 * M_PI * 0.125;
 
-static void test_areas_and_volumes_are_those_of_the_formulas(void **state)
+TEST(test_areas_and_volumes_are_those_of_the_formulas)
 {
-    (void)state;
     static const double mirrored[12] = { -0.001, 0, 0, 0, 0.001, 0, 0, 0, 0.001, 5, 6, 7 };
     const struct {
         uint32_t kind;
@@ -239,9 +231,8 @@ static size_t open_edges(const struct cad_model *model)
 }
 
 /* A pipe, an elbow about it in a slanted plane, a pipe, a reducer, a pipe with a dish on it. */
-static void test_a_pipe_run_is_closed(void **state)
+TEST(test_a_pipe_run_is_closed)
 {
-    (void)state;
     struct text file = { 0 };
     struct rvm_counts counts;
     double c = cos(0.7), s = sin(0.7);
@@ -280,9 +271,8 @@ static void test_a_pipe_run_is_closed(void **state)
     text_finish(&file);
 }
 
-static void test_a_polygon_keeps_its_hole(void **state)
+TEST(test_a_polygon_keeps_its_hole)
 {
-    (void)state;
     struct text file = { 0 };
     struct rvm_counts counts;
     static const double outer[4][2] = { { 0, 0 }, { 2000, 0 }, { 2000, 2000 }, { 0, 2000 } };
@@ -308,9 +298,8 @@ static void test_a_polygon_keeps_its_hole(void **state)
     text_finish(&file);
 }
 
-static void test_what_is_not_shown_is_counted(void **state)
+TEST(test_what_is_not_shown_is_counted)
 {
-    (void)state;
     struct text file = { 0 };
     struct rvm_counts counts;
     add_head(&file);
@@ -342,9 +331,8 @@ static void test_what_is_not_shown_is_counted(void **state)
     text_finish(&file);
 }
 
-static void test_names_that_are_not_utf8_are_latin1(void **state)
+TEST(test_names_that_are_not_utf8_are_latin1)
 {
-    (void)state;
     struct text file = { 0 };
     struct rvm_counts counts;
     add_head(&file);
@@ -358,9 +346,8 @@ static void test_names_that_are_not_utf8_are_latin1(void **state)
 }
 
 /* Cut at each byte, and with each byte of the first 4 kB set to 255: read to an end, or refused with a place. */
-static void test_broken_files_are_refused_at_a_byte(void **state)
+TEST(test_broken_files_are_refused_at_a_byte)
 {
-    (void)state;
     struct text file = { 0 };
     struct rvm_counts counts;
     size_t refused = 0;
@@ -389,18 +376,4 @@ static void test_broken_files_are_refused_at_a_byte(void **state)
     }
     assert_true(refused > file.length);
     text_finish(&file);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_areas_and_volumes_are_those_of_the_formulas),
-        cmocka_unit_test(test_a_pipe_run_is_closed),
-        cmocka_unit_test(test_a_polygon_keeps_its_hole),
-        cmocka_unit_test(test_what_is_not_shown_is_counted),
-        cmocka_unit_test(test_names_that_are_not_utf8_are_latin1),
-        cmocka_unit_test(test_broken_files_are_refused_at_a_byte),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("rvm", tests, NULL, NULL);
 }

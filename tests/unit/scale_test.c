@@ -2,13 +2,9 @@
 /* The legend's rule: values to places to colours, in bands and on logarithmic scales. */
 #include "field/scale.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 static struct scale linear(double min, double max, double interval)
 {
@@ -24,18 +20,16 @@ static void expect_row(int row, double value, double min, double max, double int
     assert_memory_equal(rgb, scale.map->rgb[row], 3);
 }
 
-static void test_continuous(void **state)
+TEST(test_continuous)
 {
-    (void)state;
     expect_row(0, 0, 0, 100, 0);
     expect_row(255, 100, 0, 100, 0);
     expect_row(128, 50, 0, 100, 0);
     expect_row(64, -50, -100, 100, 0);
 }
 
-static void test_outside(void **state)
+TEST(test_outside)
 {
-    (void)state;
     for (size_t i = 0; i < colormap_count(); i++) {
         struct scale scale = linear(0, 100, 10);
         uint8_t rgb[3];
@@ -50,18 +44,16 @@ static void test_outside(void **state)
 }
 
 /* A reading of exactly MAX is stored as a float, which may be above MAX as a double. */
-static void test_limits_are_compared_as_floats(void **state)
+TEST(test_limits_are_compared_as_floats)
 {
-    (void)state;
     assert_true((double)0.3f > 0.3);
     expect_row(255, (double)0.3f, 0, 0.3, 0);
     assert_true((double)0.7f < 0.7);
     expect_row(0, (double)0.7f, 0.7, 1, 0);
 }
 
-static void test_bands_of_an_interval(void **state)
+TEST(test_bands_of_an_interval)
 {
-    (void)state;
     expect_row(12, 0, 0, 100, 10); /* centre 5 of 0..10 */
     expect_row(12, 9.99, 0, 100, 10);
     expect_row(38, 10, 0, 100, 10);
@@ -73,9 +65,8 @@ static void test_bands_of_an_interval(void **state)
     expect_row(51, -95, -100, 100, 80); /* from MIN, not from 0: -100..-20 */
 }
 
-static void test_bands_of_breaks(void **state)
+TEST(test_bands_of_breaks)
 {
-    (void)state;
     struct scale scale = linear(0, 100, 10); /* breaks come first */
     memcpy(scale.breaks, (double[]){ -5, 60, 80, 95, 100 }, 5 * sizeof(double));
     scale.break_count = 5; /* of which three are inside: four bands */
@@ -91,9 +82,8 @@ static void test_bands_of_breaks(void **state)
     assert_true(edges[0] == 60 && edges[1] == 80 && edges[2] == 95);
 }
 
-static void test_edges_of_an_interval(void **state)
+TEST(test_edges_of_an_interval)
 {
-    (void)state;
     double edges[SCALE_EDGES];
     struct scale scale = linear(20, 70, 20);
     assert_int_equal(scale_edges(&scale, edges), 2);
@@ -106,9 +96,8 @@ static void test_edges_of_an_interval(void **state)
     assert_int_equal(scale_edges(&scale, edges), 0);
 }
 
-static void test_logarithmic(void **state)
+TEST(test_logarithmic)
 {
-    (void)state;
     struct scale scale = linear(0.1, 1000, 0);
     scale.log = true;
     assert_int_equal(scale_index(&scale, 0.1), 0);
@@ -126,19 +115,4 @@ static void test_logarithmic(void **state)
     assert_int_equal(scale_index(&scale, 0.9), 42);
     assert_int_equal(scale_index(&scale, 5), 128);
     assert_int_equal(scale_index(&scale, 500), 213);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_continuous),
-        cmocka_unit_test(test_outside),
-        cmocka_unit_test(test_limits_are_compared_as_floats),
-        cmocka_unit_test(test_bands_of_an_interval),
-        cmocka_unit_test(test_bands_of_breaks),
-        cmocka_unit_test(test_edges_of_an_interval),
-        cmocka_unit_test(test_logarithmic),
-    };
-    return cmocka_run_group_tests_name("scale", tests, NULL, NULL);
 }

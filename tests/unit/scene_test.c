@@ -2,17 +2,10 @@
 /* Scenes from real plant and asset files: everything in its place, and files of another plant refused with the reason. */
 #include "scene/scene_create.h"
 
+#include "tests/support/test.h"
 #include <inttypes.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 #include <xxhash.h>
 
 #include "base/mem.h"
@@ -146,6 +139,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 static void assert_point(const double point[3], double x, double y, double z)
 {
     const double expected[3] = { x, y, z };
@@ -154,9 +149,8 @@ static void assert_point(const double point[3], double x, double y, double z)
             fail_msg("(%g, %g, %g) is not (%g, %g, %g)", point[0], point[1], point[2], x, y, z);
 }
 
-static void everything_is_in_its_place(void **state)
+CASE(everything_is_in_its_place)
 {
-    struct fixture *f = *state;
     struct scene *scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
     assert_int_equal(scene->asset_count, 3);
@@ -208,9 +202,8 @@ static void assert_refused(struct fixture *f, const char *words)
     mem_free(path);
 }
 
-static void other_sensors_are_refused(void **state)
+CASE(other_sensors_are_refused)
 {
-    struct fixture *f = *state;
     write_asset(f, "1.asset", 1.00005, "TI-2", 2); /* half of the tolerance */
     struct scene *scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
@@ -223,9 +216,8 @@ static void other_sensors_are_refused(void **state)
     assert_refused(f, "1.asset has 1 sensors, the tag list has 2");
 }
 
-static void broken_files_are_refused(void **state)
+CASE(broken_files_are_refused)
 {
-    struct fixture *f = *state;
     char *path = temp_path(f->prepared, "1.asset");
     assert_int_equal(truncate(path, 1000), 0);
     assert_refused(f, "1.asset: truncated");
@@ -238,9 +230,8 @@ static void broken_files_are_refused(void **state)
     mem_free(path);
 }
 
-static void broken_manifests_are_refused(void **state)
+CASE(broken_manifests_are_refused)
 {
-    struct fixture *f = *state;
     static const char *const cases[][2] = {
         { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"1.asset\", \"recipe\": \"1\"}]}", "asset B: is not in" },
         { "{\"format\": 1, \"assets\": []}", "expected format 2" },
@@ -261,9 +252,8 @@ static void broken_manifests_are_refused(void **state)
 }
 
 /* The plant file or the model was changed, and plantcast-prep forgotten. */
-static void what_was_not_prepared_is_refused(void **state)
+CASE(what_was_not_prepared_is_refused)
 {
-    struct fixture *f = *state;
     struct plant_asset *asset = &f->plant->assets[1];
     asset->up = asset->up == AXIS_Y ? AXIS_Z : AXIS_Y;
     assert_refused(f, "asset B: ");
@@ -283,9 +273,8 @@ static void what_was_not_prepared_is_refused(void **state)
 }
 
 /* plantcast-prep says why one could not be prepared: the others are there. */
-static void a_missing_asset_does_not_keep_the_others_away(void **state)
+CASE(a_missing_asset_does_not_keep_the_others_away)
 {
-    struct fixture *f = *state;
     uint64_t model;
     struct text text = { 0 };
     assert_true(plant_model_hash(f->plant->assets[0].model, &model));
@@ -314,9 +303,8 @@ static void a_missing_asset_does_not_keep_the_others_away(void **state)
     write_good_manifest(f);
 }
 
-static void home_is_the_view_of_the_plant(void **state)
+CASE(home_is_the_view_of_the_plant)
 {
-    struct fixture *f = *state;
     struct camera camera;
     struct scene *scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
@@ -348,9 +336,8 @@ static void home_is_the_view_of_the_plant(void **state)
 }
 
 /* B stands 10 m away from what is between the others. */
-static void home_is_of_what_is_shown_at_the_start(void **state)
+CASE(home_is_of_what_is_shown_at_the_start)
 {
-    struct fixture *f = *state;
     f->plant->assets[1].start = PLANT_START_HIDDEN;
     struct scene *scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
@@ -363,20 +350,4 @@ static void home_is_of_what_is_shown_at_the_start(void **state)
     assert_non_null(scene);
     assert_true(scene->extreme_count >= 4);
     scene_destroy(&scene);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(everything_is_in_its_place, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(other_sensors_are_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(broken_files_are_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(broken_manifests_are_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_was_not_prepared_is_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_missing_asset_does_not_keep_the_others_away, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(home_is_the_view_of_the_plant, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(home_is_of_what_is_shown_at_the_start, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

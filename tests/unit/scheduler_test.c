@@ -2,11 +2,8 @@
 /* Whose picture is drawn next: a renderer that takes its time is simulated, and who got what is counted. */
 #include "service/scheduler.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 
@@ -19,27 +16,24 @@ static enum urgency choose(const struct scheduler *scheduler, int64_t input, int
     return scheduler_choose(scheduler, (int64_t[]){ input, data, refine, snapshot }, now_ns, &wait_until_ns);
 }
 
-static void nothing_to_do_waits_for_ever(void **state)
+TEST(nothing_to_do_waits_for_ever)
 {
-    (void)state;
     struct scheduler scheduler = { 0 };
     int64_t wait_until_ns = 0;
     assert_int_equal(scheduler_choose(&scheduler, (int64_t[]){ NONE, NONE, NONE, NONE }, NS_PER_S, &wait_until_ns), URGENCY_COUNT);
     assert_true(wait_until_ns == INT64_MAX);
 }
 
-static void an_idle_renderer_refines_at_once(void **state)
+TEST(an_idle_renderer_refines_at_once)
 {
-    (void)state;
     struct scheduler scheduler = { 0 };
     assert_int_equal(choose(&scheduler, NONE, NONE, 10 * NS_PER_S, NONE, 10 * NS_PER_S), URGENCY_REFINE);
     assert_int_equal(choose(&scheduler, NONE, NONE, 10 * NS_PER_S, 9 * NS_PER_S, 10 * NS_PER_S), URGENCY_SNAPSHOT);
     assert_int_equal(choose(&scheduler, NONE, 10 * NS_PER_S, 9 * NS_PER_S, NONE, 10 * NS_PER_S), URGENCY_DATA);
 }
 
-static void slow_pictures_wait_for_a_pause(void **state)
+TEST(slow_pictures_wait_for_a_pause)
 {
-    (void)state;
     struct scheduler scheduler = { 0 };
     int64_t now_ns = 100 * NS_PER_S, wait_until_ns;
     scheduler_done(&scheduler, URGENCY_INPUT, now_ns);
@@ -51,9 +45,8 @@ static void slow_pictures_wait_for_a_pause(void **state)
 
 /* A picture of input takes 30 ms, of data 30 ms, a refinement 50 steps of 10 ms. All are always wanted again as soon as they were
    drawn: nobody who moves waits for more than a step and the others' pictures. */
-static void everyone_gets_a_share(void **state)
+TEST(everyone_gets_a_share)
 {
-    (void)state;
     enum { STEPS = 50 };
     static const int64_t cost_ns[] = { 30 * NS_PER_MS, 30 * NS_PER_MS, 10 * NS_PER_MS, 10 * NS_PER_MS };
     struct scheduler scheduler = { 0 };
@@ -88,9 +81,8 @@ static void everyone_gets_a_share(void **state)
 }
 
 /* Fifty refinements are waiting when somebody begins to move. */
-static void a_queue_of_refinements_does_not_hold_up_a_move(void **state)
+TEST(a_queue_of_refinements_does_not_hold_up_a_move)
 {
-    (void)state;
     struct scheduler scheduler = { .long_ns = 99 * NS_PER_S };
     int64_t now_ns = 100 * NS_PER_S;
     for (int i = 0; i < 60; i++, now_ns += 30 * MS) {
@@ -100,9 +92,8 @@ static void a_queue_of_refinements_does_not_hold_up_a_move(void **state)
 }
 
 /* Three who always want the next picture, which costs 5, 10 and 40 ms, and one who comes now and then. */
-static void time_is_shared_by_what_pictures_cost(void **state)
+TEST(time_is_shared_by_what_pictures_cost)
 {
-    (void)state;
     static const int64_t cost_ns[] = { 5 * NS_PER_MS, 10 * NS_PER_MS, 40 * NS_PER_MS, 10 * NS_PER_MS };
     int64_t spent_ns[4] = { 0 }, had_ns[4] = { 0 }, asked_ns[4] = { 0 }, served_ns = 0, now_ns = 0, longest_ns = 0;
     while (now_ns < 60 * NS_PER_S) {
@@ -121,15 +112,4 @@ static void time_is_shared_by_what_pictures_cost(void **state)
     for (int i = 0; i < 3; i++)
         assert_in_range(had_ns[i] / NS_PER_MS, 19000, 21000);
     assert_true(had_ns[3] > 200 * NS_PER_MS && longest_ns < 150 * MS);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_to_do_waits_for_ever),         cmocka_unit_test(an_idle_renderer_refines_at_once),
-        cmocka_unit_test(slow_pictures_wait_for_a_pause),       cmocka_unit_test(everyone_gets_a_share),
-        cmocka_unit_test(time_is_shared_by_what_pictures_cost), cmocka_unit_test(a_queue_of_refinements_does_not_hold_up_a_move),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A core's seat is its own: kept over restarts, never shared, not copied with its folder. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "corelink/seat.h"
@@ -23,11 +16,10 @@ static void take(struct seat *seat, char id[9])
     memcpy(id, seat->id, 9);
 }
 
-static void it_is_kept_and_never_shared(void **state)
+TEST(it_is_kept_and_never_shared)
 {
     struct seat seat = { 0 }, other = { 0 };
     char first[9], again[9];
-    (void)state;
     take(&seat, first);
     char *why = seat_take(&other, folder);
     assert_non_null(why);
@@ -41,11 +33,10 @@ static void it_is_kept_and_never_shared(void **state)
 }
 
 /* As after `cp -a`: the same text in another file. */
-static void a_copy_is_another(void **state)
+TEST(a_copy_is_another)
 {
     struct seat seat = { 0 };
     char first[9], again[9], line[128];
-    (void)state;
     take(&seat, first);
     char *path = mem_printf("%s/node", folder), *copy = mem_printf("%s/copy", folder);
     FILE *in = fopen(path, "r"), *out = fopen(copy, "w");
@@ -65,11 +56,10 @@ static void a_copy_is_another(void **state)
     mem_free(copy);
 }
 
-static void what_it_cannot_read_is_made_anew_and_no_folder_is_said(void **state)
+TEST(what_it_cannot_read_is_made_anew_and_no_folder_is_said)
 {
     struct seat seat = { 0 };
     char id[9], *path = mem_printf("%s/node", folder);
-    (void)state;
     FILE *file = fopen(path, "w");
     fputs("no seat at all, and much longer than what stands here is ever going to be, by a good deal", file);
     fclose(file);
@@ -85,15 +75,9 @@ static void what_it_cannot_read_is_made_anew_and_no_folder_is_said(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_is_kept_and_never_shared),
-        cmocka_unit_test(a_copy_is_another),
-        cmocka_unit_test(what_it_cannot_read_is_made_anew_and_no_folder_is_said),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!mkdtemp(folder))
         return 1;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = tests_run(NULL);
     rmdir(folder);
     return failed;
 }

@@ -2,15 +2,9 @@
 /* Gaps on a plate whose distances and areas can be counted by hand, and against a plain sum over its vertices. */
 #include "placing/sensor_coverage.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "tests/support/toy.h"
 
@@ -78,7 +72,7 @@ static bool is_lost(const double nearest[2], double limit_m)
     return nearest[0] > limit_m + 1e-6 || nearest[1] == 0;
 }
 
-static void test_the_farthest_place_and_the_next_sensor(void **state)
+TEST_WITH(test_the_farthest_place_and_the_next_sensor, set_up, tear_down)
 {
     struct sensor_coverage gaps = find(*state, INFINITY, 0, (uint8_t[SENSORS]){ 1, 1, 1 });
     assert_int_equal(gaps.sensors, SENSORS);
@@ -92,7 +86,7 @@ static void test_the_farthest_place_and_the_next_sensor(void **state)
     assert_true(gaps.lost_share == 0);
 }
 
-static void test_shares_are_of_the_area(void **state)
+TEST_WITH(test_shares_are_of_the_area, set_up, tear_down)
 {
     static const double limits_m[] = { 0.53, 1.03, 2.27, 3.73 };
     for (int i = 0; i < 4; i++) {
@@ -106,7 +100,7 @@ static void test_shares_are_of_the_area(void **state)
     assert_true(find(*state, INFINITY, 0, (uint8_t[SENSORS]){ 0 }).lost_share == 1);
 }
 
-static void test_a_sensor_that_is_tried_out_counts(void **state)
+TEST_WITH(test_a_sensor_that_is_tried_out_counts, set_up, tear_down)
 {
     struct toy *toy = *state;
     struct trial trial = { .id = 1, .count = 1, .sensors = { { .tag = 2, .asset = 0, .surface_m = { 0, 4, 0 }, .number = 1 } } };
@@ -127,15 +121,4 @@ static void test_a_sensor_that_is_tried_out_counts(void **state)
     assert_int_equal(gaps.next_tags[0], -1);
     order.trial = NULL;
     assert_false(sensor_coverage_find(&order, &gaps));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_the_farthest_place_and_the_next_sensor, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_shares_are_of_the_area, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_a_sensor_that_is_tried_out_counts, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("gaps", tests, NULL, NULL);
 }

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What asks a service manager for more time does so while there is work, and no longer. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -47,6 +42,8 @@ static int tear_down(void **state)
     return unsetenv("NOTIFY_SOCKET");
 }
 
+#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+
 /* How often it was asked since the last time. */
 static int asked(const struct setup *s)
 {
@@ -71,9 +68,8 @@ static void rest_ms(int ms)
     usleep((useconds_t)ms * 1000);
 }
 
-static void it_asks_while_it_works_and_not_while_it_hangs(void **state)
+CASE(it_asks_while_it_works_and_not_while_it_hangs)
 {
-    struct setup *s = *state;
     struct service_patience *patience = service_patience_begin("working", LIMIT_S);
     work_ms(5 * EVERY_MS);
     assert_true(asked(s) >= 3);
@@ -87,9 +83,8 @@ static void it_asks_while_it_works_and_not_while_it_hangs(void **state)
     service_patience_end(&patience);
 }
 
-static void what_it_started_works_for_it(void **state)
+CASE(what_it_started_works_for_it)
 {
-    struct setup *s = *state;
     struct service_patience *patience = service_patience_begin("waiting", LIMIT_S);
     pid_t child = fork();
     if (child == 0) {
@@ -102,9 +97,8 @@ static void what_it_started_works_for_it(void **state)
     service_patience_end(&patience);
 }
 
-static void one_step_may_not_last_for_ever(void **state)
+CASE(one_step_may_not_last_for_ever)
 {
-    struct setup *s = *state;
     struct service_patience *patience = service_patience_begin("going round in circles", 3);
     int64_t before_ns = clock_work_ns();
     work_ms(3100);
@@ -119,15 +113,4 @@ static void one_step_may_not_last_for_ever(void **state)
     work_ms(1000);
     assert_int_equal(asked(s), 0);
     service_patience_end(&patience);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(it_asks_while_it_works_and_not_while_it_hangs, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_it_started_works_for_it, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(one_step_may_not_last_for_ever, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

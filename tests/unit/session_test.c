@@ -2,13 +2,9 @@
 /* A session without socket, clock or renderer: what it wants, what it is told, what it answers. */
 #include "session/session.h"
 
+#include "tests/support/test.h"
 #include <jansson.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -16,6 +12,8 @@
 #include "session/session_impl.h"
 #include "tests/support/session_case.h"
 #include "value/quality.h"
+
+#define CASE(name) TEST_ON(struct session_case *f, name, session_case_set_up, session_case_tear_down)
 
 #define HELLO "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"]}"
 static const int64_t MS = NS_PER_MS;
@@ -161,9 +159,8 @@ static struct frame_request show_data(struct session_case *f, bool quick)
 
 #define SIGNED_HELLO "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\",\"png\"],\"signed\":\"refined\"}"
 
-static void refined_frames_are_asked_for_signed(void **state)
+CASE(refined_frames_are_asked_for_signed)
 {
-    struct session_case *f = *state;
     f->context.signing_key = "0123456789abcdef";
     say(f, SIGNED_HELLO);
     expect(f, "welcome status tags ");
@@ -185,9 +182,8 @@ static void refined_frames_are_asked_for_signed(void **state)
     assert_false(show(f).record);
 }
 
-static void what_cannot_be_signed_is_refused(void **state)
+CASE(what_cannot_be_signed_is_refused)
 {
-    struct session_case *f = *state;
     struct message_error why = { 0 };
     say(f, SIGNED_HELLO); /* no key */
     expect_error(f, "bad_field");
@@ -204,9 +200,8 @@ static void what_cannot_be_signed_is_refused(void **state)
     expect(f, "");
 }
 
-static void nothing_before_hello(void **state)
+CASE(nothing_before_hello)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     assert_false(session_next_request(f->session, f->now_ns, &request));
     session_on_data(f->session, f->now_ns);
@@ -219,9 +214,8 @@ static void nothing_before_hello(void **state)
     expect(f, "welcome error status tags ");
 }
 
-static void welcome_tells_the_plant_and_no_addresses(void **state)
+CASE(welcome_tells_the_plant_and_no_addresses)
 {
-    struct session_case *f = *state;
     struct text text = { 0 };
     say(f, HELLO);
     assert_true(session_next_text(f->session, f->now_ns, f->now_ns, &text));
@@ -243,9 +237,8 @@ static void welcome_tells_the_plant_and_no_addresses(void **state)
     text_finish(&text);
 }
 
-static void first_picture_comes_at_once_then_refined_then_nothing(void **state)
+CASE(first_picture_comes_at_once_then_refined_then_nothing)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     assert_true(ask(f, &request));
@@ -265,9 +258,8 @@ static void first_picture_comes_at_once_then_refined_then_nothing(void **state)
     assert_false(ask(f, &request));
 }
 
-static void rests_once_nothing_waits_for_time(void **state)
+CASE(rests_once_nothing_waits_for_time)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     assert_true(session_rests(f->session, f->now_ns)); /* no hello yet */
     greet(f);
@@ -298,9 +290,8 @@ static void rests_once_nothing_waits_for_time(void **state)
     assert_false(session_rests(f->session, f->now_ns));
 }
 
-static void readings_that_are_rare_do_not_make_what_is_shown_old(void **state)
+CASE(readings_that_are_rare_do_not_make_what_is_shown_old)
 {
-    struct session_case *f = *state;
     greet(f);
     show(f);
     f->now_ns += 250 * MS;
@@ -324,9 +315,8 @@ static void readings_that_are_rare_do_not_make_what_is_shown_old(void **state)
     assert_true(session_fresh_ns(f->session) > then_ns);
 }
 
-static void newest_camera_wins_and_the_last_state_arrives(void **state)
+CASE(newest_camera_wins_and_the_last_state_arrives)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     show(f);
@@ -347,9 +337,8 @@ static void newest_camera_wins_and_the_last_state_arrives(void **state)
     assert_true(request.view.camera.eye_m[0] == 55);
 }
 
-static void a_full_window_only_replaces(void **state)
+CASE(a_full_window_only_replaces)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     assert_true(ask(f, &request));
@@ -363,9 +352,8 @@ static void a_full_window_only_replaces(void **state)
     assert_false(session_next_request(f->session, f->now_ns, &request));
 }
 
-static void equal_pictures_free_their_place(void **state)
+CASE(equal_pictures_free_their_place)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     for (int i = 0; i < 10; i++) {
@@ -377,9 +365,8 @@ static void equal_pictures_free_their_place(void **state)
     assert_int_equal(send_picture(f), 0);
 }
 
-static void without_a_first_picture_a_session_is_refused(void **state)
+CASE(without_a_first_picture_a_session_is_refused)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     assert_true(ask(f, &request));
@@ -388,9 +375,8 @@ static void without_a_first_picture_a_session_is_refused(void **state)
     assert_int_equal(f->session->delivery.pacer.asked, 0);
 }
 
-static void a_view_that_cannot_be_drawn_is_said_once(void **state)
+CASE(a_view_that_cannot_be_drawn_is_said_once)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     show(f);
@@ -412,9 +398,8 @@ static void a_view_that_cannot_be_drawn_is_said_once(void **state)
 }
 
 /* Nothing changes: what there was no memory for is tried again all the same, and not all the time. */
-static void a_view_that_cannot_be_drawn_is_tried_again(void **state)
+CASE(a_view_that_cannot_be_drawn_is_tried_again)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     show(f);
@@ -437,9 +422,8 @@ static void a_view_that_cannot_be_drawn_is_tried_again(void **state)
     assert_false(ask(f, &request));
 }
 
-static void overtaken_pictures_are_not_sent(void **state)
+CASE(overtaken_pictures_are_not_sent)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     assert_true(ask(f, &request));
@@ -459,9 +443,8 @@ static void overtaken_pictures_are_not_sent(void **state)
     assert_int_equal(f->session->stats.dropped, 1);
 }
 
-static void data_under_a_still_view_is_drawn_once_and_refined(void **state)
+CASE(data_under_a_still_view_is_drawn_once_and_refined)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     show(f);
@@ -474,9 +457,8 @@ static void data_under_a_still_view_is_drawn_once_and_refined(void **state)
     assert_false(ask(f, &request));
 }
 
-static void readings_come_with_the_next_camera_of_a_slow_drag(void **state)
+CASE(readings_come_with_the_next_camera_of_a_slow_drag)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     show(f);
@@ -497,9 +479,8 @@ static void readings_come_with_the_next_camera_of_a_slow_drag(void **state)
     assert_true(request.of_data && request.urgency == URGENCY_DATA);
 }
 
-static void nobody_is_refined_while_another_moves(void **state)
+CASE(nobody_is_refined_while_another_moves)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     show(f);
@@ -515,9 +496,8 @@ static void nobody_is_refined_while_another_moves(void **state)
     assert_true(request.view.tier == TIER_REFINED);
 }
 
-static void others_may_move_for_a_while_not_for_ever(void **state)
+CASE(others_may_move_for_a_while_not_for_ever)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     show(f);
@@ -527,9 +507,8 @@ static void others_may_move_for_a_while_not_for_ever(void **state)
     assert_true(request.view.tier == TIER_REFINED);
 }
 
-static void data_on_a_loaded_server_is_not_refined_at_once(void **state)
+CASE(data_on_a_loaded_server_is_not_refined_at_once)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     show(f);
@@ -545,9 +524,8 @@ static void data_on_a_loaded_server_is_not_refined_at_once(void **state)
     assert_true(request.view.tier == TIER_REFINED);
 }
 
-static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **state)
+CASE(data_on_a_loaded_server_does_not_put_refinement_off_for_ever)
 {
-    struct session_case *f = *state;
     int refined = 0;
     greet(f);
     show(f);
@@ -562,9 +540,8 @@ static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **
 }
 
 /* What was being refined was given up for readings of which nothing is to be seen: the preview that is shown does not stay. */
-static void data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook(void **state)
+CASE(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook)
 {
-    struct session_case *f = *state;
     struct frame_request refined, data;
     greet(f);
     show(f);
@@ -581,9 +558,8 @@ static void data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook
 }
 
 /* Nothing says yet that the server is loaded: readings do not wait until what takes a minute is refined. */
-static void data_does_not_wait_for_the_first_refined_picture(void **state)
+CASE(data_does_not_wait_for_the_first_refined_picture)
 {
-    struct session_case *f = *state;
     struct frame_request refined, data, preview;
     greet(f);
     show(f);
@@ -606,9 +582,8 @@ static void data_does_not_wait_for_the_first_refined_picture(void **state)
 
 /* A preview that was asked for while something was being refined, and drawn once that had come, does not stay either: one for readings that
    waited, and one for a client that decodes something else. */
-static void a_preview_that_comes_after_a_refined_picture_does_not_stay(void **state)
+CASE(a_preview_that_comes_after_a_refined_picture_does_not_stay)
 {
-    struct session_case *f = *state;
     struct frame_request refined, preview;
     greet(f);
     show(f);
@@ -636,9 +611,8 @@ static void a_preview_that_comes_after_a_refined_picture_does_not_stay(void **st
 }
 
 /* A minute of readings that change twice a second: the refined picture stays, whatever else the server has to do. */
-static void data_leaves_a_refined_picture_that_is_quick_to_color(void **state)
+CASE(data_leaves_a_refined_picture_that_is_quick_to_color)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     show(f);
@@ -655,9 +629,8 @@ static void data_leaves_a_refined_picture_that_is_quick_to_color(void **state)
 }
 
 /* 125 kB/s: what moves becomes smaller, what stands still is refined in two stages. */
-static void a_slow_client_gets_less_and_everything_in_the_end(void **state)
+CASE(a_slow_client_gets_less_and_everything_in_the_end)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     for (int i = 1; i <= 40; i++) {
@@ -682,9 +655,8 @@ static void a_slow_client_gets_less_and_everything_in_the_end(void **state)
     assert_false(ask(f, &request));
 }
 
-static void a_refined_picture_that_is_out_of_date_is_not_sent_on(void **state)
+CASE(a_refined_picture_that_is_out_of_date_is_not_sent_on)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     uint32_t seq;
     greet(f);
@@ -707,9 +679,8 @@ static void a_refined_picture_that_is_out_of_date_is_not_sent_on(void **state)
     encoded_frame_destroy(&sending);
 }
 
-static void who_takes_nothing_is_paused_and_costs_nothing(void **state)
+CASE(who_takes_nothing_is_paused_and_costs_nothing)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     assert_true(ask(f, &request));
@@ -734,9 +705,8 @@ static void who_takes_nothing_is_paused_and_costs_nothing(void **state)
     assert_int_equal(session_state(f->session, f->now_ns), PACER_DEAD);
 }
 
-static void hidden_pages_get_nothing(void **state)
+CASE(hidden_pages_get_nothing)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     show(f);
@@ -752,10 +722,9 @@ static void hidden_pages_get_nothing(void **state)
 }
 
 /* A view that is hidden and shown in turns costs a new picture each time, as a new session does. */
-static void views_shown_again_and_again_are_admitted_as_new_ones(void **state)
+CASE(views_shown_again_and_again_are_admitted_as_new_ones)
 {
     static const char HIDE[] = "{\"type\":\"visible\",\"visible\":false}", SHOW[] = "{\"type\":\"visible\",\"visible\":true}";
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f);
     show(f);
@@ -775,9 +744,8 @@ static void views_shown_again_and_again_are_admitted_as_new_ones(void **state)
     assert_true(session_has_pixels(f->session) && ask(f, &request));
 }
 
-static void tags_come_whole_then_by_change_then_nothing(void **state)
+CASE(tags_come_whole_then_by_change_then_nothing)
 {
-    struct session_case *f = *state;
     greet(f);
     f->snapshot->readings[1] = (struct reading){ .value = 3.25, .quality = QUALITY_GOOD, .changes = 5, .age_ns = 40 * MS };
     session_on_data(f->session, f->now_ns);
@@ -807,9 +775,8 @@ static void tags_come_whole_then_by_change_then_nothing(void **state)
     expect(f, "");
 }
 
-static void what_is_shown_is_confirmed(void **state)
+CASE(what_is_shown_is_confirmed)
 {
-    struct session_case *f = *state;
     greet(f);
     f->snapshot->taken_utc_ns = 5000;
     say(f, "{\"type\":\"params\",\"seq\":1,\"show\":\"difference\",\"baseline\":{\"set\":\"calm\"},"
@@ -832,9 +799,8 @@ static void what_is_shown_is_confirmed(void **state)
     json_decref(params);
 }
 
-static void params_are_confirmed_and_bad_ones_change_nothing(void **state)
+CASE(params_are_confirmed_and_bad_ones_change_nothing)
 {
-    struct session_case *f = *state;
     greet(f);
     say(f, "{\"type\":\"params\",\"seq\":4,\"group\":\"pressure\",\"ramp_interval\":2}");
     json_t *params = hear(f);
@@ -850,18 +816,16 @@ static void params_are_confirmed_and_bad_ones_change_nothing(void **state)
     assert_int_equal(f->session->view.params_seq, 4);
 }
 
-static void a_client_that_does_not_read_costs_a_bounded_list(void **state)
+CASE(a_client_that_does_not_read_costs_a_bounded_list)
 {
-    struct session_case *f = *state;
     greet(f);
     for (int i = 0; i < 10000; i++)
         say(f, "{\"type\":\"ping\",\"t\":1.5}");
     assert_true(f->session->owed.reply_count <= SESSION_MAX_REPLIES);
 }
 
-static void too_many_messages_are_put_off(void **state)
+CASE(too_many_messages_are_put_off)
 {
-    struct session_case *f = *state;
     greet(f);
     for (int i = 0; i < f->quotas.at[QUOTA_MESSAGES]; i++)
         say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
@@ -877,9 +841,8 @@ static void too_many_messages_are_put_off(void **state)
 }
 
 /* What had left the socket before it was told to stop is read at once; it counts for the seconds after. */
-static void messages_beyond_a_second_count_for_the_next(void **state)
+CASE(messages_beyond_a_second_count_for_the_next)
 {
-    struct session_case *f = *state;
     const int most = (int)f->quotas.at[QUOTA_MESSAGES], beyond = most / 4, seconds = 12;
     int read = 0;
     greet(f);
@@ -893,9 +856,8 @@ static void messages_beyond_a_second_count_for_the_next(void **state)
     assert_in_range(read, (seconds - 1) * most, seconds * most + beyond);
 }
 
-static void acks_for_nothing_are_errors(void **state)
+CASE(acks_for_nothing_are_errors)
 {
-    struct session_case *f = *state;
     greet(f);
     ack(f, 1);
     expect_error(f, "bad_field");
@@ -906,9 +868,8 @@ static void acks_for_nothing_are_errors(void **state)
     expect_error(f, "bad_field");
 }
 
-static void a_fit_is_answered_with_a_camera_and_moves_nothing(void **state)
+CASE(a_fit_is_answered_with_a_camera_and_moves_nothing)
 {
-    struct session_case *f = *state;
     greet(f);
     struct camera before = f->session->view.camera;
     say(f, "{\"type\":\"fit\",\"seq\":9,\"id\":\"P-101A\",\"side\":\"top\",\"projection\":\"orthographic\"}");
@@ -927,7 +888,7 @@ static void a_fit_is_answered_with_a_camera_and_moves_nothing(void **state)
     json_decref(answer);
 }
 
-static void a_pick_is_asked_once_and_answered(void **state)
+TEST_WITH(a_pick_is_asked_once_and_answered, session_case_set_up, session_case_tear_down)
 {
     struct session_case *f = *state;
     struct pick_query query;
@@ -962,9 +923,8 @@ static void a_pick_is_asked_once_and_answered(void **state)
     json_decref(said);
 }
 
-static void a_follower_is_shown_its_leaders_view(void **state)
+CASE(a_follower_is_shown_its_leaders_view)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     struct session *leader = session_create(&f->context, 8, f->now_ns);
     static const char hello[] = "{\"type\":\"hello\",\"width\":800,\"height\":600,\"codecs\":[\"jpeg\"]}";
@@ -1026,9 +986,8 @@ static void a_follower_is_shown_its_leaders_view(void **state)
     session_destroy(&leader);
 }
 
-static void pings_come_back_exactly(void **state)
+CASE(pings_come_back_exactly)
 {
-    struct session_case *f = *state;
     say(f, "{\"type\":\"ping\",\"t\":123456.78901234567}");
     json_t *pong = hear(f);
     assert_string_equal(type_of(pong), "pong");
@@ -1045,9 +1004,8 @@ static void pings_come_back_exactly(void **state)
     json_decref(pong);
 }
 
-static void codecs_are_chosen_and_chosen_again(void **state)
+CASE(codecs_are_chosen_and_chosen_again)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     f->context.codecs = 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_H264;
     say(f, "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"auto\",\"h264\",\"jpeg\"]}");
@@ -1071,54 +1029,4 @@ static void codecs_are_chosen_and_chosen_again(void **state)
     say(f, "{\"type\":\"codecs\",\"codecs\":[\"h264\"]}"); /* of a server without it */
     expect_error(f, "bad_field");
     assert_int_equal(f->session->codec.current, WIRE_CODEC_H264);
-}
-
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, session_case_set_up, session_case_tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(nothing_before_hello),
-        TEST(refined_frames_are_asked_for_signed),
-        TEST(what_cannot_be_signed_is_refused),
-        TEST(welcome_tells_the_plant_and_no_addresses),
-        TEST(first_picture_comes_at_once_then_refined_then_nothing),
-        TEST(rests_once_nothing_waits_for_time),
-        TEST(readings_that_are_rare_do_not_make_what_is_shown_old),
-        TEST(newest_camera_wins_and_the_last_state_arrives),
-        TEST(a_full_window_only_replaces),
-        TEST(equal_pictures_free_their_place),
-        TEST(without_a_first_picture_a_session_is_refused),
-        TEST(a_view_that_cannot_be_drawn_is_said_once),
-        TEST(a_view_that_cannot_be_drawn_is_tried_again),
-        TEST(overtaken_pictures_are_not_sent),
-        TEST(data_under_a_still_view_is_drawn_once_and_refined),
-        TEST(readings_come_with_the_next_camera_of_a_slow_drag),
-        TEST(nobody_is_refined_while_another_moves),
-        TEST(others_may_move_for_a_while_not_for_ever),
-        TEST(data_on_a_loaded_server_is_not_refined_at_once),
-        TEST(data_on_a_loaded_server_does_not_put_refinement_off_for_ever),
-        TEST(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook),
-        TEST(data_does_not_wait_for_the_first_refined_picture),
-        TEST(a_preview_that_comes_after_a_refined_picture_does_not_stay),
-        TEST(data_leaves_a_refined_picture_that_is_quick_to_color),
-        TEST(a_slow_client_gets_less_and_everything_in_the_end),
-        TEST(a_refined_picture_that_is_out_of_date_is_not_sent_on),
-        TEST(who_takes_nothing_is_paused_and_costs_nothing),
-        TEST(hidden_pages_get_nothing),
-        TEST(views_shown_again_and_again_are_admitted_as_new_ones),
-        TEST(tags_come_whole_then_by_change_then_nothing),
-        TEST(params_are_confirmed_and_bad_ones_change_nothing),
-        TEST(what_is_shown_is_confirmed),
-        TEST(a_client_that_does_not_read_costs_a_bounded_list),
-        TEST(too_many_messages_are_put_off),
-        TEST(messages_beyond_a_second_count_for_the_next),
-        TEST(acks_for_nothing_are_errors),
-        TEST(a_fit_is_answered_with_a_camera_and_moves_nothing),
-        TEST(a_pick_is_asked_once_and_answered),
-        TEST(a_follower_is_shown_its_leaders_view),
-        TEST(pings_come_back_exactly),
-        TEST(codecs_are_chosen_and_chosen_again),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

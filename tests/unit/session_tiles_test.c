@@ -2,11 +2,8 @@
 /* Tiles of one picture: what they are sent to show, and that none waits for ever for what another will not have. */
 #include "session/tiles/tile_sync.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -41,11 +38,10 @@ static void have(struct wall_case *wall, int i, uint64_t picture, uint32_t seq)
     wall->members[i]->delivery.pacer.acked.seq = seq;
 }
 
-static void test_what_all_have_is_shown(void **state)
+TEST(test_what_all_have_is_shown)
 {
     struct wall_case wall;
     uint64_t presented = 5;
-    (void)state;
     set_up(&wall);
     have(&wall, 0, 6, 3);
     have(&wall, 1, 6, 4);
@@ -59,11 +55,10 @@ static void test_what_all_have_is_shown(void **state)
     tear_down(&wall);
 }
 
-static void test_of_two_pictures_none_is_waited_for(void **state)
+TEST(test_of_two_pictures_none_is_waited_for)
 {
     struct wall_case wall;
     uint64_t presented = 5;
-    (void)state;
     set_up(&wall);
     have(&wall, 0, 6, 3);
     have(&wall, 1, 7, 3);
@@ -78,12 +73,11 @@ static void test_of_two_pictures_none_is_waited_for(void **state)
 }
 
 /* 6 is drawn and on its way from the encoder; the answer that 7 is no other one comes before it. */
-static void test_an_answer_without_a_frame_overtakes_one(void **state)
+TEST(test_an_answer_without_a_frame_overtakes_one)
 {
     struct wall_case wall;
     uint64_t presented = 5;
     struct frame_request request = { .picture = 6 };
-    (void)state;
     set_up(&wall);
     have(&wall, 0, 5, 3);
     wall.members[0]->delivery.pacer.last_seq = 3;
@@ -126,18 +120,16 @@ static void check_moves(int width_px, int height_px)
     }
 }
 
-static void test_tiles_are_moved_within_the_picture(void **state)
+TEST(test_tiles_are_moved_within_the_picture)
 {
-    (void)state;
     check_moves(320, 180);
     check_moves(4096, 2160); /* three of them are more than a picture has: they are smaller from the start */
     check_moves(8192, 8192);
 }
 
 /* A client says how large its display is: one window may be a sliver, with bezels that are thousands of times as wide. */
-static void test_a_picture_is_never_larger_than_one_may_be(void **state)
+TEST(test_a_picture_is_never_larger_than_one_may_be)
 {
-    (void)state;
     for (int i = 0; i < WALL_DISPLAYS * 2 * 100; i++) {
         int count = i / 200 + 1, width_px = 16 << i % 10, height_px = 16 << i / 10 % 10;
         struct wall wall = { .inches = 10, .tile = { .columns = count, .rows = WALL_DISPLAYS / count, .bezel_mm = { 200, 200 } } };
@@ -155,7 +147,7 @@ static void test_a_picture_is_never_larger_than_one_may_be(void **state)
 }
 
 /* Whose display was not looked at for a while takes as many pixels as when it came: those of its display, not of the whole picture. */
-static void test_a_tile_seen_again_takes_its_own_pixels(void **state)
+TEST(test_a_tile_seen_again_takes_its_own_pixels)
 {
     const struct wall wall = { .inches = 10, .tile = { .columns = 3, .rows = 2 } };
     const int64_t own = 1920 * 1080;
@@ -163,7 +155,6 @@ static void test_a_tile_seen_again_takes_its_own_pixels(void **state)
     struct admission admission = { .quotas = &quotas };
     const struct session_context context = { .quotas = &quotas, .admission = &admission };
     struct session *session = mem_new(sizeof(*session));
-    (void)state;
     session->context = &context;
     session->hidden = true;
     session->tile.place.display = 2;
@@ -176,12 +167,11 @@ static void test_a_tile_seen_again_takes_its_own_pixels(void **state)
     mem_free(session);
 }
 
-static void test_a_move_is_sent_once(void **state)
+TEST(test_a_move_is_sent_once)
 {
     struct wall_case wall;
     struct frame_request request = { .view.tier = TIER_REFINED };
     struct session *first;
-    (void)state;
     set_up(&wall);
     first = wall.members[0];
     session_tile_move(first, (struct burn_shift){ 0 }, 5);
@@ -203,10 +193,9 @@ static int size_after(struct quality_ladder *ladder, int64_t made_ms, int64_t fr
     return ladder->size;
 }
 
-static void test_a_server_that_takes_long_makes_smaller_pictures(void **state)
+TEST(test_a_server_that_takes_long_makes_smaller_pictures)
 {
     struct quality_ladder ladder = { 0 };
-    (void)state;
     assert_int_equal(size_after(&ladder, 120, 1000, 9000), 0); /* fast enough */
     assert_int_equal(size_after(&ladder, 220, 10000, 10400), 0);
     assert_int_equal(size_after(&ladder, 220, 10450, 10600), 1); /* half a second too long */
@@ -215,20 +204,4 @@ static void test_a_server_that_takes_long_makes_smaller_pictures(void **state)
     assert_int_equal(size_after(&ladder, 40, 30000, 32900), 1);
     assert_int_equal(size_after(&ladder, 40, 32950, 33100), 0);
     assert_int_equal(size_after(&ladder, 900, 40000, 60000), QUALITY_LADDER_SIZES - 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_all_have_is_shown),
-        cmocka_unit_test(test_of_two_pictures_none_is_waited_for),
-        cmocka_unit_test(test_an_answer_without_a_frame_overtakes_one),
-        cmocka_unit_test(test_tiles_are_moved_within_the_picture),
-        cmocka_unit_test(test_a_picture_is_never_larger_than_one_may_be),
-        cmocka_unit_test(test_a_tile_seen_again_takes_its_own_pixels),
-        cmocka_unit_test(test_a_move_is_sent_once),
-        cmocka_unit_test(test_a_server_that_takes_long_makes_smaller_pictures),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

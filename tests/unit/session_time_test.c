@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A session that travels in time: what it asks for, what it shows and says there, how it plays, and that others stay in the present. */
+#include "tests/support/test.h"
 #include <jansson.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "service/history_loader.h"
@@ -36,6 +32,8 @@ static int tear_down(void **state)
     snapshot_cache_destroy(&snapshot_cache);
     return 0;
 }
+
+#define CASE(name) TEST_ON(struct session_case *f, name, set_up, tear_down)
 
 static int64_t utc_ns(const struct session_case *f)
 {
@@ -118,9 +116,8 @@ static void bring(struct session_case *f, double ago_s, double value)
     session_on_historical_snapshot(f->session, at_us, true, f->now_ns);
 }
 
-static void test_an_instant_is_shown_once_it_was_read(void **state)
+CASE(test_an_instant_is_shown_once_it_was_read)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     greet(f, "");
     go(f, 60, 0);
@@ -136,9 +133,8 @@ static void test_an_instant_is_shown_once_it_was_read(void **state)
     assert_true(f->snapshot->readings[0].value == 0); /* nobody else's is touched */
 }
 
-static void test_the_client_is_told_where_it_is(void **state)
+CASE(test_the_client_is_told_where_it_is)
 {
-    struct session_case *f = *state;
     greet(f, "");
     go(f, 60, 0);
     wanted(f);
@@ -155,9 +151,8 @@ static void test_the_client_is_told_where_it_is(void **state)
     assert_ptr_equal(session_snapshot(f->session), f->snapshot);
 }
 
-static void test_play_goes_on_by_the_clock_and_ends_in_the_present(void **state)
+CASE(test_play_goes_on_by_the_clock_and_ends_in_the_present)
 {
-    struct session_case *f = *state;
     greet(f, "");
     go(f, 60, 20);
     assert_true(wanted(f) == 60);
@@ -179,9 +174,8 @@ static void test_play_goes_on_by_the_clock_and_ends_in_the_present(void **state)
     assert_true(f->session->view.at_us == 0 && f->session->travel.speed == 0 && !f->session->travel.historical);
 }
 
-static void test_backwards_it_stops_where_history_begins(void **state)
+CASE(test_backwards_it_stops_where_history_begins)
 {
-    struct session_case *f = *state;
     greet(f, "");
     go(f, 3590, -100);
     wanted(f);
@@ -194,9 +188,8 @@ static void test_backwards_it_stops_where_history_begins(void **state)
     assert_true(f->session->travel.speed == 0);
 }
 
-static void test_who_drags_sees_what_was_read_on_the_way(void **state)
+CASE(test_who_drags_sees_what_was_read_on_the_way)
 {
-    struct session_case *f = *state;
     greet(f, "");
     go(f, 60, 0);
     wanted(f);
@@ -209,9 +202,8 @@ static void test_who_drags_sees_what_was_read_on_the_way(void **state)
     assert_true(isnan(wanted(f)));
 }
 
-static void test_what_cannot_be_read_is_said_and_changes_nothing(void **state)
+CASE(test_what_cannot_be_read_is_said_and_changes_nothing)
 {
-    struct session_case *f = *state;
     greet(f, "");
     go(f, 60, 60);
     wanted(f);
@@ -227,17 +219,15 @@ static void test_what_cannot_be_read_is_said_and_changes_nothing(void **state)
     f->context.snapshot_cache = snapshot_cache;
 }
 
-static void test_the_newest_seconds_are_the_present(void **state)
+CASE(test_the_newest_seconds_are_the_present)
 {
-    struct session_case *f = *state;
     greet(f, "");
     go(f, 2, 0);
     assert_true(isnan(wanted(f)) && f->session->view.at_us == 0);
 }
 
-static void test_new_parameters_stay_in_the_past(void **state)
+CASE(test_new_parameters_stay_in_the_past)
 {
-    struct session_case *f = *state;
     greet(f, "");
     go(f, 60, 0);
     wanted(f);
@@ -250,9 +240,8 @@ static void test_new_parameters_stay_in_the_past(void **state)
     assert_true(list[0].taken_utc_ns == (NOW_US - 60000000) * 1000);
 }
 
-static void test_whoever_begins_in_the_past_never_sees_the_present(void **state)
+CASE(test_whoever_begins_in_the_past_never_sees_the_present)
 {
-    struct session_case *f = *state;
     char more[64];
     struct frame_request request;
     snprintf(more, sizeof(more), ",\"at_us\":%lld,\"speed\":60", (long long)(NOW_US - 600000000));
@@ -266,9 +255,8 @@ static void test_whoever_begins_in_the_past_never_sees_the_present(void **state)
     assert_true(wanted(f) == 540);
 }
 
-static void test_who_comes_back_is_where_he_was(void **state)
+CASE(test_who_comes_back_is_where_he_was)
 {
-    struct session_case *f = *state;
     struct frame_request request;
     char more[128];
     greet(f, "");
@@ -287,9 +275,8 @@ static void test_who_comes_back_is_where_he_was(void **state)
     assert_true(request.view.at_us == NOW_US - 60000000);
 }
 
-static void test_who_follows_comes_along(void **state)
+CASE(test_who_follows_comes_along)
 {
-    struct session_case *f = *state;
     greet(f, "");
     struct session *other = session_create(&f->context, 8, f->now_ns);
     session_follow(other, f->session, f->now_ns);
@@ -303,9 +290,8 @@ static void test_who_follows_comes_along(void **state)
     session_destroy(&other);
 }
 
-static void test_who_is_given_the_lead_stays_there(void **state)
+CASE(test_who_is_given_the_lead_stays_there)
 {
-    struct session_case *f = *state;
     greet(f, "");
     struct session *heir = session_create(&f->context, 8, f->now_ns);
     session_follow(heir, f->session, f->now_ns);
@@ -318,25 +304,4 @@ static void test_who_is_given_the_lead_stays_there(void **state)
     assert_true(session_view(heir)->at_us == NOW_US - 60000000);
     assert_true(session_snapshot(heir)->readings[0].value == 5);
     f->session = heir;
-}
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(test_an_instant_is_shown_once_it_was_read),
-        TEST(test_the_client_is_told_where_it_is),
-        TEST(test_play_goes_on_by_the_clock_and_ends_in_the_present),
-        TEST(test_backwards_it_stops_where_history_begins),
-        TEST(test_who_drags_sees_what_was_read_on_the_way),
-        TEST(test_what_cannot_be_read_is_said_and_changes_nothing),
-        TEST(test_the_newest_seconds_are_the_present),
-        TEST(test_new_parameters_stay_in_the_past),
-        TEST(test_whoever_begins_in_the_past_never_sees_the_present),
-        TEST(test_who_comes_back_is_where_he_was),
-        TEST(test_who_follows_comes_along),
-        TEST(test_who_is_given_the_lead_stays_there),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

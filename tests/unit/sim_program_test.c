@@ -1,22 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* plantcast-sim as a program, and the daemon's Modbus source reading from it: every data type over a real wire. */
+#include "tests/support/test.h"
 #include <arpa/inet.h>
 #include <errno.h>
 #include <math.h>
 #include <modbus.h>
 #include <poll.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/files/atomic_file.h"
@@ -142,6 +135,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+
 static void start(struct setup *s)
 {
     char control[12], line[200], wanted[200];
@@ -232,9 +227,8 @@ static void expect(struct reader *reader, const struct plant *plant, const char 
         fail_msg("%s: %s %.9g, not %s %.9g", name, quality_name(r->quality), r->value, quality_name(quality), value);
 }
 
-static void every_type_over_the_wire(void **state)
+CASE(every_type_over_the_wire)
 {
-    struct setup *s = *state;
     struct reader reader;
     start(s);
     reader_start(&reader, s->plant);
@@ -258,9 +252,8 @@ static void every_type_over_the_wire(void **state)
     reader_stop(&reader);
 }
 
-static void process_values_come_near_their_operating_point(void **state)
+CASE(process_values_come_near_their_operating_point)
 {
-    struct setup *s = *state;
     struct reader reader;
     start(s);
     reader_start(&reader, s->plant);
@@ -271,9 +264,8 @@ static void process_values_come_near_their_operating_point(void **state)
     reader_stop(&reader);
 }
 
-static void tests_can_fail_and_pause_it(void **state)
+CASE(tests_can_fail_and_pause_it)
 {
-    struct setup *s = *state;
     struct reader reader;
     start(s);
     reader_start(&reader, s->plant);
@@ -296,9 +288,8 @@ static void tests_can_fail_and_pause_it(void **state)
     reader_stop(&reader);
 }
 
-static void control_says_what_is_wrong(void **state)
+CASE(control_says_what_is_wrong)
 {
-    struct setup *s = *state;
     start(s);
     assert_string_equal(control(s, "set nobody 1"), "error: no tag nobody");
     assert_string_equal(control(s, "set int16 much"), "error: much is not a number");
@@ -314,9 +305,8 @@ static void control_says_what_is_wrong(void **state)
 
 /* --- the device's side ------------------------------------------------------------------------------------------------------ */
 
-static void writes_are_refused_and_counted(void **state)
+CASE(writes_are_refused_and_counted)
 {
-    struct setup *s = *state;
     const uint16_t words[2] = { 1, 2 };
     const uint8_t bits[2] = { 1, 0 };
     start(s);
@@ -340,10 +330,9 @@ static void writes_are_refused_and_counted(void **state)
     modbus_free(modbus);
 }
 
-static void many_clients_at_once_and_one_talks_nonsense(void **state)
+CASE(many_clients_at_once_and_one_talks_nonsense)
 {
     enum { CLIENTS = 20 };
-    struct setup *s = *state;
     modbus_t *clients[CLIENTS];
     char byte;
     start(s);
@@ -371,9 +360,8 @@ static void many_clients_at_once_and_one_talks_nonsense(void **state)
     close(nonsense);
 }
 
-static void ends_cleanly_on_signals(void **state)
+CASE(ends_cleanly_on_signals)
 {
-    struct setup *s = *state;
     const int signals[] = { SIGTERM, SIGINT };
     for (int i = 0; i < 2; i++) {
         start(s);
@@ -394,9 +382,8 @@ static int run(struct setup *s, char *const arguments[], char said[300])
     return exit_status(s);
 }
 
-static void says_what_stops_it(void **state)
+CASE(says_what_stops_it)
 {
-    struct setup *s = *state;
     char said[300], wanted[100];
     assert_int_equal(run(s, (char *[]){ "plantcast-sim", NULL }, said), 2);
     assert_int_equal(run(s, (char *[]){ "plantcast-sim", s->plant_path, "--port", "70000", NULL }, said), 2);
@@ -416,9 +403,8 @@ static void says_what_stops_it(void **state)
 }
 
 /* The plants of real models and recorded series: only there where the data is. */
-static void real_plants_are_served(void **state)
+CASE(real_plants_are_served)
 {
-    struct setup *s = *state;
     const char *const plants[] = { "tests/plants/plant_room.yaml", "tests/plants/cookie_line.yaml" };
     if (access("../shared/data/sensors/tep", R_OK) != 0) {
         print_message("# ../shared/data is not there\n");
@@ -450,23 +436,4 @@ static void real_plants_are_served(void **state)
         plant_destroy(&plant);
         diag_finish(&diag);
     }
-}
-
-#define sim_test(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        sim_test(every_type_over_the_wire),
-        sim_test(process_values_come_near_their_operating_point),
-        sim_test(tests_can_fail_and_pause_it),
-        sim_test(control_says_what_is_wrong),
-        sim_test(writes_are_refused_and_counted),
-        sim_test(many_clients_at_once_and_one_talks_nonsense),
-        sim_test(ends_cleanly_on_signals),
-        sim_test(says_what_stops_it),
-        sim_test(real_plants_are_served),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* plantcast-sim's parts: encoding against the daemon's decoding, the process, recorded series and their map. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
@@ -53,9 +46,8 @@ static void check_there_and_back(const struct plant_tag *tag, double value, doub
     assert_int_equal(sample.quality, QUALITY_GOOD);
 }
 
-static void what_is_encoded_is_decoded(void **state)
+TEST(what_is_encoded_is_decoded)
 {
-    (void)state;
     static const double raws[][2] = {
         [DATA_INT16] = { -32000, 32000 }, [DATA_UINT16] = { 0, 65000 }, [DATA_INT32] = { -2e9, 2e9 }, [DATA_UINT32] = { 0, 4e9 },
         [DATA_FLOAT32] = { -1000, 1000 }, [DATA_INT64] = { -1e12, 1e12 }, [DATA_UINT64] = { 0, 1e13 }, [DATA_FLOAT64] = { -1e5, 1e5 },
@@ -86,9 +78,8 @@ static void what_is_encoded_is_decoded(void **state)
                 }
 }
 
-static void bytes_lie_as_the_order_says(void **state)
+TEST(bytes_lie_as_the_order_says)
 {
-    (void)state;
     const uint16_t wanted[][2] = { { 0xC2ED, 0x4000 }, { 0xC2ED, 0x4000 }, { 0x4000, 0xC2ED }, { 0xEDC2, 0x0040 }, { 0x0040, 0xEDC2 } };
     for (int order = BYTE_ORDER_ABCD; order <= BYTE_ORDER_DCBA; order++) {
         struct plant_tag tag = { .table = TABLE_INPUT, .bit = -1, .type = DATA_FLOAT32, .byte_order = (enum byte_order)order };
@@ -99,9 +90,8 @@ static void bytes_lie_as_the_order_says(void **state)
     }
 }
 
-static void bits_leave_their_neighbours_alone(void **state)
+TEST(bits_leave_their_neighbours_alone)
 {
-    (void)state;
     for (int order = BYTE_ORDER_NONE; order <= BYTE_ORDER_DCBA; order++)
         for (int bit = 0; bit < 16; bit++)
             for (int negate = 0; negate < 2; negate++) {
@@ -120,9 +110,8 @@ static void bits_leave_their_neighbours_alone(void **state)
     check_there_and_back(&coil, 0, 0);
 }
 
-static void too_much_becomes_the_most(void **state)
+TEST(too_much_becomes_the_most)
 {
-    (void)state;
     const struct {
         enum data_type type;
         double value, wanted;
@@ -142,9 +131,8 @@ static void too_much_becomes_the_most(void **state)
     }
 }
 
-static void only_floats_hold_no_number(void **state)
+TEST(only_floats_hold_no_number)
 {
-    (void)state;
     struct plant_tag tag = { .table = TABLE_HOLDING, .bit = -1, .type = DATA_FLOAT32, .byte_order = BYTE_ORDER_CDAB };
     uint16_t words[4] = { 0 };
     struct sample sample;
@@ -158,9 +146,8 @@ static void only_floats_hold_no_number(void **state)
     assert_int_equal(words[0], 77);
 }
 
-static void only_named_registers_exist(void **state)
+TEST(only_named_registers_exist)
 {
-    (void)state;
     struct sim_image image = { 0 };
     struct plant_tag tag = { .table = TABLE_HOLDING, .register_index = 10, .bit = -1, .type = DATA_FLOAT32, .byte_order = BYTE_ORDER_ABCD };
     sim_image_add(&image, 3, &tag);
@@ -221,9 +208,8 @@ static void run_cycle(struct process *process, struct course courses[TAGS], int 
     }
 }
 
-static void process_behaves(void **state)
+TEST(process_behaves)
 {
-    (void)state;
     struct process *process = process_create(unit, TAGS, 1);
     struct course cycles[2][TAGS];
     int upsets = 0;
@@ -249,9 +235,8 @@ static void process_behaves(void **state)
     assert_null(process);
 }
 
-static void process_repeats_with_its_seed(void **state)
+TEST(process_repeats_with_its_seed)
 {
-    (void)state;
     struct process *a = process_create(unit, TAGS, 5), *b = process_create(unit, TAGS, 5), *other = process_create(unit, TAGS, 6);
     for (int i = 0; i < 100; i++) {
         process_step(a, 0.1);
@@ -280,9 +265,8 @@ static void drop_file(char *path)
     mem_free(path);
 }
 
-static void wide_series(void **state)
+TEST(wide_series)
 {
-    (void)state;
     char why[200], *path = write_file("wide.csv", "t_min,a,b,d\r\n10,1.5,-2,1\r\n13,2.5,,I/O Timeout\r\n16,3.5,4e1,hot\r\n");
     struct series series;
     bool found;
@@ -309,9 +293,8 @@ static void wide_series(void **state)
     drop_file(path);
 }
 
-static void long_series(void **state)
+TEST(long_series)
 {
-    (void)state;
     char why[200], *path = write_file("long.csv", "1636070400000,Alarm,M-1,state,NORMAL,VARCHAR\n1636070400001,Mixer,M-1,T,100,DOUBLE\n"
                                                   "1636070400002,Mixer,M-1,RPM,60,DOUBLE\n1636070406001,Mixer,M-1,T,101.5,DOUBLE");
     struct series series;
@@ -328,9 +311,8 @@ static void long_series(void **state)
     drop_file(path);
 }
 
-static void bad_series(void **state)
+TEST(bad_series)
 {
-    (void)state;
     const char *const texts[] = { "t_s,a\n0,1\n2,x\n", "t_s,a\n5,1\n4,1\n", "time,a\n0,1\n", "", "t_s,a\n0\n", "t_s,a\nnan,1\n" };
     const char *const wanted[] = {
         ":3: a: expected a number", ":3: expected a time", ":1: no column is the time", "is empty", ":2: expected", ":2: expected"
@@ -351,9 +333,8 @@ static void bad_series(void **state)
     assert_non_null(strstr(why, "No such file"));
 }
 
-static void map_lines(void **state)
+TEST(map_lines)
 {
-    (void)state;
     struct diag diag = { 0 };
     struct sim_map map = { 0 };
     sim_map_add(&map, "TT-1=XMEAS09", "f", 1, &diag);
@@ -376,9 +357,8 @@ static void map_lines(void **state)
     sim_map_finish(&map);
 }
 
-static void map_files(void **state)
+TEST(map_files)
 {
-    (void)state;
     struct diag diag = { 0 };
     struct sim_map map = { 0 };
     char *path =
@@ -398,19 +378,4 @@ static void map_files(void **state)
     diag_finish(&diag);
     sim_map_finish(&map);
     drop_file(path);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_encoded_is_decoded), cmocka_unit_test(bytes_lie_as_the_order_says),
-        cmocka_unit_test(bits_leave_their_neighbours_alone), cmocka_unit_test(too_much_becomes_the_most),
-        cmocka_unit_test(only_floats_hold_no_number), cmocka_unit_test(only_named_registers_exist),
-        cmocka_unit_test(process_behaves), cmocka_unit_test(process_repeats_with_its_seed),
-        cmocka_unit_test(wide_series), cmocka_unit_test(long_series),
-        cmocka_unit_test(bad_series), cmocka_unit_test(map_lines),
-        cmocka_unit_test(map_files),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

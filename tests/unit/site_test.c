@@ -2,15 +2,10 @@
 /* The files of the web client: those below the folder, by every honest path, and nothing by any other. */
 #include "net/http/site.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
@@ -59,6 +54,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 static void expect(const struct fixture *f, const char *path, const char *content, const char *type)
 {
     struct site *site = site_create(NULL, f->web);
@@ -72,17 +69,16 @@ static void expect(const struct fixture *f, const char *path, const char *conten
     site_destroy(&site);
 }
 
-static void honest_paths_are_served(void **state)
+CASE(honest_paths_are_served)
 {
-    expect(*state, "/", "<p>", "text/html; charset=utf-8");
-    expect(*state, "/index.html", "<p>", "text/html; charset=utf-8");
-    expect(*state, "/core/wire.js", "export {};", "text/javascript; charset=utf-8");
+    expect(f, "/", "<p>", "text/html; charset=utf-8");
+    expect(f, "/index.html", "<p>", "text/html; charset=utf-8");
+    expect(f, "/core/wire.js", "export {};", "text/javascript; charset=utf-8");
 }
 
 /* Lines keep their numbers; what only looks like a comment, and what is not the page's own, stays. */
-static void scripts_come_without_comments(void **state)
+CASE(scripts_come_without_comments)
 {
-    struct fixture *f = *state;
     static const char source[] = "// licence\n// what it is\nconst a = 1; // why\n    // more\n\nconst b = 'x//y';\n// end";
     static const char served[] = "// licence\n\nconst a = 1; // why\n\n\nconst b = 'x//y';\n";
     char *vendor = mem_printf("%s/vendor", f->web);
@@ -96,9 +92,8 @@ static void scripts_come_without_comments(void **state)
     mem_free(vendor);
 }
 
-static void nothing_else_is(void **state)
+CASE(nothing_else_is)
 {
-    struct fixture *f = *state;
     static const char *const bad[] = { "",
                                        "index.html",
                                        "/none.html",
@@ -131,9 +126,8 @@ static void nothing_else_is(void **state)
 }
 
 /* An upgrade replaces the files below a daemon that runs: it serves those that it was started with. */
-static void files_stay_as_they_were_at_the_start(void **state)
+CASE(files_stay_as_they_were_at_the_start)
 {
-    struct fixture *f = *state;
     struct site *before = site_create(NULL, f->web);
     write_file(f->web, "index.html", "<p>more");
     write_file(f->web, "new.js", "1;");
@@ -146,17 +140,4 @@ static void files_stay_as_they_were_at_the_start(void **state)
     assert_string_not_equal(site_find(before, "/")->etag, site_find(after, "/")->etag);
     site_destroy(&before);
     site_destroy(&after);
-}
-
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(honest_paths_are_served),
-        TEST(scripts_come_without_comments),
-        TEST(nothing_else_is),
-        TEST(files_stay_as_they_were_at_the_start),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,10 +2,8 @@
 /* Moments: what is held stays, what is not goes in the end, and two that are held never share a slot. */
 #include "value/snapshot_cache.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 static void add(struct snapshot_cache *snapshot_cache, int64_t at_us, double value)
 {
@@ -16,10 +14,9 @@ static void add(struct snapshot_cache *snapshot_cache, int64_t at_us, double val
     snapshot_destroy(&snapshot);
 }
 
-static void test_what_was_added_is_there_once(void **state)
+TEST(test_what_was_added_is_there_once)
 {
     struct snapshot_cache *snapshot_cache = snapshot_cache_create();
-    (void)state;
     assert_null(snapshot_cache_take(snapshot_cache, 5));
     add(snapshot_cache, 5, 1.5);
     add(snapshot_cache, 5, 9);
@@ -33,10 +30,9 @@ static void test_what_was_added_is_there_once(void **state)
     snapshot_cache_destroy(&snapshot_cache);
 }
 
-static void test_changes_tell_values_and_qualities_apart(void **state)
+TEST(test_changes_tell_values_and_qualities_apart)
 {
     struct snapshot_cache *snapshot_cache = snapshot_cache_create();
-    (void)state;
     add(snapshot_cache, 1, 1.5);
     add(snapshot_cache, 2, 1.5);
     add(snapshot_cache, 3, 1.6);
@@ -52,10 +48,9 @@ static void test_changes_tell_values_and_qualities_apart(void **state)
     snapshot_cache_destroy(&snapshot_cache);
 }
 
-static void test_slots_are_apart_while_held_and_used_again(void **state)
+TEST(test_slots_are_apart_while_held_and_used_again)
 {
     struct snapshot_cache *snapshot_cache = snapshot_cache_create();
-    (void)state;
     for (int i = 1; i <= 3; i++)
         add(snapshot_cache, i, i);
     const struct historical_snapshot *a = snapshot_cache_take(snapshot_cache, 1), *b = snapshot_cache_take(snapshot_cache, 2);
@@ -72,10 +67,9 @@ static void test_slots_are_apart_while_held_and_used_again(void **state)
     snapshot_cache_destroy(&snapshot_cache);
 }
 
-static void test_only_the_newest_stay_that_nobody_holds(void **state)
+TEST(test_only_the_newest_stay_that_nobody_holds)
 {
     struct snapshot_cache *snapshot_cache = snapshot_cache_create();
-    (void)state;
     add(snapshot_cache, 1, 1);
     add(snapshot_cache, 2, 2);
     const struct historical_snapshot *held = snapshot_cache_take(snapshot_cache, 1);
@@ -88,16 +82,4 @@ static void test_only_the_newest_stay_that_nobody_holds(void **state)
     snapshot_cache_give(snapshot_cache, &spare);
     snapshot_cache_give(snapshot_cache, &held);
     snapshot_cache_destroy(&snapshot_cache);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_was_added_is_there_once),
-        cmocka_unit_test(test_changes_tell_values_and_qualities_apart),
-        cmocka_unit_test(test_slots_are_apart_while_held_and_used_again),
-        cmocka_unit_test(test_only_the_newest_stay_that_nobody_holds),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

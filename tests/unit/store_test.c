@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Store: what becomes of a reading when it is exact zero, not a number, old, or cut off. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "tests/support/plant_by_hand.h"
 #include "value/alarm.h"
@@ -48,6 +42,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+
 static void write_one(struct setup *s, int tag, double value, uint32_t quality, int64_t now_ns)
 {
     store_write(s->store, &(struct sample){ tag, value, quality }, 1, now_ns, now_ns + 1000 * S);
@@ -61,20 +57,20 @@ static const struct reading *look(struct setup *s, int tag, int64_t now_ns)
 
 #define assert_quality(q, wanted) assert_string_equal(quality_name(q), quality_name(wanted))
 
-static void waits_for_the_first_value(void **state)
+CASE(waits_for_the_first_value)
 {
-    const struct reading *r = look(*state, 0, 10 * S);
+    const struct reading *r = look(s, 0, 10 * S);
     assert_quality(r->quality, QUALITY_BAD_WAITING);
     assert_true(r->age_ns == INT64_MAX);
     assert_true(r->received_utc_ns == 0);
     assert_int_equal(r->changes, 0);
-    assert_quality(look(*state, 0, 10000 * S)->quality, QUALITY_BAD_WAITING);
+    assert_quality(look(s, 0, 10000 * S)->quality, QUALITY_BAD_WAITING);
 }
 
-static void zero_is_a_reading(void **state)
+CASE(zero_is_a_reading)
 {
-    write_one(*state, 0, 0.0, QUALITY_GOOD, 10 * S);
-    const struct reading *r = look(*state, 0, 12 * S);
+    write_one(s, 0, 0.0, QUALITY_GOOD, 10 * S);
+    const struct reading *r = look(s, 0, 12 * S);
     assert_quality(r->quality, QUALITY_GOOD);
     assert_true(r->value == 0.0);
     assert_true(r->age_ns == 2 * S);
@@ -82,53 +78,52 @@ static void zero_is_a_reading(void **state)
     assert_int_equal(r->changes, 1);
 }
 
-static void not_a_number_is_a_sensor_failure(void **state)
+CASE(not_a_number_is_a_sensor_failure)
 {
     const double none[] = { NAN, INFINITY, -INFINITY };
     for (int i = 0; i < 3; i++) {
-        write_one(*state, 0, 7, QUALITY_GOOD, (10 + i) * S);
-        write_one(*state, 0, none[i], QUALITY_GOOD, (10 + i) * S);
-        const struct reading *r = look(*state, 0, (11 + i) * S);
+        write_one(s, 0, 7, QUALITY_GOOD, (10 + i) * S);
+        write_one(s, 0, none[i], QUALITY_GOOD, (10 + i) * S);
+        const struct reading *r = look(s, 0, (11 + i) * S);
         assert_quality(r->quality, QUALITY_BAD_SENSOR_FAILURE);
         assert_true(isfinite(r->value));
     }
 }
 
-static void a_bad_sample_does_not_make_the_value_younger(void **state)
+CASE(a_bad_sample_does_not_make_the_value_younger)
 {
-    write_one(*state, 0, 7, QUALITY_GOOD, 10 * S);
-    write_one(*state, 0, 99, QUALITY_BAD_CONFIGURATION, 12 * S);
-    const struct reading *r = look(*state, 0, 13 * S);
+    write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
+    write_one(s, 0, 99, QUALITY_BAD_CONFIGURATION, 12 * S);
+    const struct reading *r = look(s, 0, 13 * S);
     assert_quality(r->quality, QUALITY_BAD_CONFIGURATION);
     assert_true(r->age_ns == 3 * S);
     assert_true(r->value == 7);
-    assert_quality(look(*state, 0, 100 * S)->quality, QUALITY_BAD_CONFIGURATION); /* the reason stays */
+    assert_quality(look(s, 0, 100 * S)->quality, QUALITY_BAD_CONFIGURATION); /* the reason stays */
 }
 
-static void goes_stale(void **state)
+CASE(goes_stale)
 {
-    write_one(*state, 0, 7, QUALITY_GOOD, 10 * S);
-    assert_quality(look(*state, 0, 15 * S - 1)->quality, QUALITY_GOOD);
-    uint32_t before = look(*state, 0, 15 * S - 1)->changes;
-    assert_quality(look(*state, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
-    assert_int_equal(look(*state, 0, 16 * S)->changes, before + 1); /* once, however often it is looked at */
-    write_one(*state, 0, 7, QUALITY_GOOD, 20 * S);
-    const struct reading *r = look(*state, 0, 20 * S);
+    write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
+    assert_quality(look(s, 0, 15 * S - 1)->quality, QUALITY_GOOD);
+    uint32_t before = look(s, 0, 15 * S - 1)->changes;
+    assert_quality(look(s, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
+    assert_int_equal(look(s, 0, 16 * S)->changes, before + 1); /* once, however often it is looked at */
+    write_one(s, 0, 7, QUALITY_GOOD, 20 * S);
+    const struct reading *r = look(s, 0, 20 * S);
     assert_quality(r->quality, QUALITY_GOOD);
     assert_int_equal(r->changes, before + 2); /* the same value, but usable again */
 }
 
-static void uncertain_stays_uncertain(void **state)
+CASE(uncertain_stays_uncertain)
 {
-    write_one(*state, 0, 700, QUALITY_UNCERTAIN_UNITS_EXCEEDED, 10 * S);
-    assert_quality(look(*state, 0, 11 * S)->quality, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
-    assert_true(look(*state, 0, 11 * S)->value == 700);
-    assert_quality(look(*state, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
+    write_one(s, 0, 700, QUALITY_UNCERTAIN_UNITS_EXCEEDED, 10 * S);
+    assert_quality(look(s, 0, 11 * S)->quality, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
+    assert_true(look(s, 0, 11 * S)->value == 700);
+    assert_quality(look(s, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
 }
 
-static void link_lost_keeps_the_value_until_stale(void **state)
+CASE(link_lost_keeps_the_value_until_stale)
 {
-    struct setup *s = *state;
     write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
     write_one(s, 2, 8, QUALITY_GOOD, 10 * S);
     store_link_up(s->store, 0, 10 * S);
@@ -144,9 +139,8 @@ static void link_lost_keeps_the_value_until_stale(void **state)
     assert_quality(look(s, 1, 100 * S)->quality, QUALITY_BAD_NO_COMMUNICATION);
 }
 
-static void link_back_is_not_yet_a_reading(void **state)
+CASE(link_back_is_not_yet_a_reading)
 {
-    struct setup *s = *state;
     write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
     store_link_lost(s->store, 0, 11 * S);
     store_link_up(s->store, 0, 12 * S);
@@ -160,18 +154,16 @@ static void link_back_is_not_yet_a_reading(void **state)
     assert_true(look(s, 1, 13 * S)->age_ns == 0);
 }
 
-static void a_refused_tag_that_is_cut_off_says_so(void **state)
+CASE(a_refused_tag_that_is_cut_off_says_so)
 {
-    struct setup *s = *state;
     write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
     write_one(s, 0, 0, QUALITY_BAD_CONFIGURATION, 11 * S);
     store_link_lost(s->store, 0, 12 * S);
     assert_quality(look(s, 0, 12 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR); /* never the value from before the refusal */
 }
 
-static void some_tags_can_be_lost(void **state)
+CASE(some_tags_can_be_lost)
 {
-    struct setup *s = *state;
     write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
     write_one(s, 1, 8, QUALITY_GOOD, 10 * S);
     store_link_up(s->store, 0, 10 * S);
@@ -181,9 +173,8 @@ static void some_tags_can_be_lost(void **state)
     assert_true(store_link_is_up(s->store, 0));
 }
 
-static void what_is_dead_is_bad_at_once(void **state)
+CASE(what_is_dead_is_bad_at_once)
 {
-    struct setup *s = *state;
     write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
     store_tags_dead(s->store, (int[]){ 0, 1 }, 2, 12 * S);
     assert_quality(look(s, 0, 12 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
@@ -194,9 +185,8 @@ static void what_is_dead_is_bad_at_once(void **state)
     assert_quality(look(s, 0, 13 * S)->quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
 }
 
-static void counts_every_change(void **state)
+CASE(counts_every_change)
 {
-    struct setup *s = *state;
     uint32_t wanted = 0;
     write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
     assert_int_equal(look(s, 0, 10 * S)->changes, ++wanted);
@@ -220,18 +210,17 @@ static void counts_every_change(void **state)
     assert_int_equal(look(s, 0, 19 * S)->changes, wanted);
 }
 
-static void the_newest_sample_wins(void **state)
+CASE(the_newest_sample_wins)
 {
-    write_one(*state, 0, 7, QUALITY_GOOD, 12 * S);
-    write_one(*state, 0, 6, QUALITY_GOOD, 11 * S);
-    assert_true(look(*state, 0, 12 * S)->value == 7);
-    store_link_lost(((struct setup *)*state)->store, 0, 11 * S); /* known before the sample came */
-    assert_quality(look(*state, 0, 12 * S)->quality, QUALITY_GOOD);
+    write_one(s, 0, 7, QUALITY_GOOD, 12 * S);
+    write_one(s, 0, 6, QUALITY_GOOD, 11 * S);
+    assert_true(look(s, 0, 12 * S)->value == 7);
+    store_link_lost(((struct setup *)s)->store, 0, 11 * S); /* known before the sample came */
+    assert_quality(look(s, 0, 12 * S)->quality, QUALITY_GOOD);
 }
 
-static void the_snapshot_says_when(void **state)
+CASE(the_snapshot_says_when)
 {
-    struct setup *s = *state;
     look(s, 0, 12 * S);
     assert_true(s->snapshot->taken_mono_ns == 12 * S);
     assert_true(s->snapshot->taken_utc_ns == 1012 * S);
@@ -244,9 +233,8 @@ static void count_events(void *arg, const struct sample_event *event)
 }
 
 /* Another plant: one tag stays, at another place and with another patience; one is new. */
-static void readings_go_on_in_another_plant(void **state)
+CASE(readings_go_on_in_another_plant)
 {
-    struct setup *s = *state;
     static int by_name[] = { 1, 0 };
     struct plant *plant = plant_by_hand_create(2);
     plant_by_hand_source(plant, "a", 1);
@@ -273,9 +261,8 @@ static void readings_go_on_in_another_plant(void **state)
 }
 
 /* Another source that takes over a tag whose server was lost is told the value of before at its own time, a moment off by our clock. */
-static void a_value_told_again_is_good_again(void **state)
+CASE(a_value_told_again_is_good_again)
 {
-    struct setup *s = *state;
     write_one(s, 0, 42, QUALITY_GOOD, 10 * S);
     store_write(s->store, &(struct sample){ .tag = 0, .value = 7, .quality = QUALITY_GOOD }, 1, 10 * S - 1, 1010 * S);
     assert_true(look(s, 0, 10 * S)->value == 42); /* while it is alive, what came later stays */
@@ -288,9 +275,8 @@ static void a_value_told_again_is_good_again(void **state)
     assert_false(quality_is_bad(look(s, 0, 11 * S)->quality));
 }
 
-static void all_who_listen_hear_until_they_leave(void **state)
+CASE(all_who_listen_hear_until_they_leave)
 {
-    struct setup *s = *state;
     int64_t one = 0, other = 0;
     store_listen(s->store, count_events, &one);
     store_listen(s->store, count_events, &other);
@@ -302,9 +288,8 @@ static void all_who_listen_hear_until_they_leave(void **state)
 }
 
 /* Before the first sample nobody knows what time it is: an alarm or a point in history would be of 1970. */
-static void what_is_lost_at_first_is_not_told_at_a_wrong_time(void **state)
+CASE(what_is_lost_at_first_is_not_told_at_a_wrong_time)
 {
-    struct setup *s = *state;
     int64_t heard = 0;
     store_listen(s->store, count_events, &heard);
     store_link_lost(s->store, 0, 10);
@@ -315,9 +300,8 @@ static void what_is_lost_at_first_is_not_told_at_a_wrong_time(void **state)
     assert_true(heard > 13);
 }
 
-static void qualities_have_names_and_classes(void **state)
+TEST(qualities_have_names_and_classes)
 {
-    (void)state;
     assert_string_equal(quality_name(QUALITY_GOOD), "Good");
     assert_string_equal(quality_name(QUALITY_BAD_COMMUNICATION_ERROR), "Bad_CommunicationError");
     assert_string_equal(quality_name(0x80FF0000u), "Bad");
@@ -328,17 +312,14 @@ static void qualities_have_names_and_classes(void **state)
     assert_string_equal(quality_class(0xC0000000u), "bad");
 }
 
-#define store_test(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
-
 static void set_up_again(struct setup *s)
 {
     store_destroy(&s->store);
     s->store = store_create(s->plant);
 }
 
-static void a_value_that_never_moves_is_doubted(void **state)
+CASE(a_value_that_never_moves_is_doubted)
 {
-    struct setup *s = *state;
     s->plant->tags[0].flatline_s = 60;
     set_up_again(s);
     for (int t = 0; t < 60; t++) {
@@ -357,9 +338,8 @@ static void a_value_that_never_moves_is_doubted(void **state)
 }
 
 /* A gateway goes on answering with what it last had from a controller that has stopped. */
-static void a_stopped_heartbeat_makes_all_bad(void **state)
+CASE(a_stopped_heartbeat_makes_all_bad)
 {
-    struct setup *s = *state;
     s->plant->sources[0].heartbeat_s = 3;
     s->plant->sources[0].heartbeat_tag = 1;
     set_up_again(s);
@@ -386,9 +366,8 @@ static void a_stopped_heartbeat_makes_all_bad(void **state)
     assert_quality(look(s, 0, 23 * S)->quality, QUALITY_BAD_DEVICE_FAILURE);
 }
 
-static void a_heartbeat_that_is_refused_from_the_start(void **state)
+CASE(a_heartbeat_that_is_refused_from_the_start)
 {
-    struct setup *s = *state;
     s->plant->sources[0].heartbeat_s = 3;
     s->plant->sources[0].heartbeat_tag = 1;
     set_up_again(s);
@@ -403,9 +382,8 @@ static void on_sample_event(void *arg, const struct sample_event *event)
     qualities[event->tag] = event->quality;
 }
 
-static void other_tags_vouch(void **state)
+CASE(other_tags_vouch)
 {
-    struct setup *s = *state;
     uint32_t heard[3] = { 1, 1, 1 };
     s->plant->tags[0].quality = (struct plant_quality_tag){ .tag = 1, .mask = 0x0C, .want = 0x04 };
     s->plant->tags[2].quality = (struct plant_quality_tag){ .tag = 1, .mask = UINT64_MAX, .want = 0, .negate = true };
@@ -439,9 +417,8 @@ static void other_tags_vouch(void **state)
 }
 
 /* Times of day in a sample are for people; ages go by the clock that never steps. */
-static void a_step_of_the_wall_clock_makes_nothing_fresh_or_stale(void **state)
+CASE(a_step_of_the_wall_clock_makes_nothing_fresh_or_stale)
 {
-    struct setup *s = *state;
     store_write(s->store, &(struct sample){ 0, 7, QUALITY_GOOD }, 1, 10 * S, 1000 * S);
     store_snapshot(s->store, 12 * S, -500000 * S, s->snapshot);
     assert_true(s->snapshot->readings[0].age_ns == 2 * S && s->snapshot->readings[0].quality == QUALITY_GOOD);
@@ -462,9 +439,8 @@ static int64_t take(struct setup *s, int64_t now_ns)
     return store_take(s->store, now_ns, now_ns + 1000 * S, s->snapshot);
 }
 
-static void whoever_watches_is_told_once_until_the_next_look(void **state)
+CASE(whoever_watches_is_told_once_until_the_next_look)
 {
-    struct setup *s = *state;
     int told = 0, wanted = 0;
     store_watch(s->store, count_call, &told);
     write_one(s, 0, 20, QUALITY_GOOD, S);
@@ -495,9 +471,8 @@ static void whoever_watches_is_told_once_until_the_next_look(void **state)
     assert_int_equal(told, wanted);
 }
 
-static void says_when_a_reading_gets_stale(void **state)
+CASE(says_when_a_reading_gets_stale)
 {
-    struct setup *s = *state;
     assert_true(take(s, 0) == INT64_MAX);
     write_one(s, 0, 20, QUALITY_GOOD, 1 * S);
     write_one(s, 1, 20, QUALITY_GOOD, 3 * S);
@@ -509,9 +484,8 @@ static void says_when_a_reading_gets_stale(void **state)
 }
 
 /* Random writes, losses and alarms, and time between them: nothing that a snapshot shows changes unless it was told, or announced. */
-static void nothing_changes_unannounced(void **state)
+CASE(nothing_changes_unannounced)
 {
-    struct setup *s = *state;
     struct snapshot *last = snapshot_create(3);
     const uint32_t qualities[] = { QUALITY_GOOD, QUALITY_UNCERTAIN_UNITS_EXCEEDED, QUALITY_BAD_SENSOR_FAILURE };
     int told = 0, announced = 0;
@@ -550,39 +524,4 @@ static void nothing_changes_unannounced(void **state)
     }
     assert_true(announced > 100);
     snapshot_destroy(&last);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        store_test(waits_for_the_first_value),
-        store_test(zero_is_a_reading),
-        store_test(a_value_that_never_moves_is_doubted),
-        store_test(a_stopped_heartbeat_makes_all_bad),
-        store_test(a_heartbeat_that_is_refused_from_the_start),
-        store_test(other_tags_vouch),
-        store_test(a_step_of_the_wall_clock_makes_nothing_fresh_or_stale),
-        store_test(not_a_number_is_a_sensor_failure),
-        store_test(a_bad_sample_does_not_make_the_value_younger),
-        store_test(goes_stale),
-        store_test(uncertain_stays_uncertain),
-        store_test(link_lost_keeps_the_value_until_stale),
-        store_test(link_back_is_not_yet_a_reading),
-        store_test(a_refused_tag_that_is_cut_off_says_so),
-        store_test(some_tags_can_be_lost),
-        store_test(what_is_dead_is_bad_at_once),
-        store_test(counts_every_change),
-        store_test(the_newest_sample_wins),
-        store_test(the_snapshot_says_when),
-        store_test(all_who_listen_hear_until_they_leave),
-        store_test(what_is_lost_at_first_is_not_told_at_a_wrong_time),
-        store_test(whoever_watches_is_told_once_until_the_next_look),
-        store_test(says_when_a_reading_gets_stale),
-        store_test(nothing_changes_unannounced),
-        store_test(readings_go_on_in_another_plant),
-        store_test(a_value_told_again_is_good_again),
-        cmocka_unit_test(qualities_have_names_and_classes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The legend strip's code: what it holds, what it mends, and what it refuses. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "protocol/strip_format.h"
 #include "tests/support/cad.h"
@@ -21,13 +15,12 @@ static void expect_same(const struct strip *a, const struct strip *b)
 }
 
 /* Pinned: pictures that were drawn must be read by later versions. */
-static void test_bytes(void **state)
+TEST(test_bytes)
 {
     static const uint8_t head[] = { 1, 4, 0, 0, 0x48, 0xc1, 0, 0, 0xf0, 0x43, 't', 'e', 'm', 'p' };
     uint8_t code[STRIP_BYTES], cells[STRIP_BYTES] = { 0 };
     struct strip strip;
     int mended;
-    (void)state;
     strip_encode(&example, code);
     assert_memory_equal(code, head, sizeof(head));
     for (int row = 0; row < STRIP_CODE_ROWS; row++)
@@ -39,13 +32,12 @@ static void test_bytes(void **state)
     expect_same(&strip, &example);
 }
 
-static void test_mends_half_of_its_parity(void **state)
+TEST(test_mends_half_of_its_parity)
 {
     struct cad_random chance;
     struct strip strip;
     uint8_t code[STRIP_BYTES], spoilt[STRIP_BYTES];
     int mended, refused = 0, rounds = 300;
-    (void)state;
     cad_random_start(&chance);
     strip_encode(&example, code);
     for (int wrong = 1; wrong <= STRIP_PARITY / 2 + 6; wrong++)
@@ -72,12 +64,11 @@ static void test_mends_half_of_its_parity(void **state)
     assert_true(refused == 6 * rounds);
 }
 
-static void test_long_names_and_nonsense(void **state)
+TEST(test_long_names_and_nonsense)
 {
     uint8_t code[STRIP_BYTES];
     struct strip strip, odd = { .min = 1, .max = 2, .log = true, .group = "" };
     int mended;
-    (void)state;
     memcpy(odd.group, "temperaturtemperatur12°", 22); /* as much as has room: the last sign is cut in two */
     odd.group[21] = "°"[0];
     memcpy(odd.unit, "kJ/(kg K)", 10);
@@ -93,15 +84,4 @@ static void test_long_names_and_nonsense(void **state)
     assert_false(strip_decode(code, &strip, &mended)); /* a logarithm of 0 */
     memset(code, 0, sizeof(code));
     assert_false(strip_decode(code, &strip, &mended)); /* all the parity is right, and it is no strip */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bytes),
-        cmocka_unit_test(test_mends_half_of_its_parity),
-        cmocka_unit_test(test_long_names_and_nonsense),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a sample of a level's triangles says about how many it will need. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "preprocess/subdivision/subdivide_impl.h"
@@ -38,10 +34,9 @@ static void make_level(struct level *level)
     }
 }
 
-static void a_sample_is_some_neighbours_of_every_part(void **state)
+TEST(a_sample_is_some_neighbours_of_every_part)
 {
     struct level level, sample;
-    (void)state;
     make_level(&level);
     size_t blocks = subdiv_take_sample(&sample, &level);
     assert_int_equal(sample.index_count, 3 * BLOCK * blocks);
@@ -90,12 +85,11 @@ static void release(struct subdiv *split)
 }
 
 /* An edge that errs e times too much needs the logarithm of e to base 4 cuts, rounded up. */
-static void a_sample_says_what_the_level_needs(void **state)
+TEST(a_sample_says_what_the_level_needs)
 {
     struct level level, sample;
     float *errors = mem_array(TRIANGLES, sizeof(*errors));
     double needed = 0;
-    (void)state;
     make_level(&level);
     for (uint32_t t = 0; t < TRIANGLES; t++) {
         errors[t] = (float)exp(7 * cad_random(&chance) - 2);
@@ -120,11 +114,10 @@ static void a_sample_says_what_the_level_needs(void **state)
 }
 
 /* One triangle says nothing about the others, however much it needs: the level is not given up for it. */
-static void a_sample_is_not_sure_of_what_one_triangle_needs(void **state)
+TEST(a_sample_is_not_sure_of_what_one_triangle_needs)
 {
     struct level level, sample;
     float *errors = mem_array(TRIANGLES, sizeof(*errors));
-    (void)state;
     make_level(&level);
     size_t blocks = subdiv_take_sample(&sample, &level);
     struct subdiv part = { .sample_blocks = blocks, .sample_of = (double)level.index_count / sample.index_count };
@@ -141,13 +134,4 @@ static void a_sample_is_not_sure_of_what_one_triangle_needs(void **state)
     mem_free(errors);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sample_is_some_neighbours_of_every_part),
-        cmocka_unit_test(a_sample_says_what_the_level_needs),
-        cmocka_unit_test(a_sample_is_not_sure_of_what_one_triangle_needs),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, set_up, NULL);
-}
+TEST_GROUP(set_up, NULL)

@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Splitting: a few huge triangles show the field of a fine mesh, sensors stand on vertices, no cracks open. The truth here is the formula
    of the field on the formula of the distance, in doubles. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
@@ -579,10 +572,9 @@ static void assert_sensors(const struct body *body)
 
 static const double plate_sensors[SENSORS][3] = { { 1, 1, 0 }, { 5, 1.5, 0 }, { 3, 3.5, 0 }, { 2.7, 1.8, 0 }, { 0.7, 3, 0 }, { 4, 0, 0 } };
 
-static void nine_triangles_show_the_field(void **state)
+TEST(nine_triangles_show_the_field)
 {
     struct body body = { 0 };
-    (void)state;
     make_plate(&body);
     prepare(&body, plate_sensors);
     assert_sensors(&body);
@@ -622,10 +614,9 @@ static void assert_plate(const struct body *body)
     mem_free(errors);
 }
 
-static void nine_triangles_show_how_far_sensors_reach(void **state)
+TEST(nine_triangles_show_how_far_sensors_reach)
 {
     static const double reaches_m[][2] = { { 2.2, 3 }, { 3.5, 6 }, { 20, 1.5 } };
-    (void)state;
     for (size_t i = 0; i < sizeof(reaches_m) / sizeof(*reaches_m); i++) {
         struct body body = { .as_solved = true, .reach_m = { reaches_m[i][0], reaches_m[i][1] } };
         make_plate(&body);
@@ -697,13 +688,12 @@ static void find_errors_on_plate(const struct body *body, const struct level *le
     }
 }
 
-static void what_stands_out_of_a_body_shows_the_field(void **state)
+TEST(what_stands_out_of_a_body_shows_the_field)
 {
     static const double points[SENSORS][3] = { { 0, 1.3, 0.2 }, { 0, -1.3, 0.5 },  { 0, 0.1, 1.1 },
                                                { 1, 0.3, 0.2 }, { -1, -0.4, 0.6 }, { 0, -0.2, -1.1 } };
     struct body body = { .as_solved = true };
     double *errors = mem_array(POINTS, sizeof(*errors));
-    (void)state;
     make_plate_through_box(&body);
     prepare(&body, points);
     find_errors_on_plate(&body, &body.levels.at[0], is_in_box, errors);
@@ -747,13 +737,12 @@ static bool is_in_ball(const double p[3])
 }
 
 /* As true as coarser levels are, with their slack; but for the least pieces, beside a sensor. In the farthest all pieces are such. */
-static void what_stands_out_is_true_on_coarser_levels_too(void **state)
+TEST(what_stands_out_is_true_on_coarser_levels_too)
 {
     static const double points[SENSORS][3] = { { 0, 1.3, 0.2 }, { 0, -1.3, 0.5 }, { 0, 0.1, 1.1 },
                                                { 1, 0, 0 },     { -0.8, 0, 0.6 }, { 0, -0.2, -1.1 } };
     struct body body = { .as_solved = true };
     double *errors = mem_array(POINTS, sizeof(*errors));
-    (void)state;
     make_plate_through_ball(&body);
     prepare(&body, points);
     assert_true(body.levels.count > 2 && (double)body.levels.at[2].error_m < 0.05);
@@ -768,12 +757,11 @@ static void what_stands_out_is_true_on_coarser_levels_too(void **state)
 }
 
 /* A fine plate is left alone but for the sensors' vertices. */
-static void straight_edges_are_not_cut(void **state)
+TEST(straight_edges_are_not_cut)
 {
     struct body body = { 0 };
     struct geometry *g = &body.g;
     const uint32_t n = 120;
-    (void)state;
     begin(g, 2 * (size_t)(n + 1) * (n + 1), 2 * (size_t)n * n);
     for (uint32_t y = 0; y <= n; y++)
         for (uint32_t x = 0; x <= n; x++)
@@ -825,10 +813,9 @@ static void make_random_plate(struct body *body, double points[SENSORS][3], uint
     body->distance = along_plate;
 }
 
-static void random_plates_show_the_field(void **state)
+TEST(random_plates_show_the_field)
 {
     uint32_t seed = (uint32_t)sweep_seed();
-    (void)state;
     for (int n = 0; n < 6; n++) {
         struct body body = { 0 };
         double points[SENSORS][3];
@@ -844,12 +831,11 @@ static void random_plates_show_the_field(void **state)
     }
 }
 
-static void a_cylinder_shows_the_field(void **state)
+TEST(a_cylinder_shows_the_field)
 {
     static const double at[SENSORS][2] = { { 0.3, 1 }, { 2.1, 4 }, { 4, 2.5 }, { 5.5, 4.5 }, { 1, 3 }, { 3, 0.5 } };
     struct body body = { 0 };
     double points[SENSORS][3];
-    (void)state;
     for (int i = 0; i < SENSORS; i++) {
         points[i][0] = cos(at[i][0]);
         points[i][1] = sin(at[i][0]);
@@ -894,10 +880,9 @@ static void make_random_ring(struct body *body, double points[SENSORS][3], uint3
     }
 }
 
-static void random_rings_show_the_field_on_every_level(void **state)
+TEST(random_rings_show_the_field_on_every_level)
 {
     uint32_t seed = (uint32_t)sweep_seed();
-    (void)state;
     for (int n = 0; n < sweep(3, 1); n++) {
         struct body body = { .as_solved = true };
         double points[SENSORS][3];
@@ -913,7 +898,7 @@ static void random_rings_show_the_field_on_every_level(void **state)
 }
 
 /* Their distances take most of a file, so only a level that saves half of the triangles is worth its vertices. */
-static void levels_of_many_sensors_have_half_of_the_triangles(void **state)
+TEST(levels_of_many_sensors_have_half_of_the_triangles)
 {
     enum { MANY = 128 };
     struct body body = { 0 };
@@ -924,7 +909,6 @@ static void levels_of_many_sensors_have_half_of_the_triangles(void **state)
     uint32_t seed = 7;
     struct linear_error linear;
     struct distance_rows rows;
-    (void)state;
     make_plant(&body);
     mem_free(body.plant.tags);
     body.plant.tag_count = MANY;
@@ -955,21 +939,4 @@ static void levels_of_many_sensors_have_half_of_the_triangles(void **state)
     distance_rows_finish(&rows);
     linear_error_finish(&linear);
     finish(&body);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nine_triangles_show_the_field),
-        cmocka_unit_test(nine_triangles_show_how_far_sensors_reach),
-        cmocka_unit_test(what_stands_out_of_a_body_shows_the_field),
-        cmocka_unit_test(what_stands_out_is_true_on_coarser_levels_too),
-        cmocka_unit_test(straight_edges_are_not_cut),
-        cmocka_unit_test(random_plates_show_the_field),
-        cmocka_unit_test(a_cylinder_shows_the_field),
-        cmocka_unit_test(random_rings_show_the_field_on_every_level),
-        cmocka_unit_test(levels_of_many_sensors_have_half_of_the_triangles),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

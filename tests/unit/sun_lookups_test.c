@@ -2,12 +2,8 @@
 /* Shadows that the bounds of tiles tell are those that all texels tell, bit by bit. */
 #include "render/soft/lookups.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/sweep.h"
@@ -91,10 +87,9 @@ static void compare(const struct soft_light *light, const lanes at[3], lanes_int
     }
 }
 
-static void test_bounds_tell_what_texels_tell(void **state)
+TEST(test_bounds_tell_what_texels_tell)
 {
     struct counts counts = { 0 };
-    (void)state;
     srand((unsigned)sweep_seed());
     struct soft_light light = light_create();
     for (int round = 0; round < ROUNDS; round++) {
@@ -108,11 +103,4 @@ static void test_bounds_tell_what_texels_tell(void **state)
     assert_true(counts.told > ROUNDS && counts.open > ROUNDS && counts.half > ROUNDS / 10);
     mem_free(light.sun_map);
     mem_free(light.sun_bounds);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_bounds_tell_what_texels_tell) };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

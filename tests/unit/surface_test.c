@@ -4,13 +4,8 @@
 #include "surface/repair/repair.h"
 #include "surface/surface.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/surface_case.h"
@@ -229,9 +224,8 @@ static void test_shape(const struct shape *shape)
     mem_free(vertex_of);
 }
 
-static void shapes_with_every_fault_are_exact_enough(void **state)
+TEST(shapes_with_every_fault_are_exact_enough)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof(shapes) / sizeof(shapes[0]); i++)
         test_shape(&shapes[i]);
 }
@@ -284,9 +278,8 @@ static bool second_plate_reached(double dx, double dz)
     return reached;
 }
 
-static void gaps_are_closed_and_walls_are_not_passed(void **state)
+TEST(gaps_are_closed_and_walls_are_not_passed)
 {
-    (void)state;
     assert_true(second_plate_reached(1.0003, 0));   /* a hair gap of 0.3 mm */
     assert_false(second_plate_reached(1.02, 0));    /* a slot of 20 mm */
     assert_false(second_plate_reached(0, 0.01));    /* two sheets 10 mm apart */
@@ -310,10 +303,9 @@ static void assert_bridges_are_shown(const struct surface *surface, double low_x
     assert_float_equal(longest_m, report->longest_bridge_m, 1e-12);
 }
 
-static void bridges_lie_in_the_gap(void **state)
+TEST(bridges_lie_in_the_gap)
 {
     struct cad plate = { 0 }, both = { 0 };
-    (void)state;
     cad_plate(&plate, &chance, 30, 30, 1, 1, 0);
     append(&both, &plate, 0, 0, 0);
     append(&both, &plate, 1.0003, 0, 0);
@@ -328,10 +320,9 @@ static void bridges_lie_in_the_gap(void **state)
     cad_finish(&both);
 }
 
-static void a_pipe_that_ends_inside_a_shell_is_joined_to_it(void **state)
+TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
 {
     struct cad pipe = { 0 }, both = { 0 };
-    (void)state;
     cad_sphere(&both, &chance, 40);
     cad_cylinder(&pipe, &chance, 48, 60, 3, 0);
     for (size_t v = 0; v < pipe.vertex_count; v++) { /* radius 0.2, from inside the sphere outwards */
@@ -358,10 +349,9 @@ static void a_pipe_that_ends_inside_a_shell_is_joined_to_it(void **state)
     mem_free(distances);
 }
 
-static void nothing_leads_through_a_closed_part(void **state)
+TEST(nothing_leads_through_a_closed_part)
 {
     struct cad pipes = { 0 };
-    (void)state;
     cad_closed_pipe(&pipes, &chance, 0.5, 2, 80, 60, 12, 0, (const double[3]){ 0, 0, 0 });
     size_t first = pipes.vertex_count;
     cad_closed_pipe(&pipes, &chance, 0.3, 4, 60, 120, 8, M_PI / 2, (const double[3]){ 0, 0, 0 }); /* right through the first one */
@@ -397,11 +387,10 @@ static void add_box(struct cad *all, const double low[3], const double high[3])
 
 /* Two ducts that end in flanges of 3.9 mm, which lie on each other; the tolerance, from the ducts' length, is more. What touches one side
    of a flange is not joined to its other side. */
-static void thin_flanges_are_not_bridged(void **state)
+TEST(thin_flanges_are_not_bridged)
 {
     struct cad ducts = { 0 };
     const double low = 4 - 0.0039, high = 4 + 0.0039, truth = hypot(0.2, 8 + 2 * 0.1); /* unrolled: over the flanges' rim */
-    (void)state;
     add_box(&ducts, (const double[3]){ 0, 0, 0 }, (const double[3]){ 0.4, 0.4, low });
     add_box(&ducts, (const double[3]){ -0.1, -0.1, low }, (const double[3]){ 0.5, 0.5, 4 });
     add_box(&ducts, (const double[3]){ -0.1, -0.1, 4 }, (const double[3]){ 0.5, 0.5, high });
@@ -421,12 +410,11 @@ static void thin_flanges_are_not_bridged(void **state)
 }
 
 /* A plate of 3.9 mm, thinner than the tolerance; one duct ends in it, at any depth, and another stands on its far side. */
-static void nothing_leads_through_a_thin_plate(void **state)
+TEST(nothing_leads_through_a_thin_plate)
 {
     enum { DEPTHS = 8 };
     const double thick = 0.0039, truth = hypot(0.2, 8 + 2 * 0.1 + thick); /* unrolled: over the plate's rim */
     double worst = 0;
-    (void)state;
     for (int i = 0; i < DEPTHS; i++) {
         struct cad ducts = { 0 };
         add_box(&ducts, (const double[3]){ 0, 0, 0 }, (const double[3]){ 0.4, 0.4, 4 + thick * (i ? cad_random(&chance) : 1) });
@@ -448,11 +436,10 @@ static void nothing_leads_through_a_thin_plate(void **state)
 
 /* --- places -------------------------------------------------------------------------------------------------------------------- */
 
-static void a_sensor_is_dropped_onto_the_surface(void **state)
+TEST(a_sensor_is_dropped_onto_the_surface)
 {
     struct cad plate = { 0 };
     struct surface_place place;
-    (void)state;
     cad_plate(&plate, &chance, 10, 10, 1, 1, 0);
     struct surface *surface = surface_of(&plate);
     surface_nearest(surface, (const double[3]){ 0.42, 0.68, 0.3 }, &place);
@@ -473,10 +460,9 @@ static void a_sensor_is_dropped_onto_the_surface(void **state)
     mem_free(distances);
 }
 
-static void nearest_is_the_nearest(void **state)
+TEST(nearest_is_the_nearest)
 {
     struct cad torus = { 0 };
-    (void)state;
     cad_torus(&torus, &chance, 160, 64, 0.3, 0.5);
     struct surface *surface = surface_of(&torus);
     for (int i = 0; i < 200; i++) {
@@ -492,11 +478,10 @@ static void nearest_is_the_nearest(void **state)
 }
 
 /* With the right side's triangles farther than the limit too, at places in the tube. */
-static void within_a_limit_is_the_same_spot_or_none(void **state)
+TEST(within_a_limit_is_the_same_spot_or_none)
 {
     struct cad torus = { 0 };
     int within = 0, beyond = 0, other_side = 0;
-    (void)state;
     cad_torus(&torus, &chance, 160, 64, 0.3, 0.5);
     struct surface *surface = surface_of(&torus);
     for (int i = 0; i < 2000; i++) {
@@ -528,12 +513,11 @@ static void within_a_limit_is_the_same_spot_or_none(void **state)
 }
 
 /* Sources and places in the middle of strips, far from any vertex of the model: a pipe as CAD writes it. */
-static void long_thin_strips_are_exact_near_a_source_too(void **state)
+TEST(long_thin_strips_are_exact_near_a_source_too)
 {
     enum { SOURCES = 8, PLACES = 400 };
     struct cad pipe = { 0 };
     double size[3] = { 12 }, sources[SOURCES][3], worst = 0, sum = 0;
-    (void)state;
     cad_cylinder(&pipe, &chance, 96, 2, size[0], 0);
     for (int s = 0; s < SOURCES; s++)
         choose_source(&pipe, true, sources[s]);
@@ -600,7 +584,7 @@ static double worst_short_way(int across, int up)
     return worst;
 }
 
-static void short_ways_are_exact_whatever_edges_are_flipped(void **state)
+TEST(short_ways_are_exact_whatever_edges_are_flipped)
 {
     enum { PLATES = 6, HARD = 3 };
     static const struct {
@@ -613,7 +597,6 @@ static void short_ways_are_exact_whatever_edges_are_flipped(void **state)
     };
     struct cad_random usual;
     double worst = 0;
-    (void)state;
     for (int n = 0; n < PLATES; n++) {
         int across = 1 + (int)(6 * cad_random(&chance)), up = 1 + (int)(6 * cad_random(&chance));
         worst = fmax(worst, worst_short_way(across, up));
@@ -629,12 +612,11 @@ static void short_ways_are_exact_whatever_edges_are_flipped(void **state)
 }
 
 /* On the smaller of two pieces, a walk ends sooner than the one beside it. */
-static void many_sources_at_once_are_as_one_by_one(void **state)
+TEST(many_sources_at_once_are_as_one_by_one)
 {
     enum { SOURCES = 21 };
     struct cad both = { 0 }, torus = { 0 }, plate = { 0 };
     double sources[SOURCES][3];
-    (void)state;
     cad_torus(&torus, &chance, 60, 24, 0.3, 0.5);
     cad_plate(&plate, &chance, 16, 16, 1, 1, 0);
     append(&both, &torus, 0, 0, 0);
@@ -656,10 +638,9 @@ static void many_sources_at_once_are_as_one_by_one(void **state)
     mem_free(together);
 }
 
-static void vertices_of_flat_triangles_take_their_neighbours_distance(void **state)
+TEST(vertices_of_flat_triangles_take_their_neighbours_distance)
 {
     struct cad plate = { 0 };
-    (void)state;
     cad_plate(&plate, &chance, 10, 10, 1, 1, 0);
     struct cad with = { 0 };
     append(&with, &plate, 0, 0, 0);
@@ -679,22 +660,20 @@ static void vertices_of_flat_triangles_take_their_neighbours_distance(void **sta
     mem_free(distances);
 }
 
-static void a_surface_without_area_is_refused(void **state)
+TEST(a_surface_without_area_is_refused)
 {
     static const float line[3][3] = { { 0, 0, 0 }, { 1, 1, 1 }, { 2, 2, 2 } };
     static const uint32_t triangle[3] = { 0, 1, 2 };
     struct log *quiet = log_create(LOG_ERROR);
-    (void)state;
     assert_null(surface_create(quiet, NULL, line, 3, triangle, 1, &(struct surface_params){ 0 }));
     assert_null(surface_create(quiet, NULL, line, 3, triangle, 0, &(struct surface_params){ 0 }));
     log_destroy(&quiet);
 }
 
 /* Lengths whose squares are no numbers any more; what comes out does not matter, that it ends does. */
-static void a_speck_ends(void **state)
+TEST(a_speck_ends)
 {
     static const float sizes[] = { 1e-15f, 1e-24f, 1e-30f };
-    (void)state;
     for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
         struct cad plate = { 0 };
         cad_plate(&plate, &chance, 10, 10, 1, 1, 0);
@@ -714,26 +693,4 @@ static void a_speck_ends(void **state)
     }
 }
 
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shapes_with_every_fault_are_exact_enough),
-        cmocka_unit_test(gaps_are_closed_and_walls_are_not_passed),
-        cmocka_unit_test(bridges_lie_in_the_gap),
-        cmocka_unit_test(a_pipe_that_ends_inside_a_shell_is_joined_to_it),
-        cmocka_unit_test(nothing_leads_through_a_closed_part),
-        cmocka_unit_test(thin_flanges_are_not_bridged),
-        cmocka_unit_test(nothing_leads_through_a_thin_plate),
-        cmocka_unit_test(a_sensor_is_dropped_onto_the_surface),
-        cmocka_unit_test(nearest_is_the_nearest),
-        cmocka_unit_test(within_a_limit_is_the_same_spot_or_none),
-        cmocka_unit_test(long_thin_strips_are_exact_near_a_source_too),
-        cmocka_unit_test(short_ways_are_exact_whatever_edges_are_flipped),
-        cmocka_unit_test(many_sources_at_once_are_as_one_by_one),
-        cmocka_unit_test(vertices_of_flat_triangles_take_their_neighbours_distance),
-        cmocka_unit_test(a_surface_without_area_is_refused),
-        cmocka_unit_test(a_speck_ends),
-    };
-    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
-}
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Door: what is kept of a stream of samples, and how near the line through it comes to them. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #include "history/swinging_door.h"
 
@@ -74,9 +68,8 @@ static double noise(void)
 }
 
 /* Walks, noise, jumps, flat parts and lost quality, of random size: never further off than promised. */
-static void the_line_keeps_its_promise(void **state)
+TEST(the_line_keeps_its_promise)
 {
-    (void)state;
     for (unsigned seed = 1; seed <= 300; seed++) {
         srand(seed);
         double deadband = rand() % 3 ? fabs(noise()) : 0, deviation = rand() % 3 ? fabs(noise()) : 0, value = 0, slope = 0;
@@ -97,9 +90,8 @@ static void the_line_keeps_its_promise(void **state)
     }
 }
 
-static void a_straight_line_takes_two_points(void **state)
+TEST(a_straight_line_takes_two_points)
 {
-    (void)state;
     struct run *run = begin(0, 1e-6, 100000 * S);
     for (int i = 0; i < 1000; i++)
         put(run, i * S, 5 + 0.25 * i, 0);
@@ -107,9 +99,8 @@ static void a_straight_line_takes_two_points(void **state)
     assert_int_equal(run->kept_count, 2);
 }
 
-static void a_spike_is_kept_exactly(void **state)
+TEST(a_spike_is_kept_exactly)
 {
-    (void)state;
     struct run *run = begin(0.1, 0.2, 100000 * S);
     for (int i = 0; i < 1000; i++)
         put(run, i * S, i == 500 ? 99.5 : 20 + 0.05 * (i % 2), 0);
@@ -120,9 +111,8 @@ static void a_spike_is_kept_exactly(void **state)
     assert_true(run->kept_count <= 6);
 }
 
-static void the_override_period_forces_a_point(void **state)
+TEST(the_override_period_forces_a_point)
 {
-    (void)state;
     struct run *run = begin(1, 1, 60 * S);
     for (int i = 0; i <= 600; i++)
         put(run, i * S, 7, 0);
@@ -131,9 +121,8 @@ static void the_override_period_forces_a_point(void **state)
         assert_int_equal(run->kept[i].t_us - run->kept[i - 1].t_us, 60 * S);
 }
 
-static void every_change_of_quality_is_kept(void **state)
+TEST(every_change_of_quality_is_kept)
 {
-    (void)state;
     struct run *run = begin(1, 1, 100000 * S);
     for (int i = 0; i < 100; i++)
         put(run, i * S, i / 10 % 2 ? NAN : 7, i / 10 % 2 ? BAD : 0);
@@ -142,9 +131,8 @@ static void every_change_of_quality_is_kept(void **state)
     assert_int_equal(run->kept_count, 20);
 }
 
-static void a_switch_has_steps(void **state)
+TEST(a_switch_has_steps)
 {
-    (void)state;
     struct run *run = begin(0, 0, 100000 * S);
     run->params.step = true;
     for (int i = 0; i < 100; i++)
@@ -155,9 +143,8 @@ static void a_switch_has_steps(void **state)
 }
 
 /* Daylight saving does not touch UTC; somebody who sets the clock does. */
-static void a_clock_set_back_loses_nothing(void **state)
+TEST(a_clock_set_back_loses_nothing)
 {
-    (void)state;
     struct run *run = begin(0.5, 0.5, 100000 * S);
     put(run, 100 * S, 1, 0);
     put(run, 101 * S, 1.1, 0);
@@ -169,9 +156,8 @@ static void a_clock_set_back_loses_nothing(void **state)
     assert_int_equal(run->kept[2].t_us, 50 * S);
 }
 
-static void what_is_held_is_the_newest(void **state)
+TEST(what_is_held_is_the_newest)
 {
-    (void)state;
     struct run *run = begin(0.5, 0.5, 100000 * S);
     struct history_point held;
     assert_false(swinging_door_held(&run->door, &held));
@@ -186,9 +172,8 @@ static void what_is_held_is_the_newest(void **state)
 }
 
 /* The line to the newest sample, before its door has closed: a step must not look like a ramp meanwhile. */
-static void whoever_reads_now_is_promised_the_same(void **state)
+TEST(whoever_reads_now_is_promised_the_same)
 {
-    (void)state;
     srand(20260101);
     struct run *run = begin(0.25, 0.5, 100000 * S);
     for (int i = 0; i < 1500; i++) {
@@ -205,21 +190,4 @@ static void whoever_reads_now_is_promised_the_same(void **state)
     }
     end(run);
     assert_true(run->kept_count < 900);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_line_keeps_its_promise),
-        cmocka_unit_test(a_straight_line_takes_two_points),
-        cmocka_unit_test(a_spike_is_kept_exactly),
-        cmocka_unit_test(the_override_period_forces_a_point),
-        cmocka_unit_test(every_change_of_quality_is_kept),
-        cmocka_unit_test(a_switch_has_steps),
-        cmocka_unit_test(a_clock_set_back_loses_nothing),
-        cmocka_unit_test(what_is_held_is_the_newest),
-        cmocka_unit_test(whoever_reads_now_is_promised_the_same),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Places of sensors written into a tag list: what is changed is changed, and nothing else is, to the byte. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
@@ -26,49 +19,43 @@ static void expect(const char *text, const struct tag_edit *edits, size_t count,
     mem_free(out);
 }
 
-static void test_one_row(void **state)
+TEST(test_one_row)
 {
-    (void)state;
     const struct tag_edit to = { "TT-2", NULL, NULL, NULL, NULL, { 1.25, -3, 0.12345 }, false };
     expect("Tag Name,Group,Asset,X,Y,Z\nTT-1,t,E,1.50,2.000,3\nTT-2,t,E, 4.0 ,5,6\nTT-3,t,E,7,8,9\n", &to, 1,
            "Tag Name,Group,Asset,X,Y,Z\nTT-1,t,E,1.50,2.000,3\nTT-2,t,E,1.25,-3,0.123\nTT-3,t,E,7,8,9\n");
 }
 
 /* A mark at the beginning, another separator, unknown columns, comments in them, blank rows, quotes, line ends, no end at the end. */
-static void test_the_rest_stays_to_the_byte(void **state)
+TEST(test_the_rest_stays_to_the_byte)
 {
-    (void)state;
     const struct tag_edit to = { "T;\"2\"", "E 2", NULL, NULL, NULL, { 10, 20, -0.0001 }, false };
 #define HEAD "\xEF\xBB\xBF" "Remark;TAG NAME;x;Y;Z;Asset;Node\r\n\r\n\"# old; see\r\nMaria\";T1;1,0;2;3;E;\r\n"
     expect(HEAD "; \"T;\"\"2\"\"\" ;1;;;E;N-1;more\r\nlast;T3", &to, 1, HEAD "; \"T;\"\"2\"\"\" ;10;20;0;E 2;;more\r\nlast;T3");
 }
 
-static void test_columns_that_are_not_there(void **state)
+TEST(test_columns_that_are_not_there)
 {
-    (void)state;
     const struct tag_edit to = { "b", "E,1", "t", NULL, NULL, { 1, 2, 3 }, false };
     expect("Tag Name,Address\na,hr:1\nb\nc,hr:3", &to, 1, "Tag Name,Address,Asset,Group,X,Y,Z\na,hr:1\nb,,\"E,1\",t,1,2,3\nc,hr:3");
 }
 
-static void test_a_place_is_no_longer_assumed(void **state)
+TEST(test_a_place_is_no_longer_assumed)
 {
-    (void)state;
     const struct tag_edit to = { "a", NULL, NULL, NULL, NULL, { 4, 5, 6 }, false };
     expect("Tag Name,Place,X,Y,Z\na,equipment,1,2,3\nb,equipment,,,\n", &to, 1, "Tag Name,Place,X,Y,Z\na,,4,5,6\nb,equipment,,,\n");
 }
 
-static void test_a_place_is_accepted_as_it_stands(void **state)
+TEST(test_a_place_is_accepted_as_it_stands)
 {
-    (void)state;
     const struct tag_edit to = { .tag = "a", .place_only = true };
     char *why, *out = tag_edit("Tag Name,Place,X,Y,Z,Node\na,Equipment ,1.50,2,,pump\nb,equipment,1,,,\n", &to, 1, &why);
     assert_string_equal(out, "Tag Name,Place,X,Y,Z,Node\na,,1.50,2,,pump\nb,equipment,1,,,\n");
     mem_free(out);
 }
 
-static void test_several_and_none(void **state)
+TEST(test_several_and_none)
 {
-    (void)state;
     const struct tag_edit to[] = { { "b", NULL, NULL, NULL, NULL, { 1, 2, 3 }, false },
                                    { "a", NULL, NULL, NULL, NULL, { 4, 5, 6 }, false } };
     expect("Tag Name\tX\tY\tZ\na\t0\t0\t0\nb\t0\t0\t0\n", to, 2, "Tag Name\tX\tY\tZ\na\t4\t5\t6\nb\t1\t2\t3\n");
@@ -76,9 +63,8 @@ static void test_several_and_none(void **state)
     expect("Tag Name,X,Y,Z\na,1,1,1\n", to, 0, "Tag Name,X,Y,Z\na,1,1,1\n");
 }
 
-static void test_what_is_not_there_is_refused(void **state)
+TEST(test_what_is_not_there_is_refused)
 {
-    (void)state;
     const struct tag_edit to = { "zz", NULL, NULL, NULL, NULL, { 1, 2, 3 }, false };
     char *why;
     assert_null(tag_edit("Tag Name,X,Y,Z\na,1,1,1\n", &to, 1, &why));
@@ -91,9 +77,8 @@ static void test_what_is_not_there_is_refused(void **state)
     mem_free(why);
 }
 
-static void test_lines(void **state)
+TEST(test_lines)
 {
-    (void)state;
     struct tag_lines lines = { 0 };
     tag_lines("h\na\nb\nc\n", "h\na\nB\nc\n", &lines);
     assert_int_equal(lines.count, 1);
@@ -161,9 +146,8 @@ static void compare(const char *before_path, const char *after_path, int changed
     diag_finish(&diag);
 }
 
-static void test_random_lists(void **state)
+TEST(test_random_lists)
 {
-    (void)state;
     char folder[] = "/tmp/tag_edit.XXXXXX";
     assert_non_null(mkdtemp(folder));
     char *before_path = mem_printf("%s/before.csv", folder), *after_path = mem_printf("%s/after.csv", folder);
@@ -188,21 +172,4 @@ static void test_random_lists(void **state)
     remove(folder);
     mem_free(before_path);
     mem_free(after_path);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_one_row),
-        cmocka_unit_test(test_the_rest_stays_to_the_byte),
-        cmocka_unit_test(test_columns_that_are_not_there),
-        cmocka_unit_test(test_a_place_is_no_longer_assumed),
-        cmocka_unit_test(test_a_place_is_accepted_as_it_stands),
-        cmocka_unit_test(test_several_and_none),
-        cmocka_unit_test(test_what_is_not_there_is_refused),
-        cmocka_unit_test(test_lines),
-        cmocka_unit_test(test_random_lists),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

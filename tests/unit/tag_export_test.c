@@ -2,14 +2,8 @@
 /* Tag lists as control systems export them, in their encodings and with their separators; and what is wrong with such lists. */
 #include "preprocess/match/tag_export.h"
 
+#include "tests/support/test.h"
 #include <minizip/zip.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"
@@ -38,10 +32,9 @@ static void check(const struct tag_export *list, size_t tag, enum export_field f
     assert_string_equal(list->tags[tag].fields[field], want);
 }
 
-static void test_kepware(void **state)
+TEST(test_kepware)
 {
     struct tag_export list;
-    (void)state;
     assert_true(
         read_text(&list,
                   "\"Tag Name\",\"Address\",\"Data Type\",\"Respect Data Type\",\"Client Access\",\"Scan Rate\",\"Scaling\",\"Raw Low\","
@@ -61,10 +54,9 @@ static void test_kepware(void **state)
     tag_export_finish(&list);
 }
 
-static void test_ignition(void **state)
+TEST(test_ignition)
 {
     struct tag_export list;
-    (void)state;
     assert_true(read_text(
         &list,
         "{\"name\":\"\",\"tagType\":\"Provider\",\"tags\":[{\"name\":\"Area1\",\"tagType\":\"Folder\",\"tags\":["
@@ -110,7 +102,7 @@ static void test_ignition(void **state)
                      "T", ",'engUnit':'°C','engHigh':120,'opcItemPath':" BOUND("[{Dev}]HR{No}")) "]")
 
 /* Fields of a member that its instance leaves out, or overrides. */
-static void test_udt_kinds(void **state)
+TEST(test_udt_kinds)
 {
     static const struct {
         const char *kind, *json;
@@ -203,7 +195,6 @@ static void test_udt_kinds(void **state)
         { "types and instances in a list", "[" PUMP "," INSTANCE("P", "Pump", "") "]", "P/T", "°C", "120", "[PLC1]HR0", 1, NULL },
         { "a tag outside of instances", PROVIDER(PUMP, MEMBER("L", ",'engUnit':'%','engLow':20")), "L", "%", "100", "", 1, NULL },
     };
-    (void)state;
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         struct tag_export list;
         char *json = mem_strdup(cases[i].json);
@@ -229,7 +220,7 @@ static void test_udt_kinds(void **state)
 }
 
 /* Headers of lists in other languages and of other systems: which columns are found. */
-static void test_header_kinds(void **state)
+TEST(test_header_kinds)
 {
     static const struct {
         const char *kind, *text;
@@ -298,7 +289,6 @@ static void test_header_kinds(void **state)
           "COMMENT,,Rack:I,\"Bearing$Ntemperature\",\"\",\"Rack:I.Ch0Data\",\n",
           "T1", "Rack:I.Ch0Data", "", "", "", "Bearing temperature" },
     };
-    (void)state;
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         struct tag_export list;
         if (!read_text(&list, cases[i].text))
@@ -317,11 +307,10 @@ static void test_header_kinds(void **state)
 }
 
 /* Names that look alike are said to be two; both stay. */
-static void test_alike(void **state)
+TEST(test_alike)
 {
     static const char *const others[] = { "PI–101", "PI‑101", "PI−101", "PI－101", "ＰＩ-101", "PI-101\u00a0", "\u200bPI-101",
       "PI-１０１" };
-    (void)state;
     for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++) {
         struct tag_export list;
         char *text = mem_printf("Tag,Address\nPI-101,1\n%s,2\nPI-102,3\n", others[i]);
@@ -335,10 +324,9 @@ static void test_alike(void **state)
     }
 }
 
-static void test_aveva(void **state)
+TEST(test_aveva)
 {
     struct tag_export list;
-    (void)state;
     assert_true(
         read_text(&list,
                   ":mode=ask\n:IOAccess,Application,Topic,AdviseActive,DDEProtocol\n\"PLC1\",\"DASMBTCP\",\"PLC1\",Yes,No\n"
@@ -367,10 +355,9 @@ static void test_aveva(void **state)
     tag_export_finish(&list);
 }
 
-static void test_lists(void **state)
+TEST(test_lists)
 {
     struct tag_export list;
-    (void)state;
     assert_true(read_text(&list, "Site: north;;;;\n\nPoint ID;Description;EUDESC;PVEULO;PVEUHI\nTI101.DACA;Auslass;°C;0;1.250,5\n"));
     assert_string_equal(list.format, "Honeywell");
     assert_int_equal(list.separator, ';');
@@ -386,14 +373,13 @@ static void test_lists(void **state)
     tag_export_finish(&list);
 }
 
-static void test_encodings(void **state)
+TEST(test_encodings)
 {
     static const char latin1[] = "Tag;Description;Unit\nTT-1;W\xe4rmetauscher f\xfcr \xd6l;\xb0"
                                  "C\n";
     static const char korean[] = "Tag,Description\nTT-1,\xbf\xad\xb1\xb3\xc8\xaf\xb1\xe2 \xc3\xe2\xb1\xb8\n"; /* heat exchanger outlet */
     static const char wide[] = "\xff\xfeT\0a\0g\0\t\0U\0n\0i\0t\0\n\0T\0T\0-\0\x31\0\t\0\xb0\0C\0\n\0";
     struct tag_export list;
-    (void)state;
     assert_true(read_bytes(&list, latin1, sizeof(latin1) - 1));
     assert_string_equal(list.encoding.name, "Windows-1252");
     check(&list, 0, EXPORT_DESCRIPTION, "Wärmetauscher für Öl");
@@ -419,10 +405,9 @@ static void test_encodings(void **state)
     tag_export_finish(&list);
 }
 
-static void test_repeated(void **state)
+TEST(test_repeated)
 {
     struct tag_export list;
-    (void)state;
     assert_true(read_text(&list, "Tag Name,Address\nTT-1,1\nTT-2,2\n TT-1 ,1\ntt-2,3\n,4\nTT\x01-3,5\n열/교환 기,6\n"));
     assert_int_equal(list.rows, 7);
     assert_int_equal(list.count, 4);
@@ -457,11 +442,10 @@ static bool read_xlsx(struct tag_export *list, const char *strings, const char *
     return good;
 }
 
-static void test_spreadsheet(void **state)
+TEST(test_spreadsheet)
 {
     static const char strings[] = "<sst><si><t>Tag Name</t></si><si><r><t>Eng </t></r><r><t>Units</t></r></si><si><t>TT-1</t></si></sst>";
     struct tag_export list;
-    (void)state;
     assert_true(
         read_xlsx(&list, strings,
                   "<worksheet><sheetData><row r=\"1\"><c r=\"A1\" t=\"s\"><v>0</v></c><c r=\"C1\" t=\"s\"><v>1</v></c></row>"
@@ -482,14 +466,13 @@ static void test_spreadsheet(void **state)
 #define CELL(at, text) "<c r=\"" at "\" t=\"inlineStr\"><is><t>" text "</t></is></c>"
 #define SHEET(rows) "<worksheet><sheetData>" rows "</sheetData></worksheet>"
 
-static void test_checksum(void **state)
+TEST(test_checksum)
 {
     static const char sheet[] = SHEET("<row>" CELL("A1", "Tag Name") "</row><row>" CELL("A2", "TT-1") "</row>");
     struct tag_export list = { 0 };
     size_t length;
     char *path = temp_path(folder, "changed.xlsx");
     zipFile zip = zipOpen(path, APPEND_STATUS_CREATE);
-    (void)state;
     assert_int_equal(zipOpenNewFileInZip(zip, "xl/worksheets/sheet1.xml", NULL, NULL, 0, NULL, 0, NULL, 0, 0), ZIP_OK); /* stored */
     assert_int_equal(zipWriteInFileInZip(zip, sheet, sizeof(sheet) - 1), ZIP_OK);
     assert_int_equal(zipCloseFileInZip(zip), ZIP_OK);
@@ -506,12 +489,11 @@ static void test_checksum(void **state)
 }
 
 /* A cover, a hidden sheet and a list, in a workbook whose parts have names of their own. */
-static void test_sheets(void **state)
+TEST(test_sheets)
 {
     struct tag_export list;
     char *path = temp_path(folder, "book.xlsx");
     zipFile zip = zipOpen(path, APPEND_STATUS_CREATE);
-    (void)state;
     add_part(zip, "xl/workbook.xml",
              "<x:workbook xmlns:x=\"m\" xmlns:r=\"r\"><x:sheets><x:sheet name=\"Cover\" r:id=\"a\"/>"
              "<x:sheet name=\"Old\" state=\"hidden\" r:id=\"b\"/><x:sheet name=\"Tags\" r:id=\"c\"/></x:sheets></x:workbook>");
@@ -538,7 +520,7 @@ static void test_sheets(void **state)
     mem_free(path);
 }
 
-static void test_refused(void **state)
+TEST(test_refused)
 {
     static const struct {
         const char *text, *why;
@@ -548,7 +530,6 @@ static void test_refused(void **state)
         { "[1, 2]", "no tags" },
     };
     struct tag_export list;
-    (void)state;
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         assert_false(read_text(&list, cases[i].text));
         if (!strstr(why, cases[i].why))
@@ -571,15 +552,4 @@ static int tear_down(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_kepware),     cmocka_unit_test(test_ignition),
-                                        cmocka_unit_test(test_udt_kinds),   cmocka_unit_test(test_header_kinds),
-                                        cmocka_unit_test(test_alike),       cmocka_unit_test(test_checksum),
-                                        cmocka_unit_test(test_sheets),
-                                        cmocka_unit_test(test_aveva),       cmocka_unit_test(test_lists),
-                                        cmocka_unit_test(test_encodings),   cmocka_unit_test(test_repeated),
-                                        cmocka_unit_test(test_spreadsheet), cmocka_unit_test(test_refused) };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("tag_export", tests, set_up, tear_down);
-}
+TEST_GROUP(set_up, tear_down)

@@ -2,16 +2,10 @@
 /* Versions of a tag list on disk: none is ever lost, and what cannot be written is refused with the reason. */
 #include "placing/tag_file.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "tests/support/temp.h"
@@ -39,6 +33,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 static void expect_text(const char *folder, const char *name, const char *want)
 {
     char *path = temp_path(folder, name), *why = NULL, *text = tag_file_read(path, &why);
@@ -56,9 +52,8 @@ static bool put(const struct fixture *f, char *before, char *after, char **kept,
     return tag_file_put(&save, kept, why);
 }
 
-static void test_every_list_stays_beside_the_next(void **state)
+CASE(test_every_list_stays_beside_the_next)
 {
-    struct fixture *f = *state;
     char *kept, *why, *taken = temp_write_text(f->folder, "tags.csv.2", "somebody's own\n");
     static const char *const names[] = { "tags.csv.1", "tags.csv.3" };
     char *texts[] = { "one\n", "two\n", "three\n" };
@@ -77,9 +72,8 @@ static void test_every_list_stays_beside_the_next(void **state)
     mem_free(taken);
 }
 
-static void test_what_was_put_is_put_back(void **state)
+CASE(test_what_was_put_is_put_back)
 {
-    struct fixture *f = *state;
     char *kept, *why, *gone;
     assert_true(put(f, "one\n", "two\n", &kept, &why));
     assert_true(tag_file_put_back(&(struct tag_save){ .path = f->path }, kept, &why));
@@ -96,9 +90,8 @@ static void test_what_was_put_is_put_back(void **state)
     mem_free(gone);
 }
 
-static void test_a_list_that_changed_meanwhile_is_not_written_over(void **state)
+CASE(test_a_list_that_changed_meanwhile_is_not_written_over)
 {
-    struct fixture *f = *state;
     char *kept, *why;
     assert_false(put(f, "another\n", "two\n", &kept, &why));
     assert_string_equal(why, "tags.csv was changed by somebody else meanwhile");
@@ -110,9 +103,8 @@ static void test_a_list_that_changed_meanwhile_is_not_written_over(void **state)
 }
 
 /* As the daemon sees it whose service may not write there. */
-static void test_a_folder_that_may_not_be_written_is_said(void **state)
+CASE(test_a_folder_that_may_not_be_written_is_said)
 {
-    struct fixture *f = *state;
     char *kept, *why;
     assert_int_equal(chmod(f->folder, 0555), 0);
     bool root = geteuid() == 0;
@@ -129,10 +121,9 @@ static void test_a_folder_that_may_not_be_written_is_said(void **state)
     expect_text(f->folder, "tags.csv", "one\n");
 }
 
-static void test_a_hash_tells_texts_apart(void **state)
+TEST(test_a_hash_tells_texts_apart)
 {
     char one[17], two[17], again[17];
-    (void)state;
     tag_file_hash("one\n", one);
     tag_file_hash("one", two);
     tag_file_hash("one\n", again);
@@ -140,17 +131,4 @@ static void test_a_hash_tells_texts_apart(void **state)
     assert_int_equal(strspn(one, "0123456789abcdef"), 16);
     assert_string_equal(one, again);
     assert_string_not_equal(one, two);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_every_list_stays_beside_the_next, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_what_was_put_is_put_back, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_a_list_that_changed_meanwhile_is_not_written_over, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_a_folder_that_may_not_be_written_is_said, set_up, tear_down),
-        cmocka_unit_test(test_a_hash_tells_texts_apart),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("tag_file", tests, NULL, NULL);
 }

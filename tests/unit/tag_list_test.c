@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tag lists: Kepware's form and ours, and every kind of mistake with its line, column and words. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "tests/support/plant_case.h"
 #include "tests/support/temp.h"
+
+#define CASE(name) TEST_ON(struct plant_case *c, name, plant_case_set_up, plant_case_tear_down)
 
 #define YAML(source)                                                                                                                       \
     "plant: { name: P }\n"                                                                                                                 \
@@ -26,9 +22,8 @@ static const char yaml_two_sources[] = YAML("[{ id: plc1, type: modbus, host: h,
                                             "{ id: plc2, type: modbus, host: h2, byte_order: DCBA, address_base: 0 }]");
 static const char yaml_no_source[] = YAML("[]");
 
-static void a_kepware_export_is_read(void **state)
+CASE(a_kepware_export_is_read)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "\xEF\xBB\xBFTag Name,Address,Data Type,Respect Data Type,Client Access,Scan Rate,Scaling,Raw Low,Raw High,Scaled Low,"
                     "Scaled High,Scaled Data Type,Clamp Low,Clamp High,Eng. Units,Description,Negate Value\r\n"
@@ -53,9 +48,8 @@ static void a_kepware_export_is_read(void **state)
     assert_true(t[6].type == DATA_BIT && t[6].bit == 7 && t[6].byte_order == BYTE_ORDER_NONE);
 }
 
-static void blank_cells_take_the_group_s_values(void **state)
+CASE(blank_cells_take_the_group_s_values)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "tag name;ADDRESS;group;asset;x;y;z;Strength;Decay;HH;Sim Kind;sim anything\n"
                     "A;40001;temp;E-101;1.5;-2;3e0;;;;ramp;1\n"
@@ -68,9 +62,8 @@ static void blank_cells_take_the_group_s_values(void **state)
     assert_string_equal(t[0].unit, "°C");
 }
 
-static void byte_orders_are_resolved(void **state)
+CASE(byte_orders_are_resolved)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml_two_sources,
                     "Tag Name,Address,Data Type,Byte Order,Source\n"
                     "A,400001,Float,,plc1\n"
@@ -100,9 +93,8 @@ static void byte_orders_are_resolved(void **state)
 }
 
 /* One off by one register looks like a value all the same. */
-static void where_long_values_begin_is_never_guessed(void **state)
+CASE(where_long_values_begin_is_never_guessed)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml_no_order,
                     "Tag Name,Address,Data Type\nA,7!400001#BL,Float\nB,300003#LL,QWord\nC,400009,Word\nD,hr:9#BL,Float\n");
     assert_null(c->plant);
@@ -110,9 +102,8 @@ static void where_long_values_begin_is_never_guessed(void **state)
           { "tags.csv", 3, 3, "by address_base in its source, or here by ir:2 (from 0, as on the wire; ir:3 if the first is called 0)" });
 }
 
-static void instruments_say_what_they_can_measure(void **state)
+CASE(instruments_say_what_they_can_measure)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Address,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,NE 43,Open Circuit,Flatline s\n"
                     "A,40001,Linear,4000,20000,0,100,1,0x8000 | 32767 -1.5e3,60\n"
@@ -138,9 +129,8 @@ static void instruments_say_what_they_can_measure(void **state)
           { "tags.csv", 4, 10, "found 'open'" }, { "tags.csv", 5, 10, "found '5'" }, { "tags.csv", 6, 10, "found '0x'" });
 }
 
-static void tags_vouch_for_other_tags(void **state)
+CASE(tags_vouch_for_other_tags)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Address,Quality Tag\n"
                     "A,40001,OK\nB,40002,!OK\nC,40003,WORD & 0x0C = 0x04\nD,40004,WORD&3\nE,40005,!WORD&3=1\nOK,00001,\nWORD,40006,\n");
@@ -163,9 +153,8 @@ static void tags_vouch_for_other_tags(void **state)
           { "tags.csv", 9, 9, "Quality Tag: 'B' has a quality tag of its own" });
 }
 
-static void directions_are_tags(void **state)
+CASE(directions_are_tags)
 {
-    struct plant_case *c = *state;
     static const char header[] = "Tag Name,Address,Group,Asset,X,Y,Z,Place,Direction\n";
     char *good = mem_printf("%sU,40001,temp,E-101,0,0,0,,A B  C\nV,40002,temp,E-101,1,0,0,,D\nW,40003,temp,E-101,1,0,0,,\n"
                             "A,40004,,,,,,,\nB,40005,,,,,,,\nC,40006,,,,,,,\nD,40007,,,,,,,\n", header);
@@ -188,9 +177,8 @@ static void directions_are_tags(void **state)
           { "tags.csv", 6, 33, "Direction: 'B' needs a group, an asset and a place" });
 }
 
-static void references_are_looked_up(void **state)
+CASE(references_are_looked_up)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml_two_sources,
                     "Tag Name,Address,Source,Group,Asset,Node\n"
                     "A,40001,plc3,tmp,E-103,N\n"
@@ -204,9 +192,8 @@ static void references_are_looked_up(void **state)
           { "tags.csv", 3, 11, "Asset: unknown asset 'Vessel'; the plant file has no such id" });
 }
 
-static void addresses_and_types_are_checked(void **state)
+CASE(addresses_and_types_are_checked)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Address,Data Type\n"
                     "A,4x1,Word\n"
@@ -235,9 +222,8 @@ static void addresses_and_types_are_checked(void **state)
     assert_int_equal(c->plant->tags[0].source, -1);
 }
 
-static void places_are_whole(void **state)
+CASE(places_are_whole)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Address,Group,Asset,Node,X,Y,Z\n"
                     "A,40001,temp,E-101,,,,\n"
@@ -261,9 +247,8 @@ static void places_are_whole(void **state)
     FOUND(c, { "tags.csv", 2, 14, "'A' has a group and an asset but no place" });
 }
 
-static void scaling_is_whole(void **state)
+CASE(scaling_is_whole)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Address,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Negate Value,Clamp Low\n"
                     "A,40001,Cubic,0,1,0,1,,\n"
@@ -282,9 +267,8 @@ static void scaling_is_whole(void **state)
           { "tags.csv", 7, 10, "Scaling is blank, so the raw range has no effect" }, { "tags.csv", 7, 19, "Clamp Low has no effect" });
 }
 
-static void numbers_have_ranges_and_limits_rise(void **state)
+CASE(numbers_have_ranges_and_limits_rise)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Address,Group,Asset,Node,Scan Rate,Stale s,Strength,LL,L,H,HH\n"
                     "A,40001,temp,E-101,N,5,,,,,,\n"
@@ -303,9 +287,8 @@ static void numbers_have_ranges_and_limits_rise(void **state)
           { "tags.csv", 7, 27, "H: expected a number, found 'hot'" });
 }
 
-static void names_are_unique(void **state)
+CASE(names_are_unique)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml, "Address,Tag Name\n40001,A\n40002,B\n40003,A\n40004,\n40005,A\n");
     assert_null(c->plant);
     FOUND(c, { "tags.csv", 4, 7, "Tag Name: 'A' is there twice (first at line 2)" },
@@ -315,9 +298,8 @@ static void names_are_unique(void **state)
     FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Tag Name'" }, { "tags.csv", 1, 1, "unknown column 'Name' is ignored" });
 }
 
-static void columns_are_known(void **state)
+CASE(columns_are_known)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Adress,Address,Sim Kind,,Colour,On Delay s,Eng Units\n"
                     "A,x,40001,ramp,,red,60,bar\n"
@@ -332,9 +314,8 @@ static void columns_are_known(void **state)
           { "tags.csv", 2, 14, "Deadband: expected a number from 0" });
 }
 
-static void alarms_are_of_the_tag_else_of_the_group(void **state)
+CASE(alarms_are_of_the_tag_else_of_the_group)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Address,Alarm Deadband,On Delay s,Off Delay s,Priority,Latch,Suppressed By\n"
                     "A,40001,1.5,2,3,1,yes,STOP\n"
@@ -357,9 +338,8 @@ static void alarms_are_of_the_tag_else_of_the_group(void **state)
           { "tags.csv", 4, 11, "Mirrors has no effect" });
 }
 
-static void bits_mirror_alarms(void **state)
+CASE(bits_mirror_alarms)
 {
-    struct plant_case *c = *state;
     char *mirror = mem_printf("%s\nalarms: mirror\n", yaml);
     plant_case_load(c, mirror,
                     "Tag Name,Address,Mirrors\n"
@@ -384,9 +364,8 @@ static void bits_mirror_alarms(void **state)
     mem_free(mirror);
 }
 
-static void units_agree_with_the_group(void **state)
+CASE(units_agree_with_the_group)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Address,Group,Asset,Node,Eng Units\n"
                     "A,40001,temp,E-101,N,degC\n"
@@ -398,9 +377,8 @@ static void units_agree_with_the_group(void **state)
 }
 
 /* A plant file that lacks its groups is one error, not one for every row. */
-static void a_broken_plant_file_does_not_flood(void **state)
+CASE(a_broken_plant_file_does_not_flood)
 {
-    struct plant_case *c = *state;
     plant_case_load(c,
                     "plant: { name: P }\nassets: [{ id: A, model: m.glb }]\ngroups: 5\nsources: [{ id: s, type: modbus, host: h }]\n"
                     "tags: tags.csv\n",
@@ -408,9 +386,8 @@ static void a_broken_plant_file_does_not_flood(void **state)
     FOUND(c, { "plant.yaml", 3, 9, "groups: expected a list" });
 }
 
-static void long_lists_are_read(void **state)
+CASE(long_lists_are_read)
 {
-    struct plant_case *c = *state;
     struct text csv = { 0 };
     text_add(&csv, "Tag Name,Address,Data Type,Group,Asset,X,Y,Z\n");
     for (int i = 0; i < 20000; i++)
@@ -419,33 +396,4 @@ static void long_lists_are_read(void **state)
     plant_case_assert_loaded(c, 0);
     assert_int_equal(c->plant->tag_count, 20000);
     text_finish(&csv);
-}
-
-#define TEST(function) cmocka_unit_test_setup_teardown(function, plant_case_set_up, plant_case_tear_down)
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        TEST(a_kepware_export_is_read),
-        TEST(blank_cells_take_the_group_s_values),
-        TEST(byte_orders_are_resolved),
-        TEST(where_long_values_begin_is_never_guessed),
-        TEST(instruments_say_what_they_can_measure),
-        TEST(tags_vouch_for_other_tags),
-        TEST(directions_are_tags),
-        TEST(references_are_looked_up),
-        TEST(addresses_and_types_are_checked),
-        TEST(places_are_whole),
-        TEST(scaling_is_whole),
-        TEST(numbers_have_ranges_and_limits_rise),
-        TEST(names_are_unique),
-        TEST(columns_are_known),
-        TEST(alarms_are_of_the_tag_else_of_the_group),
-        TEST(bits_mirror_alarms),
-        TEST(units_agree_with_the_group),
-        TEST(a_broken_plant_file_does_not_flood),
-        TEST(long_lists_are_read),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

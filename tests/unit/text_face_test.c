@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Text that DejaVu Sans has no letters for is set in a font that has them. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "tests/support/test.h"
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
 
-#include <cmocka.h>
 #include <fontconfig/fontconfig.h>
 
 #include "render/overlay/text_face.h"
@@ -48,10 +43,9 @@ static bool has_hangul(void)
     return any;
 }
 
-static void korean_has_its_letters(void **state)
+TEST(korean_has_its_letters)
 {
     static const char text[] = "\uc628\ub3c4 TE-171 \uc2dc\ud5d8"; /* 4 of them, 6, and 2 blanks */
-    (void)state;
     if (!has_hangul()) {
         print_message("no font for Korean: package fonts-nanum\n");
         skip();
@@ -66,10 +60,9 @@ static void korean_has_its_letters(void **state)
     }
 }
 
-static void other_text_stays_as_it_is(void **state)
+TEST(other_text_stays_as_it_is)
 {
     static const char *const texts[] = { "", "TE-171 21.5 \u00b0C", "\u00dcber \u2192 \u2212 1", "\u0422\u0435\u043c\u043f", "\xff\xfe" };
-    (void)state;
     for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
         cairo_t *cairo = begin(CAIRO_FONT_WEIGHT_NORMAL);
         cairo_font_face_t *face = cairo_get_font_face(cairo);
@@ -79,20 +72,8 @@ static void other_text_stays_as_it_is(void **state)
     }
 }
 
-static void a_missing_letter_is_noticed(void **state)
+TEST(a_missing_letter_is_noticed)
 {
-    (void)state;
     assert_true(text_face_has("TE-171"));
     assert_false(text_face_has("\xf4\x8f\xbf\xbd")); /* U+10FFFD, for private use */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(korean_has_its_letters),
-        cmocka_unit_test(a_missing_letter_is_noticed),
-        cmocka_unit_test(other_text_stays_as_it_is),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A thread with ticks: evenly spaced, ended at once when it is to stop. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "tests/support/test.h"
 #include <stdatomic.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/thread.h"
@@ -36,26 +32,17 @@ static void run_for(int64_t period_ns, int least)
     thread_finish(&thread);
 }
 
-static void it_ticks(void **state)
+TEST(it_ticks)
 {
-    (void)state;
     int64_t begin_ns = clock_mono_ns();
     run_for(2 * NS_PER_MS, 20);
     assert_true(ticks >= 20 && clock_mono_ns() - begin_ns >= 19 * 2 * NS_PER_MS);
 }
 
-static void it_ends_within_a_long_wait(void **state)
+TEST(it_ends_within_a_long_wait)
 {
-    (void)state;
     int64_t begin_ns = clock_mono_ns();
     run_for(3600 * NS_PER_S, 1);
     assert_int_equal(ticks, 1);
     assert_true(clock_mono_ns() - begin_ns < 600 * NS_PER_S);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = { cmocka_unit_test(it_ticks), cmocka_unit_test(it_ends_within_a_long_wait) };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,12 +2,8 @@
 /* Time of drawing goes to addresses in equal shares: it is simulated, and who got how much is counted. */
 #include "service/time_accounts.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 
@@ -25,9 +21,8 @@ static void serve(struct time_accounts *accounts, struct time_account *account, 
     time_accounts_asked(accounts, account, SHARE);
 }
 
-static void each_address_has_half_of_the_time(void **state)
+TEST(each_address_has_half_of_the_time)
 {
-    (void)state;
     struct time_accounts accounts = { 0 };
     struct time_account *large = time_accounts_join(&accounts, 1), *small = time_accounts_join(&accounts, 2);
     int64_t had_ns[2] = { 0 };
@@ -43,9 +38,8 @@ static void each_address_has_half_of_the_time(void **state)
     time_accounts_finish(&accounts);
 }
 
-static void who_comes_anew_owes_what_it_had(void **state)
+TEST(who_comes_anew_owes_what_it_had)
 {
-    (void)state;
     struct time_accounts accounts = { 0 };
     struct time_account *greedy = time_accounts_join(&accounts, 1), *other = time_accounts_join(&accounts, 2);
     serve(&accounts, greedy, NS_PER_S);
@@ -60,14 +54,4 @@ static void who_comes_anew_owes_what_it_had(void **state)
     time_accounts_asked(&accounts, greedy, SHARE);
     assert_int_equal(greedy->spent_ns[SHARE], accounts.served_ns[SHARE]);
     time_accounts_finish(&accounts);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_address_has_half_of_the_time),
-        cmocka_unit_test(who_comes_anew_owes_what_it_had),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,22 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Instants as people write them, and what is refused. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <time.h>
-#include <cmocka.h>
 
 #include "base/text/timestamp.h"
 
 #define S INT64_C(1000000)
 static const int64_t NOW = INT64_C(1793491200) * S; /* 2026-11-01T00:00:00Z */
 
-static void instants_are_read(void **state)
+TEST(instants_are_read)
 {
-    (void)state;
     static const struct {
         const char *text;
         int64_t t_us;
@@ -42,9 +35,8 @@ static void instants_are_read(void **state)
     }
 }
 
-static void what_is_not_one_instant_is_refused(void **state)
+TEST(what_is_not_one_instant_is_refused)
 {
-    (void)state;
     static const char *const bad[] = {
         "",
         "yesterday",
@@ -76,9 +68,8 @@ static void what_is_not_one_instant_is_refused(void **state)
 }
 
 /* Both hours of the night when the clocks go back are different instants, and none of them depends on this computer's zone. */
-static void summer_time_does_not_matter(void **state)
+TEST(summer_time_does_not_matter)
 {
-    (void)state;
     int64_t first, second;
     setenv("TZ", "Europe/Berlin", 1);
     tzset();
@@ -93,9 +84,8 @@ static void summer_time_does_not_matter(void **state)
     tzset();
 }
 
-static void what_is_written_is_read_again(void **state)
+TEST(what_is_written_is_read_again)
 {
-    (void)state;
     srand(3);
     for (int i = 0; i < 10000; i++) {
         int64_t t_us = ((int64_t)rand() * 3) * S + (i % 2 ? rand() % 1000000 : rand() % 1000 * 1000), again;
@@ -104,16 +94,4 @@ static void what_is_written_is_read_again(void **state)
         assert_true(timestamp_parse(text, NOW, &again));
         assert_int_equal(again, t_us);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(instants_are_read),
-        cmocka_unit_test(what_is_not_one_instant_is_refused),
-        cmocka_unit_test(summer_time_does_not_matter),
-        cmocka_unit_test(what_is_written_is_read_again),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

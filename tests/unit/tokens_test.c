@@ -2,13 +2,10 @@
 /* The file of tokens: who is let in, who no longer, and which files let in nobody. */
 #include "access/tokens.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <string.h>
+#include "tests/support/test.h"
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/files/atomic_file.h"
@@ -42,6 +39,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 static void add_line(struct text *text, enum role role, const char *name, const char *token, int64_t until_ns)
 {
     struct token_holder holder = { .role = role, .until_utc_ns = until_ns };
@@ -66,9 +65,8 @@ static void write_two(struct fixture *f, mode_t mode)
     text_finish(&text);
 }
 
-static void a_token_may_be_for_one_plant(void **state)
+CASE(a_token_may_be_for_one_plant)
 {
-    struct fixture *f = *state;
     struct token_holder holder = { .role = ROLE_VIEWER, .name = "plant", .until_utc_ns = INT64_MAX, .plant = "Werk Nord 2" }, read;
     holder.unattended = true;
     struct text text = { 0 };
@@ -96,9 +94,8 @@ static void a_token_may_be_for_one_plant(void **state)
     text_finish(&text);
 }
 
-static void a_token_may_be_for_one_display(void **state)
+CASE(a_token_may_be_for_one_display)
 {
-    struct fixture *f = *state;
     struct token_holder holder = { .role = ROLE_VIEWER, .name = "tile", .until_utc_ns = INT64_MAX, .wall = "room", .display = 12 }, read;
     struct text text = { 0 };
     const char *why;
@@ -130,9 +127,8 @@ static void a_token_may_be_for_one_display(void **state)
     text_finish(&text);
 }
 
-static void holders_are_found_by_their_tokens(void **state)
+CASE(holders_are_found_by_their_tokens)
 {
-    struct fixture *f = *state;
     struct token_holder holder;
     write_two(f, 0600);
     struct tokens *tokens = tokens_create(f->log, f->path);
@@ -146,9 +142,8 @@ static void holders_are_found_by_their_tokens(void **state)
     tokens_destroy(&tokens);
 }
 
-static void time_runs_out(void **state)
+CASE(time_runs_out)
 {
-    struct fixture *f = *state;
     struct token_holder holder;
     int64_t until_ns;
     assert_true(tokens_parse_day("2026-01-01", &until_ns));
@@ -169,9 +164,8 @@ static void time_runs_out(void **state)
     tokens_destroy(&tokens);
 }
 
-static void files_that_others_may_touch_let_in_nobody(void **state)
+CASE(files_that_others_may_touch_let_in_nobody)
 {
-    struct fixture *f = *state;
     static const mode_t bad[] = { 0644, 0660, 0602, 0604 };
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
         write_two(f, bad[i]);
@@ -182,9 +176,8 @@ static void files_that_others_may_touch_let_in_nobody(void **state)
     assert_null(tokens_create(f->log, f->folder));
 }
 
-static void wrong_lines_let_in_nobody_and_leave_the_others(void **state)
+CASE(wrong_lines_let_in_nobody_and_leave_the_others)
 {
-    struct fixture *f = *state;
     static const char *const bad[] = { "king bob",
                                        "viewer bob",
                                        "viewer bob 1234",
@@ -218,9 +211,8 @@ static bool look_until_read(struct tokens *tokens)
     return tokens_look(tokens) && !first;
 }
 
-static void a_changed_file_is_read_and_revokes(void **state)
+CASE(a_changed_file_is_read_and_revokes)
 {
-    struct fixture *f = *state;
     struct token_holder wall, eve;
     struct text text = { 0 };
     write_two(f, 0600);
@@ -245,9 +237,8 @@ static void a_changed_file_is_read_and_revokes(void **state)
     tokens_destroy(&tokens);
 }
 
-static void a_token_may_be_for_some_views(void **state)
+CASE(a_token_may_be_for_some_views)
 {
-    (void)state;
     struct token_holder holder = { .role = ROLE_VIEWER, .name = "lobby" }, read;
     struct text text = { 0 };
     const char *why;
@@ -280,9 +271,8 @@ static void a_token_may_be_for_some_views(void **state)
     assert_false(tokens_views_valid("") || tokens_views_valid("a,,b") || tokens_views_valid("a b") || tokens_views_valid("a,"));
 }
 
-static void made_tokens_differ_and_hash_as_others_do(void **state)
+CASE(made_tokens_differ_and_hash_as_others_do)
 {
-    (void)state;
     char a[TOKEN_MAX_CHARS + 1], b[TOKEN_MAX_CHARS + 1];
     static const uint8_t abc[] = { 0xba, 0x78, 0x16, 0xbf, 0x8f, 0x01, 0xcf, 0xea }; /* FIPS 180-2, appendix B.1 */
     uint8_t hash[TOKEN_HASH_BYTES];
@@ -291,18 +281,4 @@ static void made_tokens_differ_and_hash_as_others_do(void **state)
     assert_string_not_equal(a, b);
     tokens_hash("abc", hash);
     assert_memory_equal(hash, abc, sizeof(abc));
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(a_token_may_be_for_one_display),            TEST(a_token_may_be_for_one_plant),
-        TEST(a_token_may_be_for_some_views),             TEST(time_runs_out),
-        TEST(holders_are_found_by_their_tokens),
-        TEST(files_that_others_may_touch_let_in_nobody), TEST(wrong_lines_let_in_nobody_and_leave_the_others),
-        TEST(a_changed_file_is_read_and_revokes),        TEST(made_tokens_differ_and_hash_as_others_do),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Light in 32 bits comes back within half a step of its greatest channel. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
 
-#include <cmocka.h>
 
 #include "render/soft/tones.h"
 
@@ -27,9 +22,8 @@ static void assert_close(const float light[3])
         assert_true(fabsf(back[c] - light[c]) <= most / 500);
 }
 
-static void test_light_comes_back(void **state)
+TEST(test_light_comes_back)
 {
-    (void)state;
     srandom(5);
     for (int i = 0; i < 100000; i++) {
         float size = ldexpf(1, (int)(random() % 30) - 15), light[3];
@@ -42,22 +36,11 @@ static void test_light_comes_back(void **state)
             assert_close((float[3]){ ldexpf(1 + (float)step * 0x1p-11f, e), 0, ldexpf(0.3f, e) });
 }
 
-static void test_what_no_light_is_stays_within_bounds(void **state)
+TEST(test_what_no_light_is_stays_within_bounds)
 {
     float back[3];
-    (void)state;
     unpack(soft_pack_light((float[3]){ NAN, -1, -INFINITY }), back);
     assert_true(back[0] == 0 && back[1] == 0 && back[2] == 0);
     unpack(soft_pack_light((float[3]){ INFINITY, 1e30f, 0 }), back);
     assert_true(back[0] == 65408 && back[1] == 65408 && back[2] == 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_light_comes_back),
-        cmocka_unit_test(test_what_no_light_is_stays_within_bounds),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("tones_test", tests, NULL, NULL);
 }

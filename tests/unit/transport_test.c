@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parallel transport against what is known of planes, spheres and boxes. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <cmocka.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
@@ -80,9 +75,8 @@ static size_t nearest_vertex(const struct cad *shape, const double point[3])
 }
 
 /* On a plane a vector stays what it is, also around slots; of another plate nothing is known. */
-static void test_plane(void **state)
+TEST(test_plane)
 {
-    (void)state;
     struct carried c = { 0 };
     cad_slotted_plate(&c.shape, &chance, 24, 18, 1.2, 0.9, 11, 2, 15);
     size_t plate = c.shape.vertex_count;
@@ -108,9 +102,8 @@ static void test_plane(void **state)
 
 /* A long strip, folded like an accordion: 40 m of way in a box of 2.3 m. It can be unfolded, so what a vector has across the strip it keeps
    to the end. */
-static void test_accordion(void **state)
+TEST(test_accordion)
 {
-    (void)state;
     const double length_m = 40, forth = 0.05, up = sqrt(1 - forth * forth);
     struct carried c = { 0 };
     cad_plate(&c.shape, &chance, 1600, 3, length_m, 0.06, 0);
@@ -138,9 +131,8 @@ static void test_accordion(void **state)
 }
 
 /* Along great circles, as far as near the antipode, where all of them meet. */
-static void test_sphere(void **state)
+TEST(test_sphere)
 {
-    (void)state;
     struct carried c = { 0 };
     cad_sphere(&c.shape, &chance, 20);
     c.normals = mem_array(c.shape.vertex_count, sizeof(*c.normals));
@@ -177,9 +169,8 @@ static void test_sphere(void **state)
 }
 
 /* Over an edge as if it were unfolded: from the middle of the top, what points to a side goes down it. */
-static void test_box(void **state)
+TEST(test_box)
 {
-    (void)state;
     static const double middles[4][3] = { { 1, 0.5, 0.5 }, { 0.5, 1, 0.5 }, { 0, 0.5, 0.5 }, { 0.5, 0, 0.5 } };
     struct carried c = { 0 };
     cad_box(&c.shape, &chance, 10, 10, 10, 0.1);
@@ -208,9 +199,8 @@ static void test_box(void **state)
 
 /* A sphere of which three in five triangles are there, some of them to a corner anywhere. At rims, and where more than two triangles meet,
    edges may have negative weights, and rotations round a triangle do not add up; directions are known all the same. */
-static void test_tangle(void **state)
+TEST(test_tangle)
 {
-    (void)state;
     struct carried c = { 0 };
     cad_sphere(&c.shape, &chance, 8);
     size_t kept = 0;
@@ -238,15 +228,4 @@ static void test_tangle(void **state)
     finish(&c);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_plane),
-        cmocka_unit_test(test_accordion),
-        cmocka_unit_test(test_sphere),
-        cmocka_unit_test(test_box),
-        cmocka_unit_test(test_tangle),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
-}
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

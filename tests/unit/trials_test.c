@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sensors that are tried out elsewhere: the field is that of a plant that has them there, for who asks and for nobody else. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "tests/support/test.h"
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "field/field.h"
@@ -49,6 +42,8 @@ static int teardown(void **state)
     mem_free(f);
     return 0;
 }
+
+#define CASE(name) TEST_ON(struct fixture *f, name, setup, teardown)
 
 /* Along the surface from vertex `to`, as the synthetic plant has it: the sum of the ways along the axes. */
 static float *along(const struct fixture *f, size_t to)
@@ -102,9 +97,8 @@ static double truth(const struct fixture *f, const float *moved_m, size_t vertex
     return sum / total;
 }
 
-static void test_a_moved_sensor_is_where_it_is_tried(void **state)
+CASE(test_a_moved_sensor_is_where_it_is_tried)
 {
-    struct fixture *f = *state;
     struct scalar *before = copy_of(f, 0, 0), *tried = copy_of(f, 0, put(f, sensor_at(f, MOVED, 0, TO, true))), *after = copy_of(f, 0, 0);
     float *moved_m = along(f, TO);
     size_t changed = 0;
@@ -121,9 +115,8 @@ static void test_a_moved_sensor_is_where_it_is_tried(void **state)
     mem_free(moved_m);
 }
 
-static void test_straight_distances_stand_in(void **state)
+CASE(test_straight_distances_stand_in)
 {
-    struct fixture *f = *state;
     struct scalar *guess = copy_of(f, 0, put(f, sensor_at(f, MOVED, 0, TO, false)));
     const float(*at)[3] = f->plant->file.view.positions_m;
     float *straight_m = mem_array(VERTICES, sizeof(*straight_m));
@@ -135,9 +128,8 @@ static void test_straight_distances_stand_in(void **state)
     mem_free(straight_m);
 }
 
-static void test_it_may_go_to_another_asset(void **state)
+CASE(test_it_may_go_to_another_asset)
 {
-    struct fixture *f = *state;
     uint32_t id = put(f, sensor_at(f, MOVED, 1, TO, true));
     struct scalar *left = copy_of(f, 0, id), *there = copy_of(f, 1, id), *was = copy_of(f, 0, 0);
     assert_true(fabs((double)there[TO].value - f->plant->snapshot->readings[MOVED].value) < 1e-4);
@@ -151,9 +143,8 @@ static void test_it_may_go_to_another_asset(void **state)
     mem_free(was);
 }
 
-static void test_what_it_does_not_touch_is_shared(void **state)
+CASE(test_what_it_does_not_touch_is_shared)
 {
-    struct fixture *f = *state;
     struct field_params params = f->params;
     const struct scalars *plain = field_scalars(f->field, 1, &params, f->plant->snapshot);
     uint64_t version = plain->version;
@@ -163,9 +154,8 @@ static void test_what_it_does_not_touch_is_shared(void **state)
 }
 
 /* Each step leaves a set behind; none of it stays. */
-static void test_dragging_leaves_nothing_behind(void **state)
+CASE(test_dragging_leaves_nothing_behind)
 {
-    struct fixture *f = *state;
     uint32_t id = 0, first = 0;
     size_t bytes = 0;
     for (size_t step = 0; step < 60; step++) {
@@ -184,17 +174,4 @@ static void test_dragging_leaves_nothing_behind(void **state)
     assert_memory_equal(gone, plain, VERTICES * sizeof(*plain));
     mem_free(gone);
     mem_free(plain);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_a_moved_sensor_is_where_it_is_tried, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_straight_distances_stand_in, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_it_may_go_to_another_asset, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_what_it_does_not_touch_is_shared, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_dragging_leaves_nothing_behind, setup, teardown),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A value in one unit is never shown as one in another: the table against known numbers, and every way by which values come in. */
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"
@@ -25,12 +19,13 @@
 #include "value/derived.h"
 #include "value/quality.h"
 
+#define CASE(name) TEST_ON(struct plant_case *c, name, plant_case_set_up, plant_case_tear_down)
+
 /* --- the table -------------------------------------------------------------------------------------------------------------- */
 
 /* Of GNU units 2.22, except temperatures, which are defined so. */
-static void values_are_converted(void **state)
+TEST(values_are_converted)
 {
-    (void)state;
     static const struct {
         double value;
         const char *from;
@@ -86,9 +81,8 @@ static void values_are_converted(void **state)
     }
 }
 
-static void what_is_not_the_same_is_kept_apart(void **state)
+TEST(what_is_not_the_same_is_kept_apart)
 {
-    (void)state;
     static const struct {
         const char *a, *b;
         enum unit_match match;
@@ -131,9 +125,8 @@ static const char yaml[] = "plant: { name: P }\nassets: [{ id: A, model: m.glb }
     "Tag Name,Address,Data Type,Group,Asset,X,Y,Z,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Negate Value,Eng Units,"                 \
     "L,H,Deadband,Alarm Deadband\n"
 
-static void rows_are_in_their_own_unit(void **state)
+CASE(rows_are_in_their_own_unit)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     HEAD "F,hr:0,Float,temp,A,0,0,0,,,,,,,°F,50,194,1.8,9\n"
                          "S,hr:2,Short,temp,A,0,0,0,Linear,0,1000,32,392,,degF,,,,\n"
@@ -173,9 +166,8 @@ static void rows_are_in_their_own_unit(void **state)
 }
 
 /* An expression computes in the units of its tags' rows. */
-static void derived_tags_compute_as_rows_say(void **state)
+CASE(derived_tags_compute_as_rows_say)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Address,Data Type,Group,Asset,X,Y,Z,Eng Units\n"
                     "F,hr:0,Float,temp,A,0,0,0,°F\nG,hr:2,Float,temp,A,0,0,0,°F\nC,hr:4,Float,temp,A,0,0,0,°C\n"
@@ -196,9 +188,8 @@ static void derived_tags_compute_as_rows_say(void **state)
     store_destroy(&store);
 }
 
-static void what_cannot_be_converted_is_an_error_at_its_cell(void **state)
+CASE(what_cannot_be_converted_is_an_error_at_its_cell)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Address,Group,Asset,X,Y,Z,Eng Units\n"
                     "A,hr:0,temp,A,0,0,0,bar\nB,hr:0,temp,A,0,0,0,degX\nC,hr:0,taken,A,0,0,0,bar\nD,hr:0,temp,A,0,0,0,°F\n");
@@ -210,7 +201,7 @@ static void what_cannot_be_converted_is_an_error_at_its_cell(void **state)
 }
 
 /* A reading of before a reload is none of another unit. */
-static void readings_are_not_adopted_in_another_unit(void **state)
+TEST_WITH(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state, other = { .folder = c->folder, .path = c->path };
     static const char rows[] = "Tag Name,Address,Data Type,Group,Asset,X,Y,Z,Eng Units\n"
@@ -239,10 +230,9 @@ static void readings_are_not_adopted_in_another_unit(void **state)
 /* --- files ------------------------------------------------------------------------------------------------------------------ */
 
 /* What the files say is in the unit of the row, unless they say another; what comes out says which it is, and goes in again as it was. */
-static void files_say_their_unit_or_mean_the_row_s(void **state)
+CASE(files_say_their_unit_or_mean_the_row_s)
 {
     static const int64_t start_us = INT64_C(1792886400) * US_PER_S;
-    struct plant_case *c = *state;
     struct diag diag = { 0 };
     struct import_counts counts;
     struct history_series series;
@@ -283,11 +273,10 @@ static void files_say_their_unit_or_mean_the_row_s(void **state)
 }
 
 /* What a plant recorded in one unit is given in the unit in which it shows the tag now, by every way, and one file has one unit. */
-static void what_was_recorded_is_shown_in_the_unit_of_now(void **state)
+CASE(what_was_recorded_is_shown_in_the_unit_of_now)
 {
     static const int64_t start_us = INT64_C(1792886400) * US_PER_S;
     static const char rows[] = "Tag Name,Address,Data Type,Group,Asset,X,Y,Z,Eng Units,Deadband\nF,hr:0,Float,%s,A,0,0,0,°F,0\n";
-    struct plant_case *c = *state;
     struct diag diag = { 0 };
     struct import_counts counts;
     struct log *log = log_create(LOG_ERROR);
@@ -324,20 +313,4 @@ static void what_was_recorded_is_shown_in_the_unit_of_now(void **state)
     mem_free(folder);
     mem_free(path);
     log_destroy(&log);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_are_converted),
-        cmocka_unit_test(what_is_not_the_same_is_kept_apart),
-        cmocka_unit_test_setup_teardown(rows_are_in_their_own_unit, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(derived_tags_compute_as_rows_say, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(what_cannot_be_converted_is_an_error_at_its_cell, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(files_say_their_unit_or_mean_the_row_s, plant_case_set_up, plant_case_tear_down),
-        cmocka_unit_test_setup_teardown(what_was_recorded_is_shown_in_the_unit_of_now, plant_case_set_up, plant_case_tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,14 +2,8 @@
 /* Vertices of an asset held fast on its surface: those of coarser levels stand off it, and have the distances of their own side. */
 #include "surface/vertex_embedding.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/files/cache_file.h"
 #include "base/mem.h"
@@ -92,7 +86,7 @@ static void on_side(double turn, double y, double radius, float out[3])
 }
 
 /* Places as edges of a coarser level of the plate's outer side have them: nearer to its inner side. */
-static void what_stands_off_is_on_the_side_that_it_looks_along(void **state)
+TEST(what_stands_off_is_on_the_side_that_it_looks_along)
 {
     enum { COUNT = 200 };
     struct cad plate = { 0 };
@@ -101,7 +95,6 @@ static void what_stands_off_is_on_the_side_that_it_looks_along(void **state)
     uint32_t triangles[3 * COUNT];
     const double outer = RADIUS + CELL, source[3] = { 0, UP * CELL / 2, outer };
     double worst_m = 0, nearest_m = INFINITY;
-    (void)state;
     cad_random_start(&chance);
     make_bent_plate(&plate, &chance);
     for (int i = 0; i < COUNT; i++) { /* first the places on its side, which are the finest level's */
@@ -178,7 +171,7 @@ static size_t count_far(const struct asset_view *view, const struct surface *sur
 }
 
 /* The coarsest level errs by as much as the plate is thick, and in some places passes through itself: no side is the right one there. */
-static void coarser_levels_have_the_distances_of_their_own_side(void **state)
+TEST(coarser_levels_have_the_distances_of_their_own_side)
 {
     struct prep_case *c = *state;
     struct cad plate = { 0 };
@@ -205,12 +198,4 @@ static void coarser_levels_have_the_distances_of_their_own_side(void **state)
     cad_finish(&plate);
 }
 
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_stands_off_is_on_the_side_that_it_looks_along),
-        cmocka_unit_test(coarser_levels_have_the_distances_of_their_own_side),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_GROUP(set_up, tear_down)

@@ -2,12 +2,8 @@
 /* Addresses of the page as arguments of a query: each form, and what is no form. */
 #include "message/view_address.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/text/text.h"
 
@@ -24,9 +20,8 @@ static void assert_read(const char *address, const char *expected)
     view_address_finish(&read);
 }
 
-static void names_and_forms_are_those_of_queries(void **state)
+TEST(names_and_forms_are_those_of_queries)
 {
-    (void)state;
     assert_read("", "");
     assert_read("&&group=t&&", "group=t");
     assert_read("group=vib%20ration&tag=TI-1&hide=A,%ED%95%9C&only=B&asset=E-101", "group=vib ration | hidden=A,\xed\x95\x9c | isolate=B | "
@@ -43,9 +38,8 @@ static void names_and_forms_are_those_of_queries(void **state)
     assert_read("group=a%00b", "group=a%00b"); /* no text ends there */
 }
 
-static void what_a_picture_cannot_show_is_said(void **state)
+TEST(what_a_picture_cannot_show_is_said)
 {
-    (void)state;
     static const char *const wrong[] = { "unknown=1",  "camera=", "camera=1,2,3", "camera=1,2,3,4,5,6,0,0,1,45,2,7", "camera=1,2,x",
                                          "view=other", "width=5", "follow=7",     "=" };
     for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
@@ -57,9 +51,8 @@ static void what_a_picture_cannot_show_is_said(void **state)
     }
 }
 
-static void more_than_there_is_room_for(void **state)
+TEST(more_than_there_is_room_for)
 {
-    (void)state;
     struct text text = { 0 };
     struct view_address read;
     struct message_error error = { 0 };
@@ -69,15 +62,4 @@ static void more_than_there_is_room_for(void **state)
     assert_int_equal(read.count, VIEW_ADDRESS_ARGS);
     view_address_finish(&read);
     text_finish(&text);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_and_forms_are_those_of_queries),
-        cmocka_unit_test(what_a_picture_cannot_show_is_said),
-        cmocka_unit_test(more_than_there_is_room_for),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

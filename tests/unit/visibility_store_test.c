@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pixels that are kept: found by shape, within the bound, the least recently used first to go. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "render/soft/visibility_store.h"
@@ -17,10 +13,9 @@ static void *make(struct visibility_store *store, uint64_t shape, size_t bytes)
     return visibility_store_find(store, shape);
 }
 
-static void test_found_again(void **state)
+TEST(test_found_again)
 {
     struct visibility_store store = { .bound_bytes = 1000 };
-    (void)state;
     assert_null(visibility_store_find(&store, 7));
     int *made = make(&store, 7, 400);
     assert_non_null(made);
@@ -36,10 +31,9 @@ static void test_found_again(void **state)
     visibility_store_finish(&store);
 }
 
-static void test_bound(void **state)
+TEST(test_bound)
 {
     struct visibility_store store = { .bound_bytes = 1000 };
-    (void)state;
     assert_null(make(&store, 1, 1001));
     assert_non_null(make(&store, 1, 400));
     assert_non_null(make(&store, 2, 400));
@@ -52,10 +46,9 @@ static void test_bound(void **state)
     assert_int_equal(store.bytes, 0);
 }
 
-static void test_the_newest_is_kept_alone(void **state)
+TEST(test_the_newest_is_kept_alone)
 {
     struct visibility_store store = { .bound_bytes = 1000, .keeps_newest = true };
-    (void)state;
     assert_non_null(make(&store, 1, 400));
     assert_non_null(make(&store, 2, 5000));
     assert_null(visibility_store_find(&store, 1));
@@ -67,26 +60,13 @@ static void test_the_newest_is_kept_alone(void **state)
     visibility_store_finish(&store);
 }
 
-static void test_many_small(void **state)
+TEST(test_many_small)
 {
     struct visibility_store store = { .bound_bytes = 1000 };
-    (void)state;
     for (uint64_t shape = 0; shape < 3 * VISIBILITY_SLOTS; shape++)
         assert_non_null(make(&store, shape, 8));
     assert_int_equal(store.bytes, 8 * VISIBILITY_SLOTS);
     assert_null(visibility_store_find(&store, 0));
     assert_non_null(visibility_store_find(&store, 3 * VISIBILITY_SLOTS - 1));
     visibility_store_finish(&store);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_found_again),
-        cmocka_unit_test(test_bound),
-        cmocka_unit_test(test_the_newest_is_kept_alone),
-        cmocka_unit_test(test_many_small),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,22 +2,15 @@
 /* What is shown, hinted at, hidden and cut away; and how clients say so. */
 #include "message/visibility.h"
 
+#include "tests/support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "render/view.h"
 #include "tests/support/small_scene.h"
 
-static void looks_of_assets(void **state)
+TEST(looks_of_assets)
 {
-    (void)state;
     struct visibility v = { 0 };
     assert_int_equal(visibility_of(&v, 0), ASSET_SHOWN);
     assert_int_equal(visibility_of(&v, ASSET_SET_MAX + 5), ASSET_SHOWN);
@@ -35,9 +28,8 @@ static void looks_of_assets(void **state)
     assert_int_equal(v.hidden.count, 2);
 }
 
-static void equal_views_are_equal(void **state)
+TEST(equal_views_are_equal)
 {
-    (void)state;
     struct visibility a = { 0 }, b = { 0 };
     assert_true(visibility_equal(&a, &b));
     asset_set_add(&a.ghosts, 4000);
@@ -52,9 +44,8 @@ static void equal_views_are_equal(void **state)
     assert_false(visibility_equal(&a, &b));
 }
 
-static void a_box_keeps_what_is_in_it(void **state)
+TEST(a_box_keeps_what_is_in_it)
 {
-    (void)state;
     struct clip clip;
     double min[3], max[3];
     clip_box(&clip, (double[3]){ -1, -2, -3 }, (double[3]){ 1, 2, 3 });
@@ -66,9 +57,8 @@ static void a_box_keeps_what_is_in_it(void **state)
 }
 
 /* Random rays and planes: a place of the ray is in the part that stays if and only if every plane keeps it. */
-static void rays_are_cut_where_planes_are(void **state)
+TEST(rays_are_cut_where_planes_are)
 {
-    (void)state;
     srand(3);
     int kept = 0;
     for (int round = 0; round < 20000; round++) {
@@ -116,9 +106,8 @@ static void assert_printed(const struct visibility *visibility, const char *text
     json_decref(want);
 }
 
-static void what_is_said_comes_back(void **state)
+TEST(what_is_said_comes_back)
 {
-    (void)state;
     struct visibility v = { 0 };
     assert_printed(&v, "{\"hidden\":[],\"isolate\":[],\"ghost\":[],\"clip\":null}");
     struct params_change change = parse("{\"hidden\":[\"P-101A\"],\"clip\":{\"planes\":[[0,-2,0,1]]}}");
@@ -135,9 +124,8 @@ static void what_is_said_comes_back(void **state)
     assert_int_equal(nothing.given, 0);
 }
 
-static void assets_start_as_the_plant_says(void **state)
+TEST(assets_start_as_the_plant_says)
 {
-    (void)state;
     struct plant_asset *assets = small_scene()->plant->assets;
     struct view view;
     assets[0].start = PLANT_START_GHOST;
@@ -151,15 +139,4 @@ static void assets_start_as_the_plant_says(void **state)
     change = parse("{\"ghost\":[]}");
     visibility_apply(&change, &view.visibility);
     assert_true(visibility_equal(&view.visibility, &(struct visibility){ 0 }));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(looks_of_assets),           cmocka_unit_test(equal_views_are_equal),
-        cmocka_unit_test(a_box_keeps_what_is_in_it), cmocka_unit_test(rays_are_cut_where_planes_are),
-        cmocka_unit_test(what_is_said_comes_back),   cmocka_unit_test(assets_start_as_the_plant_says),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What desks send to walls: one order for each pane, kept over a restart; pointers; places that are not in the plant file. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tests/support/test.h"
 
-#include <cmocka.h>
 #include <jansson.h>
 
 #include "base/mem.h"
@@ -49,6 +42,8 @@ static int tear_down(void **state)
     return 0;
 }
 
+#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+
 static const struct wall_place MAIN = { "room", "main", 1 };
 
 static const char *order(struct fixture *f, const char *view, bool held)
@@ -66,9 +61,8 @@ static void assert_list(char *text, size_t count, const char *part)
     mem_free(text);
 }
 
-static void the_newest_order_counts_and_is_kept(void **state)
+CASE(the_newest_order_counts_and_is_kept)
 {
-    struct fixture *f = *state;
     assert_null(order(f, "group=t", false));
     assert_null(order(f, "group=p", false));
     wall_remote_close(&f->remote);
@@ -82,9 +76,8 @@ static void the_newest_order_counts_and_is_kept(void **state)
     assert_list(wall_remote_text(f->remote), 0, "walls");
 }
 
-static void places_are_those_of_the_plant_file(void **state)
+CASE(places_are_those_of_the_plant_file)
 {
-    struct fixture *f = *state;
     assert_null(wall_place_wrong(&f->plant, &MAIN));
     assert_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "", 1 }));
     assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "hall", "main", 1 }));
@@ -98,9 +91,8 @@ static void places_are_those_of_the_plant_file(void **state)
     assert_list(wall_remote_text(f->remote), 1, "group=t");
 }
 
-static void pointers_are_told_once(void **state)
+CASE(pointers_are_told_once)
 {
-    struct fixture *f = *state;
     const double at[3] = { 1, 2, 3 };
     wall_remote_point(f->remote, &MAIN, at, "kim", "Desk 2");
     assert_list(wall_remote_pointers_text(f->remote, 0), 1, "Desk 2, kim");
@@ -116,9 +108,8 @@ static void pointers_are_told_once(void **state)
     assert_list(wall_remote_pointers_text(f->remote, number), WALL_POINTERS, "a23");
 }
 
-static void displays_come_and_go(void **state)
+CASE(displays_come_and_go)
 {
-    struct fixture *f = *state;
     wall_remote_see(f->remote, "room", 1, true);
     uint64_t number = wall_remote_number(f->remote);
     assert_list(wall_remote_text(f->remote), 0, "{\"wall\":\"room\",\"display\":1}");
@@ -128,24 +119,10 @@ static void displays_come_and_go(void **state)
     assert_list(wall_remote_text(f->remote), 0, "\"displays\":[]");
 }
 
-static void without_a_folder_it_is_forgotten_with_the_daemon(void **state)
+CASE(without_a_folder_it_is_forgotten_with_the_daemon)
 {
-    struct fixture *f = *state;
     wall_remote_close(&f->remote);
     f->remote = wall_remote_open(f->log, &f->plant, NULL);
     assert_null(order(f, "group=t", false));
     assert_list(wall_remote_text(f->remote), 1, "group=t");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(the_newest_order_counts_and_is_kept, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(places_are_those_of_the_plant_file, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(pointers_are_told_once, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(displays_come_and_go, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(without_a_folder_it_is_forgotten_with_the_daemon, set_up, tear_down),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

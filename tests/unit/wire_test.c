@@ -2,15 +2,10 @@
 /* The frame header against the vectors that the browser's reader is tested with too, and against random bytes. */
 #include "protocol/wire.h"
 
+#include "tests/support/test.h"
 #include <dirent.h>
 #include <jansson.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"
@@ -106,9 +101,8 @@ static void check_vector(const char *name, bool *valid)
     mem_free(bin);
 }
 
-static void reads_and_writes_the_vectors(void **state)
+TEST(reads_and_writes_the_vectors)
 {
-    (void)state;
     int good = 0, bad = 0;
     DIR *folder = opendir(FOLDER);
     assert_non_null(folder);
@@ -125,9 +119,8 @@ static void reads_and_writes_the_vectors(void **state)
     assert_true(good >= 9 && bad >= 17);
 }
 
-static void every_cut_of_a_frame_is_refused(void **state)
+TEST(every_cut_of_a_frame_is_refused)
 {
-    (void)state;
     size_t count;
     uint8_t *bytes = (uint8_t *)text_read_file(FOLDER "/jpeg-key.bin", 1 << 20, &count);
     struct wire_frame frame;
@@ -139,9 +132,8 @@ static void every_cut_of_a_frame_is_refused(void **state)
 }
 
 /* Whatever is accepted is within its ranges, and is written back as it was read. */
-static void random_headers_are_refused_or_sane(void **state)
+TEST(random_headers_are_refused_or_sane)
 {
-    (void)state;
     unsigned seed = (unsigned)sweep_seed(), accepted = 0;
     size_t count;
     uint8_t *bytes = (uint8_t *)text_read_file(FOLDER "/jpeg-key.bin", 1 << 20, &count);
@@ -163,15 +155,4 @@ static void random_headers_are_refused_or_sane(void **state)
     }
     mem_free(bytes);
     assert_true(accepted > 1000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_and_writes_the_vectors),
-        cmocka_unit_test(every_cut_of_a_frame_is_refused),
-        cmocka_unit_test(random_headers_are_refused_or_sane),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

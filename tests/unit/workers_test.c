@@ -2,13 +2,8 @@
 /* The pool of threads: every job once, in order of start, loops that cover their range, also from within a job. */
 #include "base/workers.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
+#include "tests/support/test.h"
 #include <stdatomic.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
 
 #include "base/mem.h"
 
@@ -19,9 +14,8 @@ static void count_one(void *arg)
     atomic_fetch_add((_Atomic int *)arg, 1);
 }
 
-static void destroy_runs_what_was_submitted(void **state)
+TEST(destroy_runs_what_was_submitted)
 {
-    (void)state;
     for (int threads = 1; threads <= 4; threads++) {
         _Atomic int done = 0;
         struct workers *workers = workers_create(threads);
@@ -44,9 +38,8 @@ static void note_order(void *arg)
     job->order[(*job->next)++] = job->number; /* one worker: no two at a time */
 }
 
-static void one_worker_keeps_the_order(void **state)
+TEST(one_worker_keeps_the_order)
 {
-    (void)state;
     int order[100], next = 0;
     struct ordered jobs[100];
     struct workers *workers = workers_create(1);
@@ -74,9 +67,8 @@ static void visit(void *arg, size_t begin, size_t end)
         atomic_fetch_add(&range->visits[i], 1);
 }
 
-static void a_loop_covers_its_range_once(void **state)
+TEST(a_loop_covers_its_range_once)
 {
-    (void)state;
     static const size_t counts[] = { 0, 1, 7, 64, COUNT }, grains[] = { 1, 3, 64, 100000 };
     static _Atomic int visits[COUNT];
     struct workers *workers = workers_create(3);
@@ -104,9 +96,8 @@ static void loop_in_a_job(void *arg)
 }
 
 /* More loops than threads, all at once: none may wait for a helper that never comes. */
-static void loops_inside_of_jobs_end(void **state)
+TEST(loops_inside_of_jobs_end)
 {
-    (void)state;
     struct nested jobs[8];
     _Atomic int *visits = mem_array(8 * COUNT, sizeof(*visits));
     struct workers *workers = workers_create(2);
@@ -141,9 +132,8 @@ static void begin_and_end(void *arg)
     }
 }
 
-static void a_task_is_done_when_it_has_ended(void **state)
+TEST(a_task_is_done_when_it_has_ended)
 {
-    (void)state;
     for (int threads = 0; threads <= 3; threads++) {
         struct workers *workers = threads ? workers_create(threads) : NULL;
         _Atomic int done[20] = { 0 }, wrong = 0;
@@ -161,17 +151,4 @@ static void a_task_is_done_when_it_has_ended(void **state)
             assert_int_equal(done[i], 3);
     }
     workers_end(&(struct workers_task *){ NULL });
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(destroy_runs_what_was_submitted),
-        cmocka_unit_test(one_worker_keeps_the_order),
-        cmocka_unit_test(a_loop_covers_its_range_once),
-        cmocka_unit_test(loops_inside_of_jobs_end),
-        cmocka_unit_test(a_task_is_done_when_it_has_ended),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Declares the tests of a program. A test registers itself, so that no list can leave one out; tests run in the order of the file. */
+#ifndef TESTS_SUPPORT_TEST_H
+#define TESTS_SUPPORT_TEST_H
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h> /* needs setjmp.h, stdarg.h, stddef.h and stdint.h before it */
+
+/* Defines a test: TEST(readings_age) { ... }. `state` is what its fixture made. */
+#define TEST(name) TEST_WITH(name, NULL, NULL)
+
+/* Defines a test with fixtures of its own: functions that run before and after it, or NULL. */
+#define TEST_WITH(name, set_up, tear_down)                                                                                                 \
+    static void name(void **state);                                                                                                        \
+    __attribute__((constructor)) static void name##_is_registered(void)                                                                    \
+    {                                                                                                                                      \
+        test_add(&(struct CMUnitTest){ #name, name, set_up, tear_down, NULL }, __LINE__);                                                  \
+    }                                                                                                                                      \
+    static void name(__attribute__((unused)) void **state)
+
+/* Defines a test that gets its fixture as a typed argument. A file with many such tests shortens it:
+ * #define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down) */
+#define TEST_ON(argument, name, set_up, tear_down)                                                                                         \
+    static void name##_on(__attribute__((unused)) argument);                                                                               \
+    TEST_WITH(name, set_up, tear_down)                                                                                                     \
+    {                                                                                                                                      \
+        name##_on(*state);                                                                                                                 \
+    }                                                                                                                                      \
+    static void name##_on(__attribute__((unused)) argument)
+
+/* Names the fixtures of the whole program: functions that run before its first and after its last test, or NULL. */
+#define TEST_GROUP(set_up, tear_down)                                                                                                      \
+    __attribute__((constructor)) static void group_is_registered(void)                                                                     \
+    {                                                                                                                                      \
+        test_group(set_up, tear_down);                                                                                                     \
+    }
+
+/* Called by the macros above, before main. */
+void test_add(const struct CMUnitTest *test, int line);
+void test_group(CMFixtureFunction set_up, CMFixtureFunction tear_down);
+
+/* Runs the tests of this program and prints TAP. Returns how many failed. name: of the group, or NULL for the program's. A program without
+ * a main of its own gets one that calls this with NULL. */
+int tests_run(const char *name);
+
+#endif
