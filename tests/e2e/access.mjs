@@ -10,11 +10,10 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { encodeFrame, http, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const NGINX = '/usr/sbin/nginx';
-const absent = missing();
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, tokensFile, tokens;
 

@@ -9,10 +9,9 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { http, PlainClient } from './support/plain_client.mjs';
 import { sweep } from './support/sweep.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, trail, tokens, syslog;
 

@@ -5,10 +5,9 @@ import { appendFileSync, existsSync, mkdirSync, readdirSync, readFileSync, statS
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 const BEGIN_S = Math.floor(Date.now() / 1000) - 40 * 86400; // over a border of months
 let plant;
 

@@ -6,9 +6,9 @@ import { copyFileSync, existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
-import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
+import { BIN, notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing(), skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 const H264 = 'plantcast-h264.so', noFilms = skip || (existsSync(join(BIN, H264)) ? false : 'built without H.264');
 const SESSIONS = 10, PROBES = 10, TOGETHER = 2;
 let plant, proxy, cert;

@@ -6,10 +6,9 @@ import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'n
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { BIN, missing } from './support/tiny_plant.mjs';
+import { BIN, notBuilt } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 
 // A square of this side, as a glTF file.
 function square(side) {

@@ -5,14 +5,13 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Pace } from './support/crowd.mjs';
 import { Node, Nodes, sleep, until } from './support/nodes.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { otherVersion } from './support/other_version.mjs';
-import { missing, Program, runProgram } from './support/tiny_plant.mjs';
+import { promise } from './support/promise.mjs';
+import { notBuilt, Program, runProgram } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 300000 };
+const options = { skip: notBuilt(), timeout: 300000 };
 let nodes, core, a, b;
 
 before(async () => {
@@ -89,15 +88,14 @@ test('notes and views of one node are there at the others', options, async () =>
 });
 
 test('a core that is killed: within 3 s everything is Bad, and said; acts are refused; it comes back whole', options, async (t) => {
-    const client = await a.client({}, { token: nodes.tokens.operator }), pace = new Pace();
-    t.after(() => pace.stop());
+    const client = await a.client({}, { token: nodes.tokens.operator });
     const { port } = core;
     await core.stop('SIGKILL');
     const began = performance.now();
     await until('Bad', async () => Object.values(await a.tags()).every(({ quality_name }) => quality_name.startsWith('Bad')));
     await client.until('it being said', ({ texts }) => texts.some(({ type, links, live }) => type === 'status' && !live &&
         links.some(({ source, up }) => source === 'core' && !up)));
-    pace.hold(t, 'until all is Bad, and said', performance.now() - began, 3000);
+    promise(t, 'until all is Bad, and said', performance.now() - began, 3000);
     client.say(ack(7));
     assert.equal((await client.text('error')).code, 'core_lost');
     core = await nodes.core(port);
@@ -114,19 +112,17 @@ test('a core that is killed: within 3 s everything is Bad, and said; acts are re
 });
 
 test('a core that hangs is lost, too, after 2 s; and a renderer that takes nothing holds up nobody', options, async (t) => {
-    const pace = new Pace();
-    t.after(() => pace.stop());
     let began = performance.now();
     core.program.child.kill('SIGSTOP');
     await until('Bad', async () => (await a.tags())['TI-1'].quality_name.startsWith('Bad'));
-    pace.hold(t, 'until it is lost', performance.now() - began, 3000);
+    promise(t, 'until it is lost', performance.now() - began, 3000);
     core.program.child.kill('SIGCONT');
     await all(async (node) => (await node.tags())['TI-1'].quality_name === 'Good');
     b.program.child.kill('SIGSTOP');
     began = performance.now();
     await nodes.plant.tell('set TI-2 33');
     await until('the other one', async () => (await a.tags())['TI-2'].value === 33);
-    pace.hold(t, 'until the other one has it', performance.now() - began, 3000);
+    promise(t, 'until the other one has it', performance.now() - began, 3000);
     b.program.child.kill('SIGCONT');
     await all(async (node) => (await node.tags())['TI-2'].value === 33);
 });

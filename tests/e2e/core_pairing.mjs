@@ -3,12 +3,11 @@
 import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { Pace } from './support/crowd.mjs';
 import { Nodes, until } from './support/nodes.mjs';
-import { missing, runProgram } from './support/tiny_plant.mjs';
+import { promise } from './support/promise.mjs';
+import { notBuilt, runProgram } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 240000 };
+const options = { skip: notBuilt(), timeout: 240000 };
 const WALLS = `
 views: [{ id: whole, title: Whole unit, view: "group=temperature" }]
 walls:
@@ -71,12 +70,11 @@ test('it is that display, at the renderer and at the core', options, async () =>
 });
 
 test('who was let in is so while the core is away, and is told that there are no values; nobody new is', options, async (t) => {
-    const client = await asDevice(renderer), { port } = core, pace = new Pace();
-    t.after(() => pace.stop());
+    const client = await asDevice(renderer), { port } = core;
     await core.stop('SIGKILL');
     const began = performance.now();
     await client.until('it being said', ({ texts }) => texts.some(({ type, live }) => type === 'status' && !live));
-    pace.hold(t, 'until it is said', performance.now() - began, 4000);
+    promise(t, 'until it is said', performance.now() - began, 4000);
     client.close();
     const again = await asDevice(renderer);
     assert.equal(again.welcome.role, 'viewer');
@@ -87,11 +85,10 @@ test('who was let in is so while the core is away, and is told that there are no
 });
 
 test('revoked at one renderer it is out within 3 s', options, async (t) => {
-    const client = await until('the display', () => asDevice(renderer)), pace = new Pace();
-    t.after(() => pace.stop());
+    const client = await until('the display', () => asDevice(renderer));
     const revoking = performance.now(), { kept } = await act({ type: 'unpair', seq: 3, id: 'room.1.1' });
     assert.equal(kept, true);
     await client.until('the end', ({ closed }) => closed);
-    pace.hold(t, 'until it is out', performance.now() - revoking, 3000);
+    promise(t, 'until it is out', performance.now() - revoking, 3000);
     assert.equal((await ask(renderer)).paired, false);
 });

@@ -9,10 +9,9 @@ import { IdentityProvider } from './support/identity_provider.mjs';
 import { Nodes, until } from './support/nodes.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
-import { missing, runProgram } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 120000 };
+const options = { skip: notBuilt(), timeout: 120000 };
 let nodes, core, renderer, provider, identity, engineer;
 
 const path = (name) => join(nodes.plant.folder, name);

@@ -7,10 +7,9 @@ import { after, before, test } from 'node:test';
 import { arrive, openPage, PHONE, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { startAlarmed } from './support/panels.mjs';
 import { sweep } from './support/sweep.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const options = { skip: notBuilt(), timeout: 200000 };
 const SCREENS = { desk: { viewport: { width: 1280, height: 800 } },
     ...sweep({ 'large desk': { viewport: { width: 1920, height: 1080 } }, tablet: TABLET }, {}),
     'tablet upright': { ...TABLET, viewport: { width: 768, height: 1024 } }, phone: PHONE,

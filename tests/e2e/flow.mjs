@@ -2,7 +2,7 @@
 // Many clients at once, good and bad ones: what each costs the server, and the others. SOAK_S=1800 for the long form.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { camera, median, metrics, Mover, openFiles, openMany, Pace, residentKb, sanitized, sleep } from './support/crowd.mjs';
+import { camera, median, metrics, Mover, openFiles, openMany, residentKb, sanitized, sleep } from './support/crowd.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { Relay, relayMissing } from './support/relay.mjs';
 import { seed, sweep } from './support/sweep.mjs';
@@ -30,8 +30,7 @@ test('a hundred viewers of one view: one render, one encode, a hundred sends', {
     const leader = await PlainClient.open(plant.port), { session } = await leader.hello({ width: 640, height: 360 });
     const viewers = await openMany(plant.port, VIEWERS - 1, {}, { width: 640, height: 360 });
     const all = [leader, ...viewers], steps = 6;
-    const pace = new Pace();
-    t.after(() => { pace.stop(); all.forEach((client) => client.close()); });
+    t.after(() => all.forEach((client) => client.close()));
     for (const client of viewers)
         client.say({ type: 'follow', session });
     await Promise.all(all.map((c) => c.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0)));
@@ -47,13 +46,8 @@ test('a hundred viewers of one view: one render, one encode, a hundred sends', {
     const end = await metrics(plant.port, ...names);
     const [renders, encodes, frames] = end.map((value, i) => value - start[i]);
     assert.ok(frames >= steps * VIEWERS, `${frames} frames`);
-    const counts = `${renders} renders and ${encodes} encodes for ${frames} frames of ${steps} views`;
-    if (renders <= 2 * steps && encodes <= 2 * steps)
-        return;
-    if (pace.busy) // who comes late finds the picture under way
-        t.skip(`${counts}; ${pace.busy}`);
-    else
-        assert.fail(counts);
+    assert.ok(renders <= 2 * steps && encodes <= 2 * steps,
+        `${renders} renders and ${encodes} encodes for ${frames} frames of ${steps} views`);
 });
 
 // What a daemon has once pictures of a size were drawn is no client's.
@@ -98,14 +92,12 @@ test('1 Mbit/s and 200 ms: never more than a second old, and not felt by another
     const mover = new Mover(fast), slow = await PlainClient.open(relay.port), late = [], rounds = [];
     await slow.hello({ width: 1280, height: 720, camera: camera(1, 0) });
     await slow.frameWhere('a frame', () => true);
-    const pace = new Pace();
     t.after(() => {
-        for (const one of [mover, pace])
-            one.stop();
+        mover.stop();
         for (const one of [fast, slow, relay])
             one.close();
     });
-    // In turn, so that what else this machine does changes both. What delays the fast client too is not the slow line's.
+    // Both rates in turn. A delay that the fast client sees too is not the slow line's.
     for (let round = 0, frames = 0; round < 3; round++) {
         await sleep(500);
         const alone = await mover.rate(1000), slowMover = new Mover(slow, 30, frames), begin = performance.now();
@@ -118,10 +110,6 @@ test('1 Mbit/s and 200 ms: never more than a second old, and not felt by another
     }
     const best = Math.max(...rounds.map(({ alone, beside }) => beside / alone)), said = JSON.stringify(rounds);
     console.log(`# fast and slow: ${said}; slow later by at most ${late.map(Math.round)} ms`);
-    if (!rounds.every(({ frames }) => frames > 3) && pace.busy) {
-        t.skip(`${said}; ${pace.busy}`);
-        return;
-    }
     assert.ok(rounds.every(({ frames }) => frames > 3), said);
     assert.ok(sanitized || Math.min(...late) < 900, `pictures ${late.map(Math.round)} ms old`);
     assert.ok(best > 0.7, `beside a slow client: ${said}`);
@@ -177,7 +165,7 @@ test(`random connects, drags, stalls and cuts for ${SOAK_S} s: nothing grows`, {
     const filesBefore = openForClients(), begin = performance.now(), end = begin + SOAK_S * 1000;
     const steady = await PlainClient.open(plant.port);
     await steady.hello();
-    const mover = new Mover(steady, 30), pace = new Pace();
+    const mover = new Mover(steady, 30);
     const wanderers = Array.from({ length: 6 }, () => wander(plant.port, random, end));
     const memory = [];
     for (let next = begin; next < end; next = performance.now()) {
@@ -187,17 +175,15 @@ test(`random connects, drags, stalls and cuts for ${SOAK_S} s: nothing grows`, {
     }
     await Promise.all(wanderers);
     mover.stop();
-    pace.stop();
     steady.close();
     await sleep(1000);
     const third = SOAK_S * 1000 / 3, within = (list, from, to) => median(list
         .filter(({ at }) => at >= begin + from * third && at < begin + to * third).map(({ ms }) => ms));
     const [early, late] = [within(mover.waits, 1, 2), within(mover.waits, 2, 3)];
-    const slower = Math.max(1, within(pace.times, 2, 3) / within(pace.times, 1, 2)); // so is everything else here
     const half = memory.length >> 1, grownKb = median(memory.slice(-4)) - median(memory.slice(half, half + 4));
     console.log(`# latency ${early.toFixed(1)}, then ${late.toFixed(1)} ms; memory ${grownKb} kB more in the second half`);
     console.log(`# MB: ${memory.map((kb) => (kb / 1024).toFixed(1)).join(' ')}`);
-    assert.ok(late < 1.5 * slower * early + 20, `latency grew from ${early.toFixed(1)} to ${late.toFixed(1)} ms`);
+    assert.ok(late < 1.5 * early + 20, `latency grew from ${early.toFixed(1)} to ${late.toFixed(1)} ms`);
     assert.ok(sanitized || grownKb < 8 * 1024, `memory grew by ${grownKb} kB`);
     const patience = performance.now() + 180000;
     for (; openForClients().length > filesBefore.length; await sleep(250)) // of those who went last

@@ -8,10 +8,9 @@ import { after, test } from 'node:test';
 import { Faults, faultsMissing } from './support/faults.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { sweep } from './support/sweep.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : faultsMissing() ?? false;
+const skip = notBuilt() || (faultsMissing() ?? false);
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const LOSSES = Number(process.env.LOSSES ?? sweep(4, 2)), WARM = ['80', '35'], STILL = 2, GROWTH_BYTES = 24e6, ROUNDS = 3;
 const PATIENCE_MS = 180000;

@@ -3,15 +3,14 @@
 import assert from 'node:assert/strict';
 import { connect } from 'node:net';
 import { after, before, test } from 'node:test';
-import { Pace } from './support/crowd.mjs';
 import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
 import { Nodes, sleep, until } from './support/nodes.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
-import { missing } from './support/tiny_plant.mjs';
+import { promise } from './support/promise.mjs';
+import { notBuilt } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingHaproxy() ?? false, timeout: 200000 };
+const options = { skip: notBuilt() || (missingHaproxy() ?? false), timeout: 200000 };
 const VIEWERS = 40, BACK_MS = 10000;
 let nodes, core, renderers, proxy, viewers;
 
@@ -146,8 +145,7 @@ test('kill -9 of one of two: all are back within 10 s, with their views; no ackn
     };
     const acks = [acknowledge(hit[0], 'TI-1', 1)];
     await until('the first', () => done.length > 0);
-    const killed = performance.now(), pace = new Pace();
-    t.after(() => pace.stop());
+    const killed = performance.now();
     acks.push(acknowledge(hit[1], 'TI-2', 2));
     await renderers[0].stop('SIGKILL');
     acks.push(acknowledge(hit[2], 'PI-1', 3));
@@ -155,7 +153,7 @@ test('kill -9 of one of two: all are back within 10 s, with their views; no ackn
     await Promise.all(hit.map((viewer) => viewer.shows()));
     const took_ms = performance.now() - killed;
     t.diagnostic(`${hit.length} of ${VIEWERS} sessions back on the other node, each with its view, after ${(took_ms / 1000).toFixed(1)} s`);
-    pace.hold(t, 'until all are back', took_ms, BACK_MS);
+    promise(t, 'until all are back', took_ms, BACK_MS);
     assert.ok(hit.every(({ welcome, node }) => welcome.resumed && node === 'r2'));
     assert.equal(new Set(viewers.map(({ welcome }) => welcome.session)).size, VIEWERS, 'each has its number');
     await Promise.all(acks);

@@ -3,11 +3,11 @@
 // the renderer are not lost.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { Pace } from './support/crowd.mjs';
 import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { PostgresServer } from './support/postgres_server.mjs';
+import { promise } from './support/promise.mjs';
 import { kill, missingTwoCores, TAKE_OVER_MS, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores() || (missingHaproxy() ?? false), options = { skip, timeout: 240000 };
@@ -64,13 +64,12 @@ for (const [signal, how] of [['SIGKILL', 'kill -9'], ['SIGTERM', 'an end in good
         await two.followed(core);
         await two.plant.tell('set TI-1 95');
         await until('the alarm', async () => (await journal()).some(({ state }) => state === 'unacknowledged'));
-        const rows = (await journal()).length, began = performance.now(), pace = new Pace();
-        t.after(() => pace.stop());
+        const rows = (await journal()).length, began = performance.now();
         await two.takeOver(t, core, kill(core, signal));
         await until('an answer', async () => (await ask('/api/v1/alarms/journal?tag=TI-1')).status === 200);
         const took_ms = performance.now() - began;
         t.diagnostic(`answers again after ${(took_ms / 1000).toFixed(1)} s`);
-        pace.hold(t, 'until an answer', took_ms, TAKE_OVER_MS + CHECKS_MS);
+        promise(t, 'until an answer', took_ms, TAKE_OVER_MS + CHECKS_MS);
         assert.equal(await chosen(), other.name);
         await until('readings at the renderer', async () =>
             (await renderer.tags(two.nodes.tokens.viewer))['TI-1'].quality_name === 'Good');

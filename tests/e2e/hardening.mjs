@@ -7,10 +7,9 @@ import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { get, PlainClient } from './support/plain_client.mjs';
-import { BIN, missing, PROGRAMS, TinyPlant } from './support/tiny_plant.mjs';
+import { BIN, notBuilt, PROGRAMS, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 const UNIT = 'deploy/systemd/plantcastd@.service', has = (program) => spawnSync('which', [program]).status === 0;
 const read = (program, ...what) => spawnSync('readelf', ['-W', ...what, join(BIN, program)], { encoding: 'utf8' }).stdout;
 

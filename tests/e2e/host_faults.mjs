@@ -7,9 +7,10 @@ import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { after, test } from 'node:test';
 import { get } from './support/plain_client.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { until } from './support/until.mjs';
 
-const absent = missing(), skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 const scratch = mkdtempSync(join(tmpdir(), 'plantcast-faults-'));
 const at = (name) => join(scratch, name), sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const sh = (line) => spawnSync('/bin/sh', ['-euc', line], { encoding: 'utf8' });
@@ -29,12 +30,6 @@ const unmount = () => sh(`umount ${volume} 2>/dev/null || umount -l ${volume}`);
 async function gauge(plant, name) {
     const { body } = await get(plant.port, '/metrics');
     return Number(String(body).match(new RegExp(`^${name} (.*)$`, 'm'))?.[1]);
-}
-async function until(what, ask, timeoutMs = 60000) {
-    for (const end = Date.now() + timeoutMs; Date.now() < end; await sleep(250))
-        if (await ask())
-            return;
-    assert.fail(`not within ${timeoutMs / 1000} s: ${what}`);
 }
 const ledger = (plant, folder) => runProgram('plantcast',
     ['history', 'export', plant.file, '--tags', 'TI-1', '--folder', folder, '--from', '-1h']).out.trim().split('\n').slice(1);

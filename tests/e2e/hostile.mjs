@@ -10,14 +10,14 @@ import { after, before, test } from 'node:test';
 import { encodeFrame, get, PlainClient } from './support/plain_client.mjs';
 import { missing as missingDemo, startPlant } from './support/plant.mjs';
 import { cpuMs } from './support/processes.mjs';
-import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { promise } from './support/promise.mjs';
+import { BIN, notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 const noDemo = missingDemo();
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const SILENT = 1000, PATIENCE_S = 3, FLOOD_PER_S = 10000, PATIENCE_MS = 60000;
-const PINGS = 4000, MESSAGES_PER_S = 1000, ASKED_FPS = 54; // of 60 cameras a second
+const PINGS = 4000, MESSAGES_PER_S = 1000;
 const HELLO = { type: 'hello', width: 320, height: 180, codecs: ['jpeg'] };
 const LEAST_CPU_S = 0.4; // of one viewer that gets all its frames
 const MOST_TIMES = 5; // of the processor time that one viewer costs: all of them and the viewer
@@ -115,12 +115,10 @@ test('ten thousand messages a second are read at the pace allowed, and all of th
     await reaches(async () => await metric('plantcast_messages_total') > before[0] + PINGS); // it counts once a second at least
     const read = await metric('plantcast_messages_total') - before[0], told = await metric('plantcast_message_errors_total') - before[1];
     assert.ok(read > PINGS, `${read} messages read`); // hello, and an acknowledgement of each frame
-    // Where the machine is too busy to read so many within a second, nobody is too fast in it.
+    // A daemon that is too slow to read so many messages within a second meets nobody who is too fast.
     const reads = took < 1000 * (PINGS / MESSAGES_PER_S + 1), said = `too fast: said ${told} times in ${took.toFixed(0)} ms`;
     assert.ok(told >= full || !reads, said);
     assert.equal(client.texts.some((m) => m.code === 'too_fast'), told > 0, said);
-    if (told < full)
-        t.skip(`the rest is good; the machine is busy: ${said}`);
 });
 
 test('all at once: nobody else is slowed, and each has its answer', { skip }, async (t) => {
@@ -172,21 +170,17 @@ test('all at once: nobody else is slowed, and each has its answer', { skip }, as
         assert.ok([1008, 1013].includes((await closed(guess)).code)); // the first ten, then they are slowed
     assert.equal(guesses[0].texts[0].code, 'bad_token');
     flood.close();
-    const busy = alone < ASKED_FPS; // others take so much that even who is left alone falls behind: it says nothing of this daemon
     const rates = `${alone.toFixed(1)} frames/s of a daemon without them, ${beside.toFixed(1)} beside all of them; processor ` +
         `${tookAlone.toFixed(2)} and ${took.toFixed(2)} s of 4`;
-    // However busy the machine is: what they cost is not hidden by what they slow.
     assert.ok(took < MOST_TIMES * Math.max(tookAlone, LEAST_CPU_S), rates);
-    assert.ok(busy || beside > 0.7 * alone, rates);
     console.log(`# ${rates}`);
+    promise(t, 'a frame beside all of them', 1000 / beside, 1000 / (0.7 * alone));
 
     await reaches(() => descriptors() <= filesBefore);
     assert.ok(descriptors() <= filesBefore, `${filesBefore} descriptors before, ${descriptors()} after`);
     await reaches(async () => await metric('plantcast_sessions') === 0 && await metric('plantcast_connections') <= 1);
     assert.equal(await metric('plantcast_sessions'), 0);
     assert.ok(await metric('plantcast_connections') <= 1, 'but the one that asks');
-    if (busy)
-        t.skip(`the rest is good; the machine is busy: ${alone.toFixed(1)} of 60 frames/s without any of them`);
 });
 
 test('beyond the limit connections are cut off, and there is room again once others go', { skip }, async () => {

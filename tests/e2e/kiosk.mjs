@@ -11,7 +11,7 @@ import { after, afterEach, before, test } from 'node:test';
 import { SCREENSHOTS } from './support/browser.mjs';
 import { freePort } from './support/ports.mjs';
 import { family } from './support/processes.mjs';
-import { missing, startTiny } from './support/tiny_plant.mjs';
+import { notBuilt, startTiny } from './support/tiny_plant.mjs';
 import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
 
 const CHROMIUM = '/usr/bin/chromium';
@@ -168,8 +168,7 @@ test('in cage, which draws into memory here, as on a monitor', { ...options, ski
     }
 });
 
-const absent = missing();
-const noPlant = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const noPlant = notBuilt();
 test('it shows a wall of a plant', { ...options, skip: why || noPlant }, async () => {
     const plant = await startTiny(`
 views: [{ id: whole, title: Whole unit, view: "group=temperature" }]

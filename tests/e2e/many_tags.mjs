@@ -6,10 +6,10 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Client } from './conformance/client.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
+import { until } from './support/until.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 280000 };
+const options = { skip: notBuilt(), timeout: 280000 };
 const MANY = 20000;
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const name = (i) => `X-${String(i).padStart(5, '0')}`;
@@ -46,13 +46,6 @@ async function pages(count) {
         if (page.tags.length < count)
             return tags;
     }
-}
-
-async function until(what, found, seconds = 120) {
-    for (const end = performance.now() + seconds * 1000; performance.now() < end; await sleep(200))
-        if (await found())
-            return;
-    assert.fail(`not within ${seconds} s: ${what}`);
 }
 
 test('pages hold every tag once, in order, with what its register holds', options, async () => {

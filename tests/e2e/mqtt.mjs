@@ -6,12 +6,11 @@ import { createServer } from 'node:net';
 import packets from 'mqtt-packet';
 import { after, afterEach, before, test } from 'node:test';
 import { Broker, missingBroker } from './support/broker.mjs';
-import { Pace } from './support/crowd.mjs';
+import { promise } from './support/promise.mjs';
 import { PublishedPlant } from './support/published_plant.mjs';
-import { missing, runProgram } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingBroker() ?? false, timeout: 240000 };
+const options = { skip: notBuilt() || (missingBroker() ?? false), timeout: 240000 };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const TAGS = {
     number: ['TI-1,plant/ti1,,°C,temperature,E-101,0.5,0,0,30,,,,,', 'TI-2,,,°C,temperature,E-101,-0.5,0,0,2,,,,,',
@@ -78,13 +77,11 @@ for (const protocol of ['5', '3.1.1'])
         publisher = await broker.client({ reconnectPeriod: 100 });
         await publisher.tell('plant/ti1', 20);
         await until('TI-1', { ...good, value: 20 });
-        const pace = new Pace();
-        t.after(() => pace.stop());
         await broker.kill();
         const killed = performance.now();
         await until('TI-1', { quality_name: 'Bad_CommunicationError', value: null });
         await until('PI-1', { quality_name: 'Bad_NoCommunication' });
-        pace.hold(t, 'until all is Bad, at once', performance.now() - killed, 1000);
+        promise(t, 'until all is Bad, at once', performance.now() - killed, 1000);
         assert.equal(await metric('up{source="broker"}'), 0);
         await broker.restart();
         for (const end = performance.now() + 90000; await metric('up{source="broker"}') !== 1; await sleep(100))

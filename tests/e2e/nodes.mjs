@@ -6,11 +6,10 @@ import { existsSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'nod
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { BIN, missing } from './support/tiny_plant.mjs';
+import { BIN, notBuilt } from './support/tiny_plant.mjs';
 
-const absent = missing();
 const DATA = join(import.meta.dirname, '../../../shared/data');
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 
 // A triangle of the given size, as a data URI, in as many nodes as asked for.
 function model(nodes, size = 1, meshName = 'plate') {

@@ -5,10 +5,9 @@ import { appendFileSync, existsSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Client, FLAG } from './conformance/client.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const BEGIN_S = Math.floor(Date.now() / 1000) - 3600;
 const at = (s) => (BEGIN_S + s) * 1e6;

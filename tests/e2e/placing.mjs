@@ -8,11 +8,10 @@ import { appendFileSync, existsSync, readdirSync, readFileSync, renameSync, rmSy
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Client } from './conformance/client.mjs';
-import { Pace } from './support/crowd.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { promise } from './support/promise.mjs';
+import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 const options = { skip, timeout: 240000 };
 let plant, tagsFile, seq = 0;
 
@@ -233,10 +232,9 @@ test('while another program is at work in the plant\'s folder, a list is not sav
     t.after(() => held.stdin.end());
     await once(held.stdout, 'data');
     engineer.say('save_tags', { seq: ++seq, confirm: hash });
-    const began = performance.now(), pace = new Pace();
-    t.after(() => pace.stop());
+    const began = performance.now();
     await probe(engineer);
-    pace.hold(t, 'until the loop, which does not wait, answers', performance.now() - began, 2000);
+    promise(t, 'until the loop, which does not wait, answers', performance.now() - began, 2000);
     const refused = await engineer.text('tags_saved', 60000);
     assert.equal(refused.saved, false);
     assert.match(refused.errors.join(), /^the plant's folder .*: (flock|sh) \(process \d+\) is at work in it; try again/);

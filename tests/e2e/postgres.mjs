@@ -5,12 +5,14 @@ import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
+import { median } from './support/crowd.mjs';
 import { CuttableLink, missingPostgres, PostgresServer } from './support/postgres_server.mjs';
+import { promise } from './support/promise.mjs';
 import { sweep } from './support/sweep.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { until as waitFor } from './support/until.mjs';
 
-const absent = missing();
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : missingPostgres() ?? false;
+const skip = notBuilt() || (missingPostgres() ?? false);
 const AWAY_MS = sweep(600000, 0); // for so long more is the database away
 const options = { skip, timeout: 240000 + AWAY_MS };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -73,10 +75,7 @@ async function metric(name) {
     const text = await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text();
     return Number(text.match(new RegExp(`^plantcast_${name} (\\S+)`, 'm'))?.[1] ?? NaN);
 }
-async function until(what, good, seconds = 60) {
-    for (const end = performance.now() + seconds * 1000; !(await good()); await sleep(100))
-        assert.ok(performance.now() < end, `${what}; the daemon said:\n${plant.daemon.said.slice(-3000)}`);
-}
+const until = (what, ask, seconds = 60) => waitFor(what, ask, seconds, () => plant.daemon.said.slice(-3000));
 const settled = () => until('nothing waits', async () => await metric('postgres_up') === 1 && await metric('postgres_waiting_points') === 0
     && await metric('history_waiting_points') === 0);
 
@@ -211,7 +210,7 @@ test('nothing is lost while the server is killed, nor while it is frozen; live r
     const ages = [];
     for (const end = performance.now() + 5000; performance.now() < end; await sleep(100))
         ages.push(await age());
-    assert.ok(ages.sort((a, b) => a - b)[Math.floor(ages.length / 2)] < 1000, `ages of readings meanwhile: ${ages}`);
+    promise(t, 'age of readings meanwhile, median', median(ages), 1000);
     assert.equal(await metric('history_good'), 1);
     server.thaw();
     const points = await assertSame(from);

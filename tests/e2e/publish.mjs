@@ -6,10 +6,10 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Broker, missingBroker } from './support/broker.mjs';
 import { PublishedPlant } from './support/published_plant.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { until as waitFor } from './support/until.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingBroker() ?? false, timeout: 240000 };
+const options = { skip: notBuilt() || (missingBroker() ?? false), timeout: 240000 };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const PREFIX = 'plantcast/two boxes';
 let broker, plant, other, plain, client, heard, publications;
@@ -52,10 +52,7 @@ async function listen() {
     await new Promise((done, fail) => client.subscribe('#', (error) => (error ? fail(error) : done())));
 }
 
-async function until(what, good, seconds = 90) {
-    for (const end = performance.now() + seconds * 1000; !good(); await sleep(50))
-        assert.ok(performance.now() < end, `${what}; heard ${JSON.stringify(heard)}`);
-}
+const until = (what, ask) => waitFor(what, ask, 90, () => `heard ${JSON.stringify(heard)}`);
 const tag = (name) => JSON.parse(heard[`${PREFIX}/tags/${name}`] ?? '{}');
 
 test('values with their time, quality and unit; each tag has a topic of one level', options, async () => {

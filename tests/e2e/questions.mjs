@@ -5,12 +5,11 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { connect } from 'node:net';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Pace } from './support/crowd.mjs';
 import { get } from './support/plain_client.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { promise } from './support/promise.mjs';
+import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 240000 };
+const options = { skip: notBuilt(), timeout: 240000 };
 const TAGS = 64, POINTS = Number(process.env.PLANTCAST_POINTS ?? 4000), BEGIN_S = 1793500000, READERS = 64;
 const SECONDS = Number(process.env.PLANTCAST_SECONDS ?? 2); // longer, and with more points, by hand
 const GREEDY = { localAddress: '127.0.0.2' }, OTHER = { localAddress: '127.0.0.3' };
@@ -94,8 +93,7 @@ test('readers who do not read cost little memory, and others have their answers'
 });
 
 test('who asks for all, all the time, leaves others their answers', options, async (t) => {
-    const pace = new Pace(), alone = await othersSeconds();
-    t.after(() => pace.stop());
+    const alone = await othersSeconds();
     let going = true, had = 0;
     const greedy = Array.from({ length: 8 }, () => new Promise((done) => {
         const socket = connect({ port: plant.port, host: '127.0.0.1', ...GREEDY }, () => socket.write(head(all)));
@@ -118,5 +116,5 @@ test('who asks for all, all the time, leaves others their answers', options, asy
     await Promise.all(greedy);
     console.log(`# another's answer took ${alone.toFixed(2)} s alone, ${slowest.toFixed(2)} s at most beside ${(had / 1e6).toFixed(0)} MB`);
     assert.ok(had > 1e6);
-    pace.hold(t, 'another\'s answer', 1000 * slowest, 1000 * Math.max(1, 20 * alone));
+    promise(t, 'another\'s answer', 1000 * slowest, 1000 * Math.max(1, 20 * alone));
 });

@@ -13,6 +13,7 @@ import { test } from 'node:test';
 import { copyGroup, findGroup, readRvm, writeRvm } from './support/rvm_file.mjs';
 import { sweep } from './support/sweep.mjs';
 import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
+import { until } from './support/until.mjs';
 
 const absent = missing();
 const SAMPLE = join(import.meta.dirname, '../../../shared/data/cad/plm-sample');
@@ -230,12 +231,6 @@ test('under a daemon that runs: readings, history and alarms keep their tags', {
     for (const name of readdirSync(plant))
         rmSync(join(plant, name), { recursive: true });
     const api = async (path) => (await fetch(`http://127.0.0.1:${tiny.port}${path}`)).json();
-    const until = async (what, f) => {
-        for (const end = Date.now() + 60000; Date.now() < end; await sleep(100))
-            if (await f())
-                return;
-        assert.fail(what);
-    };
     const value = async (name) => (await api('/api/v1/tags')).tags.find((tag) => tag.name === name);
     const points = async (name) => JSON.stringify(await api(`/api/v1/history?tags=${name}&from=-10m`));
     const outside = mkdtempSync(join(tmpdir(), 'plantcast-revised-'));

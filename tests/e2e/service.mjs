@@ -9,12 +9,12 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Client } from './conformance/client.mjs';
-import { Pace } from './support/crowd.mjs';
 import { get } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
-import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { promise } from './support/promise.mjs';
+import { BIN, notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing(), skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 const has = (program) => spawnSync('which', [program]).status === 0;
 const WATCHDOG_S = 10, WITHIN_S = 30; // as in the unit
 let plant, runtime;
@@ -124,8 +124,7 @@ test('as the first process of a container, it ends when it is told to while it p
 
 for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 'the loop']])
     test(`if ${what} hangs, the watchdog ends the daemon within ${WITHIN_S} s; before, it lives`, { skip, timeout: 240000 }, async (t) => {
-        const service = serve(['--port', '0'], ['--watchdog', String(WATCHDOG_S)]), pace = new Pace();
-        t.after(() => pace.stop());
+        const service = serve(['--port', '0'], ['--watchdog', String(WATCHDOG_S)]);
         await service.said(/^notify: READY=1$/m);
         await service.said(/(notify: WATCHDOG=1[^]*){6}/); // 2 s apart, so for longer than the manager waits for one
         service.order(`freeze ${thread}`);
@@ -134,7 +133,7 @@ for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 't
         assert.equal(await service.ended, 99, service.out);
         const took_ms = performance.now() - began;
         console.log(`# ${what}: ended after ${(took_ms / 1000).toFixed(1)} s`);
-        pace.hold(t, 'until it ended', took_ms, 1000 * WITHIN_S);
+        promise(t, 'until it ended', took_ms, 1000 * WITHIN_S);
         if (thread === 'render')
             assert.match(service.err, /render thread: no sign of life; the service manager will start the daemon again/);
     });

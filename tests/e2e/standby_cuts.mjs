@@ -4,9 +4,9 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { Pace } from './support/crowd.mjs';
 import { otherVersion } from './support/other_version.mjs';
 import { PostgresServer } from './support/postgres_server.mjs';
+import { promise } from './support/promise.mjs';
 import { kill, missingTwoCores, sleep, TAKE_OVER_MS, terms, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores(), options = { skip, timeout: 240000 };
@@ -108,15 +108,14 @@ test('a leader is loaded anew while the database says nothing, and its standby a
     const core = await two.leader();
     await two.followed(core);
     await core.toDatabase.freeze();
-    const since = two.network.now(), pace = new Pace();
-    t.after(() => pace.stop());
+    const since = two.network.now();
     core.program.said = '';
     core.program.child.kill('SIGHUP');
     await core.program.line(/reload: configuration/);
     await two.goesOn(t, core, 3);
     const pause_ms = await two.network.longestPause(since);
     t.diagnostic(`${pause_ms.toFixed(0)} ms without a poller`);
-    pace.hold(t, 'without a poller', pause_ms, TAKE_OVER_MS);
+    promise(t, 'without a poller', pause_ms, TAKE_OVER_MS);
     await core.toDatabase.mend();
     await two.followed(core);
 });

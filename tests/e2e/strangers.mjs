@@ -9,10 +9,9 @@ import { connect as connectTls } from 'node:tls';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { encodeFrame, PlainClient } from './support/plain_client.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt();
 const FORWARDED = {
     'X-Forwarded-For': '203.0.113.7', Forwarded: 'for=203.0.113.7', 'X-Real-IP': '203.0.113.7', Via: '1.1 proxy.example',
     'X-Forwarded-Host': 'plant.example', 'X-Forwarded-Proto': 'https',

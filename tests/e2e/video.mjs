@@ -2,14 +2,14 @@
 // A view as video, read by programs that others wrote: constant rate, the clock in its pixels, and a card in place of an old picture.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { appendFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { appendFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { networkInterfaces, tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { SCREENSHOTS } from './support/browser.mjs';
-import { Pace } from './support/crowd.mjs';
 import { freePort } from './support/ports.mjs';
+import { promise } from './support/promise.mjs';
 import { sweep } from './support/sweep.mjs';
 import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -148,15 +148,14 @@ test('every second is there, on time, whatever happens', { ...options, timeout: 
 });
 
 test('a server that dies or hangs: a card within 3 s, and pictures again by themselves', options, async (t) => {
-    const reader = readRtsp(), pace = new Pace();
-    t.after(() => pace.stop());
+    const reader = readRtsp();
     await reader.until(({ card }) => !card);
     for (const signal of ['SIGSTOP', 'SIGKILL']) {
         const port = plant.port, begun = Date.now();
         plant.daemon.child.kill(signal);
         const { at } = await reader.until(({ card }) => card);
         // 3 s, and the reader's own buffers on a loaded machine
-        pace.hold(t, `${signal}: to the card on the reader's screen`, at - begun, 3400);
+        promise(t, `${signal}: to the card on the reader's screen`, at - begun, 3400);
         if (signal === 'SIGSTOP') {
             plant.daemon.child.kill('SIGCONT');
         } else {
@@ -168,7 +167,7 @@ test('a server that dies or hangs: a card within 3 s, and pictures again by them
     }
     plant.sim.child.kill('SIGSTOP'); // values are stale after 1 s
     const begun = Date.now(), { at } = await reader.until(({ card }) => card);
-    pace.hold(t, 'from the last value to the card', at - begun, 5000);
+    promise(t, 'from the last value to the card', at - begun, 5000);
     assert.match(video.said, /no sensor that is shown tells a value/);
     plant.sim.child.kill('SIGCONT');
     await reader.until(({ card }) => !card);
@@ -193,8 +192,6 @@ test('it ends when it is told to', options, async () => {
 });
 
 test('a token that is none, or is revoked, and a view that is not there: a card that says so', options, async (t) => {
-    const pace = new Pace();
-    t.after(() => pace.stop());
     const tokens = join(plant.folder, 'tokens'), token = join(folder, 'token');
     const made = runProgram('plantcast', ['token', 'add', tokens, '--role', 'viewer', '--name', 'video']);
     assert.equal(made.code, 0, made.err);
@@ -208,7 +205,7 @@ test('a token that is none, or is revoked, and a view that is not there: a card 
     const begun = Date.now();
     assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'video']).code, 0);
     const { at } = await reader.until(({ card }) => card);
-    pace.hold(t, 'to the card', at - begun, 5400); // 3 s to the server's, 1 s to the next picture, and the reader's buffers
+    promise(t, 'to the card', at - begun, 5400); // 3 s to the server's, 1 s to the next picture, and the reader's buffers
     assert.match(program.said, /does not take this token/);
     await reader.stop();
     await program.stop();

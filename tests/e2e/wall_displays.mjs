@@ -6,9 +6,9 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
 import { BIN } from './support/plant.mjs';
-import { missing, startTiny } from './support/tiny_plant.mjs';
+import { notBuilt, startTiny } from './support/tiny_plant.mjs';
 
-const absent = missing(), why = absent.length > 0 && `not built: ${absent.join(', ')}`;
+const why = notBuilt();
 const options = { skip: why, timeout: 300000 };
 const WALLS = `
 views:

@@ -5,10 +5,9 @@ import { appendFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { openPage } from './support/browser.mjs';
 import { PlainClient } from './support/plain_client.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 240000 };
+const options = { skip: notBuilt(), timeout: 240000 };
 const [WIDTH, HEIGHT] = [640, 360], NEAR_MS = 2500;
 const WALLS = `
 views: [{ id: all, title: All, view: "group=temperature&camera=3.5,-7,1,1.5,0,0,0,0,1,30" }]

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
-import { Pace } from './support/crowd.mjs';
+import { promise } from './support/promise.mjs';
 import { sweep } from './support/sweep.mjs';
 import { missing, startTiny } from './support/tiny_plant.mjs';
 
@@ -46,8 +46,6 @@ const live = (since) => wall.page.waitForFunction(([picture, words]) => {
 }, [since.picture, since.words], { polling: 200 });
 
 test(`${LOSSES} losses: each is said, and ends by itself`, options, async (t) => {
-    const pace = new Pace();
-    t.after(() => pace.stop());
     await wall.page.waitForFunction(() => globalThis.wall?.panes.length > 0); // until then it is another page
     await live({ picture: 0, words: 0 });
     let slowest = 0;
@@ -63,6 +61,6 @@ test(`${LOSSES} losses: each is said, and ends by itself`, options, async (t) =>
         await live(before);
     }
     console.log(`# said after ${slowest} ms at most`);
-    pace.hold(t, 'until it is said', slowest, 10000);
+    promise(t, 'until it is said', slowest, 10000);
     assert.deepEqual(wall.errors, []);
 });

@@ -6,11 +6,11 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, shoot, waitForPicture } from './support/browser.mjs';
-import { Pace } from './support/crowd.mjs';
 import { PlainClient } from './support/plain_client.mjs';
-import { missing, runProgram, startTiny } from './support/tiny_plant.mjs';
+import { promise } from './support/promise.mjs';
+import { notBuilt, runProgram, startTiny } from './support/tiny_plant.mjs';
 
-const absent = missing(), why = absent.length > 0 && `not built: ${absent.join(', ')}`;
+const why = notBuilt();
 const options = { skip: why, timeout: 300000 };
 const WALLS = `
 views:
@@ -276,8 +276,6 @@ test('a viewer notes, sends and points at nothing; who may stands in the audit t
 });
 
 test('it is dark within 3 s of being revoked', options, async (t) => {
-    const pace = new Pace();
-    t.after(() => pace.stop());
     await desk.page.waitForFunction(() => {
         const { welcomed, connection } = globalThis.plantcast.session;
         return welcomed && connection.state === 'open';
@@ -285,7 +283,7 @@ test('it is dark within 3 s of being revoked', options, async (t) => {
     await desk.page.locator(`#devices-list li[data-id="${id}"] button`).click({ timeout: 60000 });
     const clicked = Date.now();
     await wall.page.locator('#denied').waitFor();
-    pace.hold(t, 'until it is dark', Date.now() - clicked, 3000);
+    promise(t, 'until it is dark', Date.now() - clicked, 3000);
     assert.equal(await wall.page.locator('.pane').count(), 0);
     assert.match(audit(), /engineer-1.*unpair room\.1\.1/);
     await digitsOf(wall.page);

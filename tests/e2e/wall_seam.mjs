@@ -8,11 +8,10 @@ import { burnShift } from '../../clients/web/core/wall.js';
 import { openPage, SCREENSHOTS, shoot } from './support/browser.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { pixelsOf } from './support/png_pixels.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 import { savePng } from './support/x_display.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 240000 };
+const options = { skip: notBuilt(), timeout: 240000 };
 const [WIDTH, HEIGHT] = [640, 360], SCREEN = { viewport: { width: WIDTH, height: HEIGHT } }, MARGIN = 3, STILL = 2;
 const WALLS = `
 views:

@@ -7,10 +7,9 @@ import { burnShift } from '../../clients/web/core/wall.js';
 import { Canvas } from './support/png_pixels.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { Relay, relayMissing } from './support/relay.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 240000 };
+const options = { skip: notBuilt(), timeout: 240000 };
 const [WIDTH, HEIGHT] = [320, 180], KEY = 1, STILL = 2, MORE = 8;
 const WALLS = `
 views: [{ id: all, title: All, view: "group=temperature" }]

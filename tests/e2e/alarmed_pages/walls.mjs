@@ -6,10 +6,9 @@ import { after, before, test } from 'node:test';
 import { openPage, shoot, waitForPicture } from '../support/browser.mjs';
 import { startAlarmed } from '../support/panels.mjs';
 import { sweep } from '../support/sweep.mjs';
-import { missing } from '../support/tiny_plant.mjs';
+import { notBuilt } from '../support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const options = { skip: notBuilt(), timeout: 200000 };
 const HD = { width: 1920, height: 1080 }, UHD = { width: 3840, height: 2160 }, UPRIGHT = { width: 1080, height: 1920 };
 const WALLS = [
     ['55,4', HD], ['85,8', HD, 'de'], ['10,50', UPRIGHT],

@@ -6,10 +6,9 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { drawnAt, openPage, settle, shoot, view, waitForPicture } from '../support/browser.mjs';
 import { sweep } from '../support/sweep.mjs';
-import { missing, TinyPlant } from '../support/tiny_plant.mjs';
+import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const options = { skip: notBuilt(), timeout: 200000 };
 const ASSETS = 200, TAGS_EACH = 100;
 let plant, browser, page;
 

@@ -6,10 +6,9 @@ import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, travel, waitForHealth, waitForPicture } from '../support/browser.mjs';
-import { missing, TinyPlant } from '../support/tiny_plant.mjs';
+import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const options = { skip: notBuilt(), timeout: 200000 };
 const SCREEN = { viewport: { width: 1280, height: 720 } };
 let plant, url, desk, german, wall;
 

@@ -8,12 +8,11 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { DESKTOP, openPage, PHONE, shoot, waitForPicture } from '../support/browser.mjs';
 import { freePort } from '../support/ports.mjs';
-import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const PASSES = 'proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection "upgrade";';
 const NGINX = '/usr/sbin/nginx', LINES = /proxy_set_header Upgrade \$http_upgrade; proxy_set_header Connection "upgrade";/;
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const options = { skip: notBuilt(), timeout: 200000 };
 const withNginx = { ...options, skip: options.skip || (existsSync(NGINX) ? false : 'nginx is not installed') };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant;

@@ -6,10 +6,9 @@ import { after, before, test } from 'node:test';
 import { land, openPage, PHONE, shoot, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { startAlarmed } from '../support/panels.mjs';
 import { sweep } from '../support/sweep.mjs';
-import { missing } from '../support/tiny_plant.mjs';
+import { notBuilt } from '../support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const options = { skip: notBuilt(), timeout: 200000 };
 const MOST_BYTES = 200000, QUIET_MS = 1500;
 const source = readFileSync(new URL('../../../clients/web/app/lazy_modules.js', import.meta.url), 'utf8');
 const PARTS = [...source.matchAll(/^    (\w+): \{ file:/gm)].map(([, name]) => name);

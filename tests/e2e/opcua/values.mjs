@@ -7,8 +7,8 @@ import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { shareOpcua } from './server.mjs';
-import { Pace } from '../support/crowd.mjs';
 import { opcuaOptions } from '../support/opcua.mjs';
+import { promise } from '../support/promise.mjs';
 import { PublishedPlant } from '../support/published_plant.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { BIN, runProgram } from '../support/tiny_plant.mjs';
@@ -67,8 +67,6 @@ test('values, status codes and times come as they are, and nothing is ever writt
 });
 
 test('all tags are Bad as soon as the server is gone; all is subscribed anew, whatever number its namespace has', options, async (t) => {
-    const pace = new Pace();
-    t.after(() => pace.stop());
     await server.anew();
     await plant.run(server.security(), ROWS);
     await until('TI-1', { ...good, value: 20 });
@@ -76,7 +74,7 @@ test('all tags are Bad as soon as the server is gone; all is subscribed anew, wh
     const killed = performance.now();
     await until('TI-1', { quality_name: 'Bad_CommunicationError', value: null });
     await until('PI-1', { quality_name: 'Bad_CommunicationError' });
-    pace.hold(t, 'until all is Bad, at once', performance.now() - killed, 2000);
+    promise(t, 'until all is Bad, at once', performance.now() - killed, 2000);
     assert.equal(await plant.metric('up{source="plc"}'), 0);
     await server.restart({ shifted: 3 });
     await until('TI-1', { ...good, value: 20 }, 40);

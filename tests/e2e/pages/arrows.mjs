@@ -6,10 +6,9 @@ import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { DESKTOP, FLYING, openPage, PHONE, settle, shoot, waitForPicture } from '../support/browser.mjs';
-import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const options = { skip: notBuilt(), timeout: 200000 };
 const SENSORS = [0, 90, 180, 270], LOST = 270; // whose direction goes Bad once it fails; others stay uncertain while the device is away
 let plant, browser;
 

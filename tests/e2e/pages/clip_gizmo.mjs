@@ -3,10 +3,9 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { drawnAt, openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
-import { missing, TinyPlant } from '../support/tiny_plant.mjs';
+import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const options = { skip: notBuilt(), timeout: 200000 };
 let plant, url, browser, page;
 
 before(async () => {

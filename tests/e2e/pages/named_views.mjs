@@ -3,9 +3,9 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, view, waitForPicture } from '../support/browser.mjs';
-import { missing, startTiny } from '../support/tiny_plant.mjs';
+import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
 
-const absent = missing(), why = absent.length > 0 && `not built: ${absent.join(', ')}`;
+const why = notBuilt();
 const options = { skip: why, timeout: 200000 };
 const FROM_ABOVE = 'group=temperature&colormap=turbo&camera=8,2,30,8,6,0,0,0,1,45';
 let plant, browser, page;

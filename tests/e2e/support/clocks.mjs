@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Programs whose wall clock is wrong (tests/faults/clock_off.c).
 import { existsSync, writeFileSync } from 'node:fs';
-import { join, resolve } from 'node:path';
+import { resolve } from 'node:path';
 
 const LIBRARY = resolve(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/clock_off.so');
 export const missingClocks = () => (existsSync(LIBRARY) ? null : 'not built: clock_off.so');

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Clients by the dozen, and what they cost the daemon.
-import assert from 'node:assert/strict';
 import { readdirSync, readFileSync, readlinkSync } from 'node:fs';
-import { availableParallelism } from 'node:os';
 import { get, PlainClient } from './plain_client.mjs';
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -66,45 +64,6 @@ export class Mover {
 
     stop() {
         clearInterval(this.timer);
-    }
-}
-
-// What a processor is to be had for, time and again: how long the same piece of work takes, by the time of its end, and how many threads
-// want one just then. To judge times of the daemon by, which other programs delay as much.
-export class Pace {
-    constructor() {
-        this.times = [];
-        this.timer = setInterval(() => this.work(), 100);
-    }
-
-    work() {
-        const begin = performance.now();
-        for (let i = 0, x = 1; i < 1e6; i++)
-            x = Math.imul(x, 1664525) + 1013904223;
-        const wanting = Number(readFileSync('/proc/loadavg', 'utf8').match(/ (\d+)\//)[1]);
-        this.times.push({ at: performance.now(), ms: performance.now() - begin, wanting });
-    }
-
-    stop() {
-        clearInterval(this.timer);
-    }
-
-    // Why times of the daemon mean nothing, or null: others take too much of the machine. Where they do so all the time, no piece of work
-    // is done sooner than another.
-    get busy() {
-        const times = this.times.map(({ ms }) => ms), typical = median(times), least = Math.min(...times);
-        const wanting = median(this.times.map((one) => one.wanting)), processors = availableParallelism();
-        if (wanting > 2 * processors)
-            return `the machine is busy: ${wanting} threads want its ${processors} processors`;
-        return typical < 1.5 * least ? null : `the machine is busy: ${least.toFixed(1)} ms of work took ${typical.toFixed(1)} ms`;
-    }
-
-    // That it took less than mostMs; where others take so much of the machine that this means nothing, t is a skip instead.
-    hold(t, what, ms, mostMs) {
-        if (ms >= mostMs && this.busy)
-            t.skip(`${what}: ${ms} ms; ${this.busy}`);
-        else
-            assert.ok(ms < mostMs, `${what}: ${ms} ms`);
     }
 }
 

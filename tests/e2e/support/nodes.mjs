@@ -6,19 +6,11 @@ import { openFiles } from './crowd.mjs';
 import { PlainClient } from './plain_client.mjs';
 import { freePort } from './ports.mjs';
 import { Program, runProgram, TinyPlant } from './tiny_plant.mjs';
+import { until } from './until.mjs';
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-// seconds: where nothing is held to a time, patience.
-export async function until(what, good, seconds = 90) {
-    for (const end = performance.now() + seconds * 1000; ; await sleep(50)) {
-        const found = await good();
-        if (found)
-            return found;
-        if (performance.now() > end)
-            throw new Error(`waited ${seconds} s for ${what}`);
-    }
-}
+export { until };
 
 // Of a program; one that has ended has none.
 function sockets(pid) {

@@ -193,8 +193,11 @@ export class PlainClient {
             const answer = question(this);
             if (answer !== null && answer !== undefined && answer !== false)
                 return answer;
-            if (performance.now() > end)
-                throw new Error(`waited ${timeoutMs} ms for ${what}; closed: ${JSON.stringify(this.closed)}`);
+            if (performance.now() > end) {
+                const { payload, ...frame } = this.frames.at(-1) ?? {}, came = this.texts.slice(-3).map((text) => JSON.stringify(text));
+                throw new Error(`waited ${timeoutMs} ms for ${what}; closed: ${JSON.stringify(this.closed)}; came: ` +
+                    `${this.frames.length} frames, the last ${JSON.stringify(frame)}; the last messages ${came.join(' ').slice(0, 600)}`);
+            }
             await new Promise((done) => { this.waiting.push(done); setTimeout(done, 50); });
         }
     }

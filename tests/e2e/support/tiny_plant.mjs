@@ -15,6 +15,9 @@ const NOBODY = 65534;
 export const PROGRAMS = ['plantcastd', 'plantcast-prep', 'plantcast-sim', 'plantcast'];
 export const missing = () => PROGRAMS.filter((name) => !existsSync(join(BIN, name)));
 
+// Why a test of the tiny plant is skipped, or false.
+export const notBuilt = () => (missing().length > 0 ? `not built: ${missing().join(', ')}` : false);
+
 // A glTF of one box, a metre wide, deep and high, every face with its own corners.
 function boxModel() {
     const positions = [], normals = [], indices = [];

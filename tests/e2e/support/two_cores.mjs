@@ -5,11 +5,11 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { Pace } from './crowd.mjs';
 import { Network } from './network_thread.mjs';
 import { Node, Nodes, sleep, until } from './nodes.mjs';
 import { freePort } from './ports.mjs';
 import { missingPostgres } from './postgres_server.mjs';
+import { promise } from './promise.mjs';
 import { missing, runProgram } from './tiny_plant.mjs';
 
 export const TAKE_OVER_MS = 5000;
@@ -130,8 +130,7 @@ ${more}`);
 
     // Kills or stops who leads; returns who leads then, and for how long nobody polled.
     async takeOver(t, core, how) {
-        const other = this.other(core), since = this.network.now() - 500, pace = new Pace();
-        t.after(() => pace.stop());
+        const other = this.other(core), since = this.network.now() - 500;
         core.program.stopped = true;
         await how();
         this.takeOvers = (this.takeOvers ?? 0) + 1;
@@ -140,9 +139,8 @@ ${more}`);
         await sleep(300);
         const pause_ms = await this.network.longestPause(since);
         assert.deepEqual(await this.network.overlaps(), []);
-        pace.stop();
         assert.ok(pause_ms > 0);
-        pace.hold(t, 'without a poller', pause_ms, TAKE_OVER_MS);
+        promise(t, 'without a poller', pause_ms, TAKE_OVER_MS);
         return { leads: other, pause_ms };
     }
     async restart(core) {
@@ -151,15 +149,13 @@ ${more}`);
     }
     // For so long nothing may change: who leads goes on, and nobody else.
     async goesOn(t, core, seconds) {
-        const since = this.network.now(), other = this.other(core), before = terms(other), pace = new Pace();
-        t.after(() => pace.stop());
+        const since = this.network.now(), other = this.other(core), before = terms(other);
         await sleep(seconds * 1000);
         assert.ok(await this.ready(core), `${core.name} leads:\n${core.program.said.slice(-2000)}`);
         assert.ok(!await this.ready(other));
         assert.equal(terms(other), before);
         assert.deepEqual(await this.network.overlaps(), []);
-        pace.stop();
-        pace.hold(t, 'without a poller', await this.network.longestPause(since), 1500);
+        promise(t, 'without a poller', await this.network.longestPause(since), 1500);
     }
 
     async destroy() {

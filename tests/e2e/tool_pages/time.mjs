@@ -6,10 +6,9 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, PHONE, settle, shoot, TABLET, travel, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { contrastRatio } from '../support/pixels.mjs';
-import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const options = { skip: notBuilt(), timeout: 200000 };
 const BEGIN_S = Math.floor(Date.now() / 1000) - 3000;
 let plant, browser, page;
 
