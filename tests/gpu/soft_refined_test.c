@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Still pictures without a GPU against the same ones drawn by GL; and pictures that are coloured once more against new ones. */
+/* Still pictures without a GPU: lines, slivers and poles against the same ones drawn by GL; pictures coloured again against new ones. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -12,62 +12,11 @@
 static struct rig rig;
 static struct stand stand;
 
-TEST(test_home)
-{
-    struct view view;
-    soft_start_view(&stand, TIER_REFINED, 640, 360, &view);
-    soft_assert_like_gl(&stand, &view, 0.005);
-    view.look = LOOK_FLAT;
-    soft_assert_like_gl(&stand, &view, 0.005);
-    view.look = LOOK_MATERIALS;
-    soft_assert_like_gl(&stand, &view, 0.01);
-    view.look = LOOK_GLOSSY;
-    soft_assert_like_gl(&stand, &view, 0.01);
-    view.look = LOOK_DEFAULT;
-    view.range_min = 10;
-    view.color_scale.log = true;
-    soft_assert_like_gl(&stand, &view, 0.005);
-}
-
-TEST(test_sizes)
-{
-    static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 } };
-    for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
-        struct view view;
-        soft_start_view(&stand, TIER_REFINED, sizes[i][0], sizes[i][1], &view);
-        soft_assert_like_gl(&stand, &view, 0.08);
-    }
-}
-
-/* All round, from far away, from below and from among the pipes, where triangles pass the eye. */
-TEST(test_cameras)
-{
-    struct view view;
-    soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
-    for (int i = 0; i < 12; i++) {
-        stand_look(&stand, i, &view);
-        soft_assert_like_gl(&stand, &view, 0.02);
-    }
-}
-
-/* Rays are parallel. */
-TEST(test_orthographic)
-{
-    for (int i = 0; i < 12; i++) {
-        struct view view;
-        soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
-        stand_look(&stand, i, &view);
-        view.camera.height_m = i % 3 ? 6 : 1.5;
-        soft_assert_like_gl(&stand, &view, 0.02);
-    }
-}
-
 /* Lines, bands and logarithms. Rims of lines differ by the way slopes are measured. */
 TEST(test_lines_and_scales)
 {
     for (int i = 0; i < 8; i++) {
-        struct view view;
-        soft_start_view(&stand, TIER_REFINED, 400, 300, &view);
+        struct view view = soft_view(&stand, TIER_REFINED, 400, 300);
         stand_look(&stand, i, &view);
         view.camera.height_m = i == 7 ? 6 : 0;
         if (i % 4 != 1)
@@ -80,93 +29,6 @@ TEST(test_lines_and_scales)
         view.look = i % 4 == 3 ? LOOK_FLAT : i >= 5 ? LOOK_GLOSSY : LOOK_DEFAULT;
         soft_assert_like_gl(&stand, &view, 0.02);
     }
-}
-
-static void set_limits(bool set)
-{
-    struct plant *plant = &stand.toy->plant;
-    const double limits[LIMIT_COUNT] = { 0, 20, 70, 90 };
-    for (size_t tag = 0; tag < plant->tag_count; tag++)
-        for (int i = 0; i < LIMIT_COUNT; i++)
-            plant->tags[tag].limits[i] = set && tag != 2 ? limits[i] : NAN;
-}
-
-/* One tag without limits: what is near it is plain. What has no field is grey. */
-TEST(test_operator)
-{
-    struct view view;
-    set_limits(true);
-    soft_start_view(&stand, TIER_REFINED, 400, 300, &view);
-    view.field.show = SHOW_OPERATOR;
-    view_default_scale(&stand.toy->scene, &view);
-    for (int camera = 0; camera < 6; camera++) {
-        soft_assert_like_gl(&stand, &view, 0.02);
-        stand_look(&stand, 2 * camera, &view);
-    }
-    set_limits(false);
-}
-
-/* Bodies that are closed have caps, the inner side of others shows. */
-TEST(test_cuts)
-{
-    for (int i = 0; i < 12; i++) {
-        struct view view;
-        soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
-        stand_look(&stand, i, &view);
-        view.camera.height_m = i % 5 == 4 ? 6 : 0;
-        if (i % 3 == 0)
-            soft_cut_at(&view, 0, 0, 0, -1, 0.2 + 0.1 * i);
-        if (i % 3 == 1)
-            soft_cut_at(&view, 0, 0.6, 0.64, -0.48, 0.3);
-        if (i % 3 == 2)
-            clip_box(&view.visibility.clip, (double[3]){ -0.8, -0.5, -0.2 }, (double[3]){ 2.1, 0.3, 1.1 });
-        soft_assert_like_gl(&stand, &view, 0.02);
-    }
-}
-
-TEST(test_ghosts)
-{
-    for (int i = 0; i < 8; i++) {
-        struct view view;
-        soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
-        stand_look(&stand, i, &view);
-        view.dark = i % 2;
-        view.camera.height_m = i == 6 ? 6 : 0;
-        asset_set_add(&view.visibility.ghosts, i % 4);
-        asset_set_add(&view.visibility.ghosts, 1);
-        if (i == 5)
-            soft_cut_at(&view, 0, 0.6, 0.64, -0.48, 0.3);
-        soft_assert_like_gl(&stand, &view, 0.02);
-    }
-}
-
-TEST(test_suns)
-{
-    struct view view;
-    soft_start_view(&stand, TIER_REFINED, 400, 300, &view);
-    for (int i = 0; i < 4; i++) {
-        double towards[3] = { 0.6 * cos(i), 0.6 * sin(i), 0.8 };
-        memcpy(view.light_dir, towards, sizeof(towards));
-        soft_assert_like_gl(&stand, &view, 0.01);
-    }
-}
-
-TEST(test_outlines)
-{
-    struct view view;
-    soft_start_view(&stand, TIER_REFINED, 640, 360, &view);
-    for (int asset = 0; asset < (int)stand.toy->scene.asset_count; asset++) {
-        view.selected_asset = asset;
-        soft_assert_like_gl(&stand, &view, 0.02);
-    }
-}
-
-TEST(test_hidden_assets)
-{
-    struct view view;
-    soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
-    asset_set_add(&view.visibility.hidden, 1);
-    soft_assert_like_gl(&stand, &view, 0.01);
 }
 
 /* A floor of 8 m, cut into strips that share their edges. */
@@ -199,7 +61,7 @@ static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
     toy_add(toy, "FLOOR", &floor, (double[3]){ 0, 0, 0 }, NULL, 0);
     toy_add(toy, "BOX", &box, (double[3]){ 0, 0, 0.5 }, NULL, 0);
     stand_init(&stand, &rig, toy);
-    soft_start_view(&stand, TIER_REFINED, 400, 300, &view);
+    view = soft_view(&stand, TIER_REFINED, 400, 300);
     memcpy(view.light_dir, light, sizeof(view.light_dir));
     struct frame *frame = soft_draw_anew(&stand, &view);
     stand_finish(&stand);
@@ -210,8 +72,7 @@ static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
 /* By one that never drew anything: of two that are under way at a time, one is new. */
 TEST(test_nothing_in_sight)
 {
-    struct view view;
-    soft_start_view(&stand, TIER_REFINED, 320, 180, &view);
+    struct view view = soft_view(&stand, TIER_REFINED, 320, 180);
     for (int c = 0; c < 3; c++) /* the sky behind */
         view.camera.target_m[c] = 2 * view.camera.eye_m[c] - view.camera.target_m[c];
     struct render_job *first = planned_begin(stand.renderer, &view, stand.snapshot);
@@ -257,7 +118,7 @@ TEST(test_thin_poles_have_no_beads)
     shape_box(&pole, TOY_STEEL, (double[3]){ -0.056, -0.056, 0 }, (double[3]){ 0.056, 0.056, 8 });
     toy_add(toy, "POLE", &pole, (double[3]){ 0, 0, 0 }, NULL, 0);
     stand_init(&stand, &rig, toy);
-    soft_start_view(&stand, TIER_REFINED, 200, 300, &view);
+    view = soft_view(&stand, TIER_REFINED, 200, 300);
     view.camera = (struct camera){ .eye_m = { 0, -30, 4 }, .target_m = { 0, 0, 4 }, .up = { 0.05, 0, 1 }, .fov_deg = 17.6 };
     struct frame *frames[] = { soft_draw_anew(&stand, &view), soft_draw_by_gl(&stand, &view) };
     for (int by_gl = 0; by_gl < 2; by_gl++) {
@@ -302,8 +163,7 @@ static void assert_same_anew(const struct view *view)
 
 TEST(test_new_readings_are_a_new_picture)
 {
-    struct view view;
-    soft_start_view(&stand, TIER_REFINED, 501, 300, &view);
+    struct view view = soft_view(&stand, TIER_REFINED, 501, 300);
     view.selected_asset = 0;
     struct frame *first = soft_draw_anew(&stand, &view);
     toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
@@ -325,8 +185,7 @@ TEST(test_new_readings_are_a_new_picture)
 /* With isolines, their labels, ghosts and a cut. */
 TEST(test_lines_again)
 {
-    struct view view;
-    soft_start_view(&stand, TIER_REFINED, 501, 300, &view);
+    struct view view = soft_view(&stand, TIER_REFINED, 501, 300);
     soft_lines_every(&view, 10);
     asset_set_add(&view.visibility.ghosts, 2);
     soft_cut_at(&view, 0, 0, 0, -1, 1.2);
@@ -349,8 +208,7 @@ TEST(test_lines_again)
 TEST(test_glossy_again)
 {
     for (int i = 0; i < 4; i++) {
-        struct view view;
-        soft_start_view(&stand, TIER_REFINED, 501, 300, &view);
+        struct view view = soft_view(&stand, TIER_REFINED, 501, 300);
         stand_look(&stand, 2 * i, &view);
         view.look = LOOK_GLOSSY;
         view.dark = i == 1;
@@ -377,8 +235,7 @@ TEST(test_glossy_again)
 
 TEST(test_new_colors_too)
 {
-    struct view view;
-    soft_start_view(&stand, TIER_REFINED, 300, 200, &view);
+    struct view view = soft_view(&stand, TIER_REFINED, 300, 200);
     struct frame *frame = soft_draw_anew(&stand, &view);
     frame_unref(&frame);
     view.colormap = (int)colormap_count() - 1;
@@ -396,7 +253,7 @@ TEST(test_new_colors_too)
 TEST(test_what_else_changes_is_drawn)
 {
     struct view view, other;
-    soft_start_view(&stand, TIER_REFINED, 300, 200, &view);
+    view = soft_view(&stand, TIER_REFINED, 300, 200);
     struct frame *frame = soft_draw_anew(&stand, &view);
     frame_unref(&frame);
     assert_true(is_quick(&view));
@@ -422,7 +279,7 @@ TEST(test_few_large_ones_are_kept)
 {
     struct view views[4];
     for (int i = 0; i < 4; i++) {
-        soft_start_view(&stand, TIER_REFINED, 3000, 2600, &views[i]);
+        views[i] = soft_view(&stand, TIER_REFINED, 3000, 2600);
         views[i].camera.eye_m[0] += i;
         struct frame *frame = soft_draw_anew(&stand, &views[i]);
         frame_unref(&frame);
@@ -433,5 +290,5 @@ TEST(test_few_large_ones_are_kept)
 
 int main(void)
 {
-    return soft_run("refined_test", &rig, &stand, toy_unit);
+    return soft_run("soft_refined_test", &rig, &stand, toy_unit);
 }

@@ -112,7 +112,7 @@ static struct toy *make_plant(void)
 
 static void look(struct view *view, enum tier tier, int i)
 {
-    soft_start_view(&stand, tier, 480, 320, view);
+    *view = soft_view(&stand, tier, 480, 320);
     view->camera = (struct camera){ .eye_m = { 1 + 2.5 * (i % 3 - 1), i % 4 == 3 ? -1.5 : -4, 1 + 0.8 * (i % 4) },
                                     .target_m = { 1, 1, 0.9 },
                                     .up = { 0, 0, 1 },

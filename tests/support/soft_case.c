@@ -11,10 +11,12 @@
 #include "render/render_job.h"
 #include "tests/support/planned.h"
 
-void soft_start_view(const struct stand *stand, enum tier tier, int width_px, int height_px, struct view *view)
+struct view soft_view(const struct stand *stand, enum tier tier, int width_px, int height_px)
 {
-    view_default(&stand->toy->scene, width_px, height_px, view);
-    view->tier = tier;
+    struct view view;
+    view_default(&stand->toy->scene, width_px, height_px, &view);
+    view.tier = tier;
+    return view;
 }
 
 void soft_lines_every(struct view *view, double step)

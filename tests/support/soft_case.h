@@ -5,8 +5,8 @@
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
-/* Starts a view of the whole scene. */
-void soft_start_view(const struct stand *stand, enum tier tier, int width_px, int height_px, struct view *view);
+/* Returns a view of the whole scene. */
+struct view soft_view(const struct stand *stand, enum tier tier, int width_px, int height_px);
 void soft_lines_every(struct view *view, double step);
 void soft_cut_at(struct view *view, int plane, double x, double y, double z, double d); /* the last plane of the view's */
 /* Draws a frame in software, whatever was drawn before. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Moving pictures without a GPU against the same ones drawn by GL: every pixel and every marker. */
+/* Pictures of both tiers without a GPU against the same ones drawn by GL: every pixel and every marker. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -12,89 +12,103 @@
 static struct rig rig;
 static struct stand stand;
 
+/* Repeats what follows for both tiers. */
+#define EACH_TIER(tier) for (enum tier tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++)
+
 TEST(test_home)
 {
-    struct view view;
-    soft_start_view(&stand, TIER_PREVIEW, 640, 360, &view);
-    soft_assert_like_gl(&stand, &view, 0.002);
+    EACH_TIER(tier) {
+        struct view view = soft_view(&stand, tier, 640, 360);
+        soft_assert_like_gl(&stand, &view, tier == TIER_PREVIEW ? 0.002 : 0.005);
+    }
 }
 
 TEST(test_sizes)
 {
     enum { ONE_ROW_MORE = 185 }; /* than a tile has */
     static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 }, { 200, ONE_ROW_MORE } };
-    for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
-        struct view view;
-        soft_start_view(&stand, TIER_PREVIEW, sizes[i][0], sizes[i][1], &view);
-        soft_assert_like_gl(&stand, &view, 0.01);
-    }
+    EACH_TIER(tier)
+        for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
+            struct view view = soft_view(&stand, tier, sizes[i][0], sizes[i][1]);
+            soft_assert_like_gl(&stand, &view, tier == TIER_PREVIEW ? 0.01 : 0.08);
+        }
 }
 
-TEST(test_flat)
+TEST(test_looks)
 {
-    struct view view;
-    soft_start_view(&stand, TIER_PREVIEW, 400, 300, &view);
+    static const enum look looks[] = { LOOK_FLAT, LOOK_MATERIALS, LOOK_GLOSSY };
+    struct view view = soft_view(&stand, TIER_PREVIEW, 400, 300);
     view.look = LOOK_FLAT;
     view.colormap = (int)colormap_count() - 1;
     view.range_min = 30; /* some values lie below, some above */
     view.range_max = 70;
     soft_assert_like_gl(&stand, &view, 0.002);
+    view = soft_view(&stand, TIER_REFINED, 640, 360);
+    for (int i = 0; i < 3; i++) {
+        view.look = looks[i];
+        soft_assert_like_gl(&stand, &view, view.look == LOOK_FLAT ? 0.005 : 0.01);
+    }
+    view.look = LOOK_DEFAULT;
+    view.range_min = 10;
+    view.color_scale.log = true;
+    soft_assert_like_gl(&stand, &view, 0.005);
 }
 
 /* All round, from far away, from below and from among the pipes, where triangles pass the eye. */
 TEST(test_cameras)
 {
-    struct view view;
-    soft_start_view(&stand, TIER_PREVIEW, 320, 240, &view);
-    for (int i = 0; i < 12; i++) {
-        stand_look(&stand, i, &view);
-        soft_assert_like_gl(&stand, &view, 0.01);
+    EACH_TIER(tier) {
+        struct view view = soft_view(&stand, tier, 320, 240);
+        for (int i = 0; i < 12; i++) {
+            stand_look(&stand, i, &view);
+            soft_assert_like_gl(&stand, &view, tier == TIER_PREVIEW ? 0.01 : 0.02);
+        }
     }
 }
 
-/* Rays are parallel: from all round and above, wide and so narrow that the eye stands among the pipes. */
+/* Parallel rays: from all round and above, wide and so narrow that the eye stands among the pipes. */
 TEST(test_orthographic)
 {
-    for (int i = 0; i < 12; i++) {
-        struct view view;
-        soft_start_view(&stand, TIER_PREVIEW, 320, 240, &view);
-        stand_look(&stand, i, &view);
+    for (int i = 0; i < 24; i++) {
+        struct view view = soft_view(&stand, i < 12 ? TIER_PREVIEW : TIER_REFINED, 320, 240);
+        stand_look(&stand, i % 12, &view);
         view.camera.height_m = i % 3 ? 6 : 1.5;
-        view.selected_asset = i % 4 - 1;
-        if (i % 2)
+        view.selected_asset = i < 12 ? i % 4 - 1 : -1;
+        if (i < 12 && i % 2)
             soft_lines_every(&view, 10);
-        soft_assert_like_gl(&stand, &view, 0.015);
+        soft_assert_like_gl(&stand, &view, i < 12 ? 0.015 : 0.02);
     }
 }
 
-/* By a level plane, by a slanting one, and by a box; bodies that are closed have caps, the inner side of others shows. */
+/* By a level plane, by a slanting one, and by a box. Closed bodies have caps, the inner side of others shows. */
 TEST(test_cuts)
 {
-    for (int i = 0; i < 24; i++) {
-        struct view view;
-        soft_start_view(&stand, TIER_PREVIEW, 320, 240, &view);
+    for (int i = 0; i < 36; i++) {
+        bool preview = i < 24;
+        struct view view = soft_view(&stand, preview ? TIER_PREVIEW : TIER_REFINED, 320, 240);
         stand_look(&stand, i % 12, &view);
         view.camera.height_m = i % 5 == 4 ? 6 : 0;
-        view.selected_asset = i % 6 == 5 ? 1 : -1;
-        view.look = i % 7 == 3 ? LOOK_FLAT : LOOK_DEFAULT;
+        view.selected_asset = preview && i % 6 == 5 ? 1 : -1;
+        view.look = preview && i % 7 == 3 ? LOOK_FLAT : LOOK_DEFAULT;
         if (i % 3 == 0)
-            soft_cut_at(&view, 0, 0, 0, -1, 0.2 + 0.1 * i);
+            soft_cut_at(&view, 0, 0, 0, -1, 0.2 + 0.1 * (i % 24));
         if (i % 3 == 1)
             soft_cut_at(&view, 0, 0.6, 0.64, -0.48, 0.3);
         if (i % 3 == 2)
             clip_box(&view.visibility.clip, (double[3]){ -0.8, -0.5, -0.2 }, (double[3]){ 2.1, 0.3, 1.1 });
-        soft_assert_like_gl(&stand, &view, view.selected_asset < 0 ? 0.01 : 0.02);
+        soft_assert_like_gl(&stand, &view, preview && view.selected_asset < 0 ? 0.01 : 0.02);
     }
 }
 
 TEST(test_sun)
 {
-    struct view view;
-    soft_start_view(&stand, TIER_PREVIEW, 400, 300, &view);
-    for (int i = 0; i < 4; i++) { /* more than are kept */
-        double towards[3] = { 0.6 * cos(i), 0.6 * sin(i), 0.8 };
-        memcpy(view.light_dir, towards, sizeof(towards));
-        soft_assert_like_gl(&stand, &view, 0.003);
+    EACH_TIER(tier) {
+        struct view view = soft_view(&stand, tier, 400, 300);
+        for (int i = 0; i < 4; i++) { /* more than are kept */
+            double towards[3] = { 0.6 * cos(i), 0.6 * sin(i), 0.8 };
+            memcpy(view.light_dir, towards, sizeof(towards));
+            soft_assert_like_gl(&stand, &view, tier == TIER_PREVIEW ? 0.003 : 0.01);
+        }
     }
 }
 
@@ -102,10 +116,10 @@ TEST(test_sun)
 TEST(test_outlines)
 {
     struct view view;
-    soft_start_view(&stand, TIER_PREVIEW, 640, 360, &view);
-    for (int asset = 0; asset < (int)stand.toy->scene.asset_count; asset++) {
-        view.selected_asset = asset;
-        soft_assert_like_gl(&stand, &view, 0.012);
+    for (int i = 0; i < 2 * (int)stand.toy->scene.asset_count; i++) {
+        view = soft_view(&stand, i % 2 ? TIER_PREVIEW : TIER_REFINED, 640, 360);
+        view.selected_asset = i / 2;
+        soft_assert_like_gl(&stand, &view, i % 2 ? 0.012 : 0.02);
     }
     asset_set_add(&view.visibility.hidden, view.selected_asset);
     struct frame *hidden = stand_draw(&stand, &view);
@@ -118,17 +132,17 @@ TEST(test_outlines)
 
 TEST(test_hidden_assets)
 {
-    struct view view;
-    soft_start_view(&stand, TIER_PREVIEW, 320, 240, &view);
-    asset_set_add(&view.visibility.hidden, 1);
-    soft_assert_like_gl(&stand, &view, 0.003);
+    EACH_TIER(tier) {
+        struct view view = soft_view(&stand, tier, 320, 240);
+        asset_set_add(&view.visibility.hidden, 1);
+        soft_assert_like_gl(&stand, &view, tier == TIER_PREVIEW ? 0.003 : 0.01);
+    }
 }
 
 /* The third picture of a camera that stands still is coloured anew only; hatches have softer rims then. */
 TEST(test_still_camera)
 {
-    struct view view;
-    soft_start_view(&stand, TIER_PREVIEW, 640, 360, &view);
+    struct view view = soft_view(&stand, TIER_PREVIEW, 640, 360);
     view.camera.eye_m[0] += 0.25;
     for (int selected = -1; selected < 2; selected++) {
         view.selected_asset = selected;
@@ -144,7 +158,7 @@ TEST(test_still_camera)
         soft_assert_like_gl(&stand, &view, selected < 0 ? 0.01 : 0.02);
         toy_fill(stand.snapshot, 2.0);
         soft_assert_like_gl(&stand, &view, selected < 0 ? 0.01 : 0.02);
-        soft_start_view(&stand, TIER_PREVIEW, 640, 360, &view);
+        view = soft_view(&stand, TIER_PREVIEW, 640, 360);
         view.camera.eye_m[0] += 0.25;
     }
     toy_fill(stand.snapshot, 0);
@@ -153,8 +167,7 @@ TEST(test_still_camera)
 /* Places to draw it anew must not be taken for the same. */
 TEST(test_moves_after_standing)
 {
-    struct view view;
-    soft_start_view(&stand, TIER_PREVIEW, 320, 200, &view);
+    struct view view = soft_view(&stand, TIER_PREVIEW, 320, 200);
     for (int i = 0; i < 3; i++)
         soft_assert_like_gl(&stand, &view, 0.01);
     view.camera.eye_m[1] += 0.5;
@@ -167,8 +180,7 @@ TEST(test_moves_after_standing)
 TEST(test_lines_and_scales)
 {
     for (int i = 0; i < 5; i++) {
-        struct view view;
-        soft_start_view(&stand, TIER_PREVIEW, 400, 300, &view);
+        struct view view = soft_view(&stand, TIER_PREVIEW, 400, 300);
         if (i == 0 || i == 4)
             soft_lines_every(&view, 10);
         view.ramp_interval = i == 1 ? 20 : 0;
@@ -212,8 +224,7 @@ TEST(test_patterns_close_by)
     enum { TANK = 1 }; /* has a sensor that is bad and one that is uncertain */
     const struct scene_asset *asset = &stand.toy->scene.assets[TANK];
     int looked = 0, rims = 0;
-    struct view view;
-    soft_start_view(&stand, TIER_PREVIEW, 160, 120, &view);
+    struct view view = soft_view(&stand, TIER_PREVIEW, 160, 120);
     view.look = LOOK_FLAT;
     const struct scalars *scalars = field_scalars(stand.field, TANK, &view.field, stand.snapshot);
     assert_non_null(scalars);
@@ -236,31 +247,36 @@ TEST(test_patterns_close_by)
     assert_true(looked >= 8);
 }
 
+static void set_limits(bool set)
+{
+    struct plant *plant = &stand.toy->plant;
+    const double limits[LIMIT_COUNT] = { 0, 20, 70, 90 };
+    for (size_t tag = 0; tag < plant->tag_count; tag++)
+        for (int i = 0; i < LIMIT_COUNT; i++)
+            plant->tags[tag].limits[i] = set && tag != 2 ? limits[i] : NAN;
+}
+
 /* One tag without limits: what is near it is plain. What has no field is grey. */
 TEST(test_operator)
 {
-    struct view view;
-    struct plant *plant = &stand.toy->plant;
-    for (size_t tag = 0; tag < plant->tag_count; tag++)
-        if (tag != 2)
-            memcpy(plant->tags[tag].limits, (double[]){ 0, 20, 70, 90 }, 4 * sizeof(double));
-    soft_start_view(&stand, TIER_PREVIEW, 400, 300, &view);
-    view.field.show = SHOW_OPERATOR;
-    view_default_scale(&stand.toy->scene, &view);
-    for (int camera = 0; camera < 6; camera++) {
-        soft_assert_like_gl(&stand, &view, 0.012);
-        stand_look(&stand, 2 * camera, &view);
+    set_limits(true);
+    EACH_TIER(tier) {
+        struct view view = soft_view(&stand, tier, 400, 300);
+        view.field.show = SHOW_OPERATOR;
+        view_default_scale(&stand.toy->scene, &view);
+        for (int camera = 0; camera < 6; camera++) {
+            soft_assert_like_gl(&stand, &view, tier == TIER_PREVIEW ? 0.012 : 0.02);
+            stand_look(&stand, 2 * camera, &view);
+        }
     }
-    for (size_t tag = 0; tag < plant->tag_count; tag++)
-        for (int i = 0; i < LIMIT_COUNT; i++)
-            plant->tags[tag].limits[i] = NAN;
+    set_limits(false);
 }
 
 /* A still camera is shown again from what was kept; lines of the same view are not. */
 TEST(test_lines_of_a_still_camera)
 {
     struct view view, lined;
-    soft_start_view(&stand, TIER_PREVIEW, 400, 300, &view);
+    view = soft_view(&stand, TIER_PREVIEW, 400, 300);
     lined = view;
     soft_lines_every(&lined, 10);
     for (int i = 0; i < 3; i++) {
@@ -303,7 +319,7 @@ TEST(test_kernels)
     for (int i = 0; i < 24 * OTHER_KERNELS; i++) {
         if (other_kernels[i / 24] == widest)
             break;
-        soft_start_view(&stand, TIER_PREVIEW, widths_px[i % 5], widths_px[i % 5] * 9 / 16, &view);
+        view = soft_view(&stand, TIER_PREVIEW, widths_px[i % 5], widths_px[i % 5] * 9 / 16);
         stand_look(&stand, i % 24 / 2, &view);
         view.selected_asset = i % 4 == 2 ? 0 : -1;
         if (i % 4 == 1)
@@ -323,7 +339,7 @@ TEST(test_sky)
     for (int i = 0; i < 4 * 4 * 3; i++) {
         struct view view;
         double lean = i / 16 * 0.7;
-        soft_start_view(&stand, TIER_PREVIEW, sizes_px[i % 4][0], sizes_px[i % 4][1], &view);
+        view = soft_view(&stand, TIER_PREVIEW, sizes_px[i % 4][0], sizes_px[i % 4][1]);
         view.camera.fov_deg = fovs_deg[i / 4 % 4];
         for (int c = 0; c < 3; c++) { /* away from the plant, and up */
             view.camera.eye_m[c] = stand.toy->scene.bounds_max_m[c] + 5;
@@ -345,21 +361,21 @@ TEST(test_sky)
     assert_in_range(worst, 0, 2);
 }
 
-/* Before and behind others, cut, and of a camera that stands still. */
+/* Before and behind others, cut, and, in previews, of a camera that stands still. */
 TEST(test_ghosts)
 {
-    for (int i = 0; i < 12; i++) {
-        struct view view;
-        soft_start_view(&stand, TIER_PREVIEW, 320, 240, &view);
-        stand_look(&stand, i, &view);
+    for (int i = 0; i < 24; i++) {
+        enum tier tier = i < 12 ? TIER_PREVIEW : TIER_REFINED;
+        struct view view = soft_view(&stand, tier, 320, 240);
+        stand_look(&stand, i % 12, &view);
         view.dark = i % 2;
-        view.camera.height_m = i == 6 ? 6 : 0;
+        view.camera.height_m = i % 12 == 6 ? 6 : 0;
         view.selected_asset = i == 7 ? 0 : -1;
         asset_set_add(&view.visibility.ghosts, i % 4);
         asset_set_add(&view.visibility.ghosts, 1);
         if (i % 4 == 3)
             soft_cut_at(&view, 0, 0.6, 0.64, -0.48, 0.3);
-        for (int again = 0; again < 3; again++)
+        for (int again = 0; again < (tier == TIER_PREVIEW ? 3 : 1); again++)
             soft_assert_like_gl(&stand, &view, 0.02);
     }
 }
@@ -368,8 +384,7 @@ TEST(test_ghosts)
 TEST(test_gloss_and_materials)
 {
     for (int i = 0; i < 8; i++) {
-        struct view view;
-        soft_start_view(&stand, TIER_PREVIEW, 320, 240, &view);
+        struct view view = soft_view(&stand, TIER_PREVIEW, 320, 240);
         stand_look(&stand, i, &view);
         view.look = i % 2 ? LOOK_GLOSSY : LOOK_MATERIALS;
         view.dark = i % 4 == 3;
@@ -382,5 +397,5 @@ TEST(test_gloss_and_materials)
 
 int main(void)
 {
-    return soft_run("soft_test", &rig, &stand, toy_unit);
+    return soft_run("soft_views_test", &rig, &stand, toy_unit);
 }
