@@ -2,26 +2,29 @@
 /* The demo plant as its generator writes it: the same bytes each time, a plant file without a finding, the exchanger of the
    paper's size, sensors on the surfaces, and the faults that were put in on purpose. */
 #include "tests/support/test.h"
-/* cmocka needs those first */
-#include <fnmatch.h>
-#include <jansson.h>
 #include <math.h>
 #include <spawn.h>
 #include <sys/wait.h>
 
+#include "base/math/vec.h"
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "deploy/demo/sim_values.h"
 #include "plant/plant.h"
+#include "plant/sensors.h"
+#include "preprocess/geometry/geometry.h"
+#include "preprocess/model/model_source.h"
+#include "preprocess/pipeline/prepare.h"
+#include "surface/mesh/bvh.h"
+#include "surface/mesh/trimesh.h"
 #include "tests/support/temp.h"
 
 extern char **environ;
 
 static char *folder;
 static struct plant *plant;
-static char *glb;
-static json_t *gltf;
-static const char *binary;
+static struct model_source source;
+static struct gltf_model model;
 
 static void generate(const char *into)
 {
@@ -48,8 +51,6 @@ static int set_up(void **state)
 {
     (void)state;
     struct diag diag = { 0 };
-    size_t bytes;
-    uint32_t json_bytes;
     folder = temp_folder_create();
     generate(folder);
     char *path = temp_path(folder, "plant.yaml");
@@ -59,139 +60,53 @@ static int set_up(void **state)
     assert_non_null(plant);
     diag_finish(&diag);
     mem_free(path);
-    glb = read_from(folder, "plant.glb", &bytes);
-    assert_memory_equal(glb, "glTF\2\0\0\0", 8);
-    memcpy(&json_bytes, glb + 12, 4);
-    assert_true(json_bytes < bytes);
-    gltf = json_loadb(glb + 20, json_bytes, 0, NULL);
-    assert_non_null(gltf);
-    binary = glb + 20 + json_bytes + 8;
+    char why[MODEL_WHY_BYTES];
+    path = temp_path(folder, "plant.glb");
+    assert_true(model_source_open(&source, path, why) && gltf_load(&model, &source, why));
+    mem_free(path);
     return 0;
 }
 
 static int tear_down(void **state)
 {
     (void)state;
-    json_decref(gltf);
-    mem_free(glb);
+    gltf_free(&model);
+    model_source_finish(&source);
     plant_destroy(&plant);
     temp_folder_destroy(&folder);
     return 0;
 }
 
-/* --- reading the model ------------------------------------------------------------------------------------------------------ */
-
-static json_t *item(const char *list, json_int_t index)
-{
-    json_t *found = json_array_get(json_object_get(gltf, list), (size_t)index);
-    assert_non_null(found);
-    return found;
-}
-
-static json_int_t integer(json_t *object, const char *key)
-{
-    json_t *value = json_object_get(object, key);
-    assert_true(json_is_integer(value));
-    return json_integer_value(value);
-}
-
-static const void *accessor_data(json_int_t index, size_t *count)
-{
-    json_t *accessor = item("accessors", index);
-    *count = (size_t)integer(accessor, "count");
-    return binary + integer(item("bufferViews", integer(accessor, "bufferView")), "byteOffset");
-}
-
-static void matrix_multiply(const double a[16], const double b[16], double out[16])
-{
-    for (int c = 0; c < 4; c++)
-        for (int r = 0; r < 4; r++) {
-            out[4 * c + r] = 0;
-            for (int k = 0; k < 4; k++)
-                out[4 * c + r] += a[4 * k + r] * b[4 * c + k];
-        }
-}
-
-static void node_matrix(json_t *node, double out[16])
-{
-    json_t *matrix = json_object_get(node, "matrix"), *translation = json_object_get(node, "translation");
-    for (int i = 0; i < 16; i++)
-        out[i] = matrix ? json_number_value(json_array_get(matrix, (size_t)i)) : i % 5 == 0;
-    for (int i = 0; i < 3 && translation; i++)
-        out[12 + i] = json_number_value(json_array_get(translation, (size_t)i));
-}
-
-struct visit { /* what a walk over a sub-tree collects, in the plant frame */
-    const char *wanted;           /* a node whose place is asked for */
-    int found;
-    double place[3];
-    int primitives;
-    size_t triangles;
-    double (*corners)[3][3];      /* per triangle */
-    size_t capacity;
+struct body { /* an asset of the plant, cut out of the model */
+    struct geometry_params params;
+    struct geometry geometry;
+    struct trimesh mesh;
+    size_t slivers_without_area, repeated;
 };
 
-static void to_plant(const double m[16], const float p[3], double out[3])
+static void body_init(struct body *body, int asset)
 {
-    double g[3];
-    for (int i = 0; i < 3; i++)
-        g[i] = m[i] * (double)p[0] + m[4 + i] * (double)p[1] + m[8 + i] * (double)p[2] + m[12 + i];
-    out[0] = g[0];
-    out[1] = -g[2];
-    out[2] = g[1];
+    char why[MODEL_WHY_BYTES];
+    *body = (struct body){ .params = prepare_geometry(&plant->assets[asset]) };
+    if (!geometry_cut(&body->geometry, &model, &body->params, why))
+        fail_msg("%s: %s", plant->assets[asset].id, why);
+    const struct geometry *g = &body->geometry;
+    uint32_t *point = mem_array(g->vertex_count, sizeof(*point));
+    assert_true(trimesh_weld(&body->mesh, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3, 1e-6, point,
+                             &body->slivers_without_area, &body->repeated));
+    mem_free(point);
 }
 
-static void visit_mesh(json_int_t mesh, const double world[16], struct visit *visit)
+static void body_finish(struct body *body)
 {
-    size_t index, vertices, corners;
-    json_t *primitive;
-    json_array_foreach(json_object_get(item("meshes", mesh), "primitives"), index, primitive)
-    {
-        const float(*positions)[3] = accessor_data(integer(json_object_get(primitive, "attributes"), "POSITION"), &vertices);
-        const uint32_t *indices = accessor_data(integer(primitive, "indices"), &corners);
-        visit->primitives++;
-        mem_grow(&visit->corners, &visit->capacity, visit->triangles + corners / 3, sizeof(*visit->corners));
-        for (size_t i = 0; i < corners; i++) {
-            assert_true(indices[i] < vertices);
-            to_plant(world, positions[indices[i]], visit->corners[visit->triangles + i / 3][i % 3]);
-        }
-        visit->triangles += corners / 3;
-    }
+    trimesh_finish(&body->mesh);
+    geometry_finish(&body->geometry);
 }
 
-static void visit_node(json_int_t index, const double above[16], struct visit *visit)
+/* All of the model, without area or not. */
+static size_t body_triangles(const struct body *body)
 {
-    json_t *node = item("nodes", index), *child;
-    double own[16], world[16];
-    size_t i;
-    node_matrix(node, own);
-    matrix_multiply(above, own, world);
-    if (visit->wanted && !strcmp(visit->wanted, json_string_value(json_object_get(node, "name")))) {
-        to_plant(world, (const float[3]){ 0, 0, 0 }, visit->place);
-        visit->found++;
-    }
-    if (json_object_get(node, "mesh"))
-        visit_mesh(integer(node, "mesh"), world, visit);
-    json_array_foreach(json_object_get(node, "children"), i, child)
-        visit_node(json_integer_value(child), world, visit);
-}
-
-/* The sub-tree of an asset: node 0 is the root, the assets are its children. */
-static void visit_asset(const struct plant_asset *asset, struct visit *visit)
-{
-    double root[16];
-    json_t *child;
-    size_t i;
-    int matches = 0;
-    node_matrix(item("nodes", 0), root);
-    json_array_foreach(json_object_get(item("nodes", 0), "children"), i, child)
-    {
-        if (fnmatch(asset->nodes, json_string_value(json_object_get(item("nodes", json_integer_value(child)), "name")), 0) != 0)
-            continue;
-        visit_node(json_integer_value(child), root, visit);
-        matches++;
-    }
-    assert_int_equal(matches, 1);
+    return body->geometry.index_count / 3 + body->geometry.degenerate_triangles;
 }
 
 /* --- tests ------------------------------------------------------------------------------------------------------------------ */
@@ -248,117 +163,75 @@ TEST(test_registers_do_not_overlap)
 
 TEST(test_exchanger)
 {
-    struct visit visit = { 0 };
+    struct body body;
     int asset = plant_find_asset(plant, "E-101"), thermometers = 0;
-    visit_asset(plant->assets + asset, &visit);
-    assert_in_range(visit.triangles, 60000, 66000);
-    assert_int_equal(visit.primitives, 5);
+    body_init(&body, asset);
+    assert_in_range(body_triangles(&body), 60000, 66000);
+    assert_int_equal(body.geometry.primitive_count, 5);
     for (size_t i = 0; i < plant->tag_count; i++)
         thermometers += plant->tags[i].asset == asset && plant->tags[i].group == plant_find_group(plant, "temperature");
     assert_int_equal(thermometers, 5);
-    mem_free(visit.corners);
+    body_finish(&body);
 }
 
 TEST(test_triangle_budget)
 {
     size_t triangles = 0;
     for (size_t a = 0; a < plant->asset_count; a++) {
-        struct visit visit = { 0 };
-        visit_asset(plant->assets + a, &visit);
-        assert_true(visit.triangles > 0);
-        triangles += visit.triangles;
-        mem_free(visit.corners);
+        struct geometry_params params = prepare_geometry(&plant->assets[a]);
+        size_t own = geometry_triangles(&model, &params);
+        assert_true(own > 0);
+        triangles += own;
     }
     assert_in_range(triangles, 300000, 450000);
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double segment_distance(const double p[3], const double a[3], const double b[3])
-{
-    double ab[3], ap[3];
-    for (int i = 0; i < 3; i++) {
-        ab[i] = b[i] - a[i];
-        ap[i] = p[i] - a[i];
-    }
-    double length = dot(ab, ab), t = length > 0 ? fmin(1, fmax(0, dot(ap, ab) / length)) : 0;
-    for (int i = 0; i < 3; i++)
-        ap[i] -= t * ab[i];
-    return sqrt(dot(ap, ap));
-}
-
-/* Inside the triangle's prism: the height above its plane; else the nearest edge. */
-static double triangle_distance(const double p[3], const double corner[3][3])
-{
-    double u[3], v[3], w[3];
-    for (int i = 0; i < 3; i++) {
-        u[i] = corner[1][i] - corner[0][i];
-        v[i] = corner[2][i] - corner[0][i];
-        w[i] = p[i] - corner[0][i];
-    }
-    double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v), scale = uu * vv - uv * uv;
-    double s = (vv * wu - uv * wv) / scale, t = (uu * wv - uv * wu) / scale;
-    if (scale > 0 && s >= 0 && t >= 0 && s + t <= 1) {
-        for (int i = 0; i < 3; i++)
-            w[i] -= s * u[i] + t * v[i];
-        return sqrt(dot(w, w));
-    }
-    return fmin(segment_distance(p, corner[0], corner[1]),
-                fmin(segment_distance(p, corner[1], corner[2]), segment_distance(p, corner[2], corner[0])));
-}
-
 TEST(test_sensors_on_surface)
 {
-    int by_node = 0;
-    for (size_t i = 0; i < plant->tag_count; i++) {
-        const struct plant_tag *tag = plant->tags + i;
-        struct visit visit = { .wanted = tag->node };
-        visit_asset(plant->assets + tag->asset, &visit);
-        assert_int_equal(visit.found, tag->node ? 1 : 0);
-        by_node += visit.found;
-        const double *place = tag->node ? visit.place : tag->position_m;
-        double nearest = INFINITY;
-        for (size_t t = 0; t < visit.triangles; t++)
-            nearest = fmin(nearest, triangle_distance(place, (const double(*)[3])visit.corners[t]));
-        if (nearest > 0.001)
-            print_error("%s: %g m from the surface of %s\n", tag->name, nearest, plant->assets[tag->asset].id);
-        assert_true(nearest <= 0.001);
-        mem_free(visit.corners);
+    size_t by_node = 0;
+    for (size_t a = 0; a < plant->asset_count; a++) {
+        struct body body;
+        struct plant_sensor *sensors;
+        char why[MODEL_WHY_BYTES];
+        body_init(&body, (int)a);
+        struct bvh *bvh = bvh_create(&body.mesh);
+        size_t count = plant_sensors(plant, (int)a, &sensors);
+        for (size_t i = 0; i < count; i++) {
+            double *at = sensors[i].position_m;
+            struct bvh_place nearest;
+            if (sensors[i].node && !geometry_node_place(&model, &body.params, sensors[i].node, at, why))
+                fail_msg("%s: %s", plant->tags[sensors[i].tag].name, why);
+            by_node += sensors[i].node != NULL;
+            vec_sub(at, body.geometry.origin_m, at);
+            bvh_nearest(bvh, at, INFINITY, NULL, NULL, &nearest);
+            if (nearest.distance_m > (sensors[i].node ? 0.02 : 0.001)) /* a node's place is the middle of its fitting */
+                fail_msg("%s: %g m from the surface of %s", plant->tags[sensors[i].tag].name, nearest.distance_m, plant->assets[a].id);
+        }
+        mem_free(sensors);
+        bvh_destroy(&bvh);
+        body_finish(&body);
     }
     assert_in_range(by_node, plant->tag_count / 3, plant->tag_count * 2 / 3);
-}
-
-static int compare_triangles(const void *a, const void *b)
-{
-    return memcmp(a, b, sizeof(double[3][3]));
 }
 
 /* Faults on purpose: faces that are there twice, and slivers. */
 TEST(test_faults)
 {
-    struct visit visit = { 0 };
-    size_t repeated = 0, slivers = 0;
-    visit_asset(plant->assets + plant_find_asset(plant, "E-101"), &visit);
-    qsort(visit.corners, visit.triangles, sizeof(*visit.corners), compare_triangles);
-    for (size_t t = 0; t < visit.triangles; t++) {
-        const double(*c)[3] = (const double(*)[3])visit.corners[t];
-        double longest = 0, height = INFINITY;
+    struct body body;
+    body_init(&body, plant_find_asset(plant, "E-101"));
+    size_t slivers = body.slivers_without_area + body.geometry.degenerate_triangles;
+    for (size_t t = 0; t < body.mesh.tri_count; t++) {
+        double longest = 0;
         for (int k = 0; k < 3; k++) {
             double edge[3];
-            for (int i = 0; i < 3; i++)
-                edge[i] = c[(k + 1) % 3][i] - c[k][i];
-            longest = fmax(longest, sqrt(dot(edge, edge)));
-            height = fmin(height, segment_distance(c[k], c[(k + 1) % 3], c[(k + 2) % 3]));
+            vec_sub(body.mesh.points[body.mesh.tris[t][(k + 1) % 3]], body.mesh.points[body.mesh.tris[t][k]], edge);
+            longest = fmax(longest, vec_length(edge));
         }
-        slivers += longest > 100 * height;
-        repeated += t > 0 && compare_triangles(visit.corners[t], visit.corners[t - 1]) == 0;
+        slivers += longest * longest > 100 * 2 * trimesh_tri_area(&body.mesh, t);
     }
-    assert_in_range(repeated, 5, 1000);
+    assert_in_range(body.repeated, 5, 1000);
     assert_in_range(slivers, 5, 5000);
-    mem_free(visit.corners);
+    body_finish(&body);
 }
 
 /* --- the process against the limits ----------------------------------------------------------------------------------------- */
