@@ -82,9 +82,7 @@ objects   = $(patsubst %,$(out)/obj/%.o,$(basename $(1)))
 link      = @mkdir -p $(@D); echo "  LINK $@"; \
             $(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(pkg_libs)
 
-sim_sources      := $(filter-out %/generate.c,$(wildcard deploy/demo/*.c))
-generate_sources := $(wildcard deploy/demo/generate*.c deploy/demo/generate/*.c)
-sim_sources      := $(filter-out $(generate_sources),$(sim_sources))
+sim_sources      := $(wildcard deploy/demo/*.c)
 sim_archive      := $(if $(sim_sources),$(out)/lib/sim.a)
 import_sources   := $(wildcard preprocess/import/*.c preprocess/import/revision/*.c)
 match_sources    := $(wildcard preprocess/match/*.c)
@@ -93,8 +91,7 @@ prep_sources     := $(filter-out %/main.c $(import_sources) $(match_sources), \
 programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard preprocess/main.c),$(bin)/plantcast-prep) \
             $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(filter h264,$(CODECS)),$(bin)/plantcast-film) \
             $(if $(import_sources),$(bin)/plantcast-import) \
-            $(if $(filter %/main.c,$(match_sources)),$(bin)/plantcast-match) $(if $(sim_sources),$(bin)/plantcast-sim) \
-            $(if $(generate_sources),$(bin)/plantcast-demo)
+            $(if $(filter %/main.c,$(match_sources)),$(bin)/plantcast-match) $(if $(sim_sources),$(bin)/plantcast-sim)
 modules  := $(bin)/plantcast-images.so $(if $(filter h264,$(CODECS)),$(bin)/plantcast-h264.so)
 # Readers of other formats, each where its library is (plantcast import --formats).
 occt     := $(dir $(wildcard /usr/include/opencascade/STEPCAFControl_Reader.hxx))
@@ -133,8 +130,7 @@ $(bin)/plantcast-init: deploy/init
 	@mkdir -p $(@D); cp $< $@
 
 # What reads images, and H.264, is loaded when it is needed.
-by_modules := $(filter-out $(bin)/plantcast-demo,$(programs))
-$(by_modules): $(call objects,$(lazy)) | $(modules)
+$(programs): $(call objects,$(lazy)) | $(modules)
 $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
 	$(link)
 $(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(archives)
@@ -173,8 +169,6 @@ $(video_objects) $(patsubst %,$(out)/obj/%.alone,$(wildcard clients/video/*.h)):
 $(bin)/plantcast-video: $(video_objects) $(call objects,$(lazy)) $(out)/lib/link.a $(archives)
 	$(link) $(shell pkg-config --libs $(video_packages))
 $(bin)/plantcast-sim: $(call objects,$(sim_sources)) $(archives)
-	$(link)
-$(bin)/plantcast-demo: $(call objects,$(generate_sources)) $(archives)
 	$(link)
 
 embedded := $(out)/obj/gen/embedded.o

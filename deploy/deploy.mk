@@ -13,20 +13,20 @@ run: deps
 	@deploy/compile $(build)/compile.log $(MAKE) --no-print-directory $(jobs) all $(filter $(build)/demo/%,$(PLANT))
 	@exec setpriv --pdeathsig TERM deploy/run $(bin) $(PLANT) $(PORT)
 
-# The demo plant is generated; preparing it again costs only a look at the files.
+# A copy of the demo plant, prepared. Repeated preparation only compares files.
+demo_files := $(addprefix deploy/demo/,plant.yaml plant.glb tags.csv)
 demo: $(build)/demo/plant.yaml $(bin)/plantcast-prep
 	@$(bin)/plantcast-prep $(build)/demo/plant.yaml
-$(build)/demo/plant.yaml: $(bin)/plantcast-demo
-	@mkdir -p $(@D); $(bin)/plantcast-demo $(@D)
+$(build)/demo/plant.yaml: $(demo_files)
+	@mkdir -p $(@D); cp $^ $(@D)
 
 prefix ?= /usr/local
 root   := $(DESTDIR)$(prefix)
 units  := $(wildcard deploy/systemd/*.service deploy/systemd/*.socket deploy/systemd/*.timer)
 units  := $(if $(video),$(units),$(filter-out %/plantcast-video@.service,$(units)))
-only_demo := $(bin)/plantcast-sim $(bin)/plantcast-demo
 install: all
 	install -d $(root)/bin $(root)/lib/plantcast $(root)/libexec/plantcast $(root)/share/plantcast $(root)/share/doc/plantcast
-	install -m 755 $(filter-out $(only_demo),$(programs)) $(root)/bin
+	install -m 755 $(filter-out $(bin)/plantcast-sim,$(programs)) $(root)/bin
 	$(if $(video),install -m 755 $(video) $(root)/bin)
 	install -m 755 deploy/init $(root)/bin/plantcast-init
 	install -m 755 $(modules) deploy/systemd/certbot-hook deploy/systemd/kiosk $(root)/lib/plantcast
@@ -43,10 +43,11 @@ install: all
 	install -m 644 deploy/systemd/sysusers.conf $(root)/lib/sysusers.d/plantcast.conf
 	install -m 644 deploy/systemd/tmpfiles.conf $(root)/lib/tmpfiles.d/plantcast.conf
 	install -m 644 deploy/completion $(root)/share/bash-completion/completions/plantcast
-# The simulator and the demo plant, for who wants to try it.
+# The demo plant and its simulator.
 install-demo: all
-	install -d $(root)/bin
-	install -m 755 $(only_demo) $(root)/bin
+	install -d $(root)/bin $(root)/share/plantcast/demo
+	install -m 755 $(bin)/plantcast-sim $(root)/bin
+	install -m 644 $(demo_files) $(root)/share/plantcast/demo
 # Debian packages, of what is committed.
 deb: clients/web/vendor/uPlot.js
 	@deploy/deb $(build)/deb "$(COMMIT)"

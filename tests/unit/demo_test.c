@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The demo plant as its generator writes it: the same bytes each time, a plant file without a finding, the exchanger of the
-   paper's size, sensors on the surfaces, and the faults that were put in on purpose. */
+/* The demo plant: a plant file without a finding, the exchanger of the paper's size, sensors on the surfaces, faults that the model
+   has on purpose, and limits that fit the simulated process. */
 #include "tests/support/test.h"
 #include <math.h>
-#include <spawn.h>
-#include <sys/wait.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
-#include "base/text/text.h"
 #include "deploy/demo/sim_values.h"
 #include "plant/plant.h"
 #include "plant/sensors.h"
@@ -17,53 +14,22 @@
 #include "preprocess/pipeline/prepare.h"
 #include "surface/mesh/bvh.h"
 #include "surface/mesh/trimesh.h"
-#include "tests/support/temp.h"
 
-extern char **environ;
-
-static char *folder;
 static struct plant *plant;
 static struct model_source source;
 static struct gltf_model model;
-
-static void generate(const char *into)
-{
-    const char *bin = getenv("PLANTCAST_BIN");
-    char *program = mem_printf("%s/plantcast-demo", bin ? bin : "build");
-    char *arguments[] = { program, (char *)into, NULL };
-    pid_t child;
-    int status = -1;
-    assert_int_equal(posix_spawn(&child, program, NULL, NULL, arguments, environ), 0);
-    assert_int_equal(waitpid(child, &status, 0), child);
-    assert_int_equal(status, 0);
-    mem_free(program);
-}
-
-static char *read_from(const char *in, const char *name, size_t *bytes)
-{
-    char *path = temp_path(in, name), *content = text_read_file(path, 64 << 20, bytes);
-    assert_non_null(content);
-    mem_free(path);
-    return content;
-}
 
 static int set_up(void **state)
 {
     (void)state;
     struct diag diag = { 0 };
-    folder = temp_folder_create();
-    generate(folder);
-    char *path = temp_path(folder, "plant.yaml");
-    plant = plant_load(path, &diag);
+    plant = plant_load("deploy/demo/plant.yaml", &diag);
     diag_print(&diag, stderr);
     assert_int_equal(diag.count, 0);
     assert_non_null(plant);
     diag_finish(&diag);
-    mem_free(path);
     char why[MODEL_WHY_BYTES];
-    path = temp_path(folder, "plant.glb");
-    assert_true(model_source_open(&source, path, why) && gltf_load(&model, &source, why));
-    mem_free(path);
+    assert_true(model_source_open(&source, "deploy/demo/plant.glb", why) && gltf_load(&model, &source, why));
     return 0;
 }
 
@@ -73,7 +39,6 @@ static int tear_down(void **state)
     gltf_free(&model);
     model_source_finish(&source);
     plant_destroy(&plant);
-    temp_folder_destroy(&folder);
     return 0;
 }
 
@@ -111,43 +76,6 @@ static size_t body_triangles(const struct body *body)
 
 /* --- tests ------------------------------------------------------------------------------------------------------------------ */
 
-TEST(test_same_bytes)
-{
-    static const char *const names[] = { "plant.glb", "plant.yaml", "tags.csv" };
-    char *again = temp_folder_create();
-    generate(again);
-    for (int i = 0; i < 3; i++) {
-        size_t first_bytes, second_bytes;
-        char *first = read_from(folder, names[i], &first_bytes), *second = read_from(again, names[i], &second_bytes);
-        assert_int_equal(first_bytes, second_bytes);
-        assert_memory_equal(first, second, first_bytes);
-        mem_free(first);
-        mem_free(second);
-    }
-    temp_folder_destroy(&again);
-}
-
-TEST(test_assets_and_tags)
-{
-    static const char *const groups[] = { "temperature", "pressure", "vibration" };
-    int in_group[3] = { 0 }, well_equipped = 0;
-    assert_in_range(plant->asset_count, 20, 30);
-    assert_in_range(plant->tag_count, 100, 400);
-    assert_true(plant->view.set);
-    for (size_t i = 0; i < plant->tag_count; i++)
-        for (int g = 0; g < 3; g++)
-            in_group[g] += plant->tags[i].group == plant_find_group(plant, groups[g]);
-    for (int g = 0; g < 3; g++)
-        assert_in_range(in_group[g], 20, 400);
-    for (size_t a = 0; a < plant->asset_count; a++) {
-        int tags = 0;
-        for (size_t i = 0; i < plant->tag_count; i++)
-            tags += plant->tags[i].asset == (int)a;
-        well_equipped += tags >= 3;
-    }
-    assert_in_range(well_equipped, 15, 30);
-}
-
 TEST(test_registers_do_not_overlap)
 {
     static unsigned char used[65536];
@@ -172,18 +100,6 @@ TEST(test_exchanger)
         thermometers += plant->tags[i].asset == asset && plant->tags[i].group == plant_find_group(plant, "temperature");
     assert_int_equal(thermometers, 5);
     body_finish(&body);
-}
-
-TEST(test_triangle_budget)
-{
-    size_t triangles = 0;
-    for (size_t a = 0; a < plant->asset_count; a++) {
-        struct geometry_params params = prepare_geometry(&plant->assets[a]);
-        size_t own = geometry_triangles(&model, &params);
-        assert_true(own > 0);
-        triangles += own;
-    }
-    assert_in_range(triangles, 300000, 450000);
 }
 
 TEST(test_sensors_on_surface)

@@ -292,7 +292,7 @@ TEST_WITH(splitting_opens_nothing, gltf_case_set_up, gltf_case_tear_down)
             fail_msg("%s: %zu of %zu open edges are not the model's", asset->id, others, drawn.count);
         mem_free(own.ends_m);
         mem_free(drawn.ends_m);
-        if (strcmp(asset->id, "E-101") == 0) { /* some of what is in deploy/demo/generate/faults.h */
+        if (strcmp(asset->id, "E-101") == 0) { /* its model has cracks and flipped faces on purpose */
             assert_true(g.closed_gaps > 100 && g.turned_triangles > 10);
             assert_open_at_ends(view, "E-101 shell");
         }
