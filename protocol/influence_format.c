@@ -16,7 +16,8 @@ static bool entry_good(const struct influence_view *view, const struct influence
     if (sensors == 0 || sensors > UINT16_MAX || !fits(entry->precision, 8 * sensors * sensors, size) ||
         !fits(entry->shares, 4 * sensors * vertices, size) || !isfinite(entry->disc_m) || !isfinite(entry->decay_m) ||
         !isfinite(entry->range_m) || !isfinite(entry->noise) || !isfinite(entry->deviation) ||
-        (entry->deviations && !fits(entry->deviations, 8 * vertices, size)))
+        (entry->deviations && !fits(entry->deviations, 8 * vertices, size)) ||
+        (entry->errors && !fits(entry->errors, 4 * vertices, size)))
         return false;
     const double *precision = influence_array(view, entry->precision);
     const float *shares = influence_array(view, entry->shares);
@@ -28,6 +29,9 @@ static bool entry_good(const struct influence_view *view, const struct influence
     const float *deviations = influence_array(view, entry->deviations);
     for (uint64_t i = 0; entry->deviations && i < 2 * vertices; i++)
         good &= isfinite(deviations[i]) && deviations[i] >= 0;
+    const float *errors = influence_array(view, entry->errors);
+    for (uint64_t i = 0; entry->errors && i < vertices; i++)
+        good &= isfinite(errors[i]) && errors[i] >= 0;
     return good;
 }
 

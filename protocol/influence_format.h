@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define INFLUENCE_MAGIC "PLCINFL2" /* with the format's version */
+#define INFLUENCE_MAGIC "PLCINFL3" /* with the format's version */
 
 struct influence_header {
     uint32_t entry_count, vertex_count;
@@ -23,6 +23,7 @@ struct influence_entry {
     uint32_t zero;
     uint64_t precision, shares;       /* double[sensor][sensor]; float[sensor][vertex] */
     uint64_t deviations;              /* gp: float[2][vertex], with sensors and without; else 0 */
+    uint64_t errors;                  /* float[vertex]: how far triangles may be off, in parts of the spread of readings; 0: not known */
     double disc_m, decay_m;           /* what it was computed for: radius of a sensor's disc; fin: decay length, else 0 */
     double range_m, noise, deviation; /* gp: stated or fitted; else 0 */
 };

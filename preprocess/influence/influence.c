@@ -182,5 +182,6 @@ void influence_finish(struct influence *influence)
     mem_free(influence->shares);
     mem_free(influence->precision);
     mem_free(influence->deviations);
+    mem_free(influence->errors);
     *influence = (struct influence){ 0 };
 }

@@ -21,6 +21,7 @@ struct influence {
     double *precision; /* [sensor][sensor] */
     float *deviations; /* by vertex: how far it may err while all sensors are good (gaussian.h), then by vertex what it would be without
                           sensors; NULL: not known. Room for one more, 0 */
+    float *errors;     /* by vertex: how far drawn triangles may be off (influence_bend_measure()); NULL: not asked for */
 };
 
 /* Computes the influence by conduction; decay_m: INFINITY for harmonic. anchors: of vertex_count vertices on the mesh. bend: takes what all

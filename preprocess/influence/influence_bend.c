@@ -202,6 +202,11 @@ static double cover(struct finding *finding, const struct trimesh *mesh, const s
     return before_m2 - polygons_area(&finding->left);
 }
 
+static size_t finest_count(const struct bend_drawn *drawn)
+{
+    return drawn->level_count > 0 ? drawn->levels[0].triangle_count : drawn->triangle_count;
+}
+
 /* Returns its area; 0: it has none. */
 static double take_triangle(struct finding *finding, const double p[3][3])
 {
@@ -229,14 +234,19 @@ static double take_triangle(struct finding *finding, const double p[3][3])
     return polygon_area(&whole);
 }
 
+static void corners_of(const struct bend_drawn *drawn, size_t tri, double p[3][3])
+{
+    for (size_t i = 0; i < 3; i++)
+        for (int axis = 0; axis < 3; axis++)
+            p[i][axis] = (double)drawn->positions_m[drawn->triangles[3 * tri + i]][axis];
+}
+
 static void find_places(struct finding *finding)
 {
     const struct bend_drawn *drawn = &finding->bend->drawn;
-    for (size_t t = 0; t < drawn->triangle_count && !finding->full; t++) {
+    for (size_t t = 0; t < finest_count(drawn) && !finding->full; t++) {
         double p[3][3];
-        for (int i = 0; i < 3; i++)
-            for (int axis = 0; axis < 3; axis++)
-                p[i][axis] = (double)drawn->positions_m[drawn->triangles[3 * t + (size_t)i]][axis];
+        corners_of(drawn, t, p);
         finding->tri = (uint32_t)t;
         double area_m2 = finding->bend->area_m2[t] = take_triangle(finding, (const double(*)[3])p);
         if (!(area_m2 > 0))
@@ -248,6 +258,51 @@ static void find_places(struct finding *finding)
         double left_m2 = polygons_area(&finding->left);
         finding->bend->unknown_m2[t] = left_m2 > COVERED * area_m2 ? left_m2 : 0;
     }
+}
+
+/* --- coarser levels ------------------------------------------------------------------------------------------------------------ */
+
+/* Samples of a triangle: the thirds of its sides and its middle. */
+enum { SAMPLES = 7 };
+static const double samples[SAMPLES][3] = { { 2, 1, 0 }, { 1, 2, 0 }, { 0, 2, 1 }, { 0, 1, 2 }, { 1, 0, 2 }, { 2, 0, 1 }, { 1, 1, 1 } };
+
+/* Samples count as its area. */
+static void sample_triangle(struct finding *finding, const struct influence_mesh *mesh, const struct surface *surface, size_t tri,
+                            double within_m)
+{
+    struct influence_bend *bend = finding->bend;
+    double p[3][3], normal[3];
+    corners_of(&bend->drawn, tri, p);
+    vec_normal(p[0], p[1], p[2], normal);
+    for (int i = 0; i < SAMPLES && vec_length(normal) > 0; i++) {
+        struct bend_place place = { .tri = (uint32_t)tri };
+        struct surface_point hit;
+        double at[3];
+        for (int k = 0; k < 3; k++)
+            place.weights[k] = (float)(samples[i][k] / 3);
+        for (int axis = 0; axis < 3; axis++)
+            at[axis] = (samples[i][0] * p[0][axis] + samples[i][1] * p[1][axis] + samples[i][2] * p[2][axis]) / 3;
+        bend->area_m2[tri]++;
+        if (!surface_find_point_within(surface, at, normal, within_m, &hit)) {
+            bend->unknown_m2[tri]++;
+            continue;
+        }
+        finding->full |= bend->count >= finding->most;
+        if (finding->full)
+            return;
+        influence_mesh_anchor(mesh, &hit, &place.anchor);
+        mem_grow(&bend->places, &bend->capacity, bend->count + 1, sizeof(*bend->places));
+        bend->places[bend->count++] = place;
+    }
+}
+
+static void sample_levels(struct finding *finding, const struct influence_mesh *mesh, const struct surface *surface)
+{
+    const struct bend_drawn *drawn = &finding->bend->drawn;
+    size_t tri = finest_count(drawn);
+    for (size_t level = 1; level < drawn->level_count; level++)
+        for (size_t i = 0; i < drawn->levels[level].triangle_count && !finding->full; i++)
+            sample_triangle(finding, mesh, surface, tri++, drawn->levels[level].error_m + finding->near_m);
 }
 
 bool influence_bend_init(struct influence_bend *bend, const struct influence_mesh *mesh, const struct surface *surface,
@@ -262,7 +317,7 @@ bool influence_bend_init(struct influence_bend *bend, const struct influence_mes
         trimesh_add_tri(&hidden, look.tris[t][0], look.tris[t][1], look.tris[t][2], (uint32_t)t);
     for (size_t i = 0; i < mesh->mesh.point_count; i++)
         extent_add(&extent, mesh->mesh.points[i]);
-    *bend = (struct influence_bend){ .drawn = *drawn };
+    *bend = (struct influence_bend){ .drawn = *drawn, .mesh_error = mesh_error_create(mesh), .point_count = mesh->mesh.point_count };
     bend->area_m2 = mem_array(drawn->triangle_count, sizeof(*bend->area_m2));
     bend->hidden_m2 = mem_array(drawn->triangle_count, sizeof(*bend->hidden_m2));
     bend->unknown_m2 = mem_array(drawn->triangle_count, sizeof(*bend->unknown_m2));
@@ -273,6 +328,7 @@ bool influence_bend_init(struct influence_bend *bend, const struct influence_mes
     finding.hidden_bvh = bvh_create(finding.hidden);
     finding.taken_by = mem_array(mesh->mesh.point_count, sizeof(*finding.taken_by));
     find_places(&finding);
+    sample_levels(&finding, mesh, surface);
     mem_free(finding.taken_by);
     bvh_destroy(&finding.visible_bvh);
     bvh_destroy(&finding.hidden_bvh);
@@ -281,7 +337,7 @@ bool influence_bend_init(struct influence_bend *bend, const struct influence_mes
     polygons_finish(&finding.cut);
     bend->plus = mem_try_array(bend->count, sizeof(*bend->plus));
     bend->minus = mem_try_array(bend->count, sizeof(*bend->minus));
-    return !finding.full && bend->plus && bend->minus;
+    return !finding.full && bend->plus && bend->minus && bend->mesh_error;
 }
 
 void influence_bend_finish(struct influence_bend *bend)
@@ -292,5 +348,6 @@ void influence_bend_finish(struct influence_bend *bend)
     mem_free(bend->unknown_m2);
     mem_free((void *)bend->plus);
     mem_free((void *)bend->minus);
+    mesh_error_destroy(&bend->mesh_error);
     *bend = (struct influence_bend){ 0 };
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/math/simd.h"
+#include "base/math/vec.h"
 #include "base/mem.h"
 #include "preprocess/influence/influence_bend.h"
 
@@ -36,6 +37,7 @@ SIMD_BODY float sum_of(shares_of values)
 SIMD_CLONES("avx512f", "avx2")
 void influence_bend_add(struct influence_bend *bend, const float *at_points, size_t stride, size_t width)
 {
+    mesh_error_add(bend->mesh_error, at_points, stride, width);
     shares_of corners[3] = { { 0 } }, there = { 0 }, plus, minus;
     uint32_t tri = TRIMESH_NONE;
     for (size_t i = 0; i < bend->count; i++) {
@@ -62,17 +64,74 @@ static double worst_of(double plus, double minus, double around)
     return STEPS * fmax(fabs(plus - level), fabs(minus - level));
 }
 
-void influence_bend_measure(struct influence_bend *bend, double around, float *steps_out, struct bend_report *report)
+/* --- errors of vertices ------------------------------------------------------------------------------------------------------ */
+
+/* What is known of a drawn triangle. */
+enum triangle_state { TRIANGLE_BOUNDED, TRIANGLE_HIDDEN, TRIANGLE_UNKNOWN };
+#define ALL_OF_IT 0.999     /* of a triangle's area, but for rounding */
+#define COARSE_UNKNOWN 0.5  /* of a coarse level's triangle, which does not lie on the surface, as much may be unknown */
+
+static enum triangle_state state_of(const struct influence_bend *bend, size_t tri)
 {
-    float *steps = mem_array(bend->drawn.triangle_count, sizeof(*steps));
+    double area_m2 = bend->area_m2[tri], unknown_m2 = bend->unknown_m2[tri];
+    bool finest = bend->drawn.level_count == 0 || tri < bend->drawn.levels[0].triangle_count;
+    if (unknown_m2 > (finest ? 0 : COARSE_UNKNOWN * area_m2))
+        return TRIANGLE_UNKNOWN;
+    return bend->hidden_m2[tri] > ALL_OF_IT * area_m2 ? TRIANGLE_HIDDEN : TRIANGLE_BOUNDED;
+}
+
+static float mesh_error_at(const struct influence_anchor *anchor, const float *by_point)
+{
+    float most = 0;
+    for (int k = 0; k < 3; k++)
+        most = fmaxf(most, by_point[anchor->points[k]]);
+    return most;
+}
+
+/* bends: by triangle, in parts of the spread of readings. Places inside parts are seen only in sections: vertices that no other triangle
+   has are unknown. */
+static void write_errors(struct influence_bend *bend, const float *bends, float *errors)
+{
+    const struct bend_drawn *drawn = &bend->drawn;
+    float *by_point = mem_array(bend->point_count, sizeof(*by_point));
+    float *of_mesh = mem_array(drawn->triangle_count, sizeof(*of_mesh));
+    char *seen = mem_array(drawn->vertex_count, 1);
+    mesh_error_take(bend->mesh_error, by_point);
+    for (size_t i = 0; i < bend->count; i++)
+        of_mesh[bend->places[i].tri] = fmaxf(of_mesh[bend->places[i].tri], mesh_error_at(&bend->places[i].anchor, by_point));
+    memset(errors, 0, drawn->vertex_count * sizeof(*errors));
+    for (size_t t = 0; t < drawn->triangle_count; t++) {
+        const uint32_t *corners = drawn->triangles + 3 * t;
+        enum triangle_state state = state_of(bend, t);
+        float error = of_mesh[t];
+        for (int k = 0; k < 3; k++)
+            error = fmaxf(error, mesh_error_at(&drawn->anchors[corners[k]], by_point));
+        error = state == TRIANGLE_UNKNOWN ? 1 : bends[t] + error;
+        for (int k = 0; k < 3 && state != TRIANGLE_HIDDEN; k++) {
+            seen[corners[k]] = 1;
+            errors[corners[k]] = fmaxf(errors[corners[k]], error);
+        }
+    }
+    for (size_t v = 0; v < drawn->vertex_count; v++)
+        errors[v] = seen[v] ? errors[v] : 1;
+    mem_free(seen);
+    mem_free(of_mesh);
+    mem_free(by_point);
+}
+
+void influence_bend_measure(struct influence_bend *bend, double around, float *steps_out, float *errors, struct bend_report *report)
+{
+    const size_t finest = bend->drawn.level_count > 0 ? bend->drawn.levels[0].triangle_count : bend->drawn.triangle_count;
+    float *steps = mem_array(bend->drawn.triangle_count, sizeof(*steps)), *bends = mem_array(bend->drawn.triangle_count, sizeof(*bends));
     double all_m2 = 0, over_m2 = 0, hidden_m2 = 0, unknown_m2 = 0;
     for (size_t i = 0; i < bend->count; i++) {
-        double worst = worst_of((double)bend->plus[i] / FIXED, (double)bend->minus[i] / FIXED, around);
-        float *most = &steps[bend->places[i].tri];
-        *most = fmaxf(*most, (float)worst);
+        const double plus = (double)bend->plus[i] / FIXED, minus = (double)bend->minus[i] / FIXED;
+        const uint32_t tri = bend->places[i].tri;
+        steps[tri] = fmaxf(steps[tri], (float)worst_of(plus, minus, around));
+        bends[tri] = fmaxf(bends[tri], (float)max_of(plus, -minus));
         bend->plus[i] = bend->minus[i] = 0;
     }
-    for (size_t t = 0; t < bend->drawn.triangle_count; t++) {
+    for (size_t t = 0; t < finest; t++) {
         all_m2 += bend->area_m2[t];
         hidden_m2 += bend->hidden_m2[t];
         unknown_m2 += bend->unknown_m2[t];
@@ -85,5 +144,8 @@ void influence_bend_measure(struct influence_bend *bend, double around, float *s
     report->unknown_share = all_m2 > 0 ? fmax(report->unknown_share, unknown_m2 / all_m2) : report->unknown_share;
     if (steps_out)
         memcpy(steps_out, steps, bend->drawn.triangle_count * sizeof(*steps));
+    if (errors)
+        write_errors(bend, bends, errors);
+    mem_free(bends);
     mem_free(steps);
 }

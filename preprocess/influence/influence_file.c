@@ -147,14 +147,21 @@ static bool solve(struct making *making, struct influence *found, enum interpola
                : influence_conduct(found, making->log, making->workers, mesh, decay_m, anchors, count, bend);
 }
 
-static void bound_bend(const struct making *making, const struct plant_group *group, enum interpolation interpolation,
-                       struct influence_bend *bend)
+/* Errors that were not measured may be of any size. Returns false if out of memory. */
+static bool bound_errors(const struct making *making, const struct plant_group *group, enum interpolation interpolation,
+                         struct influence_bend *bend, struct influence *found)
 {
     double around = interpolation == INTERPOLATION_FIN ? (group->ambient - group->min) / (group->max - group->min) : 0;
+    found->errors = mem_try_array(making->input->vertex_count + 1, sizeof(*found->errors)); /* padded to 8 bytes in the file */
+    if (!found->errors)
+        return false;
     if (bend)
-        influence_bend_measure(bend, around, NULL, making->input->bend);
+        influence_bend_measure(bend, around, NULL, found->errors, making->input->bend);
     else
         making->input->bend->unmeasured++;
+    for (size_t v = 0; !bend && v < making->input->vertex_count; v++)
+        found->errors[v] = 1;
+    return true;
 }
 
 /* bend: NULL if there are too many places. */
@@ -177,10 +184,8 @@ static bool add_entry(struct making *making, int group, enum interpolation inter
         making->entries[at].noise = gp->noise;
         making->entries[at].deviation = gp->deviation;
     }
-    bool good = solve(making, &making->found[at], interpolation, decay_m, mesh, gp, anchors, bend);
-    if (good)
-        bound_bend(making, &input->plant->groups[group], interpolation, bend);
-    return good;
+    return solve(making, &making->found[at], interpolation, decay_m, mesh, gp, anchors, bend) &&
+           bound_errors(making, &input->plant->groups[group], interpolation, bend, &making->found[at]);
 }
 
 static bool add_transport(struct making *making, int group, const struct influence_mesh *mesh, const struct influence_anchor *anchors)
@@ -301,7 +306,8 @@ static bool add_group(struct making *making, int group)
         if (good)
             influence_mesh_anchors(&mesh, making->embedding, input->vertex_count, anchors);
         if (good && of->prepared >> INTERPOLATION_HARMONIC) {
-            const struct bend_drawn drawn = { input->positions_m, input->triangles, input->vertex_count, input->triangle_count, anchors };
+            const struct bend_drawn drawn = { input->positions_m, input->triangles, input->vertex_count, input->triangle_count, anchors,
+                                              input->levels,      input->level_count };
             bounded = influence_bend_init(&bend, &mesh, input->surface, &drawn, BEND_PLACES);
         }
         for (int i = INTERPOLATION_HARMONIC; good && i < INTERPOLATIONS; i++)
@@ -327,7 +333,7 @@ static int write_file(struct making *making)
 {
     static const char zeros[8];
     const struct influence_input *input = making->input;
-    struct atomic_file_part *parts = mem_array(2 + 4 * making->header.entry_count, sizeof(*parts));
+    struct atomic_file_part *parts = mem_array(2 + 5 * making->header.entry_count, sizeof(*parts));
     size_t count = 0;
     uint64_t at = sizeof(making->header) + making->header.entry_count * sizeof(*making->entries);
     parts[count++] = (struct atomic_file_part){ &making->header, sizeof(making->header) };
@@ -346,6 +352,11 @@ static int write_file(struct making *making)
         parts[count++] = (struct atomic_file_part){ zeros, padded(shares) - shares };
         if (deviations)
             parts[count++] = (struct atomic_file_part){ making->found[i].deviations, deviations };
+        const uint64_t errors = making->found[i].errors ? padded(4 * input->vertex_count) : 0;
+        entry->errors = errors ? at : 0;
+        at += errors;
+        if (errors)
+            parts[count++] = (struct atomic_file_part){ making->found[i].errors, errors };
     }
     char *path = folder_influence_path(input->folder, input->key);
     int status = cache_file_write_parts(path, INFLUENCE_MAGIC, input->key, parts, count);
@@ -359,7 +370,7 @@ bool influence_file_make(struct log *log, struct workers *workers, const struct 
     struct making making = { .log = log, .workers = workers, .input = input };
     making.header.vertex_count = (uint32_t)input->vertex_count;
     making.embedding = vertex_embedding_create(input->surface, input->positions_m, input->normals, input->vertex_count, input->triangles,
-                                               input->triangle_count);
+                                               input->levels[0].triangle_count);
     bool good = making.embedding;
     for (size_t g = 0; good && g < input->plant->group_count; g++)
         good = add_group(&making, (int)g);

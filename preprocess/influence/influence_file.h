@@ -25,8 +25,10 @@ struct influence_input {
     const struct surface *surface;
     const float (*positions_m)[3]; /* vertices, as the asset file has them */
     const float (*normals)[3];
-    const uint32_t *triangles; /* of the finest level */
+    const uint32_t *triangles; /* of all levels of detail, the finest first */
     size_t vertex_count, triangle_count;
+    const struct bend_level *levels;
+    size_t level_count;
     const char *folder;
     uint64_t key; /* of the asset file */
     struct cloud_report *cloud; /* filled in where a group asks for distances by heat */

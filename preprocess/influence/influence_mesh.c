@@ -283,6 +283,14 @@ void influence_mesh_finish(struct influence_mesh *mesh)
     *mesh = (struct influence_mesh){ 0 };
 }
 
+void influence_mesh_anchor(const struct influence_mesh *mesh, const struct surface_point *place, struct influence_anchor *out)
+{
+    double weights[3] = { 1, 0, 0 };
+    memcpy(out->points, mesh->mesh.tris[piece_of(mesh, place->tri, place->point_m, weights)], sizeof(out->points));
+    for (int i = 0; i < 3; i++)
+        out->weights[i] = (float)weights[i];
+}
+
 void influence_mesh_anchors(const struct influence_mesh *mesh, const struct vertex_embedding *embedding, size_t count,
                             struct influence_anchor *out)
 {
@@ -292,10 +300,6 @@ void influence_mesh_anchors(const struct influence_mesh *mesh, const struct vert
         out[v] = (struct influence_anchor){ { point, point, point }, { 1, 0, 0 } };
         if (point != TRIMESH_NONE && mesh->fan_first[point] < mesh->fan_first[point + 1])
             continue;
-        double weights[3] = { 1, 0, 0 };
-        const uint32_t *corners = mesh->mesh.tris[piece_of(mesh, hit.tri, hit.point_m, weights)];
-        memcpy(out[v].points, corners, sizeof(out[v].points));
-        for (int i = 0; i < 3; i++)
-            out[v].weights[i] = (float)weights[i];
+        influence_mesh_anchor(mesh, &hit, &out[v]);
     }
 }

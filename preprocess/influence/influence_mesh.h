@@ -38,6 +38,8 @@ struct influence_anchor {
     uint32_t points[3];
     float weights[3];
 };
+/* Writes the anchor of a place on the surface. */
+void influence_mesh_anchor(const struct influence_mesh *mesh, const struct surface_point *place, struct influence_anchor *out);
 /* Writes the anchor of each of `count` vertices of the embedding, which is on the same surface. */
 void influence_mesh_anchors(const struct influence_mesh *mesh, const struct vertex_embedding *embedding, size_t count,
                             struct influence_anchor *out);

@@ -366,8 +366,14 @@ static bool make_influence(struct build *build)
     const struct geometry *g = &build->geometry;
     int64_t since_ns = clock_mono_ns();
     char why[200];
+    struct bend_level levels[LEVELS_MAX];
+    size_t triangles = 0;
     if (!influence_is_wanted(input->plant, input->sensors, input->sensor_count))
         return true;
+    for (size_t l = 0; l < build->levels.count; l++) {
+        levels[l] = (struct bend_level){ build->levels.at[l].index_count / 3, (double)build->levels.at[l].error_m };
+        triangles += levels[l].triangle_count;
+    }
     const struct influence_input wanted = { .plant = input->plant,
                                             .sensors = input->sensors,
                                             .places_m = (const double(*)[3])build->measured.places_m,
@@ -377,7 +383,9 @@ static bool make_influence(struct build *build)
                                             .normals = (const float(*)[3])g->normals,
                                             .triangles = g->indices,
                                             .vertex_count = g->vertex_count,
-                                            .triangle_count = build->levels.at[0].index_count / 3,
+                                            .triangle_count = triangles,
+                                            .levels = levels,
+                                            .level_count = build->levels.count,
                                             .folder = input->folder,
                                             .key = input->key,
                                             .cloud = &build->output->report.cloud,

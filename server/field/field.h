@@ -116,7 +116,8 @@ struct field_point {
     double drawn_error; /* bound on the error of the pictures around this place; 0: less than 1/255 of the range */
 };
 /* Computes the field at a place from the readings: exactly for distances through space, along the surface from the distances at the
-   triangle's corners. Prepared interpolations are linear between vertices. Returns false if the asset has no field with these
+   triangle's corners. harmonic, fin and gp exist only as solutions on a mesh: they are interpolated between the vertices of the finest
+   level, and drawn_error says how far that may be from the exact solution. Returns false if the asset has no field with these
    parameters. */
 bool field_at(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
               const struct field_place *place, struct field_point *out);

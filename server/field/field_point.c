@@ -107,15 +107,14 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
     params = field_params_of(field, asset, params, &room);
     const struct state *state = field_state(field, asset, params);
     point_drawn(scalars, place, out);
-    if (params->show != SHOW_DISTANCE && state->weights->prepared)
-        return true;
     struct one one;
     one_init(&one, state->layout, place);
     if (params->show == SHOW_DISTANCE) {
         point_distance(state, &one, out);
         return true;
     }
-    point_sum(state, &one, out);
+    if (!state->weights->prepared)
+        point_sum(state, &one, out);
     out->drawn_error = field_params_cover(params) ? 0 : error_near(state, place);
     out->uncertain |= out->drawn_error > 0;
     return true;

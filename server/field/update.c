@@ -101,7 +101,8 @@ void update_rule(const struct state *state, const struct state_input *inputs, st
     rule->empty = difference || places ? 0 : (float)group->min;
 }
 
-/* The largest value that a sum of error weights can be multiplied by: Shepard's add up to 0, so only the spread of the readings counts. */
+/* The largest value that a sum of error weights can be multiplied by. Most add up to 0, so only the spread of the readings counts; for fin,
+   what is around counts as one of them. */
 static double error_scale(const struct state *state)
 {
     double low = INFINITY, high = -INFINITY;
@@ -112,6 +113,8 @@ static double error_scale(const struct state *state)
     }
     if (!(low <= high))
         return 0;
+    if (state->params.interpolation == INTERPOLATION_FIN)
+        return fmax(high, 0) - fmin(low, 0);
     if (state->params.interpolation != INTERPOLATION_PAPER)
         return high - low;
     const struct plant_group *group = state->layout->group;

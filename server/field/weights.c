@@ -122,6 +122,17 @@ static float steps_per_m(const struct layout *layout)
     return square > 0 ? 127 / (0.2f * sqrtf(square)) : 127;
 }
 
+static bool take_errors(struct weights *weights, const float *errors)
+{
+    weights->errors = mem_try_array(weights->layout->vertex_count, sizeof(*errors));
+    for (size_t v = 0; weights->errors && v < weights->layout->vertex_count; v++) {
+        weights->errors[v] = errors[v];
+        weights->largest_error = fmaxf(weights->largest_error, errors[v]);
+    }
+    weights->errors_version = 1;
+    return weights->errors;
+}
+
 /* Columns come from the file, and what they are divided by is 1: where they add up to less, the rest is what is around. */
 static bool take_prepared(struct weights *weights, const struct influence_entry *entry)
 {
@@ -146,6 +157,8 @@ static bool take_prepared(struct weights *weights, const struct influence_entry 
         weights->ones[i] = 1;
     if (weights->fill)
         influence_fill_values(weights->fill, weights->ones);
+    if (entry->errors && !take_errors(weights, influence_array(influence, entry->errors)))
+        return false;
     return weights->beyond_m || weights->interpolation == INTERPOLATION_HARMONIC;
 }
 

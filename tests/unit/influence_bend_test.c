@@ -10,7 +10,7 @@
 #include "tests/support/surface_case.h"
 
 enum { FEW = 5, MANY = 70, PLACES = 4000, MOST = 400000 }; /* many: more than one block, and the last not full */
-static const double DISC_M = 0.1, ON_SURFACE_M = 1e-6;
+static const double DISC_M = 0.1, ON_SURFACE_M = 1e-6, FINER_M = 0.04;
 
 struct drawn { /* coarse triangles, and places in them by chance */
     struct cad shape;
@@ -131,6 +131,43 @@ struct case_of {
     size_t sensors;
 };
 
+/* A solution on much smaller triangles stands for the exact one: what is drawn may differ from it by the errors of the corners. */
+static void compare_finer(const struct case_of *of, const struct drawn *drawn, const struct surface *surface, const double (*places_m)[3],
+                          const struct vertex_embedding *embedding, const float *errors)
+{
+    struct influence_mesh mesh;
+    struct influence exact = { 0 };
+    const size_t count = drawn->shape.vertex_count + PLACES;
+    double worst = 0, beyond = 0, nearest = 0;
+    size_t compared = 0, right = 0, unmarked = 0;
+    assert_true(influence_mesh_init(&mesh, surface, places_m, of->sensors, DISC_M, FINER_M));
+    struct influence_anchor *anchors = mem_array(count, sizeof(*anchors));
+    influence_mesh_anchors(&mesh, embedding, count, anchors);
+    assert_true(of->solve(&exact, &mesh, anchors, count, NULL));
+    for (size_t i = 0; i < PLACES; i++) {
+        struct surface_point hit;
+        double place_m[3], bound = 0, found = worst_at(drawn, &exact, i, 0);
+        for (int axis = 0; axis < 3; axis++)
+            place_m[axis] = (double)drawn->positions[drawn->shape.vertex_count + i][axis];
+        if (!surface_find_point_within(surface, place_m, drawn->normals[i], ON_SURFACE_M, &hit))
+            continue;
+        for (int k = 0; k < 3; k++)
+            bound = fmax(bound, 255 * (double)errors[drawn->shape.triangles[3 * drawn->tri[i] + k]]);
+        worst = fmax(worst, found);
+        beyond = fmax(beyond, found - bound);
+        nearest = fmax(nearest, found / fmax(bound, 0.1));
+        compared++;
+        unmarked += bound <= 1;
+        right += found <= 1;
+    }
+    print_message("finer: off by %.2f steps at most, %.2f beyond what was said, %.2f times it; of %zu places %zu are right, %zu unmarked\n",
+                  worst, beyond, nearest, compared, right, unmarked);
+    assert_true(worst > 1 && beyond < 0.1);
+    mem_free(anchors);
+    influence_finish(&exact);
+    influence_mesh_finish(&mesh);
+}
+
 static void holds(const struct case_of *of)
 {
     struct drawn drawn = { 0 };
@@ -153,14 +190,15 @@ static void holds(const struct case_of *of)
                                 drawn.shape.triangles, triangles);
     struct influence_anchor *anchors = mem_array(vertices + PLACES, sizeof(*anchors));
     influence_mesh_anchors(&mesh, embedding, vertices + PLACES, anchors);
-    const struct bend_drawn on = { (const float(*)[3])drawn.shape.positions, drawn.shape.triangles, vertices, triangles, anchors };
+    const struct bend_drawn on = { (const float(*)[3])drawn.shape.positions, drawn.shape.triangles, vertices, triangles, anchors, NULL, 0 };
     assert_true(influence_bend_init(&bend, &mesh, surface, &on, MOST));
     assert_true(of->solve(&truth, &mesh, anchors, vertices + PLACES, NULL));
     assert_true(of->solve(&ours, &mesh, anchors, vertices, &bend));
     for (size_t s = 0; s < of->sensors; s++)
         assert_memory_equal(ours.shares + s * vertices, truth.shares + s * (vertices + PLACES), vertices * sizeof(*ours.shares));
-    float *steps = mem_array(triangles, sizeof(*steps));
-    influence_bend_measure(&bend, of->around, steps, &report);
+    float *steps = mem_array(triangles, sizeof(*steps)), *errors = mem_array(vertices, sizeof(*errors));
+    influence_bend_measure(&bend, of->around, steps, errors, &report);
+    compare_finer(of, &drawn, surface, (const double(*)[3])places_m, embedding, errors);
     double worst = 0, nearest = 0, whole_m2 = 0, hidden_m2 = 0;
     for (size_t i = 0; i < PLACES; i++) {
         struct surface_point hit;
@@ -188,6 +226,7 @@ static void holds(const struct case_of *of)
     assert_true(report.unknown_share < 0.01 && fabs(report.hidden_share - hidden_m2 / whole_m2) < 0.04);
     assert_true(of->make == make_sphere ? report.hidden_share == 0 && report.unknown_share == 0 : report.hidden_share > 0.02);
     mem_free(steps);
+    mem_free(errors);
     mem_free(anchors);
     influence_finish(&ours);
     influence_finish(&truth);
@@ -242,7 +281,9 @@ TEST(test_what_is_not_on_the_surface_is_unknown)
     for (int axis = 0; axis < 3; axis++)
         shape.positions[shape.triangles[0]][axis] *= 1.2f;
     struct influence_anchor *anchors = mem_array(shape.vertex_count, sizeof(*anchors));
-    const struct bend_drawn on = { (const float(*)[3])shape.positions, shape.triangles, shape.vertex_count, shape.triangle_count, anchors };
+    const struct bend_drawn on = {
+        (const float(*)[3])shape.positions, shape.triangles, shape.vertex_count, shape.triangle_count, anchors, NULL, 0
+    };
     assert_true(influence_bend_init(&bend, &mesh, surface, &on, MOST));
     size_t unknown = 0;
     for (size_t t = 0; t < shape.triangle_count; t++) {

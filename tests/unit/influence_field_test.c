@@ -223,6 +223,44 @@ CASE(test_fin_knows_how_far_it_sees)
     finish(&u);
 }
 
+/* Beyond the last sensor a fin falls as exp(-x / d): half-way between two places it is their geometric mean. Triangles of 0.1 m are too
+   long for d = 0.236 m: picks say by how much they may be off, and are marked. */
+CASE(test_picks_of_fin_tell_their_error)
+{
+    struct plant_in_use u;
+    size_t marked = 0, off = 0, compared = 0;
+    begin(&u, c, ", thickness_m: 0.01", ", interpolation: fin, ambient: 20, disc_m: 0.1", 2);
+    u.snapshot->readings[1].value = 100;
+    const struct asset_view *view = &u.scene->assets[0].file->view;
+    look(&u, 0);
+    for (uint32_t t = 0; t < view->primitives[0].index_count / 3; t++)
+        for (int k = 0; k < 3; k++) {
+            struct field_place place = { .parts = { 0.5, 0.5, 0 } };
+            struct field_point point;
+            double x_m[2], above[2];
+            for (int i = 0; i < 3; i++)
+                place.corners[i] = view->indices[3 * t + (uint32_t)((k + i) % 3)];
+            for (int i = 0; i < 2; i++) {
+                x_m[i] = (double)view->positions_m[place.corners[i]][0] + view->header->origin_m[0] - place_of(1);
+                above[i] = (double)u.scalars->at[place.corners[i]].value - 20;
+            }
+            if (fmin(x_m[0], x_m[1]) < 0.25 || fmax(x_m[0], x_m[1]) > 0.8)
+                continue;
+            assert_true(field_at(u.field, 0, &u.params, u.snapshot, &place, &point));
+            double error = fabs(point.value - 20 - sqrt(above[0] * above[1]));
+            assert_true(error <= fmax(point.drawn_error, 100.0 / 255));
+            assert_true(point.uncertain == (point.drawn_error > 0));
+            marked += point.uncertain;
+            off += error > 100.0 / 255;
+            compared++;
+        }
+    print_message("%zu places, %zu off by more than a step of colour, %zu marked\n", compared, off, marked);
+    assert_true(off > 0 && marked < compared);
+    u.snapshot->readings[0].value = u.snapshot->readings[1].value = 20; /* as all around */
+    assert_true(look(&u, place_of(1) + 0.3)->uncertain == 0);
+    finish(&u);
+}
+
 /* What the paper's way of finding distances says is what ours does, on a strip that is as wide as a sensor is from its edge. */
 CASE(test_distances_by_heat)
 {

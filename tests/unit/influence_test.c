@@ -12,6 +12,7 @@ struct solved {
     struct cad shape;
     struct surface *surface;
     struct influence influence;
+    float *errors; /* by vertex */
 };
 
 static void solve(struct solved *s, const double (*places_m)[3], size_t count, double disc_m, double decay_m)
@@ -28,7 +29,16 @@ static void solve(struct solved *s, const double (*places_m)[3], size_t count, d
     assert_true(influence_mesh_init(&mesh, s->surface, places_m, count, disc_m, INFINITY));
     influence_mesh_anchors(&mesh, embedding, vertices, anchors);
     influence_finish(&s->influence);
-    assert_true(influence_conduct(&s->influence, the_log, workers, &mesh, decay_m, anchors, vertices, NULL));
+    mem_free(s->errors);
+    s->errors = mem_array(vertices, sizeof(*s->errors));
+    struct influence_bend bend;
+    const struct bend_drawn drawn = {
+        (const float(*)[3])s->shape.positions, s->shape.triangles, vertices, s->shape.triangle_count, anchors, NULL, 0
+    };
+    assert_true(influence_bend_init(&bend, &mesh, s->surface, &drawn, 1000000));
+    assert_true(influence_conduct(&s->influence, the_log, workers, &mesh, decay_m, anchors, vertices, &bend));
+    influence_bend_measure(&bend, 0, NULL, s->errors, &(struct bend_report){ 0 });
+    influence_bend_finish(&bend);
     influence_mesh_finish(&mesh);
     mem_free(anchors);
     vertex_embedding_destroy(&embedding);
@@ -37,6 +47,7 @@ static void solve(struct solved *s, const double (*places_m)[3], size_t count, d
 static void finish(struct solved *s)
 {
     influence_finish(&s->influence);
+    mem_free(s->errors);
     surface_destroy(&s->surface);
     cad_finish(&s->shape);
 }
@@ -122,6 +133,128 @@ TEST(test_sphere_between_caps)
     print_message("sphere: worst difference %.4f of what the caps differ by\n", worst);
     assert_true(worst < 0.03); /* a disc of some points is a little smaller than it should be */
     finish(&s);
+}
+
+/* --- errors of what is drawn ---------------------------------------------------------------------------------------------------- */
+
+struct tally {
+    double worst, beyond; /* steps of colour: off the exact value; more than the errors of the corners say */
+    size_t compared, marked;
+};
+
+/* Compares places inside triangles with the exact solution, which is NAN where it is not asked for. spread: of the readings. */
+static void tally_places(const struct solved *s, const double *readings, double spread, double (*exact)(const double at[3]),
+                         struct tally *tally)
+{
+    *tally = (struct tally){ 0 };
+    for (int i = 0; i < 20000; i++) {
+        const uint32_t *corners = s->shape.triangles + 3 * (size_t)(cad_random(&chance) * (double)s->shape.triangle_count);
+        double a = cad_random(&chance), b = cad_random(&chance) * (1 - a), w[3] = { 1 - a - b, a, b }, at[3] = { 0 }, drawn = 0, error = 0;
+        for (int k = 0; k < 3; k++) {
+            for (int c = 0; c < 3; c++)
+                at[c] += w[k] * (double)s->shape.positions[corners[k]][c];
+            drawn += w[k] * value_at(s, readings, corners[k]);
+            error = fmax(error, (double)s->errors[corners[k]]);
+        }
+        double truth = exact(at);
+        if (isnan(truth))
+            continue;
+        double off = fabs(drawn - truth) / spread;
+        tally->worst = fmax(tally->worst, 255 * off);
+        tally->beyond = fmax(tally->beyond, 255 * (off - error));
+        tally->compared++;
+        tally->marked += error > 1.0 / 255;
+    }
+}
+
+/* Between places NEAR_M away from two sensors a fin is the sum of two sinh, given its values there. */
+#define NEAR_M 0.4
+static struct {
+    double decay_m, low, high; /* values at 1 + NEAR_M and 5 - NEAR_M */
+} fin;
+
+static double exact_fin(const double at[3])
+{
+    double from = at[0] - 1 - NEAR_M, to = 5 - NEAR_M - at[0];
+    if (from < 0 || to < 0)
+        return NAN;
+    return (fin.low * sinh(to / fin.decay_m) + fin.high * sinh(from / fin.decay_m)) / sinh((4 - 2 * NEAR_M) / fin.decay_m);
+}
+
+static double value_near(const struct solved *s, const double *readings, double x)
+{
+    size_t best = 0;
+    for (size_t v = 1; v < s->shape.vertex_count; v++)
+        if (fabs((double)s->shape.positions[v][0] - x) < fabs((double)s->shape.positions[best][0] - x))
+            best = v;
+    return value_at(s, readings, best);
+}
+
+/* A fin on triangles that are short compared with its decay length is right and not marked. On triangles 2 m long it is wrong, and marked:
+   also where finite elements are too large for it (decay 0.2 m). */
+TEST(test_fin_on_long_triangles_is_marked)
+{
+    static const struct {
+        int across;
+        double decay_m;
+        bool marked;
+    } cases[] = { { 200, 0.8, false }, { 10, 0.8, true }, { 5, 0.8, true }, { 200, 0.2, false }, { 25, 0.2, true }, { 5, 0.2, true } };
+    const double readings[3] = { 80, 40, 80 };
+    struct solved fine = { 0 };
+    make_strip(&fine);
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        struct solved s = { 0 };
+        struct tally tally;
+        solve(&fine, rod_places, 3, DISC_M, cases[i].decay_m);
+        fin.decay_m = cases[i].decay_m;
+        fin.low = value_near(&fine, readings, 1 + NEAR_M);
+        fin.high = value_near(&fine, readings, 5 - NEAR_M);
+        cad_plate(&s.shape, &chance, cases[i].across, 1, STRIP_M, WIDTH_M, 0);
+        solve(&s, rod_places, 3, DISC_M, cases[i].decay_m);
+        tally_places(&s, readings, 80, exact_fin, &tally);
+        print_message("fin of %g m on triangles of %g m: off by %.2f steps, %.2f beyond what is said; marked %zu of %zu\n",
+                      cases[i].decay_m, STRIP_M / cases[i].across, tally.worst, tally.beyond, tally.marked, tally.compared);
+        assert_true(tally.compared > 5000 && tally.beyond < 0.2);
+        assert_true(cases[i].marked ? tally.worst > 10 && tally.marked > tally.compared / 2 : tally.worst < 1 && tally.marked == 0);
+        finish(&s);
+    }
+    finish(&fine);
+}
+
+static double log_slope; /* of the temperature on the sphere */
+
+static double exact_sphere(const double at[3])
+{
+    double theta = acos(at[2] / sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]));
+    return theta < 0.3 || theta > M_PI - 0.3 ? (double)NAN : 0.5 + log_slope * log(tan(theta / 2));
+}
+
+/* How large the caps are depends on the points that discs hold: the slope between them is taken from a fine sphere. */
+TEST(test_coarse_spheres_are_marked)
+{
+    const double places_m[2][3] = { { 0, 0, 1 }, { 0, 0, -1 } }, readings[2] = { 1, 0 };
+    static const int cells[] = { 30, 12, 5 };
+    for (int i = 0; i < 3; i++) {
+        struct solved s = { 0 };
+        struct tally tally;
+        double up = 0, down = 0;
+        cad_sphere(&s.shape, &chance, cells[i]);
+        solve(&s, places_m, 2, 0.1, (double)INFINITY);
+        for (size_t v = 0; v < s.shape.vertex_count; v++) {
+            double theta = acos(fmin(fmax((double)s.shape.positions[v][2], -1), 1)), along = log(tan(theta / 2));
+            if (theta < 0.5 || theta > M_PI - 0.5)
+                continue;
+            up += along * (value_at(&s, readings, v) - 0.5);
+            down += along * along;
+        }
+        log_slope = up / down;
+        tally_places(&s, readings, 1, exact_sphere, &tally);
+        print_message("sphere of %d cells: off by %.2f steps, %.2f beyond what is said; marked %zu of %zu\n", cells[i], tally.worst,
+                      tally.beyond, tally.marked, tally.compared);
+        assert_true(tally.beyond < 0.2);
+        assert_true(i == 0 ? tally.worst < 1 && tally.marked < tally.compared / 100 : tally.worst > 1);
+        finish(&s);
+    }
 }
 
 TEST(test_shares_are_those_of_an_average)
