@@ -2,7 +2,7 @@
 /* Hair gaps, closed as those of the surface that distances are found on. */
 #include "preprocess/geometry/gaps.h"
 
-#include "base/math/extent.h"
+#include "base/math/gap_split.h"
 #include "base/mem.h"
 #include "surface/repair/repair.h"
 
@@ -11,12 +11,9 @@
 /* Where several gaps meet at a corner, each round closes one. */
 enum { MOST_ROUNDS = 4 };
 
-static double widest_m(const float (*positions_m)[3], size_t vertex_count, double tolerance_m)
+static double widest_m(const float (*positions_m)[3], const uint32_t *indices, size_t index_count, double tolerance_m)
 {
-    struct extent extent = extent_empty();
-    for (size_t v = 0; v < vertex_count; v++)
-        extent_addf(&extent, positions_m[v]);
-    double most_m = min_of(GAPS_MOST_M, GAPS_OF_SIZE * extent_size(&extent));
+    double most_m = min_of(GAPS_MOST_M, GAPS_OF_SIZE * gap_main_size(positions_m, indices, index_count / 3));
     return tolerance_m > 0 ? min_of(most_m, tolerance_m) : most_m;
 }
 
@@ -56,7 +53,7 @@ bool gaps_close(float (*positions_m)[3], size_t vertex_count, const uint32_t *in
                 uint32_t *closed)
 {
     uint32_t *point_of = mem_try_array(vertex_count, sizeof(*point_of));
-    const double within_m = widest_m((const float(*)[3])positions_m, vertex_count, tolerance_m);
+    const double within_m = widest_m((const float(*)[3])positions_m, indices, index_count, tolerance_m);
     int64_t moved = point_of ? 1 : -1;
     for (int round = 0; round < MOST_ROUNDS && moved > 0; round++) {
         moved = close_once(positions_m, vertex_count, indices, index_count, within_m, point_of);

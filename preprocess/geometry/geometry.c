@@ -14,7 +14,7 @@
 
 #define MAX_TRIANGLES 50000000ull /* of one asset */
 #define MAX_SIZE_M 1e7
-#define COARSE_SIZE_M 1e5 /* floats of a larger model have steps of millimetres at its ends */
+#define COARSE_SIZE_M 1e4 /* floats of a larger model have steps of half a millimetre at its ends */
 #define SAME_PLACE_M 1e-3 /* nodes of one name that are no farther apart are as good as one */
 #define SHOWN_NODES 6
 #define MIN_SIZE_M 1e-6 /* smaller is a wrong unit; and squares of squares of lengths have to be numbers */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds stray triangles of an asset and the node that they came from. */
+/* Finds stray triangles and vertices of an asset and the node that they came from. */
 #include "preprocess/geometry/stray.h"
 
 #include <math.h>
@@ -8,21 +8,14 @@
 
 #include "base/math/gap_split.h"
 #include "base/mem.h"
+#include "plant/models/transform.h"
+#include "preprocess/geometry/geometry_impl.h"
 
-static struct gap_tri *triangles_of(const struct geometry *geometry)
-{
-    size_t count = geometry->index_count / 3;
-    struct gap_tri *tris = mem_array(count, sizeof(*tris));
-    for (size_t t = 0; t < count; t++) {
-        double normal[3];
-        for (size_t k = 0; k < 3; k++)
-            for (int axis = 0; axis < 3; axis++)
-                tris[t].at[k][axis] = (double)geometry->positions_m[geometry->indices[3 * t + k]][axis] + geometry->origin_m[axis];
-        vec_normal(tris[t].at[0], tris[t].at[1], tris[t].at[2], normal);
-        tris[t].area_m2 = 0.5 * vec_length(normal);
-    }
-    return tris;
-}
+struct farthest {
+    struct extent main; /* in the asset frame */
+    double away_m, at_m[3];
+    const struct gltf_node *node;
+};
 
 static double away_from(const struct extent *main, const double place_m[3])
 {
@@ -32,44 +25,59 @@ static double away_from(const struct extent *main, const double place_m[3])
     return vec_length(away_m);
 }
 
-/* Returns the name of the smallest node whose box, grown by the rounding of floats, holds the place; "": no such node has a name. */
-static const char *node_at(const struct gltf_model *model, const struct geometry_params *params, const double place_m[3],
-                           double rim_m)
+/* Looks at a primitive's vertices, also at those that only triangles without area use. */
+static void look_at(struct farthest *farthest, const struct node_primitive *part, const struct geometry_params *params)
 {
-    double(*boxes)[2][3] = geometry_node_boxes(model, params);
-    const char *name = "";
-    double least_m = INFINITY;
-    for (uint32_t i = 0; i < model->node_count; i++) {
-        bool holds = true;
-        for (int axis = 0; axis < 3; axis++)
-            holds = holds && place_m[axis] >= boxes[i][0][axis] - rim_m && place_m[axis] <= boxes[i][1][axis] + rim_m;
-        double size_m = vec_distance(boxes[i][0], boxes[i][1]);
-        if (holds && size_m <= least_m && model->nodes[i].name[0]) {
-            least_m = size_m;
-            name = model->nodes[i].name;
+    double world[16], place_m[3];
+    primitive_world(params, part->node, world);
+    for (uint32_t v = 0; v < part->primitive->vertex_count; v++) {
+        const float *p = part->primitive->positions[v];
+        transform_point(world, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] }, place_m);
+        double away_m = away_from(&farthest->main, place_m);
+        if (away_m > farthest->away_m) {
+            farthest->away_m = away_m;
+            farthest->node = part->node;
+            memcpy(farthest->at_m, place_m, sizeof(place_m));
         }
     }
-    mem_free(boxes);
-    return name;
+}
+
+/* Returns the name of the node, or of its nearest ancestor that has one; "": none has. */
+static const char *name_of(const struct gltf_model *model, const struct gltf_node *node)
+{
+    while (!node->name[0] && node->parent >= 0)
+        node = &model->nodes[node->parent];
+    return node->name;
 }
 
 void stray_text(const struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params,
                 char text[STRAY_TEXT_BYTES])
 {
-    struct gap_tri *tris = triangles_of(geometry);
-    struct extent main = extent_empty();
-    size_t count = geometry->index_count / 3, kept = gap_split(tris, count, &main);
-    double most_m = 0, at_m[3] = { 0 };
-    for (size_t t = kept; t < count; t++)
-        for (int k = 0; k < 3; k++)
-            if (away_from(&main, tris[t].at[k]) > most_m) {
-                most_m = away_from(&main, tris[t].at[k]);
-                memcpy(at_m, tris[t].at[k], sizeof(at_m));
-            }
-    text[0] = 0;
-    if (most_m > 0)
-        snprintf(text, STRAY_TEXT_BYTES,
-                 "%zu of its triangles lie up to %.3g m from the rest, the farthest at %.7g, %.7g, %.7g (node '%.80s')", count - kept,
-                 most_m, at_m[0], at_m[1], at_m[2], node_at(model, params, at_m, 1e-6 * most_m));
+    size_t count = geometry->index_count / 3;
+    struct gap_tri *tris = gap_tris((const float(*)[3])geometry->positions_m, geometry->indices, count);
+    struct farthest farthest = { .main = extent_empty() };
+    size_t stray = count - gap_split(tris, count, &farthest.main);
+    struct node_primitives parts = { 0 };
+    struct geometry counts = { 0 };
+    char why[MODEL_WHY_BYTES];
     mem_free(tris);
+    text[0] = 0;
+    double main_m = extent_size(&farthest.main);
+    for (int axis = 0; axis < 3; axis++) {
+        farthest.main.low[axis] += geometry->origin_m[axis];
+        farthest.main.high[axis] += geometry->origin_m[axis];
+    }
+    if (node_primitives_find(&parts, &counts, model, params, why))
+        for (size_t i = 0; i < parts.count; i++)
+            look_at(&farthest, &parts.at[i], params);
+    mem_free(parts.at);
+    if (stray == 0 && !(farthest.away_m > main_m)) /* the rounding of floats, and vertices of triangles without area beside the rest */
+        return;
+    if (stray > 0)
+        snprintf(text, STRAY_TEXT_BYTES, "%zu of its triangles lie up to", stray);
+    else
+        snprintf(text, STRAY_TEXT_BYTES, "a vertex without area lies");
+    size_t length = strlen(text);
+    snprintf(text + length, STRAY_TEXT_BYTES - length, " %.3g m from the rest%s at %.7g, %.7g, %.7g (node '%.80s')", farthest.away_m,
+             stray > 0 ? ", the farthest" : "", farthest.at_m[0], farthest.at_m[1], farthest.at_m[2], name_of(model, farthest.node));
 }

@@ -309,20 +309,17 @@ bool influence_bend_init(struct influence_bend *bend, const struct influence_mes
                          const struct bend_drawn *drawn, size_t most)
 {
     struct surface_debug_mesh look;
-    struct extent extent = extent_empty();
     surface_debug_mesh(surface, &look);
     struct trimesh hidden = { .points = mem_array(look.point_count, sizeof(*hidden.points)), .point_count = look.point_count };
     memcpy(hidden.points, look.points_m, look.point_count * sizeof(*hidden.points));
     for (size_t t = look.visible_count; t < look.tri_count; t++)
         trimesh_add_tri(&hidden, look.tris[t][0], look.tris[t][1], look.tris[t][2], (uint32_t)t);
-    for (size_t i = 0; i < mesh->mesh.point_count; i++)
-        extent_add(&extent, mesh->mesh.points[i]);
     *bend = (struct influence_bend){ .drawn = *drawn, .mesh_error = mesh_error_create(mesh), .point_count = mesh->mesh.point_count };
     bend->area_m2 = mem_array(drawn->triangle_count, sizeof(*bend->area_m2));
     bend->hidden_m2 = mem_array(drawn->triangle_count, sizeof(*bend->hidden_m2));
     bend->unknown_m2 = mem_array(drawn->triangle_count, sizeof(*bend->unknown_m2));
     struct finding finding = { .bend = bend, .most = most, .visible = &mesh->mesh, .hidden = &hidden };
-    finding.in_plane_m = OFF_PLANE * extent_size(&extent);
+    finding.in_plane_m = OFF_PLANE * mesh->size_m;
     finding.near_m = fmax(surface_report(surface)->tolerance_m, finding.in_plane_m);
     finding.visible_bvh = bvh_create(finding.visible);
     finding.hidden_bvh = bvh_create(finding.hidden);

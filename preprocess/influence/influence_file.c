@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "base/files/cache_file.h"
-#include "base/math/extent.h"
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "plant/influence.h"
@@ -59,15 +58,6 @@ bool influence_is_wanted(const struct plant *plant, const struct plant_sensor *s
     return false;
 }
 
-/* The diagonal of its box. */
-static double size_m(const struct influence_input *input)
-{
-    struct extent extent = extent_empty();
-    for (size_t v = 0; v < input->vertex_count; v++)
-        extent_addf(&extent, input->positions_m[v]);
-    return extent_size(&extent);
-}
-
 static const struct plant_asset *asset_of(const struct influence_input *input)
 {
     return &input->plant->assets[input->plant->tags[input->sensors[0].tag].asset];
@@ -91,7 +81,7 @@ static bool find_params(struct making *making, int group, const double (*places_
     const struct influence_input *input = making->input;
     const struct plant_group *of = &input->plant->groups[group];
     const char *asset = asset_of(input)->id;
-    const double size = size_m(input);
+    const double size = surface_report(input->surface)->size_m;
     struct readings_table table;
     struct influence_mesh mesh = { 0 };
     char why[300];
@@ -141,7 +131,7 @@ static bool solve(struct making *making, struct influence *found, enum interpola
 {
     const size_t count = making->input->vertex_count;
     struct gaussian_params taken = *gp;
-    taken.range_m = min_of(gp->range_m, LONGEST * size_m(making->input));
+    taken.range_m = min_of(gp->range_m, LONGEST * surface_report(making->input->surface)->size_m);
     return interpolation == INTERPOLATION_GP
                ? gaussian_solve(found, making->log, making->workers, mesh, &taken, anchors, count, bend)
                : influence_conduct(found, making->log, making->workers, mesh, decay_m, anchors, count, bend);

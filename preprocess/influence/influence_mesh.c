@@ -243,7 +243,7 @@ bool influence_mesh_init(struct influence_mesh *mesh, const struct surface *surf
 {
     struct surface_debug_mesh look;
     surface_debug_mesh(surface, &look);
-    *mesh = (struct influence_mesh){ .source_count = count };
+    *mesh = (struct influence_mesh){ .source_count = count, .size_m = surface_report(surface)->size_m };
     if (!copy_visible(mesh, &look))
         return false;
     mesh->sources_m = mem_array(count, sizeof(*mesh->sources_m));

@@ -19,6 +19,7 @@ struct influence_mesh {
     double (*sources_m)[3]; /* of the sensors, on the surface */
     uint32_t *source_tris;
     size_t source_count;
+    double size_m;                  /* diagonal of the surface's main part */
     double longest_m;               /* of the edges */
     uint32_t *piece_first, *pieces; /* triangles by tri_source */
     uint32_t *fan_first, *fans;     /* triangles by point */

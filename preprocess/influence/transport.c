@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdatomic.h>
 
-#include "base/math/extent.h"
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "surface/geodesic/laplacian.h"
@@ -137,14 +136,11 @@ static double diffusion_time_m2(const struct transport *transport)
 {
     const struct intrinsic *in = &transport->mesh->intrinsic;
     const struct trimesh *mesh = &transport->mesh->mesh;
-    struct extent extent = extent_empty();
     double sum_m = 0;
     for (size_t t = 0; t < in->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 3; i++)
             sum_m += in->lengths[t][i];
-            extent_add(&extent, mesh->points[in->points[t][i]]);
-        }
-    double length_m = max_of(sum_m / (3 * (double)in->tri_count), extent_size(&extent) / LENGTHS);
+    double length_m = max_of(sum_m / (3 * (double)in->tri_count), transport->mesh->size_m / LENGTHS);
     length_m = max_of(length_m, longest_way_m(in, mesh->point_count) / LONGEST);
     return length_m * length_m;
 }

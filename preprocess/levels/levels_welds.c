@@ -4,6 +4,7 @@
 #include <meshoptimizer.h>
 #include <string.h>
 
+#include "base/math/gap_split.h"
 #include "base/mem.h"
 #include "preprocess/levels/levels_impl.h"
 #include "preprocess/geometry/welded_positions.h"
@@ -115,7 +116,8 @@ static void widen(float low[3], float high[3], const float point[3])
 
 static void measure_parts(struct welds *welds)
 {
-    float low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    const float low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    const struct geometry *g = welds->geometry;
     welds->low_m = mem_array(welds->part_count, sizeof(*welds->low_m));
     welds->high_m = mem_array(welds->part_count, sizeof(*welds->high_m));
     welds->size_m = mem_array(welds->part_count, sizeof(*welds->size_m));
@@ -123,13 +125,11 @@ static void measure_parts(struct welds *welds)
         memcpy(welds->low_m[p], low, sizeof(low));
         memcpy(welds->high_m[p], high, sizeof(high));
     }
-    for (size_t k = 0; k < welds->count; k++) {
+    for (size_t k = 0; k < welds->count; k++)
         widen(welds->low_m[welds->part[k]], welds->high_m[welds->part[k]], welds->positions_m[k]);
-        widen(low, high, welds->positions_m[k]);
-    }
     for (size_t p = 0; p < welds->part_count; p++)
         welds->size_m[p] = diagonal(welds->low_m[p], welds->high_m[p]);
-    welds->whole_m = (double)diagonal(low, high);
+    welds->whole_m = gap_main_size((const float(*)[3])g->positions_m, g->indices, g->index_count / 3);
 }
 
 static bool find_parts(struct welds *welds)

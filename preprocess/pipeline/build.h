@@ -6,7 +6,7 @@
 #include "base/workers.h"
 #include "preprocess/pipeline/build_io.h"
 
-#define BUILD_REVISION 53u /* grows when the same input shall give another file */
+#define BUILD_REVISION 54u /* grows when the same input shall give another file */
 
 /* Builds the asset into output->file, a draft that the caller names (folder_put()) and closes. Spreads its work over workers. Returns false
    with the reason in why, and then there is no file. Thread: any. */

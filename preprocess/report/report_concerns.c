@@ -112,7 +112,8 @@ static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
         char why[SIZE_WHY_BYTES];
-        if (asset_longest_m(asset->size_m) > 0 && asset_size_doubtful(asset->plant, asset->size_m, median_m, why))
+        bool stray = asset->reported && asset->report.stray[0]; /* that concern says where the size comes from */
+        if (!stray && asset_longest_m(asset->size_m) > 0 && asset_size_doubtful(asset->plant, asset->size_m, median_m, why))
             add(concerns, asset, 1e6, mem_strdup(why));
     }
     mem_free(longest_m);

@@ -541,7 +541,6 @@ static void set_radii(struct subdiv *subdiv)
 
 static bool start(struct subdiv *subdiv, struct geometry *geometry)
 {
-    float low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
     subdiv->model = geometry->indices;
     if (!subdiv_mesh_init(&subdiv->mesh, geometry) || !subdiv_find_parts(subdiv))
         return false;
@@ -559,12 +558,7 @@ static bool start(struct subdiv *subdiv, struct geometry *geometry)
     for (uint32_t v = 0; v < geometry->vertex_count; v++)
         surface_field_at_vertex(subdiv->in->field, subdiv->in->surface, v,
                                 subdiv->geodesic_m + subdiv->mesh.welded.of_vertex[v] * subdiv->sensors);
-    for (uint32_t v = 0; v < geometry->vertex_count; v++)
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = fminf(low[axis], geometry->positions_m[v][axis]);
-            high[axis] = fmaxf(high[axis], geometry->positions_m[v][axis]);
-        }
-    subdiv->size_m = subdiv_length(low, high);
+    subdiv->size_m = surface_report(subdiv->in->surface)->size_m;
     set_radii(subdiv);
     subdiv_measure_places(subdiv, 0, NULL, places);
     return true;

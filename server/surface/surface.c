@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/math/extent.h"
-#include "base/mem.h"
+#include "base/math/gap_split.h"
 #include "base/math/vec.h"
+#include "base/mem.h"
 #include "surface/repair/interior.h"
 #include "surface/mesh/spatial_order.h"
 #include "surface/repair/parts.h"
@@ -23,14 +23,6 @@
 #define SAMPLES 15000.0        /* of an even surface; what the model has beyond that comes on top */
 #define WIDER 1.25             /* so much at a time, where that would be too many */
 #define POINTS_PER_SPACING 2.7 /* points on one square spacing of a surface sampled by halving edges: measured */
-
-static double size_of(const float (*positions)[3], const uint32_t *triangles, size_t triangle_count)
-{
-    struct extent extent = extent_empty();
-    for (size_t i = 0; i < 3 * triangle_count; i++)
-        extent_addf(&extent, positions[triangles[i]]);
-    return extent_size(&extent);
-}
 
 static double seconds_since(int64_t *since_ns)
 {
@@ -156,7 +148,7 @@ static void merge_twins(struct surface *surface, uint32_t *crossings, size_t cro
 {
     uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
     size_t degenerate = 0, repeated = 0;
-    if (trimesh_find_twins(&surface->mesh, surface->size_m * WELD_OF_SIZE, target)) {
+    if (trimesh_find_twins(&surface->mesh, surface->report.size_m * WELD_OF_SIZE, target)) {
         trimesh_rename(&surface->mesh, target, &degenerate, &repeated);
         follow(surface, target);
         for (size_t i = 0; i < crossing_count; i++)
@@ -178,7 +170,10 @@ static void thin_out(struct surface *surface, const uint32_t *part, size_t added
     surface->plane = mem_array(surface->report.triangles, sizeof(*surface->plane));
     decimate_mesh(mesh, hidden,
                   &(struct decimate_params){
-                      .part = part, .keep = keep, .within_m = surface->size_m * WELD_OF_SIZE / 4, .longest_m = surface->report.spacing_m },
+                      .part = part,
+                      .keep = keep,
+                      .within_m = surface->report.size_m * WELD_OF_SIZE / 4,
+                      .longest_m = surface->report.spacing_m },
                   surface->plane, surface->report.triangles, target);
     follow(surface, target);
     mem_free(target);
@@ -230,24 +225,42 @@ static void join_parts(struct surface *surface, struct parts *parts)
     mem_free(made.crossings);
 }
 
-/* Rods and narrow strips take more points than their area says. Where these are too many the spacing grows: what is left as it was beside
-   a surface that is sampled has edges as long as the asset, and distances there are not worth much. */
+/* Moves triangles with an edge longer than the asset's main part behind the others. Returns how many they are. */
+static size_t set_aside_needles(struct surface *surface)
+{
+    struct trimesh *mesh = &surface->mesh;
+    char *aside = mem_array(mesh->tri_count, 1);
+    double longest_m = surface->report.size_m * (1 + WELD_OF_SIZE);
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            aside[t] |= vec_distance(mesh->points[mesh->tris[t][i]], mesh->points[mesh->tris[t][(i + 1) % 3]]) > longest_m;
+    size_t count = mesh->tri_count - sort_hidden(mesh, aside);
+    mem_free(aside);
+    return count;
+}
+
+/* Samples the surface evenly. Rods and narrow strips take more points than their area says. If these are too many, the spacing grows: a
+   part that is left unsampled beside a sampled one has edges as long as the asset, and distances there are poor. Triangles that reach from
+   the main part to a stray vertex are not sampled: they would take all points. */
 static void sample(struct surface *surface)
 {
     struct surface_report *report = &surface->report;
-    struct trimesh whole = { 0 };
-    size_t before = surface->mesh.point_count, limit = before + (size_t)(2 * SAMPLES);
+    struct trimesh *mesh = &surface->mesh, whole = { 0 };
+    size_t before = mesh->point_count, limit = before + (size_t)(2 * SAMPLES), all = mesh->tri_count, needles = set_aside_needles(surface);
+    trimesh_copy(&whole, mesh);
+    mesh->tri_count = whole.tri_count = all - needles;
     if (report->spacing_m <= 0)
-        report->spacing_m = sqrt(POINTS_PER_SPACING * trimesh_area(&surface->mesh) / SAMPLES);
-    trimesh_copy(&whole, &surface->mesh);
-    trimesh_sample(&surface->mesh, report->spacing_m, limit);
-    while (surface->mesh.point_count >= limit) {
+        report->spacing_m = sqrt(POINTS_PER_SPACING * trimesh_area(mesh) / SAMPLES);
+    trimesh_sample(mesh, report->spacing_m, limit);
+    while (mesh->point_count >= limit) {
         report->spacing_m *= WIDER;
-        trimesh_copy(&surface->mesh, &whole);
-        trimesh_sample(&surface->mesh, report->spacing_m, limit);
+        trimesh_copy(mesh, &whole);
+        trimesh_sample(mesh, report->spacing_m, limit);
     }
+    for (size_t t = all - needles; t < all; t++)
+        trimesh_add_tri(mesh, whole.tris[t][0], whole.tris[t][1], whole.tris[t][2], whole.tri_source[t]);
     trimesh_finish(&whole);
-    report->samples = surface->mesh.point_count - before;
+    report->samples = mesh->point_count - before;
 }
 
 /* Model vertices that no triangle is left at, and how many are hidden. */
@@ -326,11 +339,11 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     struct surface_report *report = &surface->report;
     struct parts parts;
     int64_t since_ns = clock_mono_ns();
-    double size_m = size_of(positions_m, triangles, triangle_count);
+    double size_m = gap_main_size(positions_m, triangles, triangle_count);
     surface->log = log;
     surface->workers = workers;
     surface->vertex_count = vertex_count;
-    surface->size_m = size_m;
+    report->size_m = size_m;
     report->tolerance_m = params->tolerance_m > 0 ? params->tolerance_m : size_m * TOLERANCE_OF_SIZE;
     report->spacing_m = params->spacing_m;
     report->time_m2 = report->heat_disagreement = (double)NAN;
@@ -340,6 +353,7 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     if (!close_seams(surface, params->why))
         goto error;
     parts_init(&parts, &surface->mesh, triangle_count, report->tolerance_m, params->tolerance_m <= 0);
+    parts.size_m = size_m;
     trimesh_stop_counting(&surface->mesh);
     report->border_edges_after = border_edges(&surface->mesh);
     report->bridge_s = seconds_since(&since_ns);

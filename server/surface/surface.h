@@ -39,6 +39,7 @@ struct surface_params { /* zero: chosen from the model */
 #define SURFACE_WHY_BYTES 160
 
 struct surface_report {
+    double size_m;                          /* diagonal of the main part (gap_split.h) */
     double tolerance_m, spacing_m, time_m2; /* as chosen; time_m2: the heat method's t */
     size_t triangles, welded_vertices, degenerate_triangles, repeated_triangles;
     size_t border_edges, border_edges_after; /* edges with one face, before and after bridging */

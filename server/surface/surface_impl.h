@@ -27,7 +27,7 @@ struct surface {
     struct bvh *bvh;
     uint32_t *plane;                /* of the model's triangles: the lowest that it is not told apart from (decimate.h) */
     uint32_t *piece_first, *pieces; /* visible triangles by the plane of the model's triangle that they are a piece of */
-    double size_m, edge_m;          /* edge_m: mean edge length */
+    double edge_m;                  /* mean edge length */
     struct surface_report report;
     struct crack_bridge *bridges;
     size_t bridge_count, bridge_capacity;

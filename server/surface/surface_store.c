@@ -7,7 +7,7 @@
 
 struct numbers {
     size_t vertex_count, visible_count, flips;
-    double size_m, edge_m;
+    double edge_m;
     struct surface_report report;
 };
 
@@ -55,7 +55,6 @@ void surface_pack(const struct surface *surface, struct text *to)
     const struct numbers numbers = { .vertex_count = surface->vertex_count,
                                      .visible_count = surface->visible.tri_count,
                                      .flips = in->flips,
-                                     .size_m = surface->size_m,
                                      .edge_m = surface->edge_m,
                                      .report = surface->report };
     pack_array(to, &numbers, 1, sizeof(numbers));
@@ -82,7 +81,6 @@ struct surface *surface_unpack(struct unpack *from, struct log *log, struct work
     *surface = (struct surface){ .log = log,
                                  .workers = workers,
                                  .vertex_count = numbers.vertex_count,
-                                 .size_m = numbers.size_m,
                                  .edge_m = numbers.edge_m,
                                  .report = numbers.report };
     surface->vertex_point = unpack_array(from, &vertices, sizeof(*surface->vertex_point));

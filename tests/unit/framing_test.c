@@ -240,4 +240,9 @@ TEST(what_belongs_together_stays)
     add_box(toy, "PLATE", (double[3]){ 0.18, 0.15, 0.02 }, (double[3]){ 0, 0, 0 });
     add_box(toy, "BRACKET", (double[3]){ 0.05, 0.05, 0.08 }, (double[3]){ 0.06, 0.05, 0.02 });
     expect_framed(toy, 0);
+    toy = toy_create(); /* triangles of a long pipe cross the gap between its flanges */
+    add_box(toy, "FLANGE-1", (double[3]){ 0.05, 0.5, 0.5 }, (double[3]){ 0, 0, 0 });
+    add_box(toy, "PIPE", (double[3]){ 200, 0.3, 0.3 }, (double[3]){ 0.05, 0.1, 0.1 });
+    add_box(toy, "FLANGE-2", (double[3]){ 0.05, 0.5, 0.5 }, (double[3]){ 200.05, 0, 0 });
+    expect_framed(toy, 0);
 }

@@ -32,8 +32,28 @@ enum {
     ENDS_S = 30,      /* it says 5; a machine may be busy */
 };
 
-/* model.glb: a plate of squares, `copies` times in one place. */
-static void write_plates(struct prep_case *c, uint32_t across, uint32_t up, const double size_m[2], uint32_t copies, const double at_m[3])
+/* What lies at the origin beside a plate far away. */
+enum stray { STRAY_NONE, STRAY_VERTEX, STRAY_NEEDLE, STRAY_TRIANGLE };
+
+/* Adds a node with one triangle: without area at the origin; from the plate to the origin; or at the origin. */
+static void add_stray(struct maker *maker, enum stray stray, const double at_m[3])
+{
+    static const uint32_t corners[3] = { 0, 1, 2 };
+    const double *from_m = stray == STRAY_NEEDLE ? at_m : (const double[3]){ 0, 0, 0 };
+    float places[3][3] = { { 0, 0, 0 }, { 0.2f, 0, 0 }, { 0, 0.2f, 0 } };
+    if (stray == STRAY_VERTEX)
+        memset(places, 0, sizeof(places));
+    for (int i = 0; stray == STRAY_NEEDLE && i < 3; i++)
+        places[2][i] = (float)-at_m[i];
+    int positions = maker_numbers(maker, places, sizeof(places), FLOAT, 3, "VEC3");
+    int indices = maker_numbers(maker, corners, sizeof(corners), UINT, 3, "SCALAR");
+    int mesh = maker_mesh(maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices));
+    maker_node(maker, "stray", mesh, json_pack("{s:[f,f,f]}", "translation", from_m[0], from_m[1], from_m[2]));
+}
+
+/* model.glb: a plate of squares, `copies` times in one place, and a stray triangle. */
+static void write_plates_and(struct prep_case *c, uint32_t across, uint32_t up, const double size_m[2], uint32_t copies,
+                             const double at_m[3], enum stray stray)
 {
     struct maker maker;
     struct text places = { 0 }, corners = { 0 };
@@ -54,6 +74,8 @@ static void write_plates(struct prep_case *c, uint32_t across, uint32_t up, cons
     int mesh = maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices));
     for (uint32_t i = 0; i < copies; i++)
         maker_node(&maker, "plate", mesh, json_pack("{s:[f,f,f]}", "translation", at_m[0], at_m[1], at_m[2]));
+    if (stray != STRAY_NONE)
+        add_stray(&maker, stray, at_m);
     size_t size;
     char *glb = maker_glb(&maker, &size);
     mem_free(temp_write(c->folder, "model.glb", glb, size));
@@ -61,6 +83,11 @@ static void write_plates(struct prep_case *c, uint32_t across, uint32_t up, cons
     maker_finish(&maker);
     text_finish(&places);
     text_finish(&corners);
+}
+
+static void write_plates(struct prep_case *c, uint32_t across, uint32_t up, const double size_m[2], uint32_t copies, const double at_m[3])
+{
+    write_plates_and(c, across, up, size_m, copies, at_m, STRAY_NONE);
 }
 
 static const double here[3] = { 0, 0, 0 };
@@ -104,6 +131,37 @@ CASE(where_a_survey_has_it_distances_are_as_at_the_origin)
         for (int axis = 0; axis < 3; axis++) {
             assert_float_equal(far[i].place_m[axis], near[i].place_m[axis] + far_off_m[axis], 1e-3);
             assert_float_equal(home[i].place_m[axis], near[i].place_m[axis], 1e-3);
+        }
+    }
+}
+
+/* Returns the row at a vertex of the plate. */
+static const struct row *row_at(const struct row *rows, size_t count, const double place_m[3])
+{
+    for (size_t k = 0; k < count; k++)
+        if (hypot(place_m[0] - rows[k].place_m[0], place_m[1] - rows[k].place_m[1]) < 0.02)
+            return &rows[k];
+    return NULL;
+}
+
+CASE(a_stray_piece_at_the_origin_changes_no_distance)
+{
+    static const double far_off_m[3] = { 412345, 5512345, 120 };
+    struct row plain[66], with[72];
+    prep_case_plant(c, PLANT("tag: A"));
+    prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,412345.5,5512345.5,120\n");
+    write_plates(c, 10, 5, (double[]){ 2, 1 }, 1, far_off_m);
+    assert_int_equal(read_distances(c, plain, 66), 66);
+    for (enum stray stray = STRAY_VERTEX; stray <= STRAY_TRIANGLE; stray++) {
+        write_plates_and(c, 10, 5, (double[]){ 2, 1 }, 1, far_off_m, stray);
+        prep_case_expect(c, "$PLANT", 0);
+        prep_case_says(&c->out, "(node 'stray')");
+        size_t count = read_distances(c, with, 72);
+        for (size_t i = 0; i < 66; i++) {
+            const struct row *row = row_at(with, count, plain[i].place_m);
+            assert_non_null(row);
+            assert_float_equal(plain[i].geodesic_m, row->geodesic_m, 1e-3);
+            assert_float_equal(plain[i].euclidean_m, row->euclidean_m, 1e-3);
         }
     }
 }

@@ -5,9 +5,13 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "base/mem.h"
+#include "base/math/vec.h"
+
 enum { BINS = 256, SPLITS_MOST = 64 };
 static const double SMALL_SHARE = 0.02;             /* of the area: small pieces have no more than this together */
 static const double SMALL_GAP = 1, LARGE_GAP = 100; /* sizes of the main part: gaps behind which small and large pieces are left out */
+static const double ONE_PLACE = 1e-3;               /* sizes of the main part: farther apart, two corners are at two places */
 
 struct part {
     struct gap_tri *tris;
@@ -91,6 +95,22 @@ static size_t gather(struct part *part, int axis, double from_m, double to_m, bo
     return count;
 }
 
+/* Returns whether corners beyond the gap, of triangles that cross it, are farther apart than within_m. */
+static bool reach_several_places(const struct gap_tri *tris, size_t count, int axis, double from_m, double to_m, bool above,
+                                 double within_m)
+{
+    struct extent extent = extent_empty();
+    for (size_t t = 0; t < count; t++) {
+        int beyond = 0;
+        for (int k = 0; k < 3; k++)
+            beyond += above ? tris[t].at[k][axis] <= from_m : tris[t].at[k][axis] >= to_m;
+        for (int k = 0; k < 3 && beyond > 0 && beyond < 3; k++)
+            if (above ? tris[t].at[k][axis] <= from_m : tris[t].at[k][axis] >= to_m)
+                extent_add(&extent, tris[t].at[k]);
+    }
+    return extent.low[0] <= extent.high[0] && extent_size(&extent) > within_m;
+}
+
 /* Leaves out what is behind a gap. Returns whether there was one. */
 static bool split(struct part *part, double all_m2)
 {
@@ -103,8 +123,14 @@ static bool split(struct part *part, double all_m2)
             continue;
         size_t low = gather(part, axis, from_m, to_m, false, &low_m2), high = gather(part, axis, from_m, to_m, true, &high_m2);
         bool above = high_m2 > low_m2 || (high_m2 == low_m2 && high > low);
-        size_t kept = gather(part, axis, from_m, to_m, above, &low_m2);
-        double size_m = size_of(part->tris, kept), lost_m2 = all_m2 - low_m2;
+        double kept_m2, crossing_m2 = -low_m2 - high_m2;
+        size_t kept = gather(part, axis, from_m, to_m, above, &kept_m2);
+        double size_m = size_of(part->tris, kept), lost_m2 = all_m2 - kept_m2;
+        for (size_t t = 0; t < part->count; t++)
+            crossing_m2 += part->tris[t].area_m2;
+        if (crossing_m2 > SMALL_SHARE * all_m2 && reach_several_places(part->tris + kept, part->count - kept, axis, from_m, to_m, above,
+                                                                       ONE_PLACE * size_m))
+            continue;
         if (kept > 0 && size_m > 0 && gap_m >= (lost_m2 <= SMALL_SHARE * all_m2 ? SMALL_GAP : LARGE_GAP) * size_m) {
             part->count = kept;
             return true;
@@ -124,4 +150,28 @@ size_t gap_split(struct gap_tri *tris, size_t count, struct extent *main)
         splits++;
     box_of(tris, part.count, main->low, main->high);
     return part.count;
+}
+
+struct gap_tri *gap_tris(const float (*positions_m)[3], const uint32_t *indices, size_t triangle_count)
+{
+    struct gap_tri *tris = mem_array(triangle_count, sizeof(*tris));
+    for (size_t t = 0; t < triangle_count; t++) {
+        double normal[3];
+        for (size_t k = 0; k < 3; k++)
+            for (int axis = 0; axis < 3; axis++)
+                tris[t].at[k][axis] = (double)positions_m[indices[3 * t + k]][axis];
+        vec_normal(tris[t].at[0], tris[t].at[1], tris[t].at[2], normal);
+        tris[t].area_m2 = 0.5 * vec_length(normal);
+        tris[t].owner = (uint32_t)t;
+    }
+    return tris;
+}
+
+double gap_main_size(const float (*positions_m)[3], const uint32_t *indices, size_t triangle_count)
+{
+    struct gap_tri *tris = gap_tris(positions_m, indices, triangle_count);
+    struct extent extent = extent_empty();
+    gap_split(tris, triangle_count, &extent);
+    mem_free(tris);
+    return extent_size(&extent);
 }

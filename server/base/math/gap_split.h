@@ -2,7 +2,8 @@
 /* Tells the main part of a model or plant from stray pieces, such as a vertex left at the origin of survey coordinates.
    Rule: a gap is an interval along one axis without any corner of a triangle. Pieces behind a gap are stray if all pieces left out have at
    most 2 % of the area and the gap is at least as long as the main part is large, or if the gap is at least 100 times as long, whatever
-   their area. A triangle that crosses such a gap is stray, too. The main part is the side of larger area.
+   their area. A triangle that crosses such a gap is stray, too, unless crossing triangles have more than 2 % of the area and end at
+   several places on the far side: such a long pipe belongs to what it joins. The main part is the side of larger area.
    A plain "what 98 % of the area covers" would crop flare stacks, pipe racks and tanks at the edge of a plant, which have less than 2 % of
    the area but stand next to the rest. It would also keep a stray box that has a third of the area of a small model 7,000 km away.
    Thread: any. */
@@ -20,5 +21,11 @@ struct gap_tri {
 
 /* Moves triangles of the main part to the front. Returns how many they are; *main receives their extent. */
 size_t gap_split(struct gap_tri *tris, size_t count, struct extent *main);
+
+/* Returns the triangles of an indexed mesh (3 indices a triangle), owned by their numbers. The caller frees them (mem_free). */
+struct gap_tri *gap_tris(const float (*positions_m)[3], const uint32_t *indices, size_t triangle_count);
+/* Returns the diagonal of the main part of an indexed mesh. Tolerances and spacings are shares of it, so that a stray vertex leaves them
+   unchanged. */
+double gap_main_size(const float (*positions_m)[3], const uint32_t *indices, size_t triangle_count);
 
 #endif

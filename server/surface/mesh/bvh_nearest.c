@@ -11,7 +11,7 @@
 #include "base/mem.h"
 #include "surface/mesh/bvh_impl.h"
 
-#define BOX_MARGIN 2.4e-7 /* of the largest coordinate, four roundings of it: a point in the box is in it in floats too */
+#define BOX_MARGIN 2.4e-7 /* of a box's largest coordinate, four roundings of it: a point in the box is in it in floats too */
 #define MARGIN 1e-5       /* of a square in floats, many times what it is off by */
 #define SURE 1e-8         /* of its sides' squares: where the square of a triangle's area is more, its weights are right to eight digits, */
 #define INSIDE 1e-6       /* and one that is more is sure to be positive */
@@ -107,11 +107,12 @@ struct box {
     float low[3], high[3];
 };
 
-static struct box box_of_tri(const struct trimesh *mesh, uint32_t tri, double margin)
+static struct box box_of_tri(const struct trimesh *mesh, uint32_t tri)
 {
     struct box box;
     const double *a = mesh->points[mesh->tris[tri][0]], *b = mesh->points[mesh->tris[tri][1]], *c = mesh->points[mesh->tris[tri][2]];
     for (int axis = 0; axis < 3; axis++) {
+        double margin = BOX_MARGIN * max_of(fabs(a[axis]), max_of(fabs(b[axis]), fabs(c[axis])));
         box.low[axis] = (float)(min_of(a[axis], min_of(b[axis], c[axis])) - margin);
         box.high[axis] = (float)(max_of(a[axis], max_of(b[axis], c[axis])) + margin);
     }
@@ -119,7 +120,7 @@ static struct box box_of_tri(const struct trimesh *mesh, uint32_t tri, double ma
 }
 
 /* Triangles of so many in order, halved so often that single ones, or eight times fewer and so on, are left: all but the root are full. */
-static struct box build_wide(struct bvh *bvh, uint32_t first, uint32_t count, int halvings, double margin)
+static struct box build_wide(struct bvh *bvh, uint32_t first, uint32_t count, int halvings)
 {
     uint32_t firsts[BVH_WIDE + 1] = { first, first + count };
     size_t lanes = 1;
@@ -137,9 +138,9 @@ static struct box build_wide(struct bvh *bvh, uint32_t first, uint32_t count, in
         struct box box = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
         if (!halvings && i < count) {
             node.child[i] = bvh->order[first + i] | BVH_IS_TRIANGLE;
-            box = box_of_tri(bvh->mesh, bvh->order[first + i], margin);
+            box = box_of_tri(bvh->mesh, bvh->order[first + i]);
         } else if (halvings && i < lanes) {
-            box = build_wide(bvh, firsts[i], firsts[i + 1] - firsts[i], halvings - ((halvings - 1) % 3 + 1), margin);
+            box = build_wide(bvh, firsts[i], firsts[i + 1] - firsts[i], halvings - ((halvings - 1) % 3 + 1));
             node.child[i] = (uint32_t)bvh->wide_count - 1;
         } else {
             node.child[i] = 0;
@@ -159,16 +160,11 @@ static struct box build_wide(struct bvh *bvh, uint32_t first, uint32_t count, in
 void bvh_build_wide(struct bvh *bvh)
 {
     const struct trimesh *mesh = bvh->mesh;
-    double largest = 0;
     int halvings = 0;
-    for (size_t t = 0; t < mesh->tri_count; t++) /* of many small meshes of the same points, each must not look at all of them */
-        for (int i = 0; i < 3; i++)
-            for (int axis = 0; axis < 3; axis++)
-                largest = max_of(largest, fabs(mesh->points[mesh->tris[t][i]][axis]));
     while ((mesh->tri_count + ((size_t)1 << halvings) - 1) >> halvings > BVH_WIDE)
         halvings++;
     if (mesh->tri_count)
-        build_wide(bvh, 0, (uint32_t)mesh->tri_count, halvings, BOX_MARGIN * largest);
+        build_wide(bvh, 0, (uint32_t)mesh->tri_count, halvings);
 }
 
 struct search {

@@ -147,7 +147,7 @@ char *crossing_faces_find(const struct parts *parts)
         coordinate_m = max_of(coordinate_m, max_of(most_m, -least_m));
     }
     search.rounding_m = ROUNDING * coordinate_m;
-    search.sliver_m = SLIVER * size_m;
+    search.sliver_m = SLIVER * (parts->size_m > 0 ? parts->size_m : size_m);
     char *crosses = mem_array(parts->source_count, 1);
     for (uint32_t t = 0; t < mesh->tri_count; t++) {
         if (crosses[mesh->tri_source[t]])

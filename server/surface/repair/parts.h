@@ -19,6 +19,7 @@ struct parts {
     char *thin;                           /* likewise: it is closed, and its reach is less than the tolerance */
     double *reach_m;                      /* likewise: what is nearer touches it */
     double tolerance_m;                   /* the longest reach */
+    double size_m;              /* diagonal of the main part; 0: of the solid. May be set after parts_init() */
     size_t count, source_count; /* parts; triangles of the model */
 };
 
