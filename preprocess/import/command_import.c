@@ -78,6 +78,18 @@ static void print_lines(const char *path, const char *lines)
     }
 }
 
+/* Returns false with the reason in why, and then there is no outline. A model without triangles would give a plant without assets. */
+static bool read_outline(struct model_outline *outline, const char *glb, char why[CONVERSION_WHY_BYTES])
+{
+    if (!model_outline_read(outline, glb, why, CONVERSION_WHY_BYTES))
+        return false;
+    if (outline->triangles > 0)
+        return true;
+    model_outline_finish(outline);
+    snprintf(why, CONVERSION_WHY_BYTES, "it has no triangles, so there is nothing to show: export surfaces, not only lines and points");
+    return false;
+}
+
 /* Reads one model into the next place of the arrays. */
 static void convert(struct import *import, const char *path)
 {
@@ -87,7 +99,7 @@ static void convert(struct import *import, const char *path)
     char why[CONVERSION_WHY_BYTES] = "", *glb = mem_printf("%s/%d.glb", import->work.path, number), *stem = file_name_stem(path);
     struct text said = { 0 };
     bool good = conversion_run(path, glb, import->work.path, &import->conversion, &said, why) &&
-                model_outline_read(&model->outline, glb, why, sizeof(why));
+                read_outline(&model->outline, glb, why);
     if (good) {
         model->file = mem_printf("%s.glb", stem);
         if (format->reader == FORMAT_GLTF) {

@@ -169,6 +169,7 @@ test('what cannot be read is one line, and leaves nothing behind', { skip: notBu
         ['nested.gltf', `{"asset":${'['.repeat(200000)}${']'.repeat(200000)}}`, 'nested deeper'],
         ['huge.gltf', corner(Buffer.alloc(36), 4000000000), '4000000000 elements are more'],
         ['nan.gltf', corner(notFinite, 3), 'element 1 is not finite'],
+        ['wire.gltf', corner(Buffer.alloc(36), 3).replace('"POSITION":0}', '"POSITION":0},"mode":3'), 'has no triangles'],
         ['out.gltf', gltf({ scenes: [{ nodes: [] }], buffers: [{ byteLength: 4, uri: '../../../etc/passwd' }] }),
             'leads out of the folder']);
     for (const [name, bytes, why] of cases) {
