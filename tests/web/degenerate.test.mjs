@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page's pure functions with numbers that are not finite, sizes of 0x0 and lists that are empty: each returns, and none of those that
-// make geometry makes a number that is not finite. A wall once hung on a marker at NaN.
+// Pure functions of core/ and app/ with numbers that are not finite, sizes of 0x0 and lists that are empty: each returns, and none of
+// those that make geometry makes a number that is not finite. A wall once hung on a marker at NaN.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readdirSync } from 'node:fs';

@@ -30,9 +30,16 @@ import * as vector from '../../clients/web/core/vector.js';
 import * as wall from '../../clients/web/core/wall.js';
 import * as wire from '../../clients/web/core/wire.js';
 
+import * as alarmBar from '../../clients/web/app/alarms/alarm_bar.js';
+import * as chartStyle from '../../clients/web/app/trends/chart_style.js';
+import * as drift from '../../clients/web/app/cards/drift.js';
+import * as toolbar from '../../clients/web/app/toolbar/toolbar.js';
+
 const MODULES = { address, approach, callouts, camera, camera_flight: cameraFlight, camera_moves: cameraMoves, clip_gizmo: clipGizmo,
     declutter, format, gestures, history, instant, labels, legend, list_window: listWindow, measure, meters, nearest, patterns, query,
-    scroll, section, split_view: splitView, sun, timings, vector, wall, wire };
+    scroll, section, split_view: splitView, sun, timings, vector, wall, wire,
+    'app/alarm_bar': alarmBar, 'app/chart_style': chartStyle, 'app/drift': drift, 'app/toolbar': toolbar };
+globalThis.devicePixelRatio = 1; // charts are drawn in pixels of the device
 export const CASES = [];
 const called = new Set();
 
@@ -213,11 +220,31 @@ add('wall', 'burnShift', [1e15], ENDS);
 add('wall', 'legendsLie', [640, 360, true], ENDS);
 add('wire', 'pictureSize', [640, 360]);
 
+// Of the page's own modules: charts and curves, whose geometry is what they draw.
+function drawing(draw, ...given) {
+    const at = [], note = (...numbers) => { at.push(numbers); };
+    const ctx = { canvas: HD, moveTo: note, lineTo: note, fillRect: note };
+    for (const name of ['save', 'restore', 'beginPath', 'rect', 'clip', 'stroke'])
+        ctx[name] = () => {};
+    draw(ctx, ...given, '#000');
+    return at;
+}
+add('app/chart_style', 'hatch', [10, 20, 300, 90], { ends: true, call: (...given) => drawing(chartStyle.hatch, ...given).length });
+add('app/chart_style', 'dots', [10, 300, 20], { ends: true, call: (...given) => drawing(chartStyle.dots, ...given).length });
+add('app/drift', 'residuals', [[[0, 3, 2], [1, 4, 4]]], ENDS);
+add('app/drift', 'stretches', [[1, 2, 3, 2], 0.5], { call: (values, sigma) =>
+    drift.stretches(values.filter(Number.isFinite), sigma).join(' ').split(/[ ,]/).filter(Boolean).map(Number) });
+add('app/toolbar', 'bandsOf', [{ group: { limits: { H: 3, L: 1 }, breaks: [1, 2] } }], ENDS);
+const reading = { value: 4, quality: 'good' }, model = { readings: [reading], group: () => ({ min: 0, max: 10, unit: 'K' }) };
+add('app/alarm_bar', 'limitText', [{ model, time: { atUs: null } }, { tag: { index: 0, unit: 'K' }, value: 5, limit: 4 }, true], ENDS);
+
 // Functions that are given texts, messages or objects of the page, and classes that stand for a session.
 const OTHERS = ['address.addressOf', 'address.readAddress', 'format.unitText', 'format.zoneOf', 'format.qualityText', 'format.title',
     'format.quantityText', 'format.worst', 'history.ask', 'history.witnesses', 'history.raised', 'instant.fieldInstant',
     'query.readNumbers', 'query.readSensors', 'sun.sunText', 'wall.readWall', 'wire.WireError', 'wire.decodeFrame', 'wire.isGivenUp',
-    'wire.isWhole', 'wire.decodeMessage', 'wire.decodeBase64'];
+    'app/alarm_bar.AlarmBar', 'app/alarm_bar.asOf', 'app/alarm_bar.badge', 'app/drift.driftCurve', 'app/drift.driftOf',
+    'app/drift.driftText',
+    'app/toolbar.Toolbar', 'wire.isWhole', 'wire.decodeMessage', 'wire.decodeBase64'];
 
 // Exported functions of the modules above that neither are called nor are named as those that take no numbers.
 export const forgotten = Object.entries(MODULES).flatMap(([module, all]) => Object.entries(all)

@@ -40,11 +40,13 @@ export const residuals = (hours) => hours.map(([, value, predicted]) => (value =
 // The points of each stretch without a gap, for a polyline; what is less than a drift would be does not fill the height. Pure.
 export function stretches(values, sigma) {
     const known = values.filter((value) => value !== null), low = Math.min(...known), high = Math.max(...known), all = [[]];
-    const span = Math.max(high - low, 6 * sigma);
+    const span = Math.max(high - low, 6 * sigma || 0) || 1;
+    if (!(Math.abs(low) + Math.abs(high) + span < Infinity))
+        return [];
     values.forEach((value, i) => {
         if (value === null)
             return void all.push([]);
-        const y = HEIGHT / 2 - (value - (low + high) / 2) / span * (HEIGHT - 4);
+        const y = HEIGHT / 2 - (value - low / 2 - high / 2) / span * (HEIGHT - 4);
         all.at(-1).push(`${i + 0.5},${y.toFixed(1)}`);
     });
     return all.filter((points) => points.length > 1).map((points) => points.join(' '));

@@ -9,8 +9,11 @@ export const LOOKS = {
         lines: ['#84c1f2', '#ffb27a', '#66d6a6', '#e8a5d6', '#d9d977', '#d5dbe0'] },
 };
 
+// Lines are drawn within the canvas only: a gap of days in a chart of seconds is millions of pixels wide.
 export function hatch(ctx, left, top, width, height, colour) {
-    const step = 7 * devicePixelRatio;
+    const step = 7 * devicePixelRatio, from = Math.max(left, 0) - height, to = Math.min(left + width, ctx.canvas.width);
+    if (!(height <= ctx.canvas.height))
+        return;
     ctx.save();
     ctx.beginPath();
     ctx.rect(left, top, width, height);
@@ -19,7 +22,7 @@ export function hatch(ctx, left, top, width, height, colour) {
     ctx.strokeStyle = colour;
     ctx.lineWidth = 1.5 * devicePixelRatio;
     ctx.beginPath();
-    for (let x = left - height - (left - height) % step; x < left + width; x += step) {
+    for (let x = from - from % step; x < to; x += step) {
         ctx.moveTo(x, top + height);
         ctx.lineTo(x + height, top);
     }
@@ -29,6 +32,6 @@ export function hatch(ctx, left, top, width, height, colour) {
 
 export function dots(ctx, left, right, y, colour) {
     ctx.fillStyle = colour;
-    for (let x = left; x < right; x += 6 * devicePixelRatio)
+    for (let x = Math.max(left, 0); x < Math.min(right, ctx.canvas.width); x += 6 * devicePixelRatio)
         ctx.fillRect(x, y, 3 * devicePixelRatio, 3 * devicePixelRatio);
 }
