@@ -261,11 +261,37 @@ static bool check_sample(struct import *import, void *arg, int tag, const struct
     return true;
 }
 
-/* The longest time between two samples that has data. A stated Stale s is for live readings: it does not fit a slower series. */
-static int64_t longest_gap(const struct import_params *params, const struct plant_tag *tag, struct spacing *spacing, bool exported)
+static int by_time(const void *a, const void *b)
+{
+    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Returns the median spacing of a typical series: the (lower) median over series with a rhythm; 0 if none has one. */
+static int64_t typical_spacing(struct import_series *series, size_t count)
+{
+    int64_t *medians = mem_array(count ? count : 1, sizeof(*medians)), typical_us = 0;
+    size_t found = 0;
+    for (size_t i = 0; i < count; i++)
+        if (series[i].seen && spacing_has_rhythm(&series[i].spacing))
+            medians[found++] = spacing_median(&series[i].spacing);
+    qsort(medians, found, sizeof(*medians), by_time);
+    if (found)
+        typical_us = medians[(found - 1) / 2];
+    mem_free(medians);
+    return typical_us;
+}
+
+/* The longest time between two samples that has data. A stated Stale s is for live readings: it does not fit a slower series. Two samples
+   have no rhythm: the time between them may itself be the gap, so they take that of a typical series. If no series has one, the longest
+   time between two points of our own history counts. */
+static int64_t longest_gap(const struct import_params *params, const struct plant_tag *tag, struct spacing *spacing, int64_t typical_us,
+                           bool exported)
 {
     bool goes_stale = tag->stale_s < PLANT_NEVER_STALE_S;
-    int64_t median_us = spacing_median(spacing), stale_us = goes_stale ? (int64_t)(tag->stale_s * US_PER_S) : INT64_MAX;
+    bool alone = spacing->passed > 0 && !spacing_has_rhythm(spacing);
+    int64_t median_us = alone ? typical_us : spacing_median(spacing);
+    int64_t stale_us = goes_stale ? (int64_t)(tag->stale_s * US_PER_S) : INT64_MAX;
     int64_t override_us = (int64_t)(2 * params->plant->history.override_s * US_PER_S);
     if (params->longest_gap_us)
         return params->longest_gap_us;
@@ -273,17 +299,19 @@ static int64_t longest_gap(const struct import_params *params, const struct plan
         return INT64_MAX;
     bool by_stale = !median_us || (tag->states_stale && stale_us >= median_us);
     int64_t longest_us = by_stale ? stale_us : median_us < INT64_MAX / MEDIANS ? median_us * MEDIANS : INT64_MAX;
-    return exported && longest_us < override_us ? override_us : longest_us;
+    bool is_least = exported || (alone && by_stale && !tag->states_stale);
+    return is_least && longest_us < override_us ? override_us : longest_us;
 }
 
 /* Between the passes: the next one reads the same rows again. */
 static void judge_series(const struct import_params *params, struct import_series *series, struct import_counts *counts)
 {
+    int64_t typical_us = typical_spacing(series, params->plant->tag_count);
     *counts->longest_us = INT64_MAX;
     for (size_t i = 0; i < params->plant->tag_count; i++) {
         if (!series[i].seen)
             continue;
-        series[i].longest_us = longest_gap(params, &params->plant->tags[i], &series[i].spacing, counts->exported);
+        series[i].longest_us = longest_gap(params, &params->plant->tags[i], &series[i].spacing, typical_us, counts->exported);
         if (series[i].longest_us < counts->longest_us[0])
             counts->longest_us[0] = series[i].longest_us;
         if (series[i].longest_us > counts->longest_us[1])

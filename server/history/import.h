@@ -32,7 +32,8 @@ struct import_counts {
    for each tag. A blank cell and a state word (value/state_word.h) are Bad samples. The rows of each tag ascend in time; of rows with equal
    times the last one counts. After the last sample before a gap, and after the end of a series that nothing follows, a point without a
    value (Bad_NoCommunication) is recorded. The longest time that is no gap is longest_gap_us; else the tag's Stale s, if its row states it
-   and the series is not slower than that; else ten times the median spacing of the series. In an exported file, where lines replace
+   and the series is not slower than that; else ten times the median spacing of the series. A series of two samples takes the median over
+   all other series; if there are none, the tag's Stale s or twice override_s. In an exported file, where lines replace
    samples, twice override_s is never a gap, and for a tag that is never stale nothing is. Findings go to diag; an error imports nothing.
    Returns false on errors, or if the folder cannot be written (logged). */
 bool history_import(const struct import_params *params, struct diag *diag, struct import_counts *counts);

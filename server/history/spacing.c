@@ -20,6 +20,7 @@ void spacing_put(struct spacing *spacing, const struct history_point *sample)
 {
     bool usable = history_point_usable(sample), counts = spacing->has_last && spacing->last_usable && usable;
     int64_t spacing_us = sample->t_us - spacing->last_us;
+    spacing->between += spacing->has_last && spacing_us > 0;
     spacing->has_last = true;
     spacing->last_usable = usable;
     spacing->last_us = sample->t_us;

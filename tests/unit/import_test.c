@@ -245,6 +245,27 @@ CASE(a_gap_is_no_data)
     assert_true(read_at(s, "h", 0, -1 * DAY_US + 5 * US_PER_S).value == 100);
 }
 
+/* The only spacing of two samples may itself be the gap. */
+CASE(two_samples_alone_are_no_line)
+{
+    assert_true(import(s, "alone", "Time,FT-1\n0,1\n172800,2\n", OCTOBER_25 - 2 * DAY_US, US_PER_S));
+    assert_int_equal(s->counts.gaps, 1);
+    assert_int_equal(read_at(s, "alone", 0, -DAY_US).quality, QUALITY_BAD_NO_COMMUNICATION);
+    static const char beside[] = "Tag,Time,Value\nTT-1,0,1\nTT-1,60,2\nTT-1,120,3\nFT-1,0,1\nFT-1,172800,2\n";
+    assert_true(import(s, "beside", beside, OCTOBER_25 - 2 * DAY_US, US_PER_S));
+    assert_int_equal(read_at(s, "beside", 0, -DAY_US).quality, QUALITY_BAD_NO_COMMUNICATION);
+    static const char near[] = "Tag,Time,Value\nTT-1,0,1\nTT-1,60,2\nTT-1,120,3\nFT-1,0,1\nFT-1,500,2\n"; /* less than 600 s apart */
+    assert_true(import(s, "near", near, OCTOBER_25, US_PER_S));
+    assert_int_equal(s->counts.gaps, 0);
+    assert_true(fabs(read_at(s, "near", 0, 250 * US_PER_S).value - 1.5) < 1e-9);
+    s->longest_gap_us = 3 * DAY_US;
+    assert_true(import(s, "stated", "Time,FT-1\n0,1\n172800,2\n", OCTOBER_25 - 2 * DAY_US, US_PER_S));
+    assert_true(fabs(read_at(s, "stated", 0, -DAY_US).value - 1.5) < 1e-9);
+    s->longest_gap_us = 0;
+    assert_true(import(s, "regular", "Time,FT-1\n0,1\n86400,2\n172800,3\n", OCTOBER_25 - 2 * DAY_US, US_PER_S));
+    assert_int_equal(s->counts.gaps, 0);
+}
+
 /* Buckets of a long time, and means of hours, have no data in the gap either. */
 CASE(a_gap_is_no_data_in_rollups)
 {

@@ -39,7 +39,8 @@ static void print_usage(FILE *out)
           "  --folder DIR     folder of the history (default: the one that the plant file names, or the one beside it)\n"
           "  --points N       at most N points of each tag (20000); if there are more: lowest, highest and mean of intervals\n"
           "  --longest-gap TIME  a longer time between two samples has no data: 90s, 15min, 8h, 2d (default: the tag's Stale s if its row\n"
-          "                   states it and the series is not slower, else ten times the median spacing of the series)\n"
+          "                   states it and the series is not slower, else ten times the median spacing of the series; of two\n"
+          "                   samples alone, that of the other series)\n"
           "  --encoding NAME  encoding of the CSV file, such as GB18030 or Windows-1251 (default: found from its bytes)\n"
           "  INSTANT          2026-11-20T10:00:00Z, with an offset such as +01:00, seconds since 1970, or back from now: -8h\n",
           out);
