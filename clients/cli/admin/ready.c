@@ -10,7 +10,7 @@
 static const char usage[] = "usage: plantcast ready URL\n"
                             "\n"
                             "Ends with 0 if the daemon (http://HOST:PORT/ or https://) serves pictures, else with 1 and the reason.\n"
-                            "Over http:// it also tries whether a proxy in between passes WebSockets on.\n";
+                            "It also opens a WebSocket, which a proxy in between may not pass on.\n";
 
 int cmd_ready(int argc, char **argv)
 {
@@ -27,7 +27,5 @@ int cmd_ready(int argc, char **argv)
     if (status && status != 200)
         fprintf(stderr, "plantcast: not ready: %s\n", body.at ? body.at : "");
     text_finish(&body);
-    if (status == 200 && !stream_opens(&url) && stream_is_blocked(&url))
-        return 1;
-    return status == 200 ? 0 : 1;
+    return status == 200 && stream_passes(&url) ? 0 : 1;
 }

@@ -2,42 +2,92 @@
 /* Tells a proxy that does not pass WebSockets on from a daemon that cannot be reached. */
 #include "stream_reach.h"
 
-#include <poll.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "raw_websocket.h"
+#include "base/mem.h"
+#include "protocol/wire.h"
 
-enum { TRIES = 50, TRY_MS = 100 };
+enum { OPEN_S = 5 };
+
+/* Asks the stream over HTTP. Returns the status; *reached receives whether the daemon itself answered that it refused a WebSocket. */
+static int ask_why(const struct daemon_url *url, struct text *body, bool *reached)
+{
+    int status = daemon_get(url, "/stream?why", body);
+    *reached = status == 426 && body->at && strstr(body->at, "\nrefused: ");
+    return status;
+}
+
+static void print_blocked(int status, const char *text)
+{
+    if (status == 426)
+        fprintf(stderr, "plantcast: the server answers over HTTP, but no WebSocket gets through. It says: %s", text);
+    else
+        fprintf(stderr, "plantcast: something in front of the server answers /stream with %d itself; it must pass WebSockets on\n", status);
+}
 
 bool stream_is_blocked(const struct daemon_url *url)
 {
     struct text body = { 0 };
-    int status = daemon_get(url, "/stream?why", &body);
-    const char *text = body.at ? body.at : "";
-    bool blocked = status > 0 && status < 500 && !(status == 426 && strstr(text, "\nrefused: "));
-    if (blocked && status == 426)
-        fprintf(stderr, "plantcast: the server answers over HTTP, but no WebSocket gets through. It says: %s", text);
-    else if (blocked)
-        fprintf(stderr, "plantcast: something in front of the server answers /stream with %d itself; it must pass WebSockets on\n", status);
+    bool reached;
+    int status = ask_why(url, &body, &reached);
+    bool blocked = status > 0 && status < 500 && !reached;
+    if (blocked)
+        print_blocked(status, body.at ? body.at : "");
     text_finish(&body);
     return blocked;
 }
 
-bool stream_opens(const struct daemon_url *url)
+struct handshake {
+    bool done, open;
+};
+
+static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
 {
-    struct raw_websocket_message message;
-    const char *why;
-    if (url->tls)
-        return true;
-    struct raw_websocket *raw = raw_websocket_connect(url, &why);
-    bool over = !raw;
-    for (int i = 0; i < TRIES && !over && !raw_websocket_is_open(raw); i++) {
-        struct pollfd fd = { .fd = raw_websocket_fd(raw), .events = i == 0 ? POLLOUT : POLLIN };
-        poll(&fd, 1, TRY_MS);
-        over = raw_websocket_read(raw, &message, &why) < 0;
+    struct handshake *handshake = user;
+    switch (reason) {
+    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER: return daemon_add_token(wsi, in, len);
+    case LWS_CALLBACK_CLIENT_ESTABLISHED: handshake->open = handshake->done = true; return -1;
+    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
+    case LWS_CALLBACK_CLIENT_CLOSED: handshake->done = true; return 0;
+    default: return 0;
     }
-    bool open = raw && raw_websocket_is_open(raw);
-    raw_websocket_destroy(&raw);
-    return open;
+}
+
+static bool handshake_opens(const struct daemon_url *url)
+{
+    static const struct lws_protocols protocols[] = { { .name = WIRE_SUBPROTOCOL, .callback = on_event }, { 0 } };
+    struct handshake handshake = { 0 };
+    struct lws_context_creation_info info = {
+        .port = CONTEXT_PORT_NO_LISTEN, .protocols = protocols, .gid = -1, .uid = -1, .timeout_secs = OPEN_S
+    };
+    lws_set_log_level(0, NULL);
+    daemon_prepare_context(url, &info);
+    struct lws_context *context = lws_create_context(&info);
+    char *path = mem_printf("%s/stream", url->base);
+    struct lws_client_connect_info connect = { .context = context, .path = path, .userdata = &handshake, .protocol = WIRE_SUBPROTOCOL };
+    daemon_prepare_connection(url, &connect);
+    if (!context || !lws_client_connect_via_info(&connect))
+        handshake.done = true;
+    while (!handshake.done)
+        lws_service(context, 0);
+    if (context)
+        lws_context_destroy(context);
+    mem_free(path);
+    return handshake.open;
+}
+
+bool stream_passes(const struct daemon_url *url)
+{
+    if (handshake_opens(url))
+        return true;
+    struct text body = { 0 };
+    bool reached;
+    int status = ask_why(url, &body, &reached);
+    if (status >= 500)
+        fprintf(stderr, "plantcast: not ready: /stream answers %d\n", status);
+    else if (status > 0 && !reached)
+        print_blocked(status, body.at ? body.at : "");
+    text_finish(&body);
+    return reached;
 }

@@ -9,7 +9,8 @@
 /* After a WebSocket's handshake has failed: asks the stream over HTTP. Returns true with the reason printed if something between this
    machine and the daemon keeps the WebSocket out. */
 bool stream_is_blocked(const struct daemon_url *url);
-/* Tries a handshake over http://, and none over https://. Returns false if it was answered by anything but 101, or not within 5 s. */
-bool stream_opens(const struct daemon_url *url);
+/* Tries a handshake. Returns true if it opens within 5 s, or the daemon itself refuses it, such as without a token; else false with the
+   reason printed. */
+bool stream_passes(const struct daemon_url *url);
 
 #endif

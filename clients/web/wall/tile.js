@@ -33,6 +33,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     const ratio = window.devicePixelRatio || 1;
     element.style.gridArea = 'area-main';
     connection.spreadMs = SPREAD_MS;
+    connection.onUnopened = () => import('../core/blocked.js').then(({ explain }) => explain(connection), () => {});
     session.token = words.token;
     if (display === 1)
         element.append(title);
@@ -120,20 +121,26 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         setVariable(title, '--part', Math.max(SMALLEST, Math.min(1, element.clientWidth / title.scrollWidth)));
     }
 
+    const refusal = () => (session.welcomed ? '' : refused || connection.blocked);
+
+    function tell(text, isCard) {
+        said.hidden = text === '';
+        said.classList.toggle('card', isCard);
+        setText(said, text);
+    }
+
     // Which displays are not there is said by the one that leads; what is wrong with itself, by each.
     function saySelf(now) {
         const own = session.tiles.late.find((one) => one.display === display), { picture } = session;
         const silent = session.freshAt !== null && now - session.freshAt > OLD_MS;
         const others = session.tiles.missing.concat(session.tiles.late.map((one) => one.display)).sort((a, b) => a - b);
-        const text = refused && !session.welcomed ? refused : own ? say('walls.late', { time: timeOf(own.since_us) })
+        const text = refusal() || (own ? say('walls.late', { time: timeOf(own.since_us) })
             : silent ? say('walls.lost', { time: timeOf(words.clockUs(session.freshAt)) })
                 : words.model.live === false ? say('health.nodata')
                     : session.tiles.leads && others.length > 0 ? say('walls.missing', { displays: others.join(', ') })
-                        : session.tiles.leads && wrong ? say('named.wrong', { why: refusalText(wrong) }) : '';
-        said.hidden = text === '';
-        said.classList.toggle('card', Boolean(own || silent || (refused && !session.welcomed)));
+                        : session.tiles.leads && wrong ? say('named.wrong', { why: refusalText(wrong) }) : '');
+        tell(text, Boolean(own || silent || refusal()));
         element.classList.toggle('blank', Boolean(own || silent || !picture));
-        setText(said, text);
     }
 
     // --- what stands in the picture
@@ -227,8 +234,10 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     session.on('tiles', () => { shown = null; });
     const close = () => connection.stop?.();
     return { element, kind: pane.kind, session, close, tick(now) {
-        if (!session.model || !words.model)
+        if (!session.model || !words.model) {
+            tell(refusal(), true);
             return;
+        }
         if (session.tiles.leads && session.views.length > 0)
             lead(now);
         if (display === 1)

@@ -2,13 +2,16 @@
 // Proxies that let pages through and no WebSocket: the page, the log and the command line name the proxy and what it needs.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { existsSync, writeFileSync } from 'node:fs';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { createServer, request } from 'node:http';
+import { createServer as createSecureServer } from 'node:https';
+import { connect } from 'node:net';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { DESKTOP, openPage, PHONE, shoot, waitForPicture } from '../support/browser.mjs';
 import { freePort } from '../support/ports.mjs';
-import { notBuilt, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
+import { makeCertificate } from '../support/receivers.mjs';
+import { notBuilt, Program, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const PASSES = 'proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection "upgrade";';
 const NGINX = '/usr/sbin/nginx', LINES = /proxy_set_header Upgrade \$http_upgrade; proxy_set_header Connection "upgrade";/;
@@ -56,7 +59,9 @@ test('nginx without the lines for WebSocket is named on the page, with these lin
         await shown(desk.page, LINES);
         await shoot(desk.page, 'proxy-desk');
         for (const [name, query, screen, words] of [['phone', '?lang=de', PHONE, /nginx leitet den WebSocket nicht weiter/],
-            ['wall', '?wall', DESKTOP, /nginx does not pass/], ['korean', '?lang=ko', DESKTOP, /WebSocket을 전달하지 않습니다/]]) {
+            ['wall', '?wall', DESKTOP, /nginx does not pass/],
+            ['pane', '?wall=55,3&pane=views&hangs=x', DESKTOP, /nginx does not pass/],
+            ['korean', '?lang=ko', DESKTOP, /WebSocket을 전달하지 않습니다/]]) {
             const { page, close } = await openPage(`${url}${query}`, screen);
             try {
                 await shown(page, words);
@@ -92,21 +97,34 @@ test('nginx without the lines for WebSocket is named on the page, with these lin
     }
 });
 
-// A proxy that answers handshakes itself, and passes the rest on. answer: a line of status, or null: it goes away without one.
-async function startOther(answer, headers) {
-    const server = createServer((asked, told) => {
+const PASS = { passes: true };
+
+// A proxy that answers handshakes itself, and passes the rest on. answer: a line of status; null: it hangs up; PASS: it passes them on.
+// tls: key and certificate, or null.
+async function startOther(answer, headers, tls = null) {
+    const serve = (asked, told) => {
         const on = request({ port: plant.port, path: asked.url, headers: { ...asked.headers, host: `127.0.0.1:${plant.port}` } }, (got) => {
             told.writeHead(asked.url.startsWith('/stream') && answer?.code ? answer.code : got.statusCode, { ...got.headers, ...headers });
             got.pipe(told);
         });
         on.on('error', () => { told.writeHead(502, headers); told.end(); });
         asked.pipe(on);
+    };
+    const server = tls ? createSecureServer(tls, serve) : createServer(serve);
+    const refusal = answer?.line ? `HTTP/1.1 ${answer.line}\r\nContent-Length: 4\r\n\r\npage` : '';
+    server.on('upgrade', (asked, socket) => {
+        if (answer !== PASS) {
+            socket.end(refusal);
+            return;
+        }
+        const on = connect(plant.port, '127.0.0.1'), head = asked.rawHeaders.map((text, i) => text + (i % 2 ? '\r\n' : ': ')).join('');
+        on.write(`GET ${asked.url} HTTP/1.1\r\n${head}\r\n`);
+        on.pipe(socket).on('error', () => on.destroy());
+        socket.pipe(on).on('error', () => socket.destroy());
     });
-    const refusal = answer ? `HTTP/1.1 ${answer.line}\r\nContent-Length: 4\r\n\r\npage` : '';
-    server.on('upgrade', (asked, socket) => socket.end(refusal));
     const port = await freePort();
     await new Promise((done) => server.listen(port, '127.0.0.1', done));
-    return { url: `http://127.0.0.1:${port}/`, stop: () => { server.closeAllConnections(); server.close(); } };
+    return { url: `http${tls ? 's' : ''}://127.0.0.1:${port}/`, stop: () => { server.closeAllConnections(); server.close(); } };
 }
 
 const OTHERS = [
@@ -126,6 +144,29 @@ for (const [name, answer, headers, words] of OTHERS)
             proxy.stop();
         }
     });
+
+test('ready fails where /stream does, over http:// and https://, and names the proxy that keeps WebSockets out', options, async () => {
+    makeCertificate(plant.folder);
+    const secure = { key: readFileSync(join(plant.folder, 'mail.key')), cert: readFileSync(join(plant.folder, 'mail.pem')) };
+    const ready = async (proxy) => { // by a process of its own: the proxy is in this one
+        const program = new Program('plantcast', ['ready', proxy.url, '--ca', join(plant.folder, 'mail.pem')]);
+        const code = await new Promise((done) => program.child.once('close', done));
+        return { code, err: program.said };
+    };
+    for (const tls of [null, secure]) {
+        for (const [answer, words] of [[{ line: '502 Bad Gateway', code: 502 }, /not ready: \/stream answers 502/],
+            [{ line: '200 OK', code: 200 }, /answers \/stream with 200 itself/],
+            [{ line: '400 Bad Request' }, /no WebSocket gets through/]]) {
+            const proxy = await startOther(answer, {}, tls), { code, err } = await ready(proxy);
+            proxy.stop();
+            assert.equal(code, 1, err);
+            assert.match(err, words);
+        }
+        const proxy = await startOther(PASS, {}, tls), { code, err } = await ready(proxy);
+        proxy.stop();
+        assert.equal(code, 0, err);
+    }
+});
 
 test('a server that is not there is not blamed on its proxy', options, async () => {
     const proxy = await startOther({ line: '502 Bad Gateway' }, { server: 'nginx' }), { page, close } = await openPage(proxy.url, DESKTOP);
