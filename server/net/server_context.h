@@ -105,6 +105,7 @@ struct server_context {
         int64_t refused_ns;    /* monotonic: when a handshake was refused last */
         char refused[120];     /* why */
     } upgrade;
+    struct log_pace stuck_heads; /* of requests whose heads did not end */
     struct latency_stages latency;
     struct wall_displays displays;
     struct tile_wall tile_walls[WALLS];

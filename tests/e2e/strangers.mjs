@@ -5,6 +5,7 @@ import { spawnSync } from 'node:child_process';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import http from 'node:http';
 import https from 'node:https';
+import { connect } from 'node:net';
 import { connect as connectTls } from 'node:tls';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -252,4 +253,42 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
     assert.equal(lines(/warn +login from 127\.0\.0\.1: slowed/g).length, 1);
     for (const token of [wrong, ...Object.values(tokens)])
         assert.ok(!plant.daemon.said.includes(token.slice(3)), 'no token is in the log');
+});
+
+// Names of headers that libwebsockets knows: its parser waits for ever for the rest of a name that is the beginning of one.
+const KNOWN = `accept accept-charset accept-encoding accept-language accept-ranges access-control-allow-origin
+access-control-request-headers age allow authorization cache-control connection content-disposition content-encoding content-language
+content-length content-location content-range content-type cookie date dnt etag expect expires forwarded from host http2-settings
+if-match if-modified-since if-none-match if-range if-unmodified-since keep-alive last-event-id last-modified link location max-forwards
+origin pragma proxy-authenticate proxy-authorization range referer replay-nonce retry-after sec-websocket-accept sec-websocket-draft
+sec-websocket-extensions sec-websocket-key sec-websocket-protocol sec-websocket-version server set-cookie strict-transport-security te
+transfer-encoding upgrade upgrade-insecure-requests user-agent vary via www-authenticate x-auth-token x-forwarded-for x-frame-options
+x-real-ip`.split(/\s+/);
+
+// Resolves with what the server says first, or "" if it closes without a word.
+function speak(text) {
+    return new Promise((done, fail) => {
+        const socket = connect(plant.port, '127.0.0.1', () => socket.write(text));
+        let said = '';
+        socket.on('data', (bytes) => {
+            said += bytes;
+            if (said.includes('\r\n'))
+                socket.destroy();
+        });
+        socket.on('close', () => done(said));
+        socket.on('error', fail);
+    });
+}
+
+const ENDING = 'a header whose name is the beginning of a known one ends its request within seconds, with 408';
+test(ENDING, { skip, timeout: 60000 }, async () => {
+    await serve('--limit', 'address-connections=2000', '--limit', 'patience=60'); // which would end it otherwise
+    const names = [...new Set(KNOWN.flatMap((name) => [...name].map((_, i) => name.slice(0, i + 1))))], heads = {};
+    const said = await Promise.all(names.map((name) => speak(`GET /healthz HTTP/1.1\r\nHost: localhost\r\n${name}: 1\r\n\r\n`)));
+    said.forEach((text) => { heads[text.slice(9, 12)] = 1 + (heads[text.slice(9, 12)] ?? 0); });
+    console.log(`# ${names.length} names:`, JSON.stringify(heads));
+    assert.ok(said.every((text) => /^HTTP\/1\.[01] (200|400|403|408) /.test(text)), JSON.stringify(heads));
+    assert.ok(heads[408] > 100);
+    assert.match(plant.daemon.said, /http: a request from 127\.0\.0\.1 ended: its head did not end within 2 s \(408\)/);
+    assert.match(await speak('GET /healthz HTTP/1.1\r\nHost: localhost\r\nX-Plant: 1\r\n\r\n'), /^HTTP\/1\.1 200/, 'an unknown name');
 });

@@ -8,6 +8,7 @@
 #include "message/json_fields.h"
 #include "net/http/http_impl.h"
 #include "net/http/site.h"
+#include "net/http/stuck_head.h"
 #include "net/tls.h"
 #include "net/connection.h"
 #include "net/core_end.h"
@@ -188,6 +189,7 @@ static int serve(struct server_context *server, struct request *request, const c
     request->sandboxed = false; /* the same struct serves all requests of a connection */
     counter_inc(server->counters.requests, 1);
     connection_set_answered(server, request->wsi, false);
+    stuck_head_arrived(request->wsi);
     if (!get && !request->head && !post) {
         request->close = true; /* there may be a body that nobody reads */
         static const char text[] = "only GET and HEAD (POST: /api/v1/reload, /logout)\n";
@@ -255,7 +257,10 @@ static bool on_connection(struct lws *wsi, enum lws_callback_reasons reason, voi
     case LWS_CALLBACK_FILTER_NETWORK_CONNECTION:
         *result = connection_may_open(server_context_of(wsi), (int)(intptr_t)in) ? 0 : -1;
         return true;
-    case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED: connection_open(server_context_of(wsi), wsi); return true;
+    case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED:
+        connection_open(server_context_of(wsi), wsi);
+        stuck_head_await(wsi);
+        return true;
     case LWS_CALLBACK_WSI_DESTROY: connection_close(server_context_of(wsi), wsi); return true;
     case LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS: tls_serve(server_context_of(wsi)->tls, user); return true;
     default: return false;
@@ -275,7 +280,9 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(server_context_of(wsi), *slot) : 0;
     case LWS_CALLBACK_HTTP_DROP_PROTOCOL: /* also when the connection is upgraded */
     case LWS_CALLBACK_CLOSED_HTTP: request_end(server_context_of(wsi), slot); return 0;
+    case LWS_CALLBACK_TIMER: return stuck_head_look(server_context_of(wsi), wsi);
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+        stuck_head_arrived(wsi);
         connection_set_answered(server_context_of(wsi), wsi, true); /* streams are closed with a word of their own */
         return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(server_context_of(wsi), wsi) : -1;
     case LWS_CALLBACK_ESTABLISHED: { /* a WebSocket without a subprotocol lands here */

@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/http/http_impl.h"
+#include "net/http/stuck_head.h"
 #include "net/connection.h"
 
 enum { SMALL_BYTES = 64 * 1024 }; /* as many connections as there may be have room for these */
@@ -98,6 +99,7 @@ int request_done(struct request *request)
     request_hold(request, NULL, 0);
     request->pieces = PIECES_NONE;
     connection_set_answered(server_context_of(request->wsi), request->wsi, true);
+    stuck_head_await(request->wsi);
     return request->close || server_context_of(request->wsi)->goes_down || lws_http_transaction_completed(request->wsi) ? -1 : 0;
 }
 

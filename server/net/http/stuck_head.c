@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The kernel tells how many bytes a connection received, and when the last. */
+#include "net/http/stuck_head.h"
+
+#include <linux/tcp.h>
+#include <netinet/in.h>
+#include <openssl/ssl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+
+#include "base/clock.h"
+#include "net/connection.h"
+
+enum { LOOK_US = 500000, QUIET_MS = 2000 }; /* a lost packet is sent again after 1 s at most, unless that is lost as well */
+
+static bool tcp_info_of(struct lws *wsi, struct tcp_info *info)
+{
+    socklen_t size = sizeof(*info);
+    memset(info, 0, sizeof(*info));
+    return getsockopt((int)lws_get_socket_fd(wsi), IPPROTO_TCP, TCP_INFO, info, &size) == 0;
+}
+
+void stuck_head_await(struct lws *wsi)
+{
+    struct tcp_info info;
+    connection_of(wsi)->received_before_head = tcp_info_of(wsi, &info) ? info.tcpi_bytes_received : UINT64_MAX;
+    lws_set_timer_usecs(wsi, LOOK_US);
+}
+
+void stuck_head_arrived(struct lws *wsi)
+{
+    lws_set_timer_usecs(wsi, LWS_SET_TIMER_USEC_CANCEL);
+}
+
+/* As far as the socket takes it at once. */
+static void tell(struct lws *wsi)
+{
+    static const char body[] = "408 Request Timeout: the head of the request did not end. Is the name of a header cut off?\n";
+    char text[256];
+    int length = snprintf(text, sizeof(text),
+                          "HTTP/1.1 408 Request Timeout\r\ncontent-type: text/plain; charset=utf-8\r\ncontent-length: %zu\r\n"
+                          "connection: close\r\n\r\n%s",
+                          sizeof(body) - 1, body);
+    SSL *ssl = lws_get_ssl(wsi);
+    if (ssl)
+        SSL_write(ssl, text, length);
+    else
+        send((int)lws_get_socket_fd(wsi), text, (size_t)length, MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+static void note(struct server_context *server, struct lws *wsi)
+{
+    char address[64] = "", more[LOG_PACE_BYTES];
+    server->stuck_heads.first_ns = server->stuck_heads.longest_ns = 60 * NS_PER_S;
+    if (!log_pace_take(&server->stuck_heads, clock_mono_ns(), more))
+        return;
+    lws_get_peer_simple(wsi, address, sizeof(address));
+    log_warn(server->params.log, "http: a request from %s ended: its head did not end within %d s (408)%s", address, QUIET_MS / 1000, more);
+}
+
+int stuck_head_look(struct server_context *server, struct lws *wsi)
+{
+    struct tcp_info info;
+    SSL *ssl = lws_get_ssl(wsi);
+    if (!connection_of(wsi))
+        return 0;
+    bool begun = tcp_info_of(wsi, &info) && info.tcpi_bytes_received > connection_of(wsi)->received_before_head;
+    if (!begun || info.tcpi_last_data_recv < QUIET_MS || (ssl && !SSL_is_init_finished(ssl))) {
+        lws_set_timer_usecs(wsi, LOOK_US);
+        return 0;
+    }
+    note(server, wsi);
+    tell(wsi);
+    return -1;
+}
