@@ -20,7 +20,7 @@ static void read_block(struct modbus_source *modbus, size_t index)
     struct read_plan_block *block = &modbus->plan.blocks[index];
     uint16_t words[READ_PLAN_MAX_BITS];
     struct unit *unit = modbus_unit_of(modbus, block);
-    modbus_manners_before(modbus);
+    modbus_manners_before(modbus, unit);
     if (!modbus_link_is_open(modbus->link) && !modbus_connect_link(modbus))
         return;
     if (modbus->base.config->pause_ms > 0 &&
@@ -37,6 +37,7 @@ static void read_block(struct modbus_source *modbus, size_t index)
     block->due_ns = next_ns > now_ns ? next_ns : now_ns + block->scan_ms * NS_PER_MS; /* late: no bursts to catch up */
     counter_inc(status == 0 ? modbus->reads_ok : modbus->reads_failed, 1);
     if (status < 0) {
+        modbus->manners.gateway_waits = status == -ETIMEDOUT;
         if (!modbus_unit_doubt(modbus, unit, index))
             modbus_unit_is_down(modbus, unit, strerror(-status));
         return;

@@ -65,6 +65,16 @@ static uint32_t quality_of_exception(int code)
     }
 }
 
+/* The device asks for patience (5: acknowledge, 6: busy) at each try: its tags go stale. */
+static void note_busy(struct modbus_source *modbus, const struct read_plan_block *block, int code, int64_t now_ns)
+{
+    char more[LOG_PACE_BYTES];
+    if (log_pace_take(&modbus_unit_of(modbus, block)->busy_pace, now_ns, more))
+        log_warn(modbus->base.log, "source %s: unit %d: %d from %d not read in %d tries: it answers with exception %d (%s)%s",
+                 modbus->base.config->id, block->unit, block->count, block->first, BUSY_TRIES, code, modbus_strerror(MODBUS_ENOBASE + code),
+                 more);
+}
+
 int64_t modbus_refused_pause_ns(int before)
 {
     return before < 5 ? REFUSED_NS << before : REFUSED_MOST_NS;
@@ -81,10 +91,12 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
     }
     modbus_unit_of(modbus, block)->backoff = (struct backoff){ 0 };
     if (quality_is_good(quality)) {
-        if (++block->busy_count < BUSY_TRIES)
+        if (++block->busy_count < BUSY_TRIES) {
             block->due_ns = now_ns + (BUSY_NS << block->busy_count);
-        else
-            block->busy_count = 0;
+            return;
+        }
+        block->busy_count = 0;
+        note_busy(modbus, block, code, now_ns);
         return;
     }
     if (block->answered) { /* it has been read before: one such answer is no verdict yet */

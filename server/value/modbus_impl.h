@@ -16,7 +16,7 @@ struct unit { /* a device behind the address; a gateway or a serial line has sev
     enum unit_state state;
     struct backoff backoff;
     int64_t retry_ns;
-    struct log_pace pace;
+    struct log_pace pace, busy_pace;
     bool loss_said; /* the log has a line that it does not answer, and none since that it does */
     bool doubted;   /* a block failed on a new connection; the next block decides whether the block or the unit is to blame */
     enum register_table doubted_table;
@@ -29,6 +29,8 @@ struct modbus_manners {       /* how the device wants its connections: as the pl
     int64_t first_wait_ns;    /* the first request of a connection is repeated for so long; 0: it is answered like others */
     int short_connections;    /* in a row: ended by the device after one answer */
     int silent_connections;   /* in a row: no answer at all while no unit was up */
+    bool gateway_waits;       /* a unit timed out just now: the gateway may wait for it longer than we did, before it takes requests */
+    bool first_excused;       /* the first answer of this connection may be late for that reason */
     int failed_connections;   /* in a row: refused or closed at once, right after a connection that answered */
     bool ends_said;
 };
@@ -66,8 +68,8 @@ bool modbus_connect_link(struct modbus_source *modbus);
 
 /* Begins with what the plant file says. */
 void modbus_manners_init(struct modbus_source *modbus);
-/* Prepares the link for a request: ends a connection that would answer no more, and sets how long a first answer may take. */
-void modbus_manners_before(struct modbus_source *modbus);
+/* Prepares the link for a request to a unit: sets how long a first answer may take. */
+void modbus_manners_before(struct modbus_source *modbus, const struct unit *unit);
 /* Ends the connection after an answer, where the device wants one request per connection. */
 void modbus_manners_after(struct modbus_source *modbus);
 /* Learns from an answer. */

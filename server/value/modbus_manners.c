@@ -11,6 +11,7 @@ static const int64_t PAUSE_NS = 50 * NS_PER_MS;      /* before connecting again,
 static const int64_t TOLERANCE_NS = 2 * NS_PER_S;    /* after the last answer; later the device counts as lost */
 static const int64_t PATIENCE_NS = 3 * NS_PER_S;     /* for the first answer of the second connection without one; twice as long later */
 static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS; /* first delay that is tried where requests have no numbers */
+static const int64_t GATEWAY_NS = 5 * NS_PER_S;      /* for a unit that is up, after another one timed out behind the same gateway */
 static const int64_t MOST_DELAY_NS = 8 * NS_PER_S;
 
 void modbus_manners_init(struct modbus_source *modbus)
@@ -21,7 +22,7 @@ void modbus_manners_init(struct modbus_source *modbus)
     modbus->pace = (struct log_pace){ .first_ns = 10 * NS_PER_S, .longest_ns = 3600 * NS_PER_S };
     modbus->unit_pace = (struct log_pace){ .first_ns = 60 * NS_PER_S, .longest_ns = 3600 * NS_PER_S };
     for (size_t i = 0; i < modbus->plan.unit_count; i++)
-        modbus->units[i].pace = modbus->pace;
+        modbus->units[i].pace = modbus->units[i].busy_pace = modbus->pace;
     modbus_link_allow_any_unit(modbus->link, modbus->plan.unit_count == 1);
 }
 
@@ -30,12 +31,17 @@ static bool is_network(const struct modbus_source *modbus)
     return modbus->base.config->transport != TRANSPORT_RTU;
 }
 
-void modbus_manners_before(struct modbus_source *modbus)
+void modbus_manners_before(struct modbus_source *modbus, const struct unit *unit)
 {
-    const struct modbus_manners *manners = &modbus->manners;
+    struct modbus_manners *manners = &modbus->manners;
     int64_t patience_ns = manners->first_wait_ns;
     if (!modbus->link_up && manners->silent_connections > 0 && patience_ns < PATIENCE_NS)
         patience_ns = manners->silent_connections == 1 ? PATIENCE_NS : 2 * PATIENCE_NS;
+    if (manners->gateway_waits && unit->state == UNIT_UP && patience_ns < GATEWAY_NS) {
+        patience_ns = GATEWAY_NS;
+        manners->first_excused = true;
+    }
+    manners->gateway_waits = false;
     modbus_link_set_patience(modbus->link, patience_ns);
 }
 
@@ -104,8 +110,9 @@ void modbus_manners_answered(struct modbus_source *modbus, const struct read_pla
 {
     struct modbus_manners *manners = &modbus->manners;
     int answers = modbus_link_answers(modbus->link);
-    if (answers == 1 && modbus->base.config->transport == TRANSPORT_TCP)
+    if (answers == 1 && modbus->base.config->transport == TRANSPORT_TCP && !manners->first_excused)
         learn_start(modbus);
+    manners->first_excused = false;
     learn_rtu_delay(modbus);
     if (answers > 1)
         manners->short_connections = 0;

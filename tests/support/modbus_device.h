@@ -39,6 +39,7 @@ struct device { /* set what you like before or while it runs */
     _Atomic int idle_ms;                 /* closes a connection without a request for so long; 0: never */
     _Atomic int mute_register;           /* a request for it is never answered; 0: none */
     _Atomic int dead_unit;               /* refused with exception 11; 0: none */
+    _Atomic int dead_late_ms;            /* after so long, in which the device answers nobody */
     _Atomic int silent_unit;             /* not answered; 0: none */
     _Atomic int requests, refused, connections;
     _Atomic int functions;               /* bit f: function code f was asked for */
