@@ -32,8 +32,9 @@ int cmd_restore(int argc, char **argv);
 int cmd_fleet(int argc, char **argv);
 /* Verifies the audit trail of a daemon. */
 int cmd_audit(int argc, char **argv);
-/* Proposes places for more sensors; names those that drift. */
+/* Proposes places for more sensors; names those that drift; accepts assumed places. */
 int cmd_sensors(int argc, char **argv);
+int cmd_sensors_accept(int argc, char **argv);
 int cmd_sensors_drift(int argc, char **argv);
 int cmd_verify(int argc, char **argv);
 int cmd_read(int argc, char **argv);

@@ -53,7 +53,7 @@ static const struct command {
     { "restore", "what backup made, put in place", cmd_restore },
     { "fleet", "one page and one /metrics over the servers of many plants", cmd_fleet },
     { "token", "make, list and revoke what lets people and programs in", cmd_token },
-    { "sensors", "propose places for more sensors; name those that drift away from what the others say", cmd_sensors },
+    { "sensors", "propose places for more sensors; name those that drift; accept assumed places", cmd_sensors },
     { "verify", "say whether a signed picture is what the server drew, and draw it again", cmd_verify },
     { "read", "the value at a pixel of a picture with a legend strip, also of a JPEG or a screenshot", cmd_read },
     { "audit", "say whether an audit trail is whole, or where it was changed", cmd_audit },

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast sensors suggest`: where more sensors would show the most; `drift`: sensors_drift.c. */
+/* `plantcast sensors suggest`: where more sensors would show the most; `drift`: sensors_drift.c; `accept`:
+   sensors_accept.c. */
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,6 +26,7 @@ static void print_usage(FILE *out)
     fputs(
         "usage: plantcast sensors suggest PLANT.yaml --add N [--group ID] [--asset ID] [--prepared FOLDER] [--csv]\n"
         "       plantcast sensors drift PLANT.yaml [--to INSTANT] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
+        "       plantcast sensors accept PLANT.yaml ... (--help tells more)\n"
         "Proposes places for N more sensors, one after the other, each where it takes away most of what the present ones do not see: hot\n"
         "spots of the group's hot_spot_m that no sensor would read as 5 % of its range (PLANT.md, show: blind).\n"
         "  --group ID         of which sensors; the plant's first group\n"
@@ -100,6 +102,8 @@ int cmd_sensors(int argc, char **argv)
 {
     if (argc > 1 && !strcmp(argv[1], "drift"))
         return cmd_sensors_drift(argc - 1, argv + 1);
+    if (argc > 1 && !strcmp(argv[1], "accept"))
+        return cmd_sensors_accept(argc - 1, argv + 1);
     static const struct option options[] = { { "add", required_argument, NULL, 'a' },
                                              { "group", required_argument, NULL, 'g' },
                                              { "asset", required_argument, NULL, 's' },

@@ -5,7 +5,7 @@ import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { DESKTOP, openPage, settle, shoot, waitForPicture } from '../support/browser.mjs';
-import { missing, TinyPlant } from '../support/tiny_plant.mjs';
+import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync('/usr/bin/chromium') ? 'no chromium' : false;
@@ -97,7 +97,11 @@ test('accepted: one list, one line in the audit trail, the others as they were',
     await shoot(page, 'accepting-accepted');
 });
 
-test('undone: the list is what it was, to the byte', options, async () => {
+test('undone, also after a reload of the page: the list is what it was, to the byte', options, async () => {
+    await page.reload();
+    await waitForPicture(page);
+    await page.locator('#engineer-toggle').click();
+    await page.locator('#engineer .accept summary').click();
     await page.getByRole('button', { name: 'Undo: back to tags.csv.1 …' }).click();
     await page.locator('dialog.diff[open]').waitFor();
     await shoot(page, 'accepting-undo');
@@ -107,4 +111,27 @@ test('undone: the list is what it was, to the byte', options, async () => {
     assert.equal(readFileSync(tagsFile, 'utf8'), original);
     assert.notEqual(readFileSync(`${tagsFile}.2`, 'utf8'), original, 'what was undone is kept, too');
     assert.deepEqual(browser.errors, []);
+});
+
+test('on the command line: the same places, with a trial before and undo', options, () => {
+    const sure = count((i) => i < 250 && !isOff(i));
+    const accept = (...args) => runProgram('plantcast', ['sensors', 'accept', plant.file, ...args]);
+    const trial = accept('--within', '0.1', '--confidence', '0.9', '--dry-run');
+    assert.equal(trial.code, 0, trial.err);
+    assert.match(trial.out, new RegExp(`^${sure} accepted\n20 without a place`, 'm'));
+    assert.equal(trial.out.match(/^TA-/gm).length, sure);
+    assert.equal(readFileSync(tagsFile, 'utf8'), original);
+    const done = accept('--within', '0.1', '--confidence', '0.9');
+    assert.match(done.out, /written; the previous list is tags\.csv\.3/, done.err);
+    assert.equal(assumed(), ASSUMED - sure);
+    assert.equal(accept('--undo', 'tags.csv.3').code, 0);
+    assert.equal(readFileSync(tagsFile, 'utf8'), original);
+    assert.match(accept('--asset', 'E-101', '--tags', 'ta-1*', '--dry-run').out, /^\d+ accepted/m);
+    for (const [wrong, why, code] of [[['--asset', 'E-9'], /no asset 'E-9'/, 2], [['--within', 'far'], /--within: 0 to 1e\+06 expected/, 2],
+        [['--undo', 'tags.csv.9'], /tags\.csv/, 1]]) {
+        const refused = accept(...wrong);
+        assert.equal(refused.code, code);
+        assert.match(refused.err, why);
+    }
+    assert.equal(accept('--tags', 'nothing*').code, 1);
 });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is kept in this browser. It may forbid that: nothing is then known the next time.
 
-const KEYS = { theme: 'localStorage', token: 'sessionStorage', renewed: 'sessionStorage',
+const KEYS = { theme: 'localStorage', token: 'sessionStorage', renewed: 'sessionStorage', accepted: 'sessionStorage',
     renewedWall: 'sessionStorage', desk: 'localStorage', wall: 'localStorage' }; // for good, or as long as this tab lives
 
 export function stored(name) {

@@ -5,6 +5,7 @@ import { tellAsEngineer } from '../../core/requests.js';
 import { refusalText } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
 import { make, setText } from '../common/dom.js';
+import { store, stored } from '../common/storage.js';
 import { fill } from '../common/widgets.js';
 
 const ASK_MS = 300; // after the last change of the filter
@@ -15,7 +16,7 @@ export class Accepting {
         this.names = new Set(); // of tags that would be accepted
         this.found = null;      // the newest `places_accepted` of the filter as it is
         this.sent = null;       // 'accept' or 'restore', until `tags_saved`
-        this.kept = null;       // version of the list before the last acceptance
+        this.kept = stored('accepted') || null; // version of the list before the last acceptance, also of before a reload
         this.restores = false;  // a `tags_diff` of a version is asked for
         this.build();
         session.on('places_accepted', (message) => this.onFound(message));
@@ -138,8 +139,10 @@ export class Accepting {
             setText(this.note, say('accept.saved', { count: this.accepted, kept }));
         else
             setText(this.note, say('accept.undone', { kept: this.kept }));
-        if (saved)
+        if (saved) {
             this.kept = sent === 'accept' ? kept : null;
+            store('accepted', this.kept ?? '');
+        }
         return true;
     }
 }

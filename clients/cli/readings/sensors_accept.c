@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast sensors accept`: accepts assumed places of many sensors at once in a plant's tag list, and takes that back. */
+#include <getopt.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text/text.h"
+#include "clients/cli/commands.h"
+#include "placing/assumed_places.h"
+#include "placing/tag_file.h"
+#include "plant/plant.h"
+#include "scene/scene_create.h"
+
+struct accept_options {
+    const char *plant, *asset, *group, *tags, *within, *confidence, *prepared, *undo;
+    bool dry_run;
+};
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast sensors accept PLANT.yaml [--asset ID] [--group ID] [--tags PATTERN] [--within M] [--confidence C]\n"
+          "                                [--prepared FOLDER] [--dry-run]\n"
+          "       plantcast sensors accept PLANT.yaml --undo LIST.N\n"
+          "Accepts assumed places (PLANT.md, Assumed places): clears `Place` in the tag list for all sensors that every option admits.\n"
+          "The previous list is kept beside it as LIST.1, LIST.2, ... A daemon takes the new list with `plantcast reload`.\n"
+          "  --asset ID, --group ID   only sensors of these\n"
+          "  --tags PATTERN     only tags of this name: * and ? stand for any letters; without them a part of the name or description\n"
+          "  --within M         at most M metres from the surface of the asset\n"
+          "  --confidence C     at least this confidence of the match, 0 to 1, by matches.csv beside the tag list\n"
+          "  --prepared FOLDER  where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
+          "  --dry-run          prints the names of these sensors and changes nothing\n"
+          "  --undo LIST.N      puts this version of the list back\n"
+          "Exit status: 1 if no sensor is accepted or the list cannot be written.\n",
+          out);
+}
+
+/* Saves the list. Takes `before` and `after`. */
+static int save(const char *path, char *before, char *after, char **why)
+{
+    struct tag_save saved = { .path = (char *)path, .before = before, .after = after };
+    char *kept = NULL;
+    bool good = before && after && tag_file_put(&saved, &kept, why);
+    if (good)
+        printf("%s: written; the previous list is %s\n", path, text_base_name(kept));
+    else
+        fprintf(stderr, "plantcast: %s: %s\n", path, *why ? *why : "cannot be read");
+    mem_free(kept);
+    mem_free(before);
+    mem_free(after);
+    mem_free(*why);
+    return good ? 0 : 1;
+}
+
+static int undo(const struct accept_options *options, const char *path)
+{
+    char *why = NULL, *version = mem_printf("%.*s%s", (int)(text_base_name(path) - path), path, text_base_name(options->undo));
+    char *before = tag_file_read(path, &why), *after = before ? tag_file_read(version, &why) : NULL;
+    mem_free(version);
+    return save(path, before, after, &why);
+}
+
+static void print_outcome(const struct plant *plant, const uint8_t *outcome, bool names)
+{
+    static const char *const words[ASSUMED_OUTCOMES] = { [ASSUMED_ACCEPTED] = "accepted",
+                                                         [ASSUMED_NOWHERE] = "without a place: neither a node nor X, Y, Z",
+                                                         [ASSUMED_MISSING] = "on an asset without a model",
+                                                         [ASSUMED_FAR] = "farther from the surface",
+                                                         [ASSUMED_UNSURE] = "of less or unknown confidence" };
+    size_t counts[ASSUMED_OUTCOMES] = { 0 };
+    for (size_t i = 0; i < plant->tag_count; i++) {
+        counts[outcome[i]]++;
+        if (names && outcome[i] == ASSUMED_ACCEPTED)
+            puts(plant->tags[i].name);
+    }
+    for (int o = ASSUMED_ACCEPTED; o < ASSUMED_OUTCOMES; o++)
+        if (counts[o] || o == ASSUMED_ACCEPTED)
+            printf("%zu %s\n", counts[o], words[o]);
+}
+
+static bool number_of(const char *name, const char *text, double most, double *out)
+{
+    char *end;
+    if (!text)
+        return true;
+    *out = strtod(text, &end);
+    if (end != text && !*end && *out >= 0 && *out <= most)
+        return true;
+    fprintf(stderr, "plantcast: %s: 0 to %g expected, found '%s'\n", name, most, text);
+    return false;
+}
+
+/* Returns false with the reason printed. */
+static bool read_filter(const struct accept_options *options, const struct plant *plant, struct assumed_filter *filter)
+{
+    *filter = (struct assumed_filter){ .asset = options->asset ? plant_find_asset(plant, options->asset) : -1,
+                                       .group = options->group ? plant_find_group(plant, options->group) : -1,
+                                       .within_m = -1,
+                                       .confidence = -1 };
+    bool no_asset = options->asset && filter->asset < 0, no_group = options->group && filter->group < 0;
+    if (no_asset || no_group)
+        fprintf(stderr, "plantcast: %s: no %s '%s'\n", plant->path, no_asset ? "asset" : "group",
+                no_asset ? options->asset : options->group);
+    snprintf(filter->pattern, sizeof(filter->pattern), "%s", options->tags ? options->tags : "");
+    return !no_asset && !no_group && number_of("--within", options->within, 1e6, &filter->within_m) &&
+           number_of("--confidence", options->confidence, 1, &filter->confidence);
+}
+
+static int accept_in(const struct accept_options *options, const struct plant *plant, struct log *log, const char *path)
+{
+    struct assumed_filter filter;
+    if (!read_filter(options, plant, &filter))
+        return 2;
+    char *folder = options->prepared ? mem_strdup(options->prepared) : plant_prepared_folder(plant);
+    struct scene *scene = scene_create(log, plant, folder);
+    uint8_t *outcome = mem_array(plant->tag_count + 1, sizeof(*outcome));
+    size_t count = scene ? assumed_places_choose(scene, &filter, outcome) : 0;
+    int code = count > 0 ? 0 : 1;
+    if (scene)
+        print_outcome(plant, outcome, options->dry_run);
+    if (count > 0 && !options->dry_run) {
+        char *why = NULL, *before = tag_file_read(path, &why), *after = before ? assumed_places_accept(plant, before, outcome, &why) : NULL;
+        code = save(path, before, after, &why);
+    }
+    mem_free(outcome);
+    scene_destroy(&scene);
+    mem_free(folder);
+    return code;
+}
+
+static int run(const struct accept_options *options)
+{
+    struct plant *plant = plant_load_or_print(options->plant);
+    if (!plant)
+        return 1;
+    struct log *log = log_create(LOG_WARN);
+    char real[PATH_MAX]; /* versions stand beside the file behind a symlink */
+    const char *path = realpath(plant->tags_path, real) ? real : plant->tags_path;
+    int code = options->undo ? undo(options, path) : accept_in(options, plant, log, path);
+    log_destroy(&log);
+    plant_destroy(&plant);
+    return code;
+}
+
+int cmd_sensors_accept(int argc, char **argv)
+{
+    static const struct option all[] = { { "asset", required_argument, NULL, 'a' },      { "group", required_argument, NULL, 'g' },
+                                         { "tags", required_argument, NULL, 't' },       { "within", required_argument, NULL, 'w' },
+                                         { "confidence", required_argument, NULL, 'c' }, { "prepared", required_argument, NULL, 'd' },
+                                         { "undo", required_argument, NULL, 'u' },       { "dry-run", no_argument, NULL, 'n' },
+                                         { "help", no_argument, NULL, 'h' },             { 0 } };
+    struct accept_options options = { 0 };
+    for (int option; (option = getopt_long(argc, argv, "", all, NULL)) != -1;)
+        switch (option) {
+        case 'a': options.asset = optarg; break;
+        case 'g': options.group = optarg; break;
+        case 't': options.tags = optarg; break;
+        case 'w': options.within = optarg; break;
+        case 'c': options.confidence = optarg; break;
+        case 'd': options.prepared = optarg; break;
+        case 'u': options.undo = optarg; break;
+        case 'n': options.dry_run = true; break;
+        case 'h': print_usage(stdout); return 0;
+        default: print_usage(stderr); return 2;
+        }
+    if (argc - optind != 1 || (options.tags && strlen(options.tags) > 100)) {
+        print_usage(stderr);
+        return 2;
+    }
+    options.plant = argv[optind];
+    return run(&options);
+}
