@@ -25,6 +25,7 @@
 #include "history/month.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
+#include "tests/support/sweep.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
 
@@ -259,7 +260,7 @@ static double kill_one(struct setup *s, _Atomic int64_t *told, unsigned *seed)
 /* KILLS=100 for make test-long. A second, and the writing: where the disk itself takes seconds, it is tried again. */
 CASE(a_kill_takes_at_most_a_second)
 {
-    unsigned seed = (unsigned)clock_mono_ns();
+    unsigned seed = (unsigned)sweep_seed();
     int kills = getenv("KILLS") ? atoi(getenv("KILLS")) : 2, tries = 0, good = 0;
     _Atomic int64_t *told = mmap(NULL, sizeof(*told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     assert_true(told != MAP_FAILED);

@@ -9,19 +9,13 @@ import {
     toPerspective, USUAL_LIMITS, wholeOf, zoom, zoomLimits,
 } from '../../clients/web/core/camera_moves.js';
 import { along, dot, length, subtract } from '../../clients/web/core/vector.js';
+import { randomNumbers } from './random.mjs';
+
+const random = randomNumbers();
 
 const camera = { eye: [35, -42, 24], target: [1, 0.5, 6], up: [0, 0, 1], fov: 45 };
 const close = (a, b, tolerance = 1e-9) => assert.ok(Math.abs(a - b) <= tolerance, `${a} is not ${b}`);
 const closeTo = (a, b, tolerance = 1e-9) => a.forEach((x, i) => close(x, b[i], tolerance));
-
-// A generator with a printed seed, so that a failure can be repeated.
-const seed = Number(process.env.SEED ?? Math.floor(Math.random() * 2 ** 31));
-console.log(`# seed ${seed}`);
-let state = seed;
-function random(low, high) {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-    return low + (high - low) * (state / 2 ** 32);
-}
 
 test('projection: target in the middle, a point above it above, one behind the eye nowhere', () => {
     const project = projector(camera, 1600, 1000);

@@ -5,6 +5,9 @@ import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { projector } from '../../clients/web/core/camera.js';
 import { thinOut } from '../../clients/web/core/declutter.js';
+import { randomNumbers } from './random.mjs';
+
+const random = randomNumbers();
 
 const folder = new URL('../../protocol/vectors/markers/', import.meta.url), MOST = 6, NEAR = 30;
 const itemOf = ([x, y, depth, occluded, kept, held], id) =>
@@ -17,13 +20,6 @@ for (const name of readdirSync(folder)) {
         assert.deepEqual(ids(thinOut(vector.items.map(itemOf), vector.unit)), vector.drawn));
 }
 
-const seed = Number(process.env.SEED ?? Math.floor(Math.random() * 2 ** 31));
-console.log(`# seed ${seed}`);
-let state = seed;
-function random(low, high) {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-    return low + (high - low) * (state / 2 ** 32);
-}
 const crowd = (count, wide = 640, high = 360) => Array.from({ length: count }, (_, id) => itemOf([random(0, wide), random(0, high),
     random(1, 90), random(0, 1) < 0.3, random(0, 1) < 0.05, random(0, 1) < 0.3], id));
 const within = (items, { x, y }, least) => items.filter((other) => Math.hypot(other.x - x, other.y - y) < least).length;

@@ -6,6 +6,9 @@ import { test } from 'node:test';
 import { projector } from '../../clients/web/core/camera.js';
 import { placeRings } from '../../clients/web/core/callouts.js';
 import { FIRST_FAR, leaderLine, placeLabels } from '../../clients/web/core/labels.js';
+import { randomNumbers } from './random.mjs';
+
+const random = randomNumbers();
 
 const folder = new URL('../../protocol/vectors/labels/', import.meta.url);
 const box = ([left, top, right, bottom]) => ({ left, top, right, bottom });
@@ -23,14 +26,6 @@ for (const name of readdirSync(folder)) {
         assert.deepEqual(items.map(({ id }) => placed.get(id)?.slot ?? -1), vector.slots);
         assert.deepEqual(items.map(({ id }) => placed.get(id)?.callout ?? -1), vector.callouts ?? items.map(() => -1));
     });
-}
-
-const seed = Number(process.env.SEED ?? Math.floor(Math.random() * 2 ** 31));
-console.log(`# seed ${seed}`);
-let state = seed;
-function random(low, high) {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-    return low + (high - low) * (state / 2 ** 32);
 }
 
 const area = { left: 0, top: 0, right: 1280, bottom: 720 };

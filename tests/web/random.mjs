@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Random numbers whose seed is printed: the same in each run, but PLANTCAST_SEED gives another one, and `make test-long` one of its own.
+import { seed } from '../e2e/support/sweep.mjs';
+
+console.log(`# PLANTCAST_SEED=${seed}`);
+export { seed };
+
+// Returns a generator of its own: random(low, high).
+export function randomNumbers() {
+    let state = seed;
+    return (low, high) => {
+        state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+        return low + (high - low) * (state / 2 ** 32);
+    };
+}
