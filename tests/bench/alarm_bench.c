@@ -8,6 +8,7 @@
 #include "alarm/journal_file.h"
 #include "base/clock.h"
 #include "base/mem.h"
+#include "tests/support/measure.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
@@ -115,12 +116,6 @@ static void count_row(void *arg, const struct journal_row *r)
 {
     (void)r;
     ++*(int *)arg;
-}
-
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 /* How each alarm was at an instant, and a page of the journal from there. */

@@ -15,6 +15,7 @@
 #include "render/renderer.h"
 #include "render/split_view.h"
 #include "scene/scene_create.h"
+#include "tests/support/measure.h"
 #include "value/quality.h"
 
 #define DEMO "build/demo/plant.yaml"
@@ -112,17 +113,10 @@ struct measured {
     int packets;
 };
 
-static double cpu_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
-}
-
 /* One part after the other. */
 static void decode(struct measured *m, const struct packet *packet, const struct frame *frame)
 {
-    double began_ms = cpu_ms();
+    double began_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
     for (int i = 0; i < packet->part_count; i++) {
         const struct packet_part *part = &packet->parts[i];
         struct wire_frame wire = {
@@ -139,17 +133,17 @@ static void decode(struct measured *m, const struct packet *packet, const struct
         if (!decoder_decode(m->decoder, &wire, packet->bytes + part->begin))
             abort();
     }
-    m->decode_cpu_ms += cpu_ms() - began_ms;
+    m->decode_cpu_ms += measure_ms(CLOCK_PROCESS_CPUTIME_ID) - began_ms;
 }
 
 static void encode(struct measured *m, struct frame *frame, int quality, bool full_chroma)
 {
     struct encoder_params params = { .quality = quality, .full_chroma = full_chroma, .before = m->before };
     struct packet *packet = NULL;
-    double began_ms = cpu_ms();
+    double began_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
     if (encoder_send(m->encoder, frame, &params) != 0)
         abort();
-    m->cpu_ms += cpu_ms() - began_ms;
+    m->cpu_ms += measure_ms(CLOCK_PROCESS_CPUTIME_ID) - began_ms;
     if (encoder_receive(m->encoder, &packet) == 0) {
         m->bytes += (double)packet->count;
         m->ms += (double)packet->encode_ns / 1e6;

@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "field/field.h"
+#include "tests/support/measure.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
@@ -20,19 +21,6 @@ struct bench {
     size_t sensors;
     uint64_t random;
 };
-
-static double worked_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
-}
-
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 static void change_reading(struct bench *bench, size_t sensor)
 {
@@ -83,14 +71,14 @@ static void measure(struct bench *bench, const char *name, void (*change)(struct
     double ms[ROUNDS], work_ms[ROUNDS];
     for (int i = -5; i < ROUNDS; i++) {
         change(bench);
-        double before_ms = worked_ms();
+        double before_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
         int64_t began_ns = clock_mono_ns();
         if (!field_scalars(bench->field, 0, &bench->params, bench->plant->snapshot))
             abort();
         if (i < 0)
             continue;
         ms[i] = (double)(clock_mono_ns() - began_ns) / 1e6;
-        work_ms[i] = worked_ms() - before_ms;
+        work_ms[i] = measure_ms(CLOCK_PROCESS_CPUTIME_ID) - before_ms;
     }
     qsort(ms, ROUNDS, sizeof(*ms), by_size);
     qsort(work_ms, ROUNDS, sizeof(*work_ms), by_size);

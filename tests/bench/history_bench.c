@@ -8,6 +8,7 @@
 #include "history/historian.h"
 #include "history/history.h"
 #include "history/month.h"
+#include "tests/support/measure.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
 #include "tests/support/temp.h"
@@ -103,12 +104,6 @@ static void fill(struct log *log, const char *folder, const struct history_tag *
         }
     }
     mem_free(points);
-}
-
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 static void ask(struct log *log, const char *folder, const struct history_tag *tags, int64_t end_us, int points)

@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "tests/support/measure.h"
 #include "tests/support/modbus_device.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
@@ -28,12 +29,6 @@ static struct plant *make_plant(const struct device *devices)
         }
     }
     return plant;
-}
-
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 /* A device's oldest value, look for look. Adds how many were not Good, or not what the device holds. */

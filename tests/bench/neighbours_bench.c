@@ -15,6 +15,7 @@
 #include "field/neighbours.h"
 #include "scene/scene_create.h"
 #include "tests/support/cad.h"
+#include "tests/support/measure.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/temp.h"
@@ -32,12 +33,6 @@ struct bench {
     struct neighbours_cache cache;
     struct cad_random random;
 };
-
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 static void write_plant(struct prep_case *c, int sensors, bool gp, struct cad_random *random)
 {
@@ -85,22 +80,15 @@ static void ask_all(struct bench *bench)
         abort();
 }
 
-static double worked_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
-}
-
 /* Work of all cores. Returns the median; `ms` is sorted. */
 static double time_of(struct bench *bench, void (*work)(struct bench *), double ms[ROUNDS])
 {
     for (int i = -WARM_UP; i < ROUNDS; i++) {
         change_reading(bench);
-        double before_ms = worked_ms();
+        double before_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
         work(bench);
         if (i >= 0)
-            ms[i] = worked_ms() - before_ms;
+            ms[i] = measure_ms(CLOCK_PROCESS_CPUTIME_ID) - before_ms;
     }
     qsort(ms, ROUNDS, sizeof(*ms), by_size);
     return ms[ROUNDS / 2];

@@ -16,6 +16,7 @@
 #include "field/colormap.h"
 #include "render/renderer.h"
 #include "tests/support/crowd.h"
+#include "tests/support/measure.h"
 #include "tests/support/planned.h"
 
 #define DEMO_MODEL "build/demo/plant.glb"
@@ -57,19 +58,6 @@ struct series { /* of one row */
     int frames, triangles, changes;
     double seconds;
 };
-
-static double now_ms(clockid_t clock)
-{
-    struct timespec now;
-    clock_gettime(clock, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
-}
-
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 /* --- cameras that have everything in view --------------------------------------------------------------------------------- */
 
@@ -258,12 +246,12 @@ static void bench_finish(struct bench *bench)
 
 static void draw_one(struct bench *bench, struct series *series, struct view *view, int number)
 {
-    double start_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+    double start_ms = measure_ms(CLOCK_MONOTONIC), worked_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
     view->camera = bench->cameras[(number + CAMERAS) % CAMERAS];
     struct frame *frame = draw(bench, view);
     if (number >= 0) {
-        series->time_ms[number] = now_ms(CLOCK_MONOTONIC) - start_ms;
-        series->work_ms[number] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+        series->time_ms[number] = measure_ms(CLOCK_MONOTONIC) - start_ms;
+        series->work_ms[number] = measure_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
         series->triangles = frame->triangles;
         series->frames++;
     }
@@ -318,7 +306,7 @@ static void run_flow(struct bench *bench, struct series *series)
         struct render_job **job = &flying[(i + IN_FLIGHT) % IN_FLIGHT];
         if (i == 0) {
             began_ns = now_ns;
-            worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+            worked_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
         }
         if (now_ns - changed_ns >= CHANGE_NS) {
             changed_ns = now_ns;
@@ -338,7 +326,7 @@ static void run_flow(struct bench *bench, struct series *series)
         renderer_abandon(bench->renderer, &flying[i]);
     series->frames = 1;
     series->time_ms[0] = series->seconds * 1e3 / FLOW_FRAMES;
-    series->work_ms[0] = (now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms) / FLOW_FRAMES;
+    series->work_ms[0] = (measure_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms) / FLOW_FRAMES;
 }
 
 static void print_row(const struct bench *bench, const char *name, struct series *series, double goal_ms)

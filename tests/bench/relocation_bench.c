@@ -10,6 +10,7 @@
 #include "scene/manifest.h"
 #include "scene/scene_create.h"
 #include "surface/relocation.h"
+#include "tests/support/measure.h"
 #include "tests/support/sleep.h"
 
 #define ROUNDS 30
@@ -33,12 +34,6 @@ static void take(void *arg, struct relocation_result *result)
     box->count++;
     pthread_cond_signal(&box->came);
     pthread_mutex_unlock(&box->lock);
-}
-
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 static const struct asset_view *find(const struct scene *scene, const char *id)

@@ -10,6 +10,7 @@
 #include "base/mem.h"
 #include "render/renderer.h"
 #include "scene/scene_create.h"
+#include "tests/support/measure.h"
 #include "tests/support/planned.h"
 #include "value/quality.h"
 
@@ -26,19 +27,6 @@ struct bench {
     struct gl *gl;
     struct renderer *renderer;
 };
-
-static double now_ms(clockid_t clock)
-{
-    struct timespec now;
-    clock_gettime(clock, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
-}
-
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 /* goal: at most; 0: none. */
 static void print_row(const char *name, double *values, int count, double goal)
@@ -148,15 +136,15 @@ static void measure(struct bench *bench, enum tier tier, enum dress dress, const
     put_on(bench, dress, &view);
     for (int i = -2; i < rounds; i++) {
         view.camera.eye_m[0] += 0.001;
-        double began_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+        double began_ms = measure_ms(CLOCK_MONOTONIC), worked_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
         struct frame *frame = split_view_draw_now(bench->renderer, &view, bench->snapshot);
         if (!frame)
             abort();
         frame_unref(&frame);
         if (i < 0)
             continue;
-        time_ms[i] = now_ms(CLOCK_MONOTONIC) - began_ms;
-        work_ms[i] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+        time_ms[i] = measure_ms(CLOCK_MONOTONIC) - began_ms;
+        work_ms[i] = measure_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
     }
     print_row(time_name, time_ms, rounds, tier == TIER_REFINED ? 300 : 0);
     print_row(work_name, work_ms, rounds, 0);
@@ -187,15 +175,15 @@ static void measure_recolour(struct bench *bench)
     const struct plant_group *group = &bench->plant->groups[view.field.group];
     for (int i = -3; i < MOVING_ROUNDS; i++) { /* the third picture is the first to be coloured anew only */
         bench->snapshot->readings[tag].value = group->min + (0.3 + 0.01 * (i + 3)) * (group->max - group->min);
-        double began_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+        double began_ms = measure_ms(CLOCK_MONOTONIC), worked_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
         struct frame *frame = split_view_draw_now(bench->renderer, &view, bench->snapshot);
         if (!frame)
             abort();
         frame_unref(&frame);
         if (i < 0)
             continue;
-        time_ms[i] = now_ms(CLOCK_MONOTONIC) - began_ms;
-        work_ms[i] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+        time_ms[i] = measure_ms(CLOCK_MONOTONIC) - began_ms;
+        work_ms[i] = measure_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
     }
     print_row("recolour_ms", time_ms, MOVING_ROUNDS, 4);
     print_row("recolour_cpu_ms", work_ms, MOVING_ROUNDS, 0);
@@ -209,16 +197,16 @@ static void measure_steps(struct bench *bench)
     view_default(bench->scene, 1920, 1080, &view);
     view.tier = TIER_REFINED;
     for (int i = -1; i < STILL_ROUNDS; i++) {
-        double worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID), longest = 0, longest_work = 0;
+        double worked_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID), longest = 0, longest_work = 0;
         struct render_job *job = planned_begin(bench->renderer, &view, bench->snapshot);
         if (!job)
             abort();
         for (bool done = false; !done;) {
-            double began_ms = now_ms(CLOCK_MONOTONIC), work_began_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+            double began_ms = measure_ms(CLOCK_MONOTONIC), work_began_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
             done = renderer_step(bench->renderer, job, 10 * NS_PER_MS);
-            double step_ms = now_ms(CLOCK_MONOTONIC) - began_ms;
+            double step_ms = measure_ms(CLOCK_MONOTONIC) - began_ms;
             longest = step_ms > longest ? step_ms : longest;
-            longest_work = fmax(longest_work, now_ms(CLOCK_PROCESS_CPUTIME_ID) - work_began_ms);
+            longest_work = fmax(longest_work, measure_ms(CLOCK_PROCESS_CPUTIME_ID) - work_began_ms);
         }
         struct frame *frame = renderer_end(bench->renderer, &job);
         if (!frame)
@@ -228,7 +216,7 @@ static void measure_steps(struct bench *bench)
             continue;
         longest_ms[i] = longest;
         longest_work_ms[i] = longest_work;
-        work_ms[i] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+        work_ms[i] = measure_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
     }
     print_row("render_still_1080p_longest_step_ms", longest_ms, STILL_ROUNDS, 10);
     print_row("render_still_1080p_longest_step_cpu_ms", longest_work_ms, STILL_ROUNDS, 0);
@@ -248,13 +236,13 @@ static void measure_again(struct bench *bench, enum dress dress, bool all, doubl
         for (size_t tag = 0; tag < (all ? bench->plant->tag_count : 1); tag++)
             readings[tag].value *= i % 2 ? 0.97 : 1 / 0.97;
         struct split_plan *plan = split_view_plan(bench->renderer, &view, bench->snapshot, INT64_MAX);
-        double began_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+        double began_ms = measure_ms(CLOCK_MONOTONIC), worked_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
         struct frame *frame = split_view_draw(bench->renderer, plan);
         if (!frame)
             abort();
         if (i >= 0) {
-            time_ms[i] = now_ms(CLOCK_MONOTONIC) - began_ms;
-            work_ms[i] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+            time_ms[i] = measure_ms(CLOCK_MONOTONIC) - began_ms;
+            work_ms[i] = measure_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
         }
         split_plan_destroy(&plan);
         frame_unref(&frame);

@@ -9,6 +9,7 @@
 #include "field/lab.h"
 #include "render/split_view.h"
 #include "scene/framing.h"
+#include "tests/support/measure.h"
 #include "tests/support/site.h"
 #include "value/quality.h"
 
@@ -86,12 +87,6 @@ enum { BLOCK = 4 }; /* pixels: rims that only one tier smooths are no flash */
 struct flash {      /* of what is seen when a moving picture becomes a still one: delta E (CIE 1976) of the mean colours of blocks */
     double mean, p95;
 };
-
-static int by_size(const void *a, const void *b)
-{
-    double d = *(const double *)a - *(const double *)b;
-    return (d > 0) - (d < 0);
-}
 
 static void block_lab(const struct frame *frame, int column, int row, double lab[3])
 {

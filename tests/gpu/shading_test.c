@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "encode/encoder.h"
+#include "tests/support/measure.h"
 #include "tests/support/rig.h"
 #include "tests/support/sweep.h"
 #include "value/quality.h"
@@ -80,12 +81,6 @@ static void through_jpeg(struct frame *frame, const struct way *way)
     decode(frame, packet->bytes, packet->count);
     packet_unref(&packet);
     encoder_destroy(&encoder);
-}
-
-static int by_size(const void *a, const void *b)
-{
-    double d = *(const double *)a - *(const double *)b;
-    return (d > 0) - (d < 0);
 }
 
 /* 95th percentile of the misreading, in percent of the range. truth: the map's place in the flat look, without edges. */

@@ -9,6 +9,7 @@
 #include "field/drift.h"
 #include "scene/scene_create.h"
 #include "tests/support/cad.h"
+#include "tests/support/measure.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/temp.h"
@@ -56,12 +57,6 @@ static double change_at(const double *predicted, int hours, int hour)
     return sum / count;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The change in time, where an hour counts 1 / (1 + (change / 2 usual changes)^2). */
 static double slow_change(const double *values, const double *predicted, const double *nearest, int hours)
 {
@@ -70,7 +65,7 @@ static double slow_change(const double *values, const double *predicted, const d
     for (int h = 0; h < hours; h++)
         if (isfinite(values[h]))
             changes[known++] = change_at(predicted, hours, h);
-    qsort(changes, (size_t)known, sizeof(*changes), ascending);
+    qsort(changes, (size_t)known, sizeof(*changes), by_size);
     double usual = (changes[(known - 1) / 2] + changes[known / 2]) / 2;
     for (int h = 0; h < hours; h++) {
         lagging += h > 0 ? (predicted[h] - lagging) / 12 : 0;
