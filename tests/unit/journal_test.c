@@ -5,8 +5,8 @@
 #include <math.h>
 
 #include "alarm/journal_file.h"
-#include "base/clock.h"
 #include "base/mem.h"
+#include "tests/support/sweep.h"
 #include "tests/support/temp.h"
 
 enum { ROWS = 3000, TAGS = 7, KINDS = 3, BEGIN_US = 1000000 };
@@ -49,9 +49,8 @@ static int set_up(void **state)
     static struct setup s;
     bool renewed;
     int error;
-    unsigned seed = (unsigned)clock_mono_ns();
+    unsigned seed = (unsigned)sweep_seed();
     int64_t t_us = BEGIN_US;
-    print_message("# seed %u\n", seed);
     s = (struct setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR) };
     s.file = journal_file_open(s.log, s.folder, &renewed, &error);
     assert_non_null(s.file);
