@@ -160,11 +160,11 @@ test('equal views share a render', { skip }, async () => {
     const clients = await Promise.all(Array.from({ length: 6 }, () => PlainClient.open(plant.port)));
     await Promise.all(clients.map((client) => client.hello()));
     await Promise.all(clients.map((client) => client.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0)));
-    await sleep(500);
     const before = await counts();
     for (let i = 0; i < 8; i++) {
+        const had = clients.map((client) => client.frames.length);
         await plant.tell(`set TI-1 ${i % 2 ? 10 : 90}`);
-        await sleep(400);
+        await Promise.all(clients.map((client, k) => client.until('the change', () => client.frames.length > had[k])));
     }
     const after = await counts(), renders = after[0] - before[0], frames = after[1] - before[1];
     assert.ok(renders >= 4 && frames >= 3 * renders, `${frames} frames of ${renders} renders`);

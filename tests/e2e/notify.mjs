@@ -36,6 +36,10 @@ async function calm(plant, extra = 0) {
     for (const tag of ['TI-1', 'TI-2', 'PI-1', ...Array.from({ length: extra }, (_, i) => `X-${i}`)])
         await set(plant, tag, limits.calm);
 }
+const isCalm = (plant) => until('calm readings', async () => {
+    const { tags } = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags?count=1000`)).json();
+    return tags.every(({ value }) => value === limits.calm);
+});
 const metric = async (plant, name) => Number((await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text())
     .split('\n').find((line) => line.startsWith(`${name} `))?.split(' ').at(-1) ?? NaN);
 async function acknowledge(plant, tag, kinds) {
@@ -129,7 +133,7 @@ notify:
         await mail.listen(port);
         await calm(plant, EXTRA);
         await plant.startDaemon();
-        await sleep(1500);
+        await isCalm(plant);
         plant.daemon.child.kill('SIGSTOP'); // it reads all of them at once, however long setting them takes
         for (let i = 0; i < EXTRA; i++)
             await set(plant, `X-${i}`, limits.high);
@@ -183,7 +187,7 @@ notify:
     try {
         await calm(plant, 1);
         await plant.startDaemon();
-        await sleep(1500);
+        await isCalm(plant);
         await set(plant, 'X-0', limits.high);
         await until('a failure', async () => await metric(plant, 'plantcast_notify_failed_total{recipient="hook"}') >= 1);
         assert.equal(await metric(plant, 'plantcast_notify_waiting{recipient="hook"}'), 1);

@@ -141,7 +141,6 @@ test('a click flies there, in its own group, and back to normal is said', option
     await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'temperature');
     await page.waitForFunction((eye) => Math.hypot(...globalThis.plantcast.session.camera.eye.map((x, i) => x - eye[i])) > 1, camera.eye);
     assert.equal(await page.evaluate(() => globalThis.plantcast.selection?.tag ?? document.querySelector('#card h3').textContent), HOT);
-    await page.waitForTimeout(1500);
     await settle(page);
     await shoot(page, 'alarms-fly');
     await plant.ask(`set ${HOT} ${limitOf(HOT).H - 10}`);
