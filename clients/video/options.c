@@ -161,7 +161,6 @@ int options_read(struct options *options, int *argc, char ***argv)
         { "view", 0, 0, G_OPTION_ARG_STRING, &options->view, "a view with a name, of the plant file or saved in the page", "ID" },
         { "query", 0, 0, G_OPTION_ARG_STRING, &options->query, "a view as /snapshot.png takes it: group=temperature&camera=...", "TEXT" },
         { "language", 0, 0, G_OPTION_ARG_STRING, &options->language, "of cards, strip, legend and labels: en, ko or de (en)", "L" },
-        { "title", 0, 0, G_OPTION_ARG_STRING, &options->title, "what the picture is called (the view's title)", "TEXT" },
         { "token-file", 0, 0, G_OPTION_ARG_FILENAME, &options->token_path, "its first line is a viewer's token (plantcast token)", "FILE" },
         { "ca", 0, 0, G_OPTION_ARG_FILENAME, &options->ca_path, "certificates (PEM) that are trusted, in place of this machine's", "FILE" },
         { "size", 0, 0, G_OPTION_ARG_STRING, &size, "of the video (1280x720)", "WxH" },
@@ -215,7 +214,7 @@ int options_read(struct options *options, int *argc, char ***argv)
 
 void options_finish(struct options *options)
 {
-    char *const texts[] = { options->url,    options->view,     options->query,      options->title, options->token,   options->ca_path,
+    char *const texts[] = { options->url,    options->view,     options->query,      options->token, options->ca_path,
                             options->listen, options->language, options->token_path, options->user,  options->password };
     for (size_t i = 0; i < G_N_ELEMENTS(texts); i++)
         g_free(texts[i]);

@@ -11,7 +11,6 @@ struct options {
     char *url;             /* of the daemon, with a slash at its end */
     char *view, *query;    /* id of a view with a name; or names and values as /snapshot.png takes them; both NULL: the whole plant */
     char *language;        /* of cards, strip and legend: en, ko or de */
-    char *title;           /* in the strip; NULL: what the view is called */
     char *token, *ca_path, *token_path; /* NULL: none */
     char *listen;                       /* address of all outputs */
     int width_px, height_px, fps, kbps, every_ms;

@@ -357,10 +357,7 @@ void source_look(struct source *source, struct shown *out)
     go_on(source, now_us);
     bool young = source->picture && !source->barred && now_us - source->picture_us < OLDEST_US;
     bool frozen = young && source->age_ms < 0 && source->valued;
-    const char *title = source->options->title ? source->options->title
-                        : source->view_title   ? source->view_title
-                        : source->limited      ? source->options->view
-                                               : "";
+    const char *title = source->view_title ? source->view_title : source->limited ? source->options->view : "";
     *out = (struct shown){ .title = title, .zone = source->zone, .headline = source->headline, .detail = source->detail, .age_ms = -1 };
     if (young && !frozen) {
         if (source->since_us)

@@ -32,8 +32,6 @@ static const char usage_text[] =
     "                   One value a line: Tag, Time, Value. Long: no header, lines of time in ms,type,entity,property,value\n"
     "  --map TAG=SERIES[*SCALE[+OFFSET]]\n"
     "                   feed the tag from a column, or from entity/property of a long file; may be given several times\n"
-    "  --map-file FILE  lines as for --map, `values FILE` (beside the map file), `speed X`, `loop`, # comments.\n"
-    "                   Without it, PLANT.map beside PLANT.yaml is read where there is one\n"
     "  --speed X        run X times as fast (1)\n"
     "  --loop           start recorded series again at their end; else they stay at their last value\n"
     "  --mqtt HOST:PORT publish the tags of MQTT sources, as numbers or JSON, to this broker: one of your own, where nobody\n"
@@ -42,10 +40,11 @@ static const char usage_text[] =
     "  --help           print this\n"
     "\n"
     "Tags without a series follow a process around the column `Sim Value` of the tag list (without it: 40 % of their range).\n"
-    "The column `Sim Loop` says where in the process a tag is; any word will do. Upsets, one after the other:\n";
+    "The column `Sim Loop` says where in the process a tag is; any word will do. PLANT.map beside PLANT.yaml may have lines as\n"
+    "for --map, `values FILE` (beside it), `speed X`, `loop` and # comments. Upsets, one after the other:\n";
 
 struct options {
-    const char *plant, *bind, *map_file, *broker;
+    const char *plant, *bind, *broker;
     int port, control;
     double speed;
     bool loop;
@@ -95,7 +94,6 @@ static bool take_option(struct options *options, int option, const char *text, s
         return false;
     case 'v': sim_map_add_file(&options->map, text); return true;
     case 'm': sim_map_add(&options->map, text, "--map", 0, diag); return true;
-    case 'f': options->map_file = text; return true;
     case 'l': options->loop = true; return true;
     case 'q': options->broker = text; return true;
     default: return false;
@@ -108,9 +106,8 @@ static int read_options(struct options *options, int argc, char **argv)
     static const struct option known[] = {
         { "port", required_argument, NULL, 'p' },     { "bind", required_argument, NULL, 'b' },
         { "values", required_argument, NULL, 'v' },   { "map", required_argument, NULL, 'm' },
-        { "map-file", required_argument, NULL, 'f' }, { "speed", required_argument, NULL, 's' },
-        { "loop", no_argument, NULL, 'l' },           { "control", required_argument, NULL, 'c' },
-        { "mqtt", required_argument, NULL, 'q' },
+        { "speed", required_argument, NULL, 's' },    { "loop", no_argument, NULL, 'l' },
+        { "control", required_argument, NULL, 'c' },  { "mqtt", required_argument, NULL, 'q' },
         { "help", no_argument, NULL, 'h' },           { 0 },
     };
     struct diag diag = { 0 };
@@ -133,13 +130,13 @@ static int read_options(struct options *options, int argc, char **argv)
     return status;
 }
 
-/* PLANT.map beside PLANT.yaml. */
+/* Reads PLANT.map beside PLANT.yaml, if there is one. */
 static void read_map_file(struct options *options, struct diag *diag)
 {
     const char *dot = strrchr(options->plant, '.'), *slash = strrchr(options->plant, '/');
     int stem = dot && (!slash || dot > slash) ? (int)(dot - options->plant) : (int)strlen(options->plant);
-    char *path = options->map_file ? mem_strdup(options->map_file) : mem_printf("%.*s.map", stem, options->plant);
-    if (options->map_file || access(path, R_OK) == 0)
+    char *path = mem_printf("%.*s.map", stem, options->plant);
+    if (access(path, R_OK) == 0)
         sim_map_read(&options->map, path, diag);
     mem_free(path);
 }

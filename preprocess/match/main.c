@@ -17,12 +17,11 @@ static void print_usage(FILE *out)
           "\n"
           "Matches the tag list that a control system exports to the equipment of an imported plant, and writes into the plant's folder\n"
           "tags.csv, matches.csv (what was matched, and why) and, in plant.yaml, groups. What people changed there stays.\n"
+          "Also reads match_rules.csv (Tag,Equipment: ordered patterns) and aliases.csv (Alias,Equipment) in that folder.\n"
           "  PLANT                 the plant's folder, or its plant.yaml\n"
           "  TAGS                  Kepware, Ignition, AVEVA, Emerson, Honeywell, plain CSV or .xlsx\n"
           "  --equipment CHOICE    what becomes an asset: level=N, a pattern of names, or @FILE of names; may be repeated\n"
           "  --encoding NAME       of TAGS, such as GB18030, Shift-JIS, EUC-KR, Windows-1251; without it, the encoding is found and said\n"
-          "  --rules FILE          ordered patterns, CSV: Tag,Equipment (match_rules.csv in the folder)\n"
-          "  --aliases FILE        what people call equipment, CSV: Alias,Equipment (aliases.csv in the folder)\n"
           "  --decide FILE         decisions as if they had been written into matches.csv by hand, CSV: Tag,Status,Asset\n"
           "  --source ID           of plant.yaml, where these tags are read\n"
           "  --modbus HOST[:PORT]  makes that source, of type modbus, or changes the one that was made so\n"
@@ -51,10 +50,8 @@ static bool take_number(const char *option, const char *range, long least, long 
 
 int main(int argc, char **argv)
 {
-    enum { ENCODING = 1, RULES, ALIASES, SOURCE, MODBUS, UNIT, ORDER, BASE, EQUIPMENT, DECIDE, LENT, TIMEOUT, MEMORY, DRY, HELP };
+    enum { ENCODING = 1, SOURCE, MODBUS, UNIT, ORDER, BASE, EQUIPMENT, DECIDE, LENT, TIMEOUT, MEMORY, DRY, HELP };
     static const struct option options[] = { { "encoding", required_argument, NULL, ENCODING },
-                                             { "rules", required_argument, NULL, RULES },
-                                             { "aliases", required_argument, NULL, ALIASES },
                                              { "source", required_argument, NULL, SOURCE },
                                              { "modbus", required_argument, NULL, MODBUS },
                                              { "unit", required_argument, NULL, UNIT },
@@ -84,8 +81,6 @@ int main(int argc, char **argv)
                 return 2;
             }
             break;
-        case RULES: params.rules = optarg; break;
-        case ALIASES: params.aliases = optarg; break;
         case SOURCE: params.source = optarg; break;
         case MODBUS: params.modbus = optarg; break;
         case UNIT:

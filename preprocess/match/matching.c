@@ -119,11 +119,11 @@ static bool choose_equipment(struct run *run)
 }
 
 /* The file that is stated, or the one in the plant's folder if it is there. Returns false if it cannot be read. */
-static bool read_optional(struct run *run, const char *stated, const char *name,
+static bool read_optional(struct run *run, const char *name,
                           bool (*read)(struct matcher *matcher, const char *path, char why[MATCH_WHY_BYTES]))
 {
-    char why[MATCH_WHY_BYTES], *path = stated ? mem_strdup(stated) : beside(run, name);
-    bool good = (!stated && access(path, F_OK) != 0) || read(&run->matcher, path, why) || fail_at(path, why);
+    char why[MATCH_WHY_BYTES], *path = beside(run, name);
+    bool good = access(path, F_OK) != 0 || read(&run->matcher, path, why) || fail_at(path, why);
     mem_free(path);
     return good;
 }
@@ -165,8 +165,8 @@ static bool read_lists(struct run *run)
     bool good = !params->decisions || decisions_read(&run->before, params->decisions, why) || fail_at(params->decisions, why);
     good = good && (decisions_read(&run->before, path, why) || fail_at(path, why));
     mem_free(path);
-    return good && read_optional(run, params->rules, "match_rules.csv", matcher_read_rules) &&
-           read_optional(run, params->aliases, "aliases.csv", matcher_read_aliases) &&
+    return good && read_optional(run, "match_rules.csv", matcher_read_rules) &&
+           read_optional(run, "aliases.csv", matcher_read_aliases) &&
            (tag_rows_read(&run->rows, run->plant->tags_path, why) || fail_at(run->plant->tags_path, why));
 }
 
@@ -598,7 +598,7 @@ static bool take_answer(struct run *run, int file)
 static void add_paths(const struct run *run, struct child_paths *paths)
 {
     const struct matching_params *params = run->params;
-    const char *const stated[] = { params->tags, params->decisions, params->rules, params->aliases, run->plant->tags_path };
+    const char *const stated[] = { params->tags, params->decisions, run->plant->tags_path };
     static const char *const names[] = { "matches.csv", "match_rules.csv", "aliases.csv" };
     for (size_t i = 0; i < sizeof(stated) / sizeof(stated[0]); i++)
         child_paths_add(paths, stated[i], CONFINE_READ);

@@ -9,7 +9,6 @@ struct matching_params {
     const char *plant;            /* the plant file */
     const char *tags;             /* the export */
     const char *encoding;         /* of the export; NULL: it is found */
-    const char *rules, *aliases;  /* NULL: match_rules.csv, aliases.csv in the plant's folder, if they are there */
     const char *decisions;        /* what people decided, beside matches.csv, and before it; NULL: nothing */
     const char *const *equipment; /* what becomes an asset (equipment.h); none: the plant file's assets stay */
     int equipment_count;

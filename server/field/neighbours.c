@@ -216,15 +216,6 @@ static struct neighbour *predict_from(const struct neighbours *neighbours, const
     return out;
 }
 
-size_t neighbours_find(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct neighbour **out)
-{
-    struct neighbours *neighbours = neighbours_create(scene, asset, group);
-    size_t count = neighbours ? neighbours_count(neighbours) : 0;
-    *out = neighbours ? predict_from(neighbours, snapshot) : NULL;
-    neighbours_destroy(&neighbours);
-    return count;
-}
-
 const struct neighbours_kept *neighbours_look(struct neighbours_cache *cache, const struct scene *scene, int asset, int group,
                                               const struct snapshot *snapshot)
 {

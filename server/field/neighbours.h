@@ -35,21 +35,18 @@ void neighbours_predict(const struct neighbours *neighbours, const double *value
    leads to. out: room for `most`. Returns their number. */
 size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, const bool *apart, size_t most, size_t *out);
 
-/* Lists the sensors of the group on the asset whose places are known, in their order. Returns their number; 0: there are none. The caller
-   frees *out (mem_free). */
-size_t neighbours_find(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct neighbour **out);
-/* What was found last, of each asset and group; zero-initialise. The scene must outlive what is kept. Thread: one. */
+/* The latest predictions for each asset and group; zero-initialise. The scene must outlive the cache. Thread: one. */
 struct neighbours_cache {
     struct neighbours_kept {
-        struct neighbours *of; /* NULL: there are none */
-        struct neighbour *list;
+        struct neighbours *of; /* NULL: the group has no sensor with a known position on the asset */
+        struct neighbour *list; /* predictions by sensor, in the order of `of` */
         size_t count;
         int64_t taken_mono_ns, taken_utc_ns; /* the snapshot; 0: none yet */
     } * kept; /* [asset][group]; NULL: none yet */
     size_t count;
 };
-/* Returns what neighbours_find() found of a snapshot, of this one or of one at most NEIGHBOURS_FRESH_NS older: however many ask, it is
-   worked out once a second. Valid until the next call. The scene must be the same in all calls until neighbours_cache_finish(). */
+/* Returns the predictions from this snapshot, or from one at most NEIGHBOURS_FRESH_NS older, so that many callers cost one computation a
+   second. Valid until the next call. The scene must be the same in all calls until neighbours_cache_finish(). */
 #define NEIGHBOURS_FRESH_NS INT64_C(1000000000)
 const struct neighbours_kept *neighbours_look(struct neighbours_cache *cache, const struct scene *scene, int asset, int group,
                                               const struct snapshot *snapshot);

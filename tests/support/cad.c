@@ -376,7 +376,7 @@ void cad_eight(struct cad *cad, struct cad_random *random, int along, int around
 const char *const cad_fault_names[CAD_FAULTS] = { "clean",       "triangle soup", "hair gaps", "repeated, turned", "hanging vertices",
                                                   "non-manifold" };
 
-double cad_size(const struct cad *cad)
+static double size_of(const struct cad *cad)
 {
     double sum = 0;
     for (int axis = 0; axis < 3; axis++) {
@@ -442,7 +442,7 @@ static void break_to_patches(struct cad *to, const struct cad *from, struct cad_
 {
     int *patch = choose_patches(from, random), *owner = mem_array(from->vertex_count, sizeof(*owner));
     uint32_t *ids = mem_array(from->vertex_count * PATCHES, sizeof(*ids));
-    double size = cad_size(from);
+    double size = size_of(from);
     memset(owner, 0xff, from->vertex_count * sizeof(*owner));
     memset(ids, 0xff, from->vertex_count * PATCHES * sizeof(*ids));
     for (size_t i = 0; i < 3 * from->triangle_count; i++) {

@@ -54,6 +54,5 @@ struct cad_place {
 };
 void cad_random_place(struct cad_place *place, struct cad_random *random);
 void cad_put(struct cad *cad, const struct cad_place *place);
-double cad_size(const struct cad *cad);
 
 #endif

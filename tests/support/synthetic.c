@@ -153,8 +153,3 @@ void synthetic_set_distance(struct synthetic *synthetic, size_t sensor, size_t v
     uint16_t *codes = (uint16_t *)asset_distance_codes(&synthetic->file.view, sensor, vertex);
     codes[vertex % ASSET_DISTANCE_BLOCK] = asset_distance_code(distance_m);
 }
-
-float (*synthetic_positions(struct synthetic *synthetic))[3]
-{
-    return (float(*)[3])synthetic->file.view.positions_m;
-}

@@ -34,7 +34,5 @@ double synthetic_random_unit(uint64_t *state); /* [0, 1) */
 
 /* Sets a distance along the surface in the file, rounded as files have it. */
 void synthetic_set_distance(struct synthetic *synthetic, size_t sensor, size_t vertex, float distance_m);
-/* Writable parts of the file, to make special cases. */
-float (*synthetic_positions(struct synthetic *synthetic))[3];
 
 #endif

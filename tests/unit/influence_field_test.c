@@ -457,12 +457,13 @@ CASE(test_gp_knows_how_far_it_sees)
 
 static double predicted_of(const struct plant_in_use *u, size_t sensor, double *deviation)
 {
-    struct neighbour *found;
-    assert_int_equal(neighbours_find(u->scene, 0, 0, u->snapshot, &found), u->plant->tag_count);
-    assert_int_equal(found[sensor].tag, sensor);
-    double predicted = found[sensor].predicted;
-    *deviation = found[sensor].deviation;
-    mem_free(found);
+    struct neighbours_cache cache = { 0 };
+    const struct neighbours_kept *found = neighbours_look(&cache, u->scene, 0, 0, u->snapshot);
+    assert_int_equal(found->count, u->plant->tag_count);
+    assert_int_equal(found->list[sensor].tag, sensor);
+    double predicted = found->list[sensor].predicted;
+    *deviation = found->list[sensor].deviation;
+    neighbours_cache_finish(&cache);
     return predicted;
 }
 

@@ -4,7 +4,7 @@ import { readFileSync } from 'node:fs';
 import { Connection } from '../../clients/web/core/connection.js';
 import { Session } from '../../clients/web/core/session.js';
 
-export class Clock {
+class Clock {
     constructor() {
         this.time = 1000;
         this.timers = new Map();

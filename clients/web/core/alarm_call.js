@@ -4,7 +4,8 @@
 import { isGone } from './alarms.js';
 
 export const TURN_MS = 10000;  // at the least between two changes of the picture
-export const FLOOD = 10, FLOOD_US = 600e6; // more alarms than that, in ten minutes
+export const FLOOD = 10; // more alarms than that within FLOOD_US are a flood
+const FLOOD_US = 600e6;
 
 const byGravity = (a, b) => a.priority - b.priority || a.raisedUs - b.raisedUs;
 const keyOf = ({ tag, kind }) => `${tag.index}/${kind}`;

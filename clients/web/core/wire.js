@@ -3,8 +3,8 @@
 
 export const SUBPROTOCOL = 'plantcast.v1';
 const FRAME_HEADER_BYTES = 112;
-export const MAX_SIDE_PX = 8192;
-export const MAX_PIXELS = 16 * 1024 * 1024;
+const MAX_SIDE_PX = 8192;
+const MAX_PIXELS = 16 * 1024 * 1024;
 const MIN_SIDE_PX = 16;
 const NO_AGE = 0xffffffff;
 export const CODECS = { 1: 'jpeg', 2: 'png', 3: 'h264' };

@@ -39,9 +39,3 @@ bool log_pace_flush(struct log_pace *pace, int64_t now_ns, char more[LOG_PACE_BY
     start_pause(pace, now_ns);
     return true;
 }
-
-void log_pace_reset(struct log_pace *pace)
-{
-    pace->pause_ns = pace->next_ns = 0;
-    pace->unsaid = 0;
-}

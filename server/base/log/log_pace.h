@@ -18,7 +18,5 @@ struct log_pace { /* zero-initialise apart from the pauses */
 bool log_pace_take(struct log_pace *pace, int64_t now_ns, char more[LOG_PACE_BYTES]);
 /* Returns whether a pause has ended with occurrences left out, and starts the next pause; then `more` is how many. */
 bool log_pace_flush(struct log_pace *pace, int64_t now_ns, char more[LOG_PACE_BYTES]);
-/* The state has ended: the next occurrence is logged at once. Occurrences left out are forgotten. */
-void log_pace_reset(struct log_pace *pace);
 
 #endif

@@ -159,7 +159,8 @@ bool charset_fits(const char *bytes, size_t count, const char *encoding)
 
 /* --- finding it ------------------------------------------------------------------------------------------------------------- */
 
-size_t charset_count_utf8(const char *bytes, size_t count, size_t *invalid)
+/* Returns the number of valid UTF-8 characters beyond ASCII, and sets *invalid to the number of bytes that are not valid UTF-8. */
+static size_t count_utf8(const char *bytes, size_t count, size_t *invalid)
 {
     size_t characters = 0;
     *invalid = 0;
@@ -212,7 +213,7 @@ struct charset_choice charset_find(const char *bytes, size_t count)
     if (!name)
         name = find_utf16(bytes, count);
     if (!name) {
-        characters = charset_count_utf8(bytes, count, &invalid);
+        characters = count_utf8(bytes, count, &invalid);
         choice.ascii = characters == 0 && invalid == 0;
         if (choice.ascii && has_escape(bytes, count))
             name = "ISO-2022-JP";

@@ -29,8 +29,6 @@ char *charset_convert(const char *bytes, size_t count, const char *encoding, siz
 /* Translates an encoding's name as people and programs write it ("Windows 1251", "GBK", "latin1") into the name that charset_convert()
    takes. Returns false if there is no such encoding. */
 bool charset_resolve(const char *written, char name[CHARSET_NAME_BYTES]);
-/* Returns the number of valid UTF-8 characters beyond ASCII, and sets *invalid to the number of bytes that are not valid UTF-8. */
-size_t charset_count_utf8(const char *bytes, size_t count, size_t *invalid);
 /* Returns whether all bytes mean something in an encoding. */
 bool charset_fits(const char *bytes, size_t count, const char *encoding);
 /* Returns one line without line end: "read as GB18030", and the alternative where the choice is unsure; mem_free. */

@@ -14,7 +14,7 @@ import { missing, runProgram } from './tiny_plant.mjs';
 const HERE = dirname(fileURLToPath(import.meta.url));
 
 // Why there can be no test of OPC UA here, or null.
-export function missingOpcua() {
+function missingOpcua() {
     if (/without OPC UA/.test(runProgram('plantcastd', ['--version']).out))
         return 'built without OPC UA';
     return existsSync(join(HERE, '../node_modules/node-opcua-server')) ? null : 'no node-opcua-server';

@@ -52,7 +52,7 @@ function big(n) {
 }
 
 // The header of a frame, by the names of PROTOCOL.md.
-export function readFrame(bytes) {
+function readFrame(bytes) {
     const f32 = (at, count) => Array.from({ length: count }, (_, i) => bytes.readFloatLE(at + 4 * i));
     const u32 = (at) => bytes.readUInt32LE(at), u16 = (at) => bytes.readUInt16LE(at);
     return {

@@ -9,7 +9,7 @@ const FUNCTIONS = ['T', 'T', 'T', 'I', 'E', 'IC', 'IT', 'SH', 'AH', 'SHH'];
 const ENDS = ['inlet', 'outlet', 'top', 'bottom', 'shell side', 'discharge', 'suction', 'bearing DE', 'bearing NDE', ''];
 const ATTRIBUTES = ['.PV', '.PV', '.DACA.PV', '.SP', '.OP', '.Value', '/PV.CV'];
 
-export function randomOf(seed) { // mulberry32
+function randomOf(seed) { // mulberry32
     let state = seed >>> 0;
     return () => {
         state = (state + 0x6d2b79f5) >>> 0;
