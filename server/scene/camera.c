@@ -9,7 +9,6 @@
 
 #define FIT_MARGIN 1.06      /* the box may fill 1/1.06 of the picture */
 #define LEAST_BOX_M 1e-4     /* a smaller box, or one that is empty, is looked at as if it had this size */
-#define NEAR_TO_FAR 1e-4     /* never less, so that 24 bits of depth resolve what is near */
 #define LEAST_NEAR_M 1e-6
 #define LEAST_HEIGHT_M 1e-5  /* of an orthographic picture */
 
@@ -234,7 +233,7 @@ static void depth_range(const struct camera *camera, const struct basis *basis, 
         return;
     }
     *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M); /* a box behind the camera: any range will do */
-    *near_m = fmax(fmax(nearest * 0.999, *far_m * NEAR_TO_FAR), LEAST_NEAR_M);
+    *near_m = fmax(fmax(nearest * 0.999, *far_m * CAMERA_NEAR_TO_FAR), LEAST_NEAR_M);
     if (*near_m >= *far_m) /* a box without depth */
         *near_m = *far_m / 2;
 }

@@ -46,7 +46,8 @@ struct scene {
     size_t extreme_count;    /* 0: not known */
 };
 
-/* Chooses the box that a camera's near and far planes have to hold: the main part's, or from far outside it that of everything. */
+/* Chooses the box that a camera's near and far planes have to hold: that of everything, unless a stray piece is so far away that the near
+   plane would cut the main part; then the main part's. */
 void scene_depth_box(const struct scene *scene, const double eye_m[3], double min_m[3], double max_m[3]);
 /* Returns whether the placement mirrors: the winding of triangles is turned round. */
 bool scene_asset_mirrored(const struct scene_asset *asset);

@@ -20,7 +20,6 @@
 
 #define SAME_PLACE_M 1e-4
 
-static const double FAR_OUTSIDE = 10; /* sizes of the main part: from there a camera looks at strays, too */
 
 /* --- does the file fit? ----------------------------------------------------------------------------------------------------- */
 
@@ -394,12 +393,12 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
 
 void scene_depth_box(const struct scene *scene, const double eye_m[3], double min_m[3], double max_m[3])
 {
-    double size_m = 0, away_m = 0;
+    double away_m = 0, farthest_m2 = 0; /* to the main part, and to the farthest corner of everything */
     for (int c = 0; c < 3; c++) {
-        size_m = fmax(size_m, scene->bounds_max_m[c] - scene->bounds_min_m[c]);
         away_m = fmax(away_m, fmax(scene->bounds_min_m[c] - eye_m[c], eye_m[c] - scene->bounds_max_m[c]));
+        farthest_m2 += pow(fmax(fabs(scene->whole_min_m[c] - eye_m[c]), fabs(scene->whole_max_m[c] - eye_m[c])), 2);
     }
-    bool whole = scene->outside.triangles > 0 && away_m > FAR_OUTSIDE * size_m;
+    bool whole = scene->outside.triangles > 0 && away_m > CAMERA_NEAR_TO_FAR * sqrt(farthest_m2);
     memcpy(min_m, whole ? scene->whole_min_m : scene->bounds_min_m, 3 * sizeof(*min_m));
     memcpy(max_m, whole ? scene->whole_max_m : scene->bounds_max_m, 3 * sizeof(*max_m));
 }

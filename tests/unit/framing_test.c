@@ -246,3 +246,24 @@ TEST(what_belongs_together_stays)
     add_box(toy, "FLANGE-2", (double[3]){ 0.05, 0.5, 0.5 }, (double[3]){ 200.05, 0, 0 });
     expect_framed(toy, 0);
 }
+
+/* A stray box 300 m away is not cut by the far plane; one 5,000 km away must not make the near plane cut the plant. */
+TEST(depth_holds_strays_as_far_as_it_resolves_the_plant)
+{
+    static const double strays_m[] = { 300, 5e6 };
+    for (int i = 0; i < 2; i++) {
+        struct toy *toy = toy_create();
+        double low[3], high[3];
+        add_box(toy, "PLANT", (double[3]){ 2, 2, 2 }, (double[3]){ 0, 0, 0 });
+        add_box(toy, "STRAY", (double[3]){ 0.1, 0.1, 0.1 }, (double[3]){ strays_m[i], 0, 0 });
+        memcpy(toy->scene.whole_min_m, toy->scene.bounds_min_m, sizeof(low));
+        memcpy(toy->scene.whole_max_m, toy->scene.bounds_max_m, sizeof(high));
+        main_part_find(NULL, &toy->scene);
+        assert_int_equal(toy->scene.outside.assets, 1);
+        scene_depth_box(&toy->scene, (double[3]){ -5, -5, 3 }, low, high); /* at a medium distance */
+        assert_true(i == 0 ? high[0] > 300 : high[0] < 3);
+        scene_depth_box(&toy->scene, (double[3]){ -1e3, 0, 1 }, low, high);
+        assert_true(high[0] > strays_m[i]);
+        toy_destroy(&toy);
+    }
+}
