@@ -2,6 +2,7 @@
 /* The programs of an import, one after the other, as somebody would run them by hand. */
 #include "import_job.h"
 
+#include <inttypes.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +16,7 @@
 #include "plant/plant_folder.h"
 #include "sibling.h"
 
-enum { FILES = 3, MOST_ARGUMENTS = 300 };
+enum { FILES = 3, MOST_ARGUMENTS = 300, OWN_MB = 512 /* of plantcast-import itself, beside its readers */ };
 static const size_t max_bytes = (size_t)256 << 20;
 
 struct texts {
@@ -126,19 +127,40 @@ static void say_nothing(void *arg, const char *text)
     (void)text;
 }
 
-static char *run(struct import_job *job, struct arguments *list, enum import_phase phase, char **remark)
+static struct sibling_params params_of(struct import_job *job, enum import_phase phase)
 {
     plant_import_set_phase(job->params.import, phase);
+    return (struct sibling_params){
+        .stop = stop, .say = phase == IMPORT_PREPARING ? say_nothing : say, .arg = job, .lent = job->params.lock
+    };
+}
+
+static char *run(struct import_job *job, struct arguments *list, enum import_phase phase, char **remark)
+{
+    struct sibling_params params = params_of(job, phase);
     list->at[list->count] = NULL;
-    char *why = sibling_run(&(struct sibling_params){ .arguments = list->at,
-                                                      .stop = stop,
-                                                      .say = phase == IMPORT_PREPARING ? say_nothing : say,
-                                                      .arg = job,
-                                                      .remark = remark,
-                                                      .lent = job->params.lock });
+    params.arguments = list->at;
+    params.remark = remark;
+    params.memory_bytes = ((size_t)job->params.quotas->at[QUOTA_IMPORT_MB] + OWN_MB) << 20;
+    params.memory_option = "--limit import-megabytes";
+    char *why = sibling_run(&params);
     for (size_t i = 0; i < list->owned; i++)
         mem_free(list->own[i]);
     return why;
+}
+
+static void add_limit(struct arguments *list, const char *option, int64_t limit)
+{
+    list->own[list->owned] = mem_printf("%" PRId64, limit);
+    add(list, option);
+    add(list, list->own[list->owned++]);
+}
+
+/* Limits of each process that reads a file; run() limits all of them together. */
+static void add_limits(struct arguments *list, const struct import_job *job)
+{
+    add_limit(list, "--timeout", job->params.quotas->at[QUOTA_IMPORT_S]);
+    add_limit(list, "--memory", job->params.quotas->at[QUOTA_IMPORT_MB]);
 }
 
 /* By which a program that changes the folder has it, as this one does. */
@@ -166,6 +188,7 @@ static char *read_models(struct import_job *job, const struct import_order *orde
     if (order->anew)
         add(&list, "--anew");
     add_lent(&list);
+    add_limits(&list, job);
     add(&list, "-o");
     add(&list, job->folder);
     add_option(&list, "--units", order->units);
@@ -211,6 +234,7 @@ static char *match_tags(struct import_job *job, const struct import_order *order
         add(&list, decisions);
     }
     add_lent(&list);
+    add_limits(&list, job);
     add_option(&list, "--encoding", order->encoding);
     if (*order->source.host)
         add_source(&list, &order->source);
@@ -228,13 +252,9 @@ static char *match_tags(struct import_job *job, const struct import_order *order
 
 static char *prepare(struct import_job *job)
 {
-    struct arguments list = { 0 };
+    struct sibling_params params = params_of(job, IMPORT_PREPARING);
     job->prepares = true;
-    add(&list, "plantcast-prep");
-    add(&list, "-o");
-    add(&list, job->params.prepared);
-    add(&list, job->params.plant_path);
-    return run(job, &list, IMPORT_PREPARING, NULL);
+    return sibling_prepare(&params, job->params.prepared, job->params.plant_path, job->params.quotas);
 }
 
 char *import_job_run(struct import_job *job, const struct import_order *order, char **remark)

@@ -3,6 +3,7 @@
    thread. */
 #ifndef IMPORT_JOB_H
 #define IMPORT_JOB_H
+#include "access/quota.h"
 #include "importing/plant_import.h"
 
 struct import_job_params {
@@ -10,6 +11,7 @@ struct import_job_params {
     const char *plant_path, *tags_path;
     const char *prepared;    /* folder of prepared assets */
     int lock;                /* of the plant's folder, which is lent to the programs */
+    const struct quotas *quotas; /* limits of the programs */
     bool (*stop)(void *arg); /* whether to end */
     void *arg;
 };

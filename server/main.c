@@ -84,7 +84,7 @@ static void print_usage(FILE *out)
           "  --audit-size MB  a file of it that is larger is kept beside it, and a new one begun (64)\n"
           "  --audit-syslog HOST[:PORT]   send it to a syslog server, too, by TLS (6514); --audit-ca FILE: certificates trusted with it;\n"
           "                   --audit-cert FILE, --audit-key FILE: ours for it\n"
-          "  --limit NAME=N   how much clients may have, again and again:\n",
+          "  --limit NAME=N   limits of clients and of programs that read models; may be given several times:\n",
           out);
     quotas_print(out);
 }

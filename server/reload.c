@@ -286,8 +286,8 @@ static bool prepare(struct reload *reload)
 {
     const struct plant_runtime_context *context = reload->context;
     char *folder = plant_runtime_prepared_folder(context->params, (*reload->runtime)->plant);
-    const char *const arguments[] = { "plantcast-prep", "-o", folder, context->params->plant_path, NULL };
-    char *why = sibling_run(&(struct sibling_params){ .arguments = arguments, .stop = is_stopping, .arg = reload });
+    char *why = sibling_prepare(&(struct sibling_params){ .stop = is_stopping, .arg = reload }, folder, context->params->plant_path,
+                                &context->params->access.quotas);
     if (why)
         log_err(context->log, "%s", why);
     bool good = !why;
@@ -377,6 +377,7 @@ static void import_locked(struct reload *reload, struct import_order *order, int
                                               .tags_path = (*reload->runtime)->plant->tags_path,
                                               .prepared = folder,
                                               .lock = lock,
+                                              .quotas = &context->params->access.quotas,
                                               .stop = is_cancelled,
                                               .arg = reload };
     struct import_job *job = import_job_begin(&params);

@@ -15,8 +15,9 @@
 
 #include "agent.h"
 #include "base/clock.h"
-#include "base/system/confine.h"
 #include "base/metrics/counters.h"
+#include "base/system/cgroup.h"
+#include "base/system/confine.h"
 #include "base/mem.h"
 #include "corelink/seat.h"
 #include "encode/encoder.h"
@@ -47,6 +48,7 @@ struct server {
     struct seat seat;            /* of one of two cores */
     struct lease_keeper *keeper; /* NULL: no other core may lead */
     bool follows, lost;          /* another core polls; this one's lease is lost */
+    bool divided;                /* programs that read files get cgroups of their own */
     struct supervision *supervision;
     struct agent *agent;         /* NULL: no load balancer asks */
     struct signing_key *signing_key; /* NULL: pictures are not signed */
@@ -231,6 +233,9 @@ static bool start_import(struct server *server)
         return true;
     if (confine_lacks(lacks))
         log_warn(server->log, "--import: this kernel has %s", lacks);
+    if (!server->divided)
+        log_info(server->log, "--import: limits of memory hold for each process that reads files; together they are limited only where "
+                              "systemd delegates a cgroup (Delegate=memory pids)");
     server->import = plant_import_create(server->params.plant_path);
     if (!server->import)
         log_err(server->log, "%s: no folder for exports can be made beside it: %s", server->params.plant_path, strerror(errno));
@@ -275,11 +280,11 @@ static bool prepare(struct server *server)
     char *folder = plant ? plant_runtime_prepared_folder(&server->params, plant) : NULL, *why = NULL;
     bool good = folder && access(folder, F_OK) == 0;
     if (good) {
-        const char *const arguments[] = { "plantcast-prep", "-o", folder, server->params.plant_path, NULL };
         log_warn(server->log, "%s: the plant is prepared now, as it is not what was prepared before", server->params.plant_path);
         supervision_starting(server->supervision, "preparing the plant");
         atomic_store(&preparing, true);
-        why = sibling_run(&(struct sibling_params){ .arguments = arguments, .stop = is_told_to_end, .notifies = true });
+        why = sibling_prepare(&(struct sibling_params){ .stop = is_told_to_end, .notifies = true }, folder, server->params.plant_path,
+                              &server->params.access.quotas);
         atomic_store(&preparing, false);
         good = !why && !atomic_load(&told_to_end);
         if (atomic_load(&told_to_end))
@@ -531,6 +536,7 @@ int server_run(const struct server_params *params)
     struct server server = { .params = *params, .log = log_create(params->log_level), .begun_ns = clock_mono_ns() };
     log_set_format(server.log, params->log_format, NULL);
     pthread_mutex_init(&server.wake_lock, NULL);
+    server.divided = cgroup_divide();
     confine_hide_memory();
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN); /* a file that may not grow is an error of writing, as a full disk is */

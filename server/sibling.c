@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A child process, and the two pipes that it prints to. */
+/* Starts a child process, applies its limits, and reads the two pipes that it prints to. */
 #include "sibling.h"
 
 #include <errno.h>
@@ -14,18 +14,25 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "access/quota.h"
+#include "base/clock.h"
 #include "base/mem.h"
+#include "base/system/cgroup.h"
 #include "base/system/confine.h"
+#include "base/system/memory.h"
 #include "base/text/text.h"
 
-enum { STDOUT, STDERR, PIPES, LOOK_MS = 50, MOST_STDERR_BYTES = 64 * 1024 };
+enum { STDOUT, STDERR, PIPES, LOOK_MS = 50, MAX_STDERR_BYTES = 64 * 1024, MAX_TASKS = 512 };
+static const int64_t KILL_AFTER_NS = 30 * NS_PER_S;
 
 struct sibling {
     const struct sibling_params *params;
     pid_t child;
     int ends[PIPES][2];  /* -1: closed */
     struct text written; /* to stderr */
-    bool told;           /* it was told to end */
+    char *cgroup;        /* NULL: none */
+    int64_t until_ns, kill_ns;
+    bool told, timed_out; /* it was told to end: by the caller, by the time limit */
 };
 
 static void close_end(int *fd)
@@ -33,6 +40,19 @@ static void close_end(int *fd)
     if (*fd >= 0)
         close(*fd);
     *fd = -1;
+}
+
+/* Within a millisecond of the start: before the program has read anything. */
+static void limit(struct sibling *sibling)
+{
+    size_t bytes = sibling->params->memory_bytes;
+    setpriority(PRIO_PROCESS, (id_t)sibling->child, 10);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* their shadow memory counts as data */
+    if (bytes > 0)
+        prlimit(sibling->child, RLIMIT_DATA, &(struct rlimit){ bytes, bytes }, NULL);
+#endif
+    sibling->cgroup = cgroup_create("reader", bytes, MAX_TASKS);
+    cgroup_add(sibling->cgroup, sibling->child);
 }
 
 static int start(struct sibling *sibling)
@@ -64,7 +84,7 @@ static int start(struct sibling *sibling)
     for (int i = 0; i < PIPES; i++)
         close_end(&sibling->ends[i][1]);
     if (!error)
-        setpriority(PRIO_PROCESS, (id_t)sibling->child, 10);
+        limit(sibling);
     return error;
 }
 
@@ -80,14 +100,32 @@ static void read_end(struct sibling *sibling, int which)
     }
     piece[n] = 0;
     sibling->params->say(sibling->params->arg, piece);
-    if (which == STDERR && sibling->written.length < MOST_STDERR_BYTES)
+    if (which == STDERR && sibling->written.length < MAX_STDERR_BYTES)
         text_add(&sibling->written, "%s", piece);
+}
+
+/* Tells the program to end when the caller or the time limit says so, and kills one that does not. */
+static void end_in_time(struct sibling *sibling)
+{
+    int64_t now_ns = clock_mono_ns();
+    if (sibling->told || sibling->timed_out) {
+        if (now_ns >= sibling->kill_ns)
+            kill(sibling->child, SIGKILL);
+        return;
+    }
+    sibling->told = sibling->params->stop(sibling->params->arg);
+    sibling->timed_out = !sibling->told && sibling->params->timeout_s > 0 && now_ns >= sibling->until_ns;
+    if (sibling->told || sibling->timed_out) {
+        sibling->kill_ns = now_ns + KILL_AFTER_NS;
+        kill(sibling->child, SIGTERM);
+    }
 }
 
 /* Waits for what it prints, and looks up now and then. Returns once it has ended; its pipes may be held open by others. */
 static int attend(struct sibling *sibling)
 {
     int status = 0;
+    sibling->until_ns = clock_mono_ns() + sibling->params->timeout_s * NS_PER_S;
     for (bool ended = false; !ended;) {
         struct pollfd polled[PIPES] = { { sibling->ends[STDOUT][0], POLLIN, 0 }, { sibling->ends[STDERR][0], POLLIN, 0 } };
         ended = waitpid(sibling->child, &status, WNOHANG) != 0; /* what it wrote before is read below */
@@ -97,10 +135,8 @@ static int attend(struct sibling *sibling)
                 read_end(sibling, i);
         if (ended && ready > 0)
             ended = false;
-        if (!sibling->told && !ended && sibling->params->stop(sibling->params->arg)) {
-            sibling->told = true;
-            kill(sibling->child, SIGTERM);
-        }
+        if (!ended)
+            end_in_time(sibling);
     }
     return status;
 }
@@ -126,14 +162,32 @@ char *sibling_run(const struct sibling_params *params)
         why = mem_printf("%s cannot be run: %s", name, strerror(error));
     else if (sibling.told)
         why = mem_printf("%s was ended before it was done", name);
+    else if (sibling.timed_out)
+        why = mem_printf("%s was ended after %d s (%s)", name, params->timeout_s, params->timeout_option);
     else if (params->remark && WIFEXITED(status) && WEXITSTATUS(status) == SIBLING_PARTLY)
         *params->remark = last_line(&sibling.written);
+    else if (WIFSIGNALED(status) && params->memory_bytes > 0)
+        why = mem_printf("%s crashed (%s); its limit of memory is %zu MB (%s)", name, strsignal(WTERMSIG(status)),
+                         params->memory_bytes >> 20, params->memory_option);
     else if (WIFSIGNALED(status))
         why = mem_printf("%s crashed (%s)", name, strsignal(WTERMSIG(status)));
     else if (WEXITSTATUS(status) != 0 && !(why = last_line(&sibling.written)))
         why = mem_printf("%s ended with status %d", name, WEXITSTATUS(status));
     for (int i = 0; i < PIPES; i++)
         close_end(&sibling.ends[i][0]);
+    cgroup_destroy(&sibling.cgroup);
     text_finish(&sibling.written);
     return why;
+}
+
+char *sibling_prepare(const struct sibling_params *how, const char *folder, const char *plant_path, const struct quotas *quotas)
+{
+    const char *const arguments[] = { "plantcast-prep", "-o", folder, plant_path, NULL };
+    struct sibling_params params = *how;
+    params.arguments = arguments;
+    params.timeout_s = (int)quotas->at[QUOTA_PREPARE_S];
+    params.memory_bytes = quotas->at[QUOTA_PREPARE_MB] > 0 ? (size_t)quotas->at[QUOTA_PREPARE_MB] << 20 : memory_machine_bytes() / 4 * 3;
+    params.timeout_option = "--limit prepare-seconds";
+    params.memory_option = "--limit prepare-megabytes";
+    return sibling_run(&params);
 }

@@ -49,7 +49,7 @@ $(out)/prepared/%: tests/plants/%.yaml FORCE | $(bin)/plantcast-prep
 .PHONY: plants FORCE
 tests: all $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility $(out)/tests/relay/relay $(out)/tests/faults/libEGL.so.1 \
     $(out)/tests/faults/kill_at_rename.so $(out)/tests/faults/clock_off.so $(out)/tests/faults/late_peer.so \
-    $(out)/tests/faults/escape $(out)/tests/validation/compare \
+    $(out)/tests/faults/escape $(out)/tests/faults/escape.so $(out)/tests/validation/compare \
     $(if $(occt),$(out)/tests/cad/step_samples)
 unit: tests
 	@tests/run $(out) $(bin) unit

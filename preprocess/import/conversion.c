@@ -177,8 +177,8 @@ static bool run(const struct reading *reading, struct child_params *child, struc
     child->folder = reading->folder;
     child->timeout_s = reading->params->timeout_s;
     child->memory_bytes = reading->params->memory_bytes;
-    child->timeout_option = "--timeout";
-    child->memory_option = "--memory";
+    child->timeout_option = "--timeout; plantcastd: --limit import-seconds";
+    child->memory_option = "--memory; plantcastd: --limit import-megabytes";
     child->role = CONFINE_READER;
     child->paths = paths->at;
     child->path_count = paths->count;

@@ -629,8 +629,8 @@ static bool match(struct run *run)
                                                   .folder = folder, /* relative paths stay true */
                                                   .timeout_s = run->params->timeout_s,
                                                   .memory_bytes = run->params->memory_bytes,
-                                                  .timeout_option = "--timeout",
-                                                  .memory_option = "--memory",
+                                                  .timeout_option = "--timeout; plantcastd: --limit import-seconds",
+                                                  .memory_option = "--memory; plantcastd: --limit import-megabytes",
                                                   .role = CONFINE_READER,
                                                   .paths = paths.at,
                                                   .path_count = paths.count,

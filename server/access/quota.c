@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How much clients may have. */
+/* The table of limits. */
 #include "access/quota.h"
 
 #include <errno.h>
@@ -15,24 +15,28 @@ static const struct {
     const char *help;
 } table[QUOTA_COUNT] = {
     [QUOTA_CONNECTIONS] = { "connections", 4096, 1, 60000, "TCP connections" },
-    [QUOTA_ADDRESS_CONNECTIONS] = { "address-connections", 64, 1, 60000, "likewise of one address" },
+    [QUOTA_ADDRESS_CONNECTIONS] = { "address-connections", 64, 1, 60000, "of these, for one address" },
     [QUOTA_SESSIONS] = { "sessions", 1000, 1, 50000, "streams" },
-    [QUOTA_ADDRESS_SESSIONS] = { "address-sessions", 32, 1, 50000, "likewise of one address" },
+    [QUOTA_ADDRESS_SESSIONS] = { "address-sessions", 32, 1, 50000, "of these, for one address" },
     [QUOTA_PIXELS] = { "pixels", 512 << 20, 256, INT64_C(1) << 40, "of all views together" },
     [QUOTA_ADDRESS_PIXELS] = { "address-pixels", 128 << 20, 256, INT64_C(1) << 40, "of the views of one address" },
     [QUOTA_SESSION_PIXELS] = { "session-pixels", 16 << 20, 256, 16 << 20, "of one view" },
     [QUOTA_MESSAGE_BYTES] = { "message-bytes", WIRE_MAX_MESSAGE_BYTES, 1024, WIRE_MAX_MESSAGE_BYTES, "of one message of a client" },
     [QUOTA_MESSAGES] = { "messages", 1000, 10, 1000000, "of one stream within a second; the next are read after it" },
-    [QUOTA_ADDRESS_MESSAGES] = { "address-messages", 8000, 10, 1000000, "likewise of one address" },
+    [QUOTA_ADDRESS_MESSAGES] = { "address-messages", 8000, 10, 1000000, "of these, for one address" },
     [QUOTA_SNAPSHOTS] = { "snapshots", 8, 1, 1000, "pictures and picks over HTTP that are being made" },
-    [QUOTA_ADDRESS_SNAPSHOTS] = { "address-snapshots", 4, 1, 1000, "likewise for one address" },
+    [QUOTA_ADDRESS_SNAPSHOTS] = { "address-snapshots", 4, 1, 1000, "of these, for one address" },
     [QUOTA_QUESTIONS] = { "questions", 128, 1, 128, "questions about the past over HTTP that are being answered" },
-    [QUOTA_ADDRESS_QUESTIONS] = { "address-questions", 32, 1, 128, "likewise of one address" },
+    [QUOTA_ADDRESS_QUESTIONS] = { "address-questions", 32, 1, 128, "of these, for one address" },
     [QUOTA_ANSWER_BYTES] = { "answer-bytes", 192 << 20, 1 << 20, INT64_C(1) << 40, "of answers over HTTP that are not read yet" },
-    [QUOTA_ADDRESS_ANSWER_BYTES] = { "address-answer-bytes", 96 << 20, 1 << 20, INT64_C(1) << 40, "likewise of one address" },
+    [QUOTA_ADDRESS_ANSWER_BYTES] = { "address-answer-bytes", 96 << 20, 1 << 20, INT64_C(1) << 40, "of these, for one address" },
     [QUOTA_LEAST_FPS] = { "least-fps", 5, 0, 1000, "frames/s that moving views keep when one more is let in" },
     [QUOTA_PATIENCE_S] = { "patience", 10, 1, 600, "seconds for a request, for hello, and for the rest of a message" },
     [QUOTA_ANSWER_WAIT_S] = { "answer-wait", 120, 1, 3600, "seconds until an answer over HTTP is that it is not ready" },
+    [QUOTA_IMPORT_S] = { "import-seconds", 120, 1, 86400, "seconds for reading one model or tag list" },
+    [QUOTA_IMPORT_MB] = { "import-megabytes", 2048, 64, 1 << 24, "memory for reading one model or tag list" },
+    [QUOTA_PREPARE_S] = { "prepare-seconds", 14400, 1, 7 * 86400, "seconds for preparing models (plantcast-prep)" },
+    [QUOTA_PREPARE_MB] = { "prepare-megabytes", 0, 0, 1 << 24, "memory for preparing models; 0: three quarters of the machine's" },
 };
 
 struct quotas quotas_default(void)

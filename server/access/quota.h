@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Quotas: limits on what clients may have, which the command line can change (--limit NAME=N). Pure; any thread. */
+/* Quotas: limits on what clients and programs that read models may use (--limit NAME=N of the command line). Pure; any thread. */
 #ifndef ACCESS_QUOTA_H
 #define ACCESS_QUOTA_H
 #include <stdbool.h>
@@ -26,6 +26,10 @@ enum quota {
     QUOTA_LEAST_FPS,
     QUOTA_PATIENCE_S,
     QUOTA_ANSWER_WAIT_S,
+    QUOTA_IMPORT_S,
+    QUOTA_IMPORT_MB,
+    QUOTA_PREPARE_S,
+    QUOTA_PREPARE_MB,
     QUOTA_COUNT
 };
 

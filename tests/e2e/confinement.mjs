@@ -2,18 +2,18 @@
 // Readers of strangers' files: what one that is taken over can reach, and what becomes of one that crashes, hangs or swells.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { chmodSync, copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { test } from 'node:test';
 import { deflateRawSync } from 'node:zlib';
+import { freePort } from './support/ports.mjs';
 import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const ESCAPE = resolve(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/escape');
 const ENDLESS_S = 200; // each step of a reader is ended after --timeout, 10 s here: longer than this, no limit held, whatever the load
 const absent = [...missing(), ...['plantcast-import', 'plantcast-match'].filter((name) => !existsSync(join(BIN, name)))];
-if (!existsSync(ESCAPE))
-    absent.push(ESCAPE);
+absent.push(...[ESCAPE, `${ESCAPE}.so`].filter((path) => !existsSync(path)));
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const ASK = 'import ctypes; print(ctypes.CDLL(None).syscall(444, None, 0, 1))'; // landlock_create_ruleset, its version
 const abi = Number(spawnSync('/usr/bin/python3', ['-c', ASK], { encoding: 'utf8' }).stdout);
@@ -29,10 +29,10 @@ async function inFolder(f) {
 }
 
 // Programs with the reader of meshes replaced.
-function programs(folder, reader) {
+function programs(folder, reader, ...more) {
     const bin = join(folder, 'bin');
     mkdirSync(bin);
-    for (const name of ['plantcast', 'plantcast-import'])
+    for (const name of ['plantcast', 'plantcast-import', ...more])
         copyFileSync(join(BIN, name), join(bin, name));
     copyFileSync(reader, join(bin, 'plantcast-import-assimp'));
     return bin;
@@ -67,6 +67,81 @@ test('a reader that is taken over reaches nothing of the daemon or the machine',
         assert.equal(plant.daemon.child.exitCode, null);
     } finally {
         await plant.destroy();
+    }
+}));
+
+const heldBack = (where, said) => {
+    const held = attempts(said);
+    console.log(`# ${where}: ${Object.keys(held).length} attempts, refused with ${JSON.stringify(Object.values(held).reduce(
+        (sums, why) => ({ ...sums, [why]: (sums[why] ?? 0) + 1 }), {}))}`);
+    assert.ok(Object.keys(held).length > 60, said);
+    assert.deepEqual(Object.entries(held).filter(([, how]) => how === 'succeeded'), [], where);
+};
+
+test('a matcher that is taken over reaches nothing of the daemon or the machine', { skip: unguarded }, async () => {
+    const plant = await TinyPlant.create();
+    try {
+        assert.equal(plant.prepare().code, 0);
+        await plant.startDaemon();
+        const secret = join(plant.folder, 'signing-key.pem'), list = join(plant.folder, 'list.csv');
+        writeFileSync(secret, 'secret', { mode: 0o600 });
+        writeFileSync(list, 'Tag Name,Address\nTI-9,400009\n');
+        const targets = `${plant.daemon.child.pid} ${plant.port} ${secret} ${join(plant.folder, 'tags.csv')}`;
+        const { status, stdout, stderr } = spawnSync(join(BIN, 'plantcast'), ['match', plant.file, list, '--dry-run'], { encoding: 'utf8',
+            env: { ...process.env, LD_PRELOAD: `${ESCAPE}.so`, PLANTCAST_TARGETS: targets, PLANTCAST_ESCAPE: 'a secret' } });
+        assert.equal(status, 0, stderr);
+        heldBack('the matcher', stdout);
+    } finally {
+        await plant.destroy();
+    }
+});
+
+// The daemon prepares when it starts, because the models have changed.
+test('a plantcast-prep of the daemon that is taken over reaches nothing of the daemon or the machine', { skip: unguarded }, () => inFolder(
+    async (folder) => {
+        const plant = await TinyPlant.create(), port = await freePort(), bin = programs(folder, ESCAPE, 'plantcastd');
+        const secret = join(plant.folder, 'signing-key.pem'), own = join(plant.folder, 'plant.prepared');
+        try {
+            assert.equal(plant.prepare().code, 0);
+            writeFileSync(secret, 'secret', { mode: 0o600 });
+            copyFileSync(join(BIN, 'plantcast-prep'), join(bin, 'real-prep'));
+            copyFileSync(`${ESCAPE}.so`, join(bin, 'escape.so'));
+            writeFileSync(join(bin, 'plantcast-prep'), `#!/bin/sh
+PLANTCAST_TARGETS="$PPID ${port} ${secret} ${join(plant.folder, 'tags.csv')}" PLANTCAST_OWN='${own}' LD_PRELOAD='${bin}/escape.so' \
+exec '${bin}/real-prep' "$@"
+`);
+            chmodSync(join(bin, 'plantcast-prep'), 0o755);
+            writeFileSync(join(plant.folder, 'box.gltf'), readFileSync(join(plant.folder, 'box.gltf'), 'utf8').replace('box', 'box2'));
+            plant.bin = bin;
+            await plant.startDaemon('--port', String(port));
+            assert.match(plant.daemon.said, /the plant is prepared now/);
+            heldBack('plantcast-prep', readFileSync(join(own, 'escaped'), 'utf8'));
+            assert.equal(readFileSync(secret, 'utf8'), 'secret');
+        } finally {
+            await plant.destroy();
+        }
+    }));
+
+test('plantcast-prep of the daemon ends at its limits of time and memory', { skip }, () => inFolder(async (folder) => {
+    for (const [limit, hold, line] of [
+        ['prepare-seconds=1', 'exec sleep 1000', /plantcast-prep was ended after 1 s \(--limit prepare-seconds\)/],
+        ['prepare-megabytes=64', 'exec /usr/bin/python3 -c "print(len(bytes(1 << 28)))" 2>/dev/null', /plantcast-prep ended with status 1/],
+        ['prepare-megabytes=64', 'echo out of memory >&2; kill -ABRT $$',
+            /plantcast-prep crashed \(Aborted\); its limit of memory is 64 MB \(--limit prepare-megabytes\)/]]) {
+        const plant = await TinyPlant.create(), bin = programs(folder, ESCAPE, 'plantcastd');
+        try {
+            assert.equal(plant.prepare().code, 0);
+            writeFileSync(join(bin, 'plantcast-prep'), `#!/bin/sh\n${hold}\n`);
+            chmodSync(join(bin, 'plantcast-prep'), 0o755);
+            writeFileSync(join(plant.folder, 'box.gltf'), readFileSync(join(plant.folder, 'box.gltf'), 'utf8').replace('box', 'box2'));
+            const { status, stderr } = spawnSync(join(bin, 'plantcastd'), [plant.file, '--port', '0', '--limit', limit],
+                { encoding: 'utf8', timeout: 120000 });
+            assert.equal(status, 1, stderr);
+            assert.match(stderr, line);
+        } finally {
+            rmSync(bin, { recursive: true });
+            await plant.destroy();
+        }
     }
 }));
 

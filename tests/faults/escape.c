@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A reader in a stranger's hands: takes the place of plantcast-import-assimp and tries to get at the daemon and the machine. Prints a line
+/* A reader that an attacker has taken over: replaces plantcast-import-assimp and tries to reach the daemon and the machine. Prints a line
  * for each attempt, "NAME succeeded" or "NAME refused ERROR". Its input names the targets: a line "PID PORT SECRET STATE-FILE".
+ * As escape.so it is preloaded into a program that confines itself: the attempts run in its first fopen() under confinement. Then
+ * PLANTCAST_TARGETS is that line, and PLANTCAST_OWN a folder that the program may write (default: the current one), where `escaped`
+ * receives the lines, or stdout if that file cannot be made.
  * usage: escape INPUT OUTPUT ... */
 #include <arpa/inet.h>
 #include <dirent.h>
+#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/bpf.h>
@@ -13,6 +17,7 @@
 #include <sched.h>
 #include <setjmp.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -34,7 +39,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static int pid, port;
+static int pid, port, kept_stdout = -1;
 static char secret[512], state[512], folder[512], path[1200];
 static int tried, got_through;
 
@@ -331,11 +336,24 @@ static void try_kernel(void)
     result("undo-hiding", prctl(PR_SET_DUMPABLE, 1) == 0);
 }
 
+/* The answer of plantcast-match and its like goes to memory, which is meant to be inherited. */
+static bool is_inherited(int fd)
+{
+    char link[32], target[64];
+    snprintf(link, sizeof(link), "/proc/self/fd/%d", fd);
+    ssize_t length = readlink(link, target, sizeof(target) - 1);
+    target[length > 0 ? length : 0] = 0;
+    bool inherited = fd != kept_stdout && fcntl(fd, F_GETFD) >= 0 && strncmp(target, "/memfd:", 7) != 0;
+    if (inherited)
+        printf("descriptor %d: %s\n", fd, target);
+    return inherited;
+}
+
 static void try_inheritance(void)
 {
     int open_ones = 0;
     for (int fd = 3; fd < 256; fd++)
-        open_ones += fcntl(fd, F_GETFD) >= 0;
+        open_ones += is_inherited(fd);
     errno = EBADF;
     result("inherited-descriptor", open_ones > 0);
     errno = ENOENT;
@@ -359,14 +377,17 @@ static bool write_triangle(const char *glb)
     return file && fclose(file) == 0 && good;
 }
 
-int main(int argc, char **argv)
+static bool take_targets(const char *line)
 {
-    FILE *input = argc > 1 ? fopen(argv[1], "r") : NULL;
-    if (!input || fscanf(input, "%d %d %511s %511s", &pid, &port, secret, state) != 4)
-        return 2;
-    fclose(input);
+    if (!line || sscanf(line, "%d %d %511s %511s", &pid, &port, secret, state) != 4)
+        return false;
     snprintf(folder, sizeof(folder), "%s", state);
     *strrchr(folder, '/') = 0;
+    return true;
+}
+
+static void try_all(void)
+{
     try_inheritance();
     try_files();
     try_process();
@@ -374,6 +395,56 @@ int main(int argc, char **argv)
     try_kernel();
     printf("%d attempts, %d succeeded\n", tried, got_through);
     fflush(stdout);
+}
+
+#ifdef __PIC__
+static bool preloaded;
+static atomic_bool begun;
+
+/* The environment of a child is filtered: the targets are read before. */
+__attribute__((constructor)) static void begin(void)
+{
+    preloaded = take_targets(getenv("PLANTCAST_TARGETS"));
+}
+
+/* The readers' list of system calls lacks this question. */
+static bool is_confined(void)
+{
+    return prctl(PR_GET_SECCOMP, 0, 0, 0, 0) < 0 && errno == EPERM;
+}
+
+FILE *fopen(const char *file, const char *mode)
+{
+    FILE *(*next)(const char *, const char *) = NULL;
+    *(void **)&next = dlsym(RTLD_NEXT, "fopen");
+    if (preloaded && is_confined() && !atomic_exchange(&begun, true)) {
+        const char *own = getenv("PLANTCAST_OWN");
+        if (own && chdir(own) != 0)
+            return NULL;
+        int out = open("escaped", O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+        if (out >= 0) {
+            kept_stdout = dup(STDOUT_FILENO);
+            dup2(out, STDOUT_FILENO);
+            close(out);
+        }
+        try_all();
+        if (kept_stdout >= 0) {
+            dup2(kept_stdout, STDOUT_FILENO);
+            close(kept_stdout);
+        }
+    }
+    return next(file, mode);
+}
+#endif
+
+int main(int argc, char **argv)
+{
+    char line[1100] = "";
+    FILE *input = argc > 1 ? fopen(argv[1], "r") : NULL;
+    if (!input || !fgets(line, sizeof(line), input) || !take_targets(line))
+        return 2;
+    fclose(input);
+    try_all();
     if (argc > 2 && !write_triangle(argv[2]))
         return 3;
     execl("/bin/sh", "sh", "-c", "echo shell succeeded", NULL); /* last: it takes this program's place */

@@ -3,10 +3,14 @@
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <sys/xattr.h>
 #include <time.h>
 #include <unistd.h>
 
 
+#include "base/system/cgroup.h"
 #include "base/mem.h"
 #include "preprocess/child/child.h"
 #include "preprocess/child/work_folder.h"
@@ -165,6 +169,119 @@ TEST(test_a_signal_ends_it)
         assert_false(run(script, 20, room));
         assert_non_null(strstr(why, "not permitted"));
     }
+}
+
+/* linux/landlock.h of Linux 6.12. */
+TEST(test_each_abi_of_landlock_restricts_what_it_knows)
+{
+    static const struct {
+        uint64_t files, tcp, scoped;
+        const char *lacks;
+    } abis[] = {
+        { 0, 0, 0, "no Landlock: programs that read uploaded files can read and write all files of this user (" },
+        { 0x1fff, 0, 0,
+          "only ABI 1 of Landlock: commands under `convert` can read and write all files of this user, empty all files that this user may "
+          "write, signal other processes of this user (" },
+        { 0x3fff, 0, 0,
+          "only ABI 2 of Landlock: commands under `convert` can empty all files that this user may write, signal other processes of this "
+          "user (" },
+        { 0x7fff, 0, 0, "only ABI 3 of Landlock: commands under `convert` can signal other processes of this user (" },
+        { 0x7fff, 3, 0, "only ABI 4 of Landlock: commands under `convert` can signal other processes of this user (" },
+        { 0xffff, 3, 0, "only ABI 5 of Landlock: commands under `convert` can signal other processes of this user (" },
+        { 0xffff, 3, 3, "" },
+        { 0xffff, 3, 3, "" },
+    };
+    static const char needs[] = "needs Linux 6.12 with landlock in its list of LSMs)";
+    for (int abi = 0; abi < (int)(sizeof(abis) / sizeof(abis[0])); abi++) {
+        char lacks[CONFINE_LACKS_BYTES], expected[CONFINE_LACKS_BYTES];
+        struct confine_ruleset rules = confine_ruleset_of(abi);
+        assert_int_equal(rules.files, abis[abi].files);
+        assert_int_equal(rules.tcp, abis[abi].tcp);
+        assert_int_equal(rules.scoped, abis[abi].scoped);
+        snprintf(expected, sizeof(expected), "%s%s", abis[abi].lacks, abi < 6 ? needs : "");
+        assert_int_equal(confine_lacks_with(abi, true, lacks), abi < 6);
+        assert_string_equal(lacks, expected);
+        assert_true(confine_lacks_with(abi, false, lacks));
+        assert_non_null(strstr(lacks, "no seccomp: they can make any system call (needs CONFIG_SECCOMP_FILTER)"));
+    }
+    assert_int_equal(confine_ruleset_of(-1).files, 0); /* the kernel's answer where Landlock is absent or switched off */
+}
+
+/* Returns the folder of a new cgroup that is delegated as systemd does it; NULL: this machine has no cgroup v2 with limits of memory. */
+static const char *delegated_cgroup(void)
+{
+    static const char *const mounts[] = { "/sys/fs/cgroup", "/sys/fs/cgroup/unified" };
+    static char path[64];
+    for (size_t i = 0; i < sizeof(mounts) / sizeof(mounts[0]); i++) {
+        size_t bytes;
+        char name[64];
+        snprintf(name, sizeof(name), "%s/cgroup.subtree_control", mounts[i]);
+        char *control = text_read_file(name, 4096, &bytes);
+        bool limits = control && strstr(control, "memory") && strstr(control, "pids");
+        mem_free(control);
+        snprintf(path, sizeof(path), "%s/plantcast-test-%d", mounts[i], (int)getpid());
+        if (limits && mkdir(path, 0755) == 0 && setxattr(path, "user.delegate", "1", 1, 0) == 0)
+            return path;
+    }
+    return NULL;
+}
+
+/* In a process of the delegated cgroup. Returns the number of the check that failed, or 0. */
+static int use_cgroup(const char *service)
+{
+    char name[128], *path;
+    int status = 0;
+    FILE *procs;
+    snprintf(name, sizeof(name), "%s/cgroup.procs", service);
+    if (!(procs = fopen(name, "w")) || fprintf(procs, "0") != 1 || fclose(procs) != 0)
+        return 1;
+    if (cgroup_create("reader", room, 8))
+        return 2; /* not before the daemon has its own */
+    if (!cgroup_divide() || !cgroup_divide() || !(path = cgroup_create("reader", (size_t)64 << 20, 8)))
+        return 3;
+    int go[2];
+    if (pipe(go) != 0)
+        return 4;
+    pid_t pid = fork();
+    if (pid == 0) {
+        char byte;
+        if (read(go[0], &byte, 1) != 1 || cgroup_memory_bytes() != (size_t)64 << 20)
+            _exit(1);
+        memset(mem_new((size_t)256 << 20), 1, (size_t)256 << 20);
+        _exit(0);
+    }
+    if (!cgroup_add(path, pid) || write(go[1], "x", 1) != 1 || waitpid(pid, &status, 0) != pid)
+        return 5;
+    if (!WIFSIGNALED(status) || WTERMSIG(status) != SIGKILL)
+        return 6;
+    pid = fork();
+    if (pid == 0)
+        for (;;)
+            pause();
+    cgroup_add(path, pid);
+    cgroup_destroy(&path); /* ends what is left */
+    return waitpid(pid, &status, 0) == pid && WIFSIGNALED(status) && !path ? 0 : 7;
+}
+
+TEST(test_a_child_has_a_cgroup_with_a_limit_where_one_is_delegated)
+{
+    const char *service = delegated_cgroup();
+    char daemon[128];
+    int status = 0;
+    assert_false(cgroup_divide()); /* ours is not delegated */
+    assert_null(cgroup_create("reader", room, 8));
+    if (!service) {
+        print_message("no cgroup v2 with limits of memory that this user may divide\n");
+        skip();
+    }
+    pid_t pid = fork();
+    if (pid == 0)
+        _exit(use_cgroup(service));
+    waitpid(pid, &status, 0);
+    snprintf(daemon, sizeof(daemon), "%s/daemon", service);
+    rmdir(daemon);
+    rmdir(service);
+    assert_int_equal(status, 0);
 }
 
 static bool gone_when_signalled;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Landlock by its own system calls: the headers of Debian 12 know only its second version. */
+/* Landlock by its own system calls: the headers of Debian 12 know only ABI 2. */
 #include "base/system/confine.h"
 
 #include <errno.h>
@@ -47,10 +47,6 @@ enum {
     ABSTRACT_SOCKETS_AND_SIGNALS = 3
 };
 
-struct ruleset {
-    uint64_t handled_files, handled_tcp, scoped;
-};
-
 struct path_rule {
     uint64_t allowed;
     int32_t parent;
@@ -84,15 +80,21 @@ static const struct confine_path system_paths[] = {
     { "/lib/ld-linux-aarch64.so.1", CONFINE_EXECUTE },
 };
 
-static int landlock_version(void)
+static int landlock_abi(void)
 {
     return (int)syscall(SYS_landlock_create_ruleset, NULL, 0, VERSION_QUERY);
 }
 
-static uint64_t files_known(int version)
+struct confine_ruleset confine_ruleset_of(int abi)
 {
-    return ALL_OF_ABI_1 | (version >= ABI_RENAME ? RENAME : 0) | (version >= ABI_TRUNCATE ? TRUNCATE : 0) |
-           (version >= ABI_DEVICES ? CONTROL_DEVICE : 0);
+    if (abi < 1)
+        return (struct confine_ruleset){ 0 };
+    return (struct confine_ruleset){
+        .files = ALL_OF_ABI_1 | (abi >= ABI_RENAME ? RENAME : 0) | (abi >= ABI_TRUNCATE ? TRUNCATE : 0) |
+                 (abi >= ABI_DEVICES ? CONTROL_DEVICE : 0),
+        .tcp = abi >= ABI_TCP ? BIND_AND_CONNECT_TCP : 0,
+        .scoped = abi >= ABI_SCOPES ? ABSTRACT_SOCKETS_AND_SIGNALS : 0,
+    };
 }
 
 static uint64_t rights_of(enum confine_access access, enum confine_role role)
@@ -123,18 +125,16 @@ static int permit(int ruleset, const char *path, uint64_t rights)
     return status;
 }
 
-static int restrict_paths(const struct confine_params *params, int version)
+static int restrict_paths(const struct confine_params *params, int abi)
 {
-    uint64_t known = files_known(version);
-    struct ruleset attributes = { .handled_files = known,
-                                  .handled_tcp = version >= ABI_TCP ? BIND_AND_CONNECT_TCP : 0,
-                                  .scoped = version >= ABI_SCOPES ? ABSTRACT_SOCKETS_AND_SIGNALS : 0 };
-    size_t bytes = version >= ABI_SCOPES ? sizeof(attributes) : version >= ABI_TCP ? 2 * sizeof(uint64_t) : sizeof(uint64_t);
-    int ruleset = (int)syscall(SYS_landlock_create_ruleset, &attributes, bytes, 0);
+    const struct confine_ruleset attributes = confine_ruleset_of(abi);
+    uint64_t known = attributes.files;
+    /* Kernels refuse a structure that is longer than the one they know, unless the rest is zero. */
+    int ruleset = (int)syscall(SYS_landlock_create_ruleset, &attributes, sizeof(attributes), 0);
     int status = ruleset < 0 ? -errno : permit(ruleset, "/dev/null", (READ_FILE | WRITE_FILE | TRUNCATE) & known);
     for (size_t i = 0; i < sizeof(system_paths) / sizeof(system_paths[0]) && status == 0; i++)
         status = permit(ruleset, system_paths[i].path, rights_of(system_paths[i].access, params->role) & known);
-    if (status == 0) /* a launcher's readers have entries of their own, unknown before they start */
+    if (status == 0) /* programs that a command starts have entries of their own, unknown before they start */
         status = permit(ruleset, params->role == CONFINE_READER ? "/proc/self" : "/proc", READ_FILE | READ_FOLDER);
     for (size_t i = 0; i < params->path_count && status == 0; i++)
         status = permit(ruleset, params->paths[i].path, rights_of(params->paths[i].access, params->role) & known);
@@ -145,7 +145,7 @@ static int restrict_paths(const struct confine_params *params, int version)
     return status;
 }
 
-/* Root keeps access to other users' folders, and a launcher the right to give files to them. */
+/* Root keeps access to other users' folders, and its commands the right to give files to them. */
 static void drop_capabilities(enum confine_role role)
 {
     uint32_t kept = 1U << CAP_DAC_OVERRIDE | 1U << CAP_DAC_READ_SEARCH;
@@ -173,33 +173,50 @@ static void offer_to_oom_killer(void)
 
 int confine(const struct confine_params *params)
 {
-    int version = landlock_version();
+    int abi = landlock_abi();
     offer_to_oom_killer();
     drop_capabilities(params->role);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
         return -errno;
-    bool moves_files = params->role != CONFINE_READER; /* between folders, which the first version forbids */
-    int status = version < 1 || (version < ABI_RENAME && moves_files) ? 0 : restrict_paths(params, version);
+    bool moves_files = params->role != CONFINE_READER; /* between folders, which ABI 1 forbids to all */
+    int status = abi < 1 || (abi < ABI_RENAME && moves_files) ? 0 : restrict_paths(params, abi);
     if (status != 0)
         return status;
     status = confine_calls(params->role, params->notifies);
     return status == -ENOSYS || status == -EINVAL ? 0 : status; /* a kernel without seccomp filters: confine_lacks() says so */
 }
 
+bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
+{
+    static const struct {
+        int abi;
+        const char *missing;
+    } parts[] = { /* seccomp covers TCP and devices for all, and the rest for readers */
+        { ABI_RENAME, "read and write all files of this user" },
+        { ABI_TRUNCATE, "empty all files that this user may write" },
+        { ABI_SCOPES, "signal other processes of this user" },
+    };
+    size_t used = 0;
+    out[0] = 0;
+    if (abi < 1)
+        used = (size_t)snprintf(out, CONFINE_LACKS_BYTES, "no Landlock: programs that read uploaded files can read and write all files of "
+                                                          "this user");
+    else if (abi < ABI_SCOPES)
+        used = (size_t)snprintf(out, CONFINE_LACKS_BYTES, "only ABI %d of Landlock: commands under `convert` can ", abi);
+    for (size_t i = 0, said = 0; i < sizeof(parts) / sizeof(parts[0]) && abi >= 1; i++)
+        if (abi < parts[i].abi)
+            used += (size_t)snprintf(out + used, CONFINE_LACKS_BYTES - used, "%s%s", said++ ? ", " : "", parts[i].missing);
+    if (abi < ABI_SCOPES)
+        used += (size_t)snprintf(out + used, CONFINE_LACKS_BYTES - used, " (needs Linux 6.12 with landlock in its list of LSMs)");
+    if (!calls)
+        snprintf(out + used, CONFINE_LACKS_BYTES - used, "%sno seccomp: they can make any system call (needs CONFIG_SECCOMP_FILTER)",
+                 used ? "; " : "");
+    return *out != 0;
+}
+
 bool confine_lacks(char out[CONFINE_LACKS_BYTES])
 {
-    int version = landlock_version();
-    bool calls = prctl(PR_GET_SECCOMP, 0, 0, 0, 0) >= 0;
-    const char *landlock = version < 1            ? "no Landlock: programs that read uploaded files can read and write all files of "
-                                                    "this user (needs Linux 6.12 with landlock in its list of LSMs)"
-                           : version < ABI_RENAME ? "the first Landlock (needs Linux 6.12): plantcast-import and plantcast-match "
-                                                    "can read and write all files of this user"
-                           : version < ABI_SCOPES ? "an old Landlock (needs Linux 6.12): plantcast-import and plantcast-prep can signal "
-                                                    "other processes of this user"
-                                                  : "";
-    snprintf(out, CONFINE_LACKS_BYTES, "%s%s%s", landlock, *landlock && !calls ? "; " : "",
-             calls ? "" : "no seccomp: they can make any system call (needs CONFIG_SECCOMP_FILTER)");
-    return *out != 0;
+    return confine_lacks_with(landlock_abi(), prctl(PR_GET_SECCOMP, 0, 0, 0, 0) >= 0, out);
 }
 
 void confine_hide_memory(void)

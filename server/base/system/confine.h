@@ -5,6 +5,7 @@
 #define BASE_SYSTEM_CONFINE_H
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/system/confine_calls.h"
 
@@ -32,9 +33,18 @@ struct confine_params {
  * Returns 0 or -errno; then the process must end. */
 int confine(const struct confine_params *params);
 
-enum { CONFINE_LACKS_BYTES = 300 };
+enum { CONFINE_LACKS_BYTES = 320 };
 /* Describes in one line what this kernel cannot enforce and which kernel can. Returns false if nothing is missing. */
 bool confine_lacks(char out[CONFINE_LACKS_BYTES]);
+/* The same for a kernel with this ABI of Landlock (0: none), and with or without seccomp. Pure. */
+bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES]);
+
+/* The kernel's struct landlock_ruleset_attr: what a ruleset restricts. */
+struct confine_ruleset {
+    uint64_t files, tcp, scoped;
+};
+/* Returns all that this ABI of Landlock can restrict; a kernel refuses what is newer. Pure. */
+struct confine_ruleset confine_ruleset_of(int abi);
 
 /* Makes this process's memory, descriptors and environment unreadable for other processes of its user, and stops core dumps. */
 void confine_hide_memory(void);

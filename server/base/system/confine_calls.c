@@ -67,24 +67,18 @@ static const int reader_calls[] = {
 #endif
 };
 
-/* Starting and confining other programs, and handing files over with the rights of those that they replace. */
-static const int launcher_calls[] = {
-    SYS_kill, SYS_tgkill, SYS_pidfd_open, SYS_pidfd_send_signal, SYS_setpgid, SYS_prctl, SYS_seccomp, SYS_capset,
-    SYS_landlock_create_ruleset, SYS_landlock_add_rule, SYS_landlock_restrict_self, SYS_fchmod, SYS_fchown, SYS_sched_setaffinity,
-#ifdef __x86_64__
-    SYS_fork, SYS_vfork,
-#endif
-};
-
 /* Programs that the site chose, in the folder that they may write. */
 static const int command_calls[] = {
+    SYS_kill, SYS_tgkill, SYS_pidfd_open, SYS_pidfd_send_signal, SYS_setpgid, SYS_prctl, SYS_seccomp, SYS_capset, SYS_fchmod, SYS_fchown,
+    SYS_landlock_create_ruleset, SYS_landlock_add_rule, SYS_landlock_restrict_self, SYS_sched_setaffinity,
     SYS_fchmodat, SYS_fchownat, SYS_linkat, SYS_symlinkat, SYS_mknodat, SYS_utimensat, SYS_truncate, SYS_memfd_create, SYS_setsid,
     SYS_sendto, SYS_recvfrom, SYS_sendmsg, SYS_recvmsg, SYS_setsockopt, SYS_splice, SYS_tee, SYS_personality, SYS_setpriority,
     SYS_sched_setscheduler, SYS_sched_setparam, SYS_sched_getattr, SYS_sched_setattr, SYS_inotify_init1, SYS_inotify_add_watch,
     SYS_inotify_rm_watch, SYS_shmget, SYS_shmat, SYS_shmdt, SYS_shmctl, SYS_semget, SYS_semop, SYS_semctl, SYS_mlockall, SYS_munlockall,
     SYS_getxattr, SYS_lgetxattr, SYS_fgetxattr, SYS_listxattr, SYS_readahead, SYS_sync, SYS_sync_file_range, SYS_setrlimit,
 #ifdef __x86_64__
-    SYS_chmod, SYS_chown, SYS_lchown, SYS_link, SYS_symlink, SYS_mknod, SYS_utime, SYS_utimes, SYS_futimesat, SYS_inotify_init,
+    SYS_fork, SYS_vfork, SYS_chmod, SYS_chown, SYS_lchown, SYS_link, SYS_symlink, SYS_mknod, SYS_utime, SYS_utimes, SYS_futimesat,
+    SYS_inotify_init,
 #endif
 };
 
@@ -124,7 +118,7 @@ static void decide(struct program *program, int call, int argument, unsigned tes
     answer(program, allowed ? SECCOMP_RET_ERRNO | EPERM : SECCOMP_RET_ALLOW);
 }
 
-/* Refuses to empty a file that is opened for reading only, which Landlock allows before its third version. */
+/* Refuses to empty a file that is opened for reading only, which Landlock allows before ABI 3. */
 static void refuse_emptying(struct program *program, int call, int flags_argument)
 {
     add(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, 5);
@@ -181,8 +175,6 @@ int confine_calls(enum confine_role role, bool notifies)
     refuse_emptying(&program, SYS_open, 1);
 #endif
     allow(&program, reader_calls, sizeof(reader_calls) / sizeof(reader_calls[0]));
-    if (role != CONFINE_READER)
-        allow(&program, launcher_calls, sizeof(launcher_calls) / sizeof(launcher_calls[0]));
     if (role == CONFINE_COMMAND)
         allow(&program, command_calls, sizeof(command_calls) / sizeof(command_calls[0]));
     decide_by_arguments(&program, role, notifies);

@@ -5,9 +5,8 @@
 #include <stdbool.h>
 
 enum confine_role {
-    CONFINE_READER,   /* parses strangers' files: has threads, but starts no process and signals none but itself */
-    CONFINE_LAUNCHER, /* our own program that starts readers */
-    CONFINE_COMMAND   /* a command of the site: also makes links and changes modes in the folder that it may write */
+    CONFINE_READER, /* parses strangers' files: has threads, but starts no process and signals none but itself */
+    CONFINE_COMMAND /* a command of the site: starts programs, makes links and changes modes in the folder that it may write */
 };
 
 /* Installs the filter for the calling thread; needs no_new_privs. Returns 0 or -errno. */

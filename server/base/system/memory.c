@@ -3,44 +3,16 @@
 #include "base/system/memory.h"
 
 #include <malloc.h>
-#include <stdbool.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
+
+#include "base/system/cgroup.h"
 
 static const size_t MOST_BYTES = (size_t)2 << 30;
 
-/* The first number in a file. False: there is none. */
-static bool read_number(const char *path, unsigned long long *out)
-{
-    FILE *file = fopen(path, "re");
-    bool good = file && fscanf(file, "%llu", out) == 1;
-    if (file)
-        fclose(file);
-    return good;
-}
-
-/* Version 2 only: "0::/path". SIZE_MAX: no limit. */
-static size_t control_group_bytes(void)
-{
-    char line[512], path[600];
-    unsigned long long limit;
-    FILE *file = fopen("/proc/self/cgroup", "re");
-    bool found = false;
-    while (file && !found && fgets(line, sizeof(line), file))
-        found = strncmp(line, "0::", 3) == 0;
-    if (file)
-        fclose(file);
-    if (!found)
-        return SIZE_MAX;
-    line[strcspn(line, "\n")] = 0;
-    snprintf(path, sizeof(path), "/sys/fs/cgroup%s/memory.max", line + 3);
-    return read_number(path, &limit) ? (size_t)limit : SIZE_MAX;
-}
-
 size_t memory_machine_bytes(void)
 {
-    size_t machine = (size_t)sysconf(_SC_PHYS_PAGES) * (size_t)sysconf(_SC_PAGESIZE), group = control_group_bytes();
+    size_t machine = (size_t)sysconf(_SC_PHYS_PAGES) * (size_t)sysconf(_SC_PAGESIZE), group = cgroup_memory_bytes();
     return machine < group ? machine : group;
 }
 

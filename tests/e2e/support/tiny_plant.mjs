@@ -79,8 +79,8 @@ export function runProgram(name, args, timeout = 120000) {
 }
 
 export class Program {
-    constructor(name, args, as = {}, before = []) {
-        const [program, ...all] = [...before, join(BIN, name), ...args];
+    constructor(name, args, as = {}, before = [], bin = BIN) {
+        const [program, ...all] = [...before, join(bin, name), ...args];
         this.name = name;
         this.said = '';
         this.child = spawn(program, all, { stdio: ['ignore', 'pipe', 'pipe'], ...as });
@@ -234,7 +234,7 @@ export class TinyPlant {
     // Its port, where none is said, stays this test's also while the daemon is away: one that the system gives may be another's then.
     async startDaemon(...args) {
         const at = args.includes('--port') ? [] : ['--port', String(await freePort())];
-        this.daemon = new Program('plantcastd', [this.file, ...at, ...args], this.as, this.before);
+        this.daemon = new Program('plantcastd', [this.file, ...at, ...args], this.as, this.before, this.bin);
         const [, port] = await this.daemon.line(/^plantcastd: ready https?:\/\/[\d.]+:(\d+)\/$/m);
         this.port = Number(port);
     }
