@@ -98,8 +98,10 @@ static void answer(struct reload *reload, bool good, json_t *object)
 {
     struct verdict verdict = { reload->net, good, NULL, 0, NULL };
     json_object_set_new(object, "by", json_string(reload->by));
+    struct settling_ticket ticket = audit_begin(reload->context->audit);
     record(reload, good, object);
-    int error = audit_settle(reload->context->audit);
+    audit_end(reload->context->audit, &ticket);
+    int error = audit_wait(reload->context->audit, &ticket);
     if (error)
         json_object_set_new(object, "unaudited", json_string(atomic_file_not_kept(error)));
     if (reload->saving) {

@@ -334,9 +334,20 @@ const char *alarm_service_act(struct alarm_service *service, const char *name, e
     return why;
 }
 
-int alarm_service_settle(struct alarm_service *service)
+struct settling_ticket alarm_service_begin(struct alarm_service *service)
 {
-    return service->journal ? journal_settle(service->journal) : 0;
+    return service->journal ? journal_begin(service->journal) : (struct settling_ticket){ 0 };
+}
+
+void alarm_service_end(struct alarm_service *service, struct settling_ticket *ticket)
+{
+    if (service->journal)
+        journal_end(service->journal, ticket);
+}
+
+int alarm_service_settled(struct alarm_service *service, const struct settling_ticket *ticket)
+{
+    return service->journal ? journal_settled(service->journal, ticket) : 0;
 }
 
 const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The alarm service of a running plant. Its thread evaluates the samples of the store ten times a second, writes the journal, and sets the
-   alarm of each tag in the store. No call waits for the disk but alarm_service_settle() and alarm_service_halt(). Thread: any. */
+   alarm of each tag in the store. No call waits for the disk but alarm_service_halt(). Thread: any. */
 #ifndef ALARM_ALARM_SERVICE_H
 #define ALARM_ALARM_SERVICE_H
 #include "alarm/alarms.h"
@@ -42,9 +42,11 @@ uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, vo
 /* Does what an operator asks for: acknowledges, shelves and so on. name: of a tag, or for ALARM_LINK of a device. Returns NULL, or why it
    was refused (static). */
 const char *alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act);
-/* Waits up to a second until all alarm changes are in the journal on disk. Returns 0, also without a journal, or -errno: the changes are in
-   force, but are lost if the daemon is killed now. */
-int alarm_service_settle(struct alarm_service *service);
+/* Tell whether changes of alarms between begin and end are in the journal on disk (base/settling.h). Without a journal they are. What is not
+   is in force, but lost if the daemon is killed now. */
+struct settling_ticket alarm_service_begin(struct alarm_service *service);
+void alarm_service_end(struct alarm_service *service, struct settling_ticket *ticket);
+int alarm_service_settled(struct alarm_service *service, const struct settling_ticket *ticket);
 /* Takes the states of alarms as a core has them, by name and kind, in that order; whole: all others are normal. For a service that mirrors.
    Returns NULL, or why it cannot (static); then nothing changed. */
 const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole);

@@ -12,7 +12,7 @@
 #include "base/thread.h"
 
 enum { WAITING_MAX = 200000, RETRY_MAX_S = 30 };
-static const int64_t GATHER_NS = NS_PER_S / 4, SETTLE_NS = NS_PER_S, FORGET_NS = 600 * NS_PER_S;
+static const int64_t GATHER_NS = NS_PER_S / 4, FORGET_NS = 600 * NS_PER_S;
 #define US_PER_DAY INT64_C(86400000000)
 
 struct entries {
@@ -37,11 +37,8 @@ struct journal {
     /* --- below: under thread.lock */
     struct entries waiting;
     bool asks;
-    bool urgent;              /* a caller waits in journal_settle() */
-    uint64_t queued, written; /* rows, since the start */
-    uint64_t failures;
-    int error;                /* of the last try */
-    pthread_cond_t settled;
+    bool urgent; /* somebody asks whether rows are on disk */
+    struct settling settling;
 };
 
 /* --- writing ---------------------------------------------------------------------------------------------------------------- */
@@ -71,14 +68,13 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
     return error;
 }
 
-/* Wakes callers of journal_settle(). count: rows written by this try. */
-static void tell_settled(struct journal *journal, size_t count, int error)
+/* count: rows written by this try. */
+static void count_written(struct journal *journal, size_t count, int error)
 {
     pthread_mutex_lock(&journal->thread.lock);
-    journal->written += error ? 0 : count;
-    journal->failures += error != 0;
-    journal->error = error;
-    pthread_cond_broadcast(&journal->settled);
+    journal->settling.done += error ? 0 : count;
+    journal->settling.failures += error != 0;
+    journal->settling.error = error;
     pthread_mutex_unlock(&journal->thread.lock);
 }
 
@@ -102,7 +98,7 @@ static void try_to_write(struct journal *journal, bool now)
     }
     journal->failing = error != 0;
     counter_set(journal->counters.good, !error);
-    tell_settled(journal, rows - journal->taken.count, error);
+    count_written(journal, rows - journal->taken.count, error);
 }
 
 /* With those that are waiting behind those that could not be written. */
@@ -110,8 +106,11 @@ static void take(struct journal *journal)
 {
     struct entries *taken = &journal->taken, *waiting = &journal->waiting;
     size_t room = WAITING_MAX - taken->count, count = waiting->count < room ? waiting->count : room;
-    counter_inc(journal->counters.lost, (int64_t)(waiting->count - count));
-    journal->written += waiting->count - count; /* dropped rows do not hold up journal_settle() */
+    if (count < waiting->count) {
+        counter_inc(journal->counters.lost, (int64_t)(waiting->count - count));
+        journal->settling.lost = journal->settling.queued;
+        journal->settling.done += waiting->count - count;
+    }
     mem_grow(&taken->at, &taken->capacity, taken->count + count, sizeof(*taken->at));
     if (count > 0)
         memcpy(taken->at + taken->count, waiting->at, count * sizeof(*waiting->at));
@@ -119,8 +118,8 @@ static void take(struct journal *journal)
     waiting->count = 0;
 }
 
-/* Waits for rows, then GATHER_NS more so that one transaction takes them together. Rows for which journal_settle() waits are not delayed:
-   then *urgent is set. */
+/* Waits for rows, then GATHER_NS more so that one transaction takes them together. Rows that journal_end() asks for are not
+   delayed: then *urgent is set. */
 static bool wait_for_work(struct journal *journal, bool *urgent)
 {
     int64_t until_ns = clock_mono_ns() + GATHER_NS;
@@ -159,28 +158,39 @@ static void put(struct journal *journal, const struct journal_entry *entry)
     if (waiting->count < WAITING_MAX) {
         mem_grow(&waiting->at, &waiting->capacity, waiting->count + 1, sizeof(*waiting->at));
         waiting->at[waiting->count++] = *entry;
-        journal->queued++;
+        journal->settling.queued++;
     } else {
         counter_inc(journal->counters.lost, 1);
+        settling_drop(&journal->settling);
     }
     if (waiting->count == 1)
         pthread_cond_signal(&journal->thread.wake);
     pthread_mutex_unlock(&journal->thread.lock);
 }
 
-int journal_settle(struct journal *journal)
+struct settling_ticket journal_begin(struct journal *journal)
 {
-    int64_t until_ns = clock_mono_ns() + SETTLE_NS;
     pthread_mutex_lock(&journal->thread.lock);
-    uint64_t rows = journal->queued, failures = journal->failures;
-    journal->urgent = journal->written < rows;
-    pthread_cond_signal(&journal->thread.wake);
-    bool in_time = true;
-    while (journal->written < rows && journal->failures == failures && in_time)
-        in_time = clock_cond_wait(&journal->settled, &journal->thread.lock, until_ns);
-    int error = journal->written >= rows ? 0 : journal->failures != failures ? journal->error : -ETIMEDOUT;
+    struct settling_ticket ticket = settling_begin(&journal->settling);
     pthread_mutex_unlock(&journal->thread.lock);
-    return error;
+    return ticket;
+}
+
+void journal_end(struct journal *journal, struct settling_ticket *ticket)
+{
+    pthread_mutex_lock(&journal->thread.lock);
+    settling_end(&journal->settling, ticket, clock_mono_ns());
+    journal->urgent = ticket->last > ticket->first;
+    pthread_cond_signal(&journal->thread.wake);
+    pthread_mutex_unlock(&journal->thread.lock);
+}
+
+int journal_settled(struct journal *journal, const struct settling_ticket *ticket)
+{
+    pthread_mutex_lock(&journal->thread.lock);
+    int state = settling_state(&journal->settling, ticket, clock_mono_ns());
+    pthread_mutex_unlock(&journal->thread.lock);
+    return state;
 }
 
 int64_t journal_newest_utc_ns(const struct journal *journal)
@@ -281,7 +291,6 @@ struct journal *journal_start(const struct journal_params *params, struct alarms
 {
     struct journal *journal = mem_new(sizeof(*journal));
     thread_init(&journal->thread);
-    clock_cond_init(&journal->settled);
     journal->log = params->log;
     journal->folder = mem_strdup(params->folder);
     journal->keep_days = params->keep_days;
@@ -303,7 +312,6 @@ void journal_stop(struct journal **pointer)
     mem_free(journal->taken.at);
     mem_free(journal->folder);
     thread_finish(&journal->thread);
-    pthread_cond_destroy(&journal->settled);
     mem_free(journal);
     *pointer = NULL;
 }

@@ -4,6 +4,7 @@
 #ifndef ALARM_JOURNAL_H
 #define ALARM_JOURNAL_H
 #include "alarm/journal_file.h"
+#include "base/files/settling.h"
 #include "base/log/log.h"
 #include "base/metrics/counters.h"
 
@@ -22,9 +23,11 @@ void journal_stop(struct journal **journal); /* writes what is pending and ends;
 void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag);
 int64_t journal_newest_utc_ns(const struct journal *journal); /* returns the time of the newest row that it had when it
    was opened, or got by journal_add_entry(). 0: none. Thread: that of the latter */
-/* Waits up to a second until all queued rows are on disk. Has them written at once, even if the last try has just failed. Returns 0, or
-   -errno if some are not on disk yet; the journal goes on trying. */
-int journal_settle(struct journal *journal);
+/* Tell whether the rows that are queued between begin and end are on disk (base/settling.h). end has them written at once, even if the
+   last try has just failed. None waits for the disk. */
+struct settling_ticket journal_begin(struct journal *journal);
+void journal_end(struct journal *journal, struct settling_ticket *ticket);
+int journal_settled(struct journal *journal, const struct settling_ticket *ticket);
 /* Returns the row of a change; names are copied. */
 struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag);
 void journal_add_entry(struct journal *journal, const struct journal_entry *entry); /* likewise, of a row */

@@ -14,7 +14,7 @@
 #include "base/thread.h"
 
 enum { MOST_WAITING = 10000, FILE_BYTES = 64 << 20 };
-static const int64_t RETRY_NS = NS_PER_S, SETTLE_NS = NS_PER_S;
+static const int64_t RETRY_NS = NS_PER_S;
 
 struct waiting {
     struct audit_entry entry; /* its texts lie behind it */
@@ -35,8 +35,7 @@ struct audit {
     struct waiting *first, **last;
     size_t count;
     int64_t lost_count; /* since entries were last written */
-    uint64_t recorded, written, failures; /* entries since the start; tries that failed */
-    int error;                            /* of the last try */
+    struct settling settling;
     pthread_cond_t settled;
 };
 
@@ -70,31 +69,58 @@ void audit_say(struct audit *audit, const struct audit_entry *entry)
     if (audit->count >= MOST_WAITING) {
         counter_inc(audit->lost, 1);
         audit->lost_count++;
+        settling_drop(&audit->settling);
     } else {
         struct waiting *waiting = copy_entry(entry);
         *audit->last = waiting;
         audit->last = &waiting->next;
         audit->count++;
-        audit->recorded++;
+        audit->settling.queued++;
         pthread_cond_signal(&audit->thread.wake);
     }
     pthread_mutex_unlock(&audit->thread.lock);
 }
 
-int audit_settle(struct audit *audit)
+struct settling_ticket audit_begin(struct audit *audit)
+{
+    if (!audit)
+        return (struct settling_ticket){ 0 };
+    pthread_mutex_lock(&audit->thread.lock);
+    struct settling_ticket ticket = settling_begin(&audit->settling);
+    pthread_mutex_unlock(&audit->thread.lock);
+    return ticket;
+}
+
+void audit_end(struct audit *audit, struct settling_ticket *ticket)
+{
+    if (!audit)
+        return;
+    pthread_mutex_lock(&audit->thread.lock);
+    settling_end(&audit->settling, ticket, clock_mono_ns());
+    pthread_cond_signal(&audit->thread.wake);
+    pthread_mutex_unlock(&audit->thread.lock);
+}
+
+int audit_settled(struct audit *audit, const struct settling_ticket *ticket)
 {
     if (!audit)
         return 0;
-    int64_t until_ns = clock_mono_ns() + SETTLE_NS;
     pthread_mutex_lock(&audit->thread.lock);
-    uint64_t entries = audit->recorded, failures = audit->failures;
-    pthread_cond_signal(&audit->thread.wake);
-    bool in_time = true;
-    while (audit->written < entries && audit->failures == failures && in_time)
-        in_time = clock_cond_wait(&audit->settled, &audit->thread.lock, until_ns);
-    int error = audit->written >= entries ? 0 : audit->failures != failures ? audit->error : -ETIMEDOUT;
+    int state = settling_state(&audit->settling, ticket, clock_mono_ns());
     pthread_mutex_unlock(&audit->thread.lock);
-    return error;
+    return state;
+}
+
+int audit_wait(struct audit *audit, const struct settling_ticket *ticket)
+{
+    int state;
+    if (!audit)
+        return 0;
+    pthread_mutex_lock(&audit->thread.lock);
+    while ((state = settling_state(&audit->settling, ticket, clock_mono_ns())) == -EINPROGRESS)
+        clock_cond_wait(&audit->settled, &audit->thread.lock, ticket->until_ns);
+    pthread_mutex_unlock(&audit->thread.lock);
+    return state;
 }
 
 /* --- writing -------------------------------------------------------------------------------------------------------------- */
@@ -196,9 +222,9 @@ static void *run(void *arg)
         pthread_mutex_unlock(&audit->thread.lock);
         int error = write_entry(audit, &first->entry, first->utc_us);
         pthread_mutex_lock(&audit->thread.lock);
-        audit->error = error;
-        audit->written += !error;
-        audit->failures += error != 0;
+        audit->settling.error = error;
+        audit->settling.done += !error;
+        audit->settling.failures += error != 0;
         pthread_cond_broadcast(&audit->settled);
         if (!error) {
             free_first(audit);

@@ -44,12 +44,11 @@ struct now {
 
 struct historian {
     struct log *log;
-    struct counters *all_counters;
     const struct plant *plant;
     struct store *store;
     char *folder;
     struct {
-        counter *samples, *points, *lost, *waiting, *good, *bytes, *backup;
+        counter *samples, *points, *lost, *waiting, *good, *bytes, *free, *backup;
     } counters;
     struct postgres *postgres; /* NULL: history is sent nowhere */
     atomic_bool restored;      /* it has put points of the past into the files */
@@ -358,11 +357,11 @@ static int write_second(struct historian *historian)
     return error ? error : write_rows(historian, held, true);
 }
 
-static int64_t measure_free(void *arg)
+static void measure_free(struct historian *historian)
 {
-    const struct historian *historian = arg;
     struct statvfs disk;
-    return statvfs(historian->folder, &disk) == 0 ? (int64_t)(disk.f_bavail * disk.f_frsize) : -1;
+    if (statvfs(historian->folder, &disk) == 0)
+        counter_set(historian->counters.free, (int64_t)(disk.f_bavail * disk.f_frsize));
 }
 
 /* Notes when `plantcast backup` last ran, and fills up a reserve that was used. */
@@ -527,6 +526,7 @@ static void tick(struct historian *historian, bool last)
         end_lines(historian, utc_ns);
     try_to_write(historian, mono_ns, utc_ns, last);
     counter_set(historian->counters.waiting, (int64_t)historian->waiting.count);
+    measure_free(historian);
 }
 
 /* A run between two that could not be written ended there. */
@@ -613,8 +613,8 @@ static void add_counters(struct historian *historian, struct counters *counters)
     historian->counters.waiting = counters_add(counters, "plantcast_history_waiting_points", "gauge", "Points that wait to be written.");
     historian->counters.good = counters_add(counters, "plantcast_history_good", "gauge", "1 while history can be written.");
     historian->counters.bytes = counters_add(counters, "plantcast_history_bytes", "gauge", "What all months take on disk.");
-    counters_add_measured(counters, "plantcast_history_free_bytes", "gauge", "What is free on that disk, at this moment.", measure_free,
-                          historian);
+    historian->counters.free =
+        counters_add(counters, "plantcast_history_free_bytes", "gauge", "Free bytes on that disk, measured each second.");
     historian->counters.backup =
         counters_add(counters, "plantcast_backup_timestamp_seconds", "gauge", "When the last backup was made; 0: not known.");
 }
@@ -639,7 +639,6 @@ struct historian *historian_start(const struct historian_params *params)
     struct historian *historian = mem_new(sizeof(*historian));
     thread_init(&historian->thread);
     historian->log = params->log;
-    historian->all_counters = params->counters;
     historian->plant = params->plant;
     historian->store = params->store;
     historian->folder = mem_strdup(params->folder);
@@ -666,7 +665,6 @@ void historian_stop(struct historian **pointer)
     struct historian *historian = *pointer;
     if (!historian)
         return;
-    counters_forget_measured(historian->all_counters, historian);
     store_unlisten(historian->store, on_sample, historian);
     thread_stop(&historian->thread);
     postgres_stop(&historian->postgres, historian->owed);

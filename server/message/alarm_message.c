@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "alarm/devices.h"
-#include "base/files/atomic_file.h"
 #include "base/mem.h"
 #include "base/text/json_text.h"
 #include "message/json_fields.h"
@@ -84,11 +83,8 @@ char *alarm_do(struct alarm_service *alarm_service, const struct plant *plant, c
         if (why)
             json_array_append_new(refused, json_pack("[s,s,s]", name, alarm_kind_name(kind), why));
     }
-    int done = request->count - (int)json_array_size(refused), error = done ? alarm_service_settle(alarm_service) : 0;
-    json_t *answer = json_pack("{s:s,s:I,s:i,s:o}", "type", "alarmed", "seq", (json_int_t)message->seq, "done", error ? 0 : done, "refused",
-                               refused);
-    if (error)
-        json_object_update_new(answer, json_pack("{s:i,s:s}", "not_kept", done, "why", atomic_file_not_kept(error)));
+    int done = request->count - (int)json_array_size(refused);
+    json_t *answer = json_pack("{s:s,s:I,s:i,s:o}", "type", "alarmed", "seq", (json_int_t)message->seq, "done", done, "refused", refused);
     char *text = json_text(answer, 0);
     mem_free(person);
     devices_destroy(&devices);

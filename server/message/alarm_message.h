@@ -8,8 +8,7 @@
 /* Parses the message into out->alarm. Returns false with *error saying what is wrong. */
 bool alarm_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 /* Carries the request out, for each alarm whose state allows it. who: the user's name, for the journal. Returns the answer, `alarmed`,
-   which says how many were done and are on disk, how many are in force but not kept, and why others were refused; mem_free. Waits for
-   the disk. Rights are the caller's to check. */
+   which says how many are in force and why others were refused; mem_free. Rights are the caller's to check. */
 char *alarm_do(struct alarm_service *alarm_service, const struct plant *plant, const struct message *message, const char *who);
 
 #endif

@@ -25,6 +25,7 @@
 #include "net/wall_displays.h"
 #include "session/view/resume.h"
 
+static const int64_t SETTLE_NS = 5 * NS_PER_MS; /* between looks at whether an action is on disk */
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S; /* between ticks; when no session waits for anything */
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS;                  /* for close frames and answers to leave */
 static const int64_t HELD_NS = 60 * NS_PER_S;                       /* between two lines on tokens that were held */
@@ -173,13 +174,25 @@ static void set_timer(struct net *net, int64_t at_ns)
 
 /* Does what is due by now, and has the loop woken for what is due next. lws waits by whole milliseconds, rounded down, and asks again and
    again in the last one: so what is due within that one is done already. */
+/* Returns when to look again; INT64_MAX: no answer waits. */
+static int64_t settle_answers(struct server_context *server, int64_t now_ns)
+{
+    if (!server->kept_answers)
+        return INT64_MAX;
+    server->kept_answers = false;
+    streams_settle(server);
+    renderers_settle(server);
+    return server->kept_answers ? now_ns + SETTLE_NS : INT64_MAX;
+}
+
 static void do_what_is_due(struct net *net)
 {
     int64_t soon_ns = clock_mono_ns() + NS_PER_MS, readings_ns = net_update_readings(net, soon_ns);
     if (soon_ns - net->ticked_ns >= (net->server.restless ? TICK_NS : REST_NS))
         tick(net, soon_ns);
     int64_t tick_ns = net->ticked_ns + (net->server.restless ? TICK_NS : REST_NS);
-    set_timer(net, tick_ns < readings_ns ? tick_ns : readings_ns);
+    int64_t settle_ns = settle_answers(&net->server, soon_ns), next_ns = tick_ns < readings_ns ? tick_ns : readings_ns;
+    set_timer(net, settle_ns < next_ns ? settle_ns : next_ns);
 }
 
 static void collect_picks(struct server_context *server)
@@ -470,6 +483,7 @@ struct net *net_create(const struct net_params *params)
         .admission = &server->admission,
         .login_throttle = server->login_throttle,
         .audit = params->audit,
+        .kept_answers = &server->kept_answers,
     };
     if (params->signing_key) {
         signing_key_id(params->signing_key, server->signing_key_id);

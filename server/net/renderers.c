@@ -27,6 +27,12 @@ struct lists_seen {
     uint64_t views, notes, walls, pointed, pairings;
 };
 
+struct deed {
+    struct session *session; /* session_proxy.h */
+    json_t *id;              /* of the message, for the answer */
+    struct deed *next;
+};
+
 struct renderer {
     struct lws *wsi;
     struct renderer *next;
@@ -50,6 +56,7 @@ struct renderer {
     bool *links;             /* by source, as sent */
     json_t *hello;           /* who this core is, before anything else; NULL: it was sent */
     json_t *answers;         /* that wait to be sent */
+    struct deed *deeds;      /* actions that are not on disk yet */
     int64_t told_ns;         /* monotonic: when readings were sent last */
     int64_t since_ns;        /* monotonic: since when something waits to be sent; 0: nothing */
     const char *close_text;  /* NULL: it stays */
@@ -132,6 +139,35 @@ static void on_open(struct server_context *server, struct lws *wsi, struct rende
     lws_set_timer_usecs(wsi, BEAT_US);
 }
 
+static void end_deed(struct deed *deed)
+{
+    session_destroy(&deed->session);
+    json_decref(deed->id);
+    mem_free(deed);
+}
+
+/* Answers actions that are on disk, or cannot be kept. */
+static void settle(struct renderer *renderer)
+{
+    for (struct deed **at = &renderer->deeds, *deed; (deed = *at);) {
+        json_t *texts = session_answers_of(&deed->session);
+        if (!texts) {
+            at = &deed->next;
+            continue;
+        }
+        json_array_append_new(renderer->answers, json_pack("{s:s,s:O,s:o}", "type", "answer", "id", deed->id, "texts", texts));
+        *at = deed->next;
+        end_deed(deed);
+        lws_callback_on_writable(renderer->wsi);
+    }
+}
+
+void renderers_settle(struct server_context *server)
+{
+    for (struct renderer *renderer = server->renderers; renderer; renderer = renderer->next)
+        settle(renderer);
+}
+
 static void on_close(struct server_context *server, struct renderer **slot)
 {
     struct renderer *renderer = *slot, **at = &server->renderers;
@@ -147,6 +183,10 @@ static void on_close(struct server_context *server, struct renderer **slot)
     text_finish(&renderer->in);
     text_finish(&renderer->out);
     json_decref(renderer->hello);
+    for (struct deed *deed = renderer->deeds, *next; deed; deed = next) {
+        next = deed->next;
+        end_deed(deed);
+    }
     json_decref(renderer->answers);
     mem_free(renderer->links);
     mem_free(renderer->refusal);
@@ -527,9 +567,13 @@ static void act(struct server_context *server, struct renderer *renderer, const 
     struct session_person person = { .holder = &holder, .from = from ? from : "", .through = through };
     person.refusal = verify_person(server, renderer, message, &holder);
     char *text = json_dumps(json_object_get(message, "message"), JSON_COMPACT);
-    json_t *texts = text ? session_do_for(&server->session_context, &person, text, clock_mono_ns(), clock_utc_ns()) : json_array();
-    json_array_append_new(renderer->answers,
-                          json_pack("{s:s,s:O,s:o}", "type", "answer", "id", json_object_get(message, "id"), "texts", texts));
+    struct deed *deed = mem_new(sizeof(*deed)), **last = &renderer->deeds;
+    *deed = (struct deed){ session_do_for(&server->session_context, &person, text ? text : "", clock_mono_ns(), clock_utc_ns()),
+                           json_incref(json_object_get(message, "id")), NULL };
+    while (*last)
+        last = &(*last)->next;
+    *last = deed;
+    settle(renderer);
     free(text);
     streams_on_alarms(server);
     renderers_on_change(server);

@@ -15,6 +15,8 @@ bool renderers_have_standby(const struct server_context *server);
 void renderers_make_key(struct server_context *server);
 /* Have all renderers sent what changed. */
 void renderers_on_change(struct server_context *server);
+/* Sends answers to actions that renderers handed on, once these are on disk. */
+void renderers_settle(struct server_context *server);
 /* Ends all of them: the plant is another one from now on, or the daemon ends. why: static. */
 void renderers_close(struct server_context *server, const char *why);
 

@@ -90,6 +90,7 @@ struct server_context {
     uint64_t next_client;
     char goodbye[64];                   /* what streams are closed with at the end */
     int start_s;                        /* that the daemon took to get ready, rounded up; 0: it is not ready */
+    bool kept_answers;                  /* an answer waits until an action is on disk (session_kept.c) */
     bool restless;                      /* a session waits for what time brings: a tick is due soon */
     int64_t still_ns;                   /* what the last refined frame cost that was drawn anew */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
@@ -153,6 +154,8 @@ void streams_on_tick(struct server_context *server);
 void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed);
 /* Has changed alarms sent to all sessions. */
 void streams_on_alarms(struct server_context *server);
+/* Sends answers to actions that are on disk by now, or cannot be kept. */
+void streams_settle(struct server_context *server);
 /* Closes sessions whose token is not valid any more. */
 void streams_check_tokens(struct server_context *server, int64_t now_utc_ns);
 /* Begins to close all connections: the server goes down. */

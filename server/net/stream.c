@@ -274,6 +274,13 @@ void streams_on_alarms(struct server_context *server)
         pump(server, stream);
 }
 
+void streams_settle(struct server_context *server)
+{
+    for (struct stream *stream = server->streams; stream; stream = stream->next)
+        if (stream->session && session_settle(stream->session))
+            pump(server, stream);
+}
+
 void streams_close(struct server_context *server)
 {
     int back_s = server->start_s < BACK_MAX_S ? server->start_s : BACK_MAX_S;

@@ -59,6 +59,7 @@ void session_destroy(struct session **session_ptr)
     session_time_end(session);
     session_place_leave(session);
     session_scope_end(session);
+    session_kept_drop(session);
     for (int i = 0; i < session->owed.reply_count; i++)
         mem_free(session->owed.replies[i]);
     mem_free(session->owed.tag_changes);
@@ -246,32 +247,37 @@ static bool on_alarm(struct session *session, const struct message *message, str
         message_fail(error, "not_allowed", "alarms are another system's here: nothing can be acknowledged or shelved");
         return false;
     }
+    const struct kept_action action = session_kept_begin(session);
     char *answer = alarm_do(context->alarm_service, context->plant, message, session_who(session));
-    session_record_alarm(session, message, answer);
-    session_reply_recorded(session, answer);
+    char *what = session_alarm_what(session, message);
+    session_record_alarm(session, what, answer);
+    session_kept_reply(session, &action, answer, what);
     return true;
 }
 
 static void on_view_edit(struct session *session, const struct message *message, int64_t now_utc_ns)
 {
+    const struct kept_action action = session_kept_begin(session);
     char *answer = view_edit_do(session->context->named_views, message, session_who(session), now_utc_ns / 1000);
     session_record_view(session, message, answer);
-    session_reply_recorded(session, answer);
+    session_kept_reply(session, &action, answer, NULL);
 }
 
 static void on_note(struct session *session, const struct message *message, int64_t now_utc_ns)
 {
     const struct session_context *context = session->context;
+    const struct kept_action action = session_kept_begin(session);
     char *answer = note_do(context->notes, context->plant, message, session_who(session), now_utc_ns / 1000);
     session_record_note(session, message, answer);
-    session_reply_recorded(session, answer);
+    session_kept_reply(session, &action, answer, NULL);
 }
 
 static void on_send_to_wall(struct session *session, const struct message *message, int64_t now_utc_ns)
 {
+    const struct kept_action action = session_kept_begin(session);
     char *answer = send_to_wall_do(session->context->wall_remote, message, session_who(session), now_utc_ns / 1000);
     session_record_wall(session, message, answer);
-    session_reply_recorded(session, answer);
+    session_kept_reply(session, &action, answer, NULL);
 }
 
 bool session_may_be(struct session *session, const struct wall_place *place, struct message_error *error)
@@ -306,13 +312,14 @@ static bool on_pair(struct session *session, const struct message *message, int6
     }
     if (!pairs)
         snprintf(id, sizeof(id), "%s", message->pair.device);
+    const struct kept_action action = session_kept_begin(session);
     const char *why = pairs ? pairings_approve(context->pairings, message->pair.digits, session_who(session), now_ns, now_utc_ns / 1000, id)
                             : pairings_revoke(context->pairings, id);
     char *answer = json_text(json_pack("{s:s,s:I,s:s,s:b,s:s}", "type", "paired", "seq", (json_int_t)message->seq,
                                        "id", id, "kept", !why, "why", why ? why : ""),
                              0);
     session_record_pair(session, message, id, answer);
-    session_reply_recorded(session, answer);
+    session_kept_reply(session, &action, answer, NULL);
     return true;
 }
 

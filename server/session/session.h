@@ -25,6 +25,8 @@ void session_introduce(struct session *session, const struct session_client *cli
 void session_leave(struct session *session, bool keep, int64_t now_ns);
 /* Records its end in the audit trail. why: static; NULL: the client went. */
 void session_record_leave(const struct session *session, const char *why);
+/* Queues answers to actions that are on disk by now, or cannot be kept. Returns whether it queued any. */
+bool session_settle(struct session *session);
 /* Has the connection closed once the texts owed are sent. text: static. The first reason stands. */
 void session_close(struct session *session, int code, const char *text);
 /* Returns whether nobody was at the page for longer than the server waits (--lock-after), with *error saying so. A person may be at another

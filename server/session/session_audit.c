@@ -5,9 +5,7 @@
 
 #include "alarm/devices.h"
 #include "audit/audit.h"
-#include "base/files/atomic_file.h"
 #include "base/mem.h"
-#include "base/text/json_text.h"
 #include "message/names.h"
 #include "session/session_impl.h"
 
@@ -39,23 +37,30 @@ static void add_alarms(struct text *what, const struct plant *plant, const struc
     devices_destroy(&devices);
 }
 
-void session_record_alarm(const struct session *session, const struct message *message, const char *answer)
+char *session_alarm_what(const struct session *session, const struct message *message)
 {
     const struct alarm_request *request = &message->alarm;
     struct text what = { 0 };
-    json_t *said = json_loads(answer, 0, NULL), *refused = json_object_get(said, "refused");
-    const char *not_kept = json_string_value(json_object_get(said, "why"));
-    bool done = json_integer_value(json_object_get(said, "done")) > 0 || not_kept;
-    char *why = json_array_size(refused) ? json_dumps(refused, JSON_COMPACT) : NULL;
     add_alarms(&what, session->context->plant, request);
     if (request->name[0])
         text_add(&what, " as %s", request->name);
     if (request->reason[0])
         text_add(&what, ": %s", request->reason);
-    record(session, "alarm", done ? "done" : "failed", what.at, why ? why : not_kept);
+    return what.at;
+}
+
+void session_record_alarm(const struct session *session, const char *what, const char *answer)
+{
+    json_t *said = json_loads(answer, 0, NULL), *refused = json_object_get(said, "refused");
+    char *why = json_array_size(refused) ? json_dumps(refused, JSON_COMPACT) : NULL;
+    record(session, "alarm", json_integer_value(json_object_get(said, "done")) > 0 ? "done" : "failed", what, why);
     free(why);
     json_decref(said);
-    text_finish(&what);
+}
+
+void session_record_not_kept(const struct session *session, const char *what, const char *why)
+{
+    record(session, "alarm", "failed", what, why);
 }
 
 void session_record_loop_check(const struct session *session, const struct message *message, const char *answer)
@@ -169,16 +174,4 @@ void session_record_refusal(const struct session *session, const struct message_
 {
     if (has_name(session) && !is_idle(session, error->about) && !strcmp(error->code, "not_allowed"))
         record(session, "access", "refused", NULL, error->text);
-}
-
-void session_reply_recorded(struct session *session, char *answer)
-{
-    int error = audit_settle(session->context->audit);
-    json_t *object = error ? json_loads(answer, 0, NULL) : NULL;
-    if (object) {
-        json_object_set_new(object, "unaudited", json_string(atomic_file_not_kept(error)));
-        mem_free(answer);
-        answer = json_text(object, 0);
-    }
-    session_reply(session, answer);
 }

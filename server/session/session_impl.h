@@ -2,6 +2,7 @@
 /* Functions that the files of a session share. Private to session_*.c. Thread: the loop. */
 #ifndef SESSION_SESSION_IMPL_H
 #define SESSION_SESSION_IMPL_H
+#include "base/files/settling.h"
 #include "session/session.h"
 
 /* --- session_state.c -------------------------------------------------------------------------------------------------- */
@@ -18,7 +19,9 @@ const char *session_who(const struct session *session);
 /* --- session_audit.c: the audit trail is told --------------------------------------------------------------------------- */
 
 /* Record what was done to alarms, a loop check, a view with a name, a note, or a wall. answer: the message that the client is sent. */
-void session_record_alarm(const struct session *session, const struct message *message, const char *answer);
+void session_record_alarm(const struct session *session, const char *what, const char *answer);
+/* Describes an action on alarms for the audit trail; mem_free. */
+char *session_alarm_what(const struct session *session, const struct message *message);
 void session_record_loop_check(const struct session *session, const struct message *message, const char *answer);
 void session_record_view(const struct session *session, const struct message *message, const char *answer);
 void session_record_note(const struct session *session, const struct message *message, const char *answer);
@@ -28,11 +31,23 @@ void session_record_wall(const struct session *session, const struct message *me
 void session_record_save(const struct session *session, const struct message *message, size_t moved);
 /* Records baselines that were kept or forgotten for all, if the message's parameters do that. */
 void session_record_params(const struct session *session, const struct message *message);
-/* Queues the answer to what was recorded, once the audit trail has it on disk; where it cannot be kept, the answer says so in `unaudited`.
-   Takes the answer (mem_free). */
-void session_reply_recorded(struct session *session, char *answer);
+/* Records that an action on alarms, which is in force, is not on disk. */
+void session_record_not_kept(const struct session *session, const char *what, const char *why);
 /* Records an error, if it says that the client may not do what it asked for. */
 void session_record_refusal(const struct session *session, const struct message_error *error);
+
+/* --- session_kept.c: answers that wait for the disk ---------------------------------------------------------------------- */
+
+struct kept_action {
+    struct settling_ticket journal, audit;
+};
+/* Call it before an action is done and recorded. */
+struct kept_action session_kept_begin(const struct session *session);
+/* Queues the answer, once journal and audit trail have the action on disk. After a second, or where they cannot be written, the answer says
+   so in `not_kept` and `unaudited`. Takes the answer. alarm_what: what was done to alarms, also taken; NULL: something else was done. */
+void session_kept_reply(struct session *session, const struct kept_action *action, char *answer, char *alarm_what);
+/* Frees answers that still wait. */
+void session_kept_drop(struct session *session);
 
 /* --- session_hello.c -------------------------------------------------------------------------------------------------- */
 

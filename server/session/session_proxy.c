@@ -33,14 +33,22 @@ static void act_as(struct session *session, const struct session_person *person,
     }
 }
 
-json_t *session_do_for(const struct session_context *context, const struct session_person *person, const char *text, int64_t now_ns,
-                       int64_t now_utc_ns)
+struct session *session_do_for(const struct session_context *context, const struct session_person *person, const char *text, int64_t now_ns,
+                               int64_t now_utc_ns)
 {
     struct session *session = session_create(context, 0, now_ns);
-    json_t *texts = json_array();
     act_as(session, person, text, now_ns, now_utc_ns);
-    for (int i = 0; i < session->owed.reply_count; i++)
-        json_array_append_new(texts, json_string(session->owed.replies[i]));
-    session_destroy(&session);
+    return session;
+}
+
+json_t *session_answers_of(struct session **session)
+{
+    session_settle(*session);
+    if ((*session)->kept)
+        return NULL;
+    json_t *texts = json_array();
+    for (int i = 0; i < (*session)->owed.reply_count; i++)
+        json_array_append_new(texts, json_string((*session)->owed.replies[i]));
+    session_destroy(session);
     return texts;
 }

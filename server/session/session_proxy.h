@@ -10,9 +10,11 @@ struct session_person {                /* the person who sent the message */
     const char *from;                  /* the address, as the other daemon says */
     const char *through;               /* the other daemon and its token, for the audit trail */
 };
-/* Does what the message says, as that person, and returns the answers, JSON texts, the caller's; with an error where it is no message
-   that is handed on, or that person may not send. */
-json_t *session_do_for(const struct session_context *context, const struct session_person *person, const char *text, int64_t now_ns,
-                       int64_t now_utc_ns);
+/* Does what the message says, as that person: the answer says where it is no message that is handed on, or that person may not send.
+   Returns a session that holds the answers, for session_answers_of(). */
+struct session *session_do_for(const struct session_context *context, const struct session_person *person, const char *text, int64_t now_ns,
+                               int64_t now_utc_ns);
+/* Ends the session and returns its answers, JSON texts, once none waits for the disk; until then NULL. */
+json_t *session_answers_of(struct session **session);
 
 #endif

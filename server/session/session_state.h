@@ -207,6 +207,8 @@ struct session {
     struct session_following following;
     struct travel travel;
     struct owed_texts owed;
+    struct kept_answer *kept; /* answers that wait for the disk, oldest first (session_kept.c) */
+    int kept_count;
     struct session_placement placement;
     struct session_pick pick;
     struct message_rate rate;

@@ -14,8 +14,6 @@ struct entry {
     counter value;
     bool microseconds;           /* printed in seconds */
     struct histogram *histogram; /* NULL: a single value */
-    int64_t (*measure)(void *arg); /* NULL: the value is set by counter_set() and the like */
-    void *arg;
     struct entry *next;
 };
 
@@ -75,26 +73,6 @@ counter *counters_add(struct counters *counters, const char *name, const char *t
     return &find_or_add(counters, name, type, help)->value;
 }
 
-counter *counters_add_measured(struct counters *counters, const char *name, const char *type, const char *help,
-                               int64_t (*measure)(void *arg), void *arg)
-{
-    struct entry *e = find_or_add(counters, name, type, help);
-    pthread_mutex_lock(&counters->lock);
-    e->measure = measure;
-    e->arg = arg;
-    pthread_mutex_unlock(&counters->lock);
-    return &e->value;
-}
-
-void counters_forget_measured(struct counters *counters, const void *arg)
-{
-    pthread_mutex_lock(&counters->lock);
-    for (struct entry *e = counters->first; e; e = e->next)
-        if (e->measure && e->arg == arg)
-            e->measure = NULL;
-    pthread_mutex_unlock(&counters->lock);
-}
-
 struct histogram *counters_add_histogram(struct counters *counters, const char *name, const char *help)
 {
     return find_or_add(counters, name, "histogram", help)->histogram;
@@ -128,9 +106,6 @@ static bool family_printed(const struct entry *first, const struct entry *e)
 
 static void print_entry(struct entry *e, struct text *out)
 {
-    int64_t measured = e->measure ? e->measure(e->arg) : -1;
-    if (measured >= 0)
-        counter_set(&e->value, measured);
     int64_t value = atomic_load_explicit(&e->value, memory_order_relaxed);
     if (e->histogram)
         histogram_print(e->histogram, e->name, out);

@@ -15,12 +15,6 @@ void counters_destroy(struct counters **counters);
 counter *counters_add(struct counters *counters, const char *name, const char *type, const char *help);
 /* Likewise, of a number that is counted in microseconds and printed in seconds. */
 counter *counters_add_seconds(struct counters *counters, const char *name, const char *type, const char *help);
-/* Adds a metric that measure(arg) measures whenever metrics are printed. measure() must not use `counters`, and must not block: it runs in
-   the loop thread. A negative result keeps the last value. */
-counter *counters_add_measured(struct counters *counters, const char *name, const char *type, const char *help,
-                               int64_t (*measure)(void *arg), void *arg);
-/* Stops measuring with `arg`; the metric keeps its last value. */
-void counters_forget_measured(struct counters *counters, const void *arg);
 /* Likewise, of durations (base/metrics/histogram.h); in seconds. */
 struct histogram *counters_add_histogram(struct counters *counters, const char *name, const char *help);
 /* Appends all metrics in the text format of Prometheus. */

@@ -113,8 +113,9 @@ bool session_check_loop(struct session *session, const struct message *message, 
         message_fail(error, "no_history", "this daemon records nothing (history: record: no): proofs are kept beside the history");
         return false;
     }
+    const struct kept_action action = session_kept_begin(session);
     char *answer = loop_check_do(context->loop_checks, context->plant, context->snapshot, message, session_who(session));
     session_record_loop_check(session, message, answer);
-    session_reply_recorded(session, answer);
+    session_kept_reply(session, &action, answer, NULL);
     return true;
 }

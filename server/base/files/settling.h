@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tells whether rows that another thread writes are on disk yet, without waiting. The owner of the rows keeps the counts under its lock. */
+#ifndef BASE_SETTLING_H
+#define BASE_SETTLING_H
+#include <errno.h>
+#include <stdint.h>
+
+#include "base/clock.h"
+
+struct settling {
+    uint64_t queued, done; /* rows since the start; done: written or dropped */
+    uint64_t lost;         /* the newest row that was dropped; 0: none */
+    uint64_t failures;     /* tries to write that failed */
+    int error;             /* of the last of them, -errno */
+};
+
+/* The rows that are queued between settling_begin() and settling_end(). All zero: no rows. */
+struct settling_ticket {
+    uint64_t first, last, failures;
+    int64_t until_ns; /* then a row that is still not on disk counts as not kept */
+};
+
+static inline struct settling_ticket settling_begin(const struct settling *settling)
+{
+    return (struct settling_ticket){ .first = settling->queued, .failures = settling->failures };
+}
+
+static inline void settling_end(const struct settling *settling, struct settling_ticket *ticket, int64_t now_ns)
+{
+    ticket->last = settling->queued;
+    ticket->until_ns = now_ns + NS_PER_S;
+}
+
+/* Counts a row that is dropped because too many wait. */
+static inline void settling_drop(struct settling *settling)
+{
+    settling->lost = ++settling->queued;
+    settling->done++;
+}
+
+/* Returns 0 if all rows of the ticket are on disk, -EINPROGRESS, or the reason why they count as not kept. */
+static inline int settling_state(const struct settling *settling, const struct settling_ticket *ticket, int64_t now_ns)
+{
+    if (ticket->last > ticket->first && settling->lost > ticket->first)
+        return -ENOSPC;
+    if (ticket->last == ticket->first || settling->done >= ticket->last)
+        return 0;
+    if (settling->failures != ticket->failures)
+        return settling->error;
+    return now_ns >= ticket->until_ns ? -ETIMEDOUT : -EINPROGRESS;
+}
+
+#endif

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Answers to actions that wait until the action is on disk: the answer waits, the loop does not. */
+#include <errno.h>
+#include <jansson.h>
+
+#include "alarm/alarm_service.h"
+#include "audit/audit.h"
+#include "base/files/atomic_file.h"
+#include "base/text/json_text.h"
+#include "base/mem.h"
+#include "session/session_impl.h"
+
+struct kept_answer {
+    char *text, *what; /* what: of an alarm's action, for the audit trail; else NULL */
+    const struct alarm_service *alarms; /* that did it; NULL: nothing was done to alarms */
+    struct settling_ticket journal, audit;
+    struct kept_answer *next;
+};
+
+/* A plant that is loaded again has another journal: what the old one did not write by then counts as not kept. */
+static int journal_state(const struct session *session, const struct kept_answer *kept)
+{
+    struct alarm_service *service = session->context->alarm_service;
+    return !kept->alarms ? 0 : kept->alarms != service ? -ECANCELED : alarm_service_settled(service, &kept->journal);
+}
+
+static void say_not_kept(json_t *answer, int error)
+{
+    json_object_set(answer, "not_kept", json_object_get(answer, "done"));
+    json_object_set_new(answer, "done", json_integer(0));
+    json_object_set_new(answer, "why", json_string(atomic_file_not_kept(error)));
+}
+
+static void answer_now(struct session *session, struct kept_answer *kept, int journal_error, int audit_error)
+{
+    json_t *answer = journal_error || audit_error ? json_loads(kept->text, 0, NULL) : NULL;
+    if (answer && journal_error) {
+        say_not_kept(answer, journal_error);
+        session_record_not_kept(session, kept->what, atomic_file_not_kept(journal_error));
+    }
+    if (answer && audit_error)
+        json_object_set_new(answer, "unaudited", json_string(atomic_file_not_kept(audit_error)));
+    if (answer) {
+        mem_free(kept->text);
+        kept->text = json_text(answer, 0);
+    }
+    session_reply(session, kept->text);
+    mem_free(kept->what);
+    mem_free(kept);
+}
+
+/* Answers if the disk has said something, or without waiting for it with `now`. Returns whether it did; then *at is the next one. */
+static bool try_to_answer(struct session *session, struct kept_answer **at, bool now)
+{
+    struct kept_answer *kept = *at;
+    int journal = journal_state(session, kept), audit = audit_settled(session->context->audit, &kept->audit);
+    if (!now && (journal == -EINPROGRESS || audit == -EINPROGRESS))
+        return false;
+    *at = kept->next;
+    session->kept_count--;
+    answer_now(session, kept, journal == -EINPROGRESS ? -ETIMEDOUT : journal, audit == -EINPROGRESS ? -ETIMEDOUT : audit);
+    return true;
+}
+
+struct kept_action session_kept_begin(const struct session *session)
+{
+    struct kept_action action = { .audit = audit_begin(session->context->audit) };
+    if (session->context->alarm_service)
+        action.journal = alarm_service_begin(session->context->alarm_service);
+    return action;
+}
+
+void session_kept_reply(struct session *session, const struct kept_action *action, char *answer, char *alarm_what)
+{
+    struct kept_answer *kept = mem_new(sizeof(*kept)), **last = &session->kept;
+    *kept = (struct kept_answer){ .text = answer, .what = alarm_what, .journal = action->journal, .audit = action->audit };
+    if (alarm_what) {
+        kept->alarms = session->context->alarm_service;
+        alarm_service_end(session->context->alarm_service, &kept->journal);
+    }
+    audit_end(session->context->audit, &kept->audit);
+    while (*last)
+        last = &(*last)->next;
+    *last = kept;
+    session->kept_count++;
+    if (session->kept_count == SESSION_MAX_REPLIES)
+        try_to_answer(session, &session->kept, true);
+    session_settle(session);
+}
+
+bool session_settle(struct session *session)
+{
+    bool answered = false;
+    for (struct kept_answer **at = &session->kept; *at;)
+        if (try_to_answer(session, at, false))
+            answered = true;
+        else
+            at = &(*at)->next;
+    if (session->kept && session->context->kept_answers)
+        *session->context->kept_answers = true;
+    return answered;
+}
+
+void session_kept_drop(struct session *session)
+{
+    for (struct kept_answer *kept = session->kept, *next; kept; kept = next) {
+        next = kept->next;
+        mem_free(kept->text);
+        mem_free(kept->what);
+        mem_free(kept);
+    }
+    session->kept = NULL;
+}
