@@ -45,6 +45,8 @@ struct tile_wall {
     struct quality_ladder made;     /* its size: by how long pictures of it take */
 };
 
+enum { UPGRADE_REFUSALS = 16 };
+
 struct server_context {
     struct net_params params;
     struct session_context session_context; /* what all sessions see */
@@ -102,9 +104,13 @@ struct server_context {
     struct marker_text_cache marker_lists; /* of the frame that was sent last */
     struct neighbour_text_cache neighbour_texts;
     struct {
-        struct log_pace pace;  /* of requests for the stream without Upgrade */
-        int64_t refused_ns;    /* monotonic: when a handshake was refused last */
-        char refused[120];     /* why */
+        struct log_pace pace; /* of requests for the stream without Upgrade */
+        struct upgrade_refusal {
+            char address[64]; /* of the client */
+            int64_t at_ns;    /* monotonic */
+            char why[120];
+        } refused[UPGRADE_REFUSALS]; /* handshakes that were refused, in a ring */
+        unsigned count;              /* of all that were refused */
     } upgrade;
     struct log_pace stuck_heads; /* of requests whose heads did not end */
     struct latency_stages latency;

@@ -13,8 +13,10 @@
 static int refuse(struct server_context *server, struct lws *wsi, int status, const char *text)
 {
     counter_inc(server->counters.refused, 1);
-    server->upgrade.refused_ns = clock_mono_ns();
-    snprintf(server->upgrade.refused, sizeof(server->upgrade.refused), "%s", text);
+    struct upgrade_refusal *refusal = &server->upgrade.refused[server->upgrade.count++ % UPGRADE_REFUSALS];
+    refusal->at_ns = clock_mono_ns();
+    snprintf(refusal->address, sizeof(refusal->address), "%s", connection_of(wsi)->address);
+    snprintf(refusal->why, sizeof(refusal->why), "%s", text);
     return http_answer(wsi, status, text) < 0 ? -1 : 1;
 }
 

@@ -54,7 +54,7 @@ struct session_context {
     int64_t lock_ns;                       /* who was not at the page for so long has to say again who it is; 0: nobody has to */
     struct login_throttle *login_throttle; /* changed by hello; NULL: wrong tokens are not counted */
     struct audit *audit;                   /* NULL: nothing is recorded */
-    bool *kept_answers;                    /* set where an answer waits for the disk: session_settle() is due in milliseconds; may be NULL */
+    bool *kept_answers;                    /* set where an answer waits for the disk: session_settle() is due soon; may be NULL */
     struct resumes *resumes;               /* changed by hello */
     struct admission *admission;           /* its pixels are changed by hello, resize and visible */
     struct tag_text_cache *tag_texts;      /* NULL: each text is made anew */

@@ -17,7 +17,7 @@ absent.push(...[ESCAPE, `${ESCAPE}.so`].filter((path) => !existsSync(path)));
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const ASK = 'import ctypes; print(ctypes.CDLL(None).syscall(444, None, 0, 1))'; // landlock_create_ruleset, its version
 const abi = Number(spawnSync('/usr/bin/python3', ['-c', ASK], { encoding: 'utf8' }).stdout);
-const unguarded = skip || (abi >= 6 ? false : `this kernel's Landlock has version ${abi}; 6 is needed to hold all of this back`);
+const unguarded = skip || (abi >= 2 ? false : `this kernel has ABI ${abi} of Landlock; 2 is needed to hold all of this back`);
 
 async function inFolder(f) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-confinement-'));

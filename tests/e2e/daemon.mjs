@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
-import { createServer } from 'node:net';
+import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { encodeFrame, get, http, PlainClient } from './support/plain_client.mjs';
@@ -96,6 +96,20 @@ test('HTTP: what is there, what is not, and how it is said', { skip }, async () 
     const page = await get(port, '/'), again = await get(port, '/', 'GET', `If-None-Match: ${page.headers.etag}\r\n`);
     assert.deepEqual([again.status, again.body.length], [304, 0]);
     assert.equal((await get(port, '/stream')).status, 426);
+});
+
+test('a client is told why its own handshake was refused, not that of another address', { skip }, async () => {
+    const ask = (from, path, ...headers) => new Promise((done, fail) => {
+        const socket = connect({ host: '127.0.0.1', port: plant.port, localAddress: from });
+        let answer = '';
+        socket.on('data', (bytes) => { answer += bytes; }).on('error', fail).on('close', () => done(answer));
+        socket.write([`GET ${path} HTTP/1.1`, `Host: 127.0.0.1:${plant.port}`, ...headers, '', ''].join('\r\n'));
+    });
+    const handshake = ['Upgrade: websocket', 'Connection: Upgrade', 'Sec-WebSocket-Version: 13',
+        'Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg=='];
+    assert.match(await ask('127.0.0.2', '/stream', ...handshake, 'Origin: http://elsewhere.example'), /^HTTP\/1.1 403/);
+    assert.match(await ask('127.0.0.2', '/stream?why', 'Connection: close'), /refused: this origin is not allowed/);
+    assert.doesNotMatch(await ask('127.0.0.3', '/stream?why', 'Connection: close'), /refused:/);
 });
 
 test('the API tells tags and plant, and no addresses', { skip }, async () => {

@@ -212,6 +212,9 @@ TEST(a_value_of_another_member_is_never_taken)
         { "{\"a\": [5]}", "a", MQTT_WRONG, 0, QUALITY_BAD_CONFIGURATION, 0 },
         { "{\"a\": [5]}", "a[-2]", MQTT_ABSENT, 0, 0, 0 },
         { "{\"a\": [5, 6]}", "a[?@==6]", MQTT_FOUND, 6, 0, 0 },
+        { "[{\"n\": 21.5}]", "[0].n", MQTT_FOUND, 21.5, 0, 0 }, /* the member that is selected is no name */
+        { "[{\"n\": 21.5, \"id\": \"A.T9\"}]", "[0].n", MQTT_WRONG, 0, QUALITY_BAD_NO_MATCH, 0 },
+        { "[{\"n\": 21.5, \"v\": 3}]", "[0].v", MQTT_WRONG, 0, QUALITY_BAD_NO_MATCH, 0 },
         { "{\"a\": {\"0\": 5}}", "a[0]", MQTT_ABSENT, 0, 0, 0 },
         { "{\"a\": {\"0\": 5}}", "a['0']", MQTT_FOUND, 5, 0, 0 },
         { "{\"a\": [{\"id\": \"T1\", \"v\": null}]}", "a[?id=='T1'].v", MQTT_FOUND, 0, QUALITY_BAD_SENSOR_FAILURE, 0 },

@@ -51,16 +51,27 @@ static void log_without_upgrade(struct server_context *server, struct lws *wsi, 
              named ? " (Via: " : "", named ? quoted(via, shown) : "", named ? ")" : "", NGINX_LINES, more);
 }
 
+/* Returns why a handshake of this client's address was refused last, within seconds; NULL: none was. Browsers ask by another connection. */
+static const char *last_refusal(const struct server_context *server, const char *address, int64_t now_ns)
+{
+    for (unsigned i = 1; i <= UPGRADE_REFUSALS; i++) {
+        const struct upgrade_refusal *refusal = &server->upgrade.refused[(server->upgrade.count - i) % UPGRADE_REFUSALS];
+        if (refusal->at_ns && now_ns - refusal->at_ns < REFUSED_NS && !strcmp(refusal->address, address))
+            return refusal->why;
+    }
+    return NULL;
+}
+
 static int stream_without_upgrade(struct server_context *server, struct request *request)
 {
     static const char text[] = "426 Upgrade Required: /stream is a WebSocket with the subprotocol " WIRE_SUBPROTOCOL
                                ", and this request came without `Upgrade: websocket`. If a browser or a program asked, a proxy on the way "
                                "removed it. nginx needs: " NGINX_LINES "\n";
     int64_t now_ns = clock_mono_ns();
-    bool refused = server->upgrade.refused_ns && now_ns - server->upgrade.refused_ns < REFUSED_NS;
+    const char *refused = last_refusal(server, connection_of(request->wsi)->address, now_ns);
     if (lws_hdr_total_length(request->wsi, WSI_TOKEN_HTTP_URI_ARGS) == 0) /* the page asks with ?why, once its handshake has failed */
         log_without_upgrade(server, request->wsi, now_ns);
-    char *body = refused ? mem_printf("%srefused: %s", text, server->upgrade.refused) : mem_strdup(text);
+    char *body = refused ? mem_printf("%srefused: %s", text, refused) : mem_strdup(text);
     return request_answer(request, 426, HTTP_TEXT, body, strlen(body), "upgrade:", "websocket");
 }
 

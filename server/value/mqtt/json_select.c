@@ -39,15 +39,23 @@ static bool is_name_of(const json_t *name, const char *tag)
     return length == tag_length || strchr("./:\\!|", text[length - tag_length - 1]);
 }
 
-/* Returns the name of an item that names itself, and by none of its names as the tag; else NULL. */
-static const json_t *foreign_name(const json_t *item, const char *tag)
+/* Returns whether the rest of a path selects this member: then the member is the value, not a name. */
+static bool is_selected(const char *key, const char *rest)
+{
+    struct json_path_step step;
+    char why[200];
+    return *rest && json_path_next(&rest, &step, why) && step.kind == JSON_PATH_NAME && !strcmp(step.name, key);
+}
+
+/* Returns the name of an item that names itself, and by none of its names as the tag; else NULL. rest: the path below the item. */
+static const json_t *foreign_name(const json_t *item, const char *tag, const char *rest)
 {
     const char *key;
     json_t *member;
     const json_t *name = NULL;
     json_object_foreach((json_t *)item, key, member)
     {
-        if (!names_its_object(key) || !(json_is_string(member) || json_is_number(member)))
+        if (!names_its_object(key) || !(json_is_string(member) || json_is_number(member)) || is_selected(key, rest))
             continue;
         if (is_name_of(member, tag))
             return NULL;
@@ -131,7 +139,7 @@ static void walk(const json_t *value, const json_t *holder, const char *at, cons
         return;
     }
     const json_t *child = step.kind == JSON_PATH_NAME ? json_object_get(value, step.name) : item_at(value, step.index);
-    const json_t *foreign = child && step.kind == JSON_PATH_INDEX ? foreign_name(child, tag) : NULL;
+    const json_t *foreign = child && step.kind == JSON_PATH_INDEX ? foreign_name(child, tag, at) : NULL;
     if (foreign)
         out->foreign = foreign;
     else if (child)
