@@ -128,6 +128,8 @@ fuzzed: $(fuzzers)
 	    $$f -max_total_time=$(seconds) -timeout=10 $$([ -f $$dict ] && echo -dict=$$dict) -artifact_prefix=$(out)/ \
 	    $(out)/corpus/$$seeds tests/fuzz/$$seeds || exit 1; done
 $(out)/tests/fuzz/rvm_fuzz: pkg_libs += -lGLU
+$(out)/tests/fuzz/tag_list_fuzz: $(out)/lib/match.a
+$(out)/tests/fuzz/tag_list_fuzz: pkg_libs += -lminizip -lexpat
 $(out)/tests/fuzz/%: $(out)/obj/tests/fuzz/%.o $(support) $(archives) $(out)/lib/prep.a $(out)/lib/import.a
 	@mkdir -p $(@D); echo "  LINK $@"
 	@$(CXX) $(ldflags) -fsanitize=fuzzer -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(pkg_libs) -lcmocka

@@ -42,7 +42,7 @@ uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, vo
 /* Does what an operator asks for: acknowledges, shelves and so on. name: of a tag, or for ALARM_LINK of a device. Returns NULL, or why it
    was refused (static). */
 const char *alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act);
-/* Tell whether changes of alarms between begin and end are in the journal on disk (base/settling.h). Without a journal they are. What
+/* Tell whether changes of alarms between begin and end are in the journal on disk (base/files/settling.h). Without a journal they are. What
    is not is in force, but lost if the daemon is killed now. */
 struct settling_ticket alarm_service_begin(struct alarm_service *service);
 void alarm_service_end(struct alarm_service *service, struct settling_ticket *ticket);

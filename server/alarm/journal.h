@@ -23,7 +23,7 @@ void journal_stop(struct journal **journal); /* writes what is pending and ends;
 void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag);
 int64_t journal_newest_utc_ns(const struct journal *journal); /* returns the time of the newest row that it had when it
    was opened, or got by journal_add_entry(). 0: none. Thread: that of the latter */
-/* Tell whether the rows that are queued between begin and end are on disk (base/settling.h). end has them written at once, even if the
+/* Tell whether rows that are queued between begin and end are on disk (base/files/settling.h). end has them written at once, even if the
    last try has just failed. None waits for the disk. */
 struct settling_ticket journal_begin(struct journal *journal);
 void journal_end(struct journal *journal, struct settling_ticket *ticket);

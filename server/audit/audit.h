@@ -12,7 +12,7 @@ struct audit;
 struct audit *audit_start(const struct audit_params *params);
 /* Writes what waits, if it can be written, and ends. &NULL is fine; leaves NULL. */
 void audit_stop(struct audit **audit);
-/* Tell whether entries that are recorded between begin and end are on disk (base/settling.h); none waits. audit NULL: they are. */
+/* Tell whether entries that are recorded between begin and end are on disk (base/files/settling.h); none waits. audit NULL: they are. */
 struct settling_ticket audit_begin(struct audit *audit);
 void audit_end(struct audit *audit, struct settling_ticket *ticket);
 int audit_settled(struct audit *audit, const struct settling_ticket *ticket);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "plant/sources/json_path.h"
 #include "tests/fuzz/promise.h"
 #include "value/mqtt/mqtt_payload.h"
 #include "value/mqtt/sparkplug.h"
@@ -117,6 +118,23 @@ static void read_json(const uint8_t *bytes, size_t count)
     json_decref(root);
 }
 
+/* A path, a zero byte, and a payload in which it selects. */
+static void select_by_path(const uint8_t *bytes, size_t count)
+{
+    static const struct plant_mqtt plain = { .payload = MQTT_JSON };
+    const uint8_t *end = memchr(bytes, 0, count);
+    char why[200] = "";
+    struct stamped_value value;
+    if (!end)
+        return;
+    bool good = json_path_check((const char *)bytes, false, why);
+    require(good || *why, "a refusal says why");
+    json_t *root = good ? mqtt_json_parse(end + 1, (size_t)(bytes + count - end - 1), why) : NULL;
+    if (root && mqtt_json_read(root, &(struct mqtt_reader){ &plain, (const char *)bytes, "T1" }, &value, why) == MQTT_FOUND)
+        require(quality_is_bad(value.quality) || isfinite(value.value), "a value is a number");
+    json_decref(root);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     double number = 0;
@@ -127,6 +145,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     if (mqtt_number_read(bytes + 1, count - 1, &number))
         require(isfinite(number), "a number is finite");
     read_json(bytes + 1, count - 1);
+    select_by_path(bytes + 1, count - 1);
     if (sparkplug_payload_read(bytes + 1, count - 1, &payload, why))
         sparkplug_payload_finish(&payload);
     follow(bytes, count);
