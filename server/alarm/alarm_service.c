@@ -43,6 +43,7 @@ struct alarm_service {
     int raised_now;
     struct journal_entry *rows; /* a ring; NULL: there is no journal */
     uint64_t row_count;         /* all that ever were */
+    bool ending, lost;          /* the journal is being ended; it ended with rows that are not on disk */
     void (*changed)(void *arg); /* NULL: nobody listens */
     void *changed_arg;
 };
@@ -268,7 +269,16 @@ void alarm_service_halt(struct alarm_service *service)
 {
     store_unlisten(service->params.store, on_sample, service);
     thread_stop(&service->thread);
-    journal_stop(&service->journal);
+    pthread_mutex_lock(&service->thread.lock);
+    struct journal *journal = service->journal;
+    service->journal = NULL;
+    service->ending = journal != NULL;
+    pthread_mutex_unlock(&service->thread.lock);
+    bool all_written = journal_stop(&journal);
+    pthread_mutex_lock(&service->thread.lock);
+    service->lost = !all_written;
+    service->ending = false;
+    pthread_mutex_unlock(&service->thread.lock);
 }
 
 void alarm_service_stop(struct alarm_service **pointer)
@@ -336,18 +346,30 @@ const char *alarm_service_act(struct alarm_service *service, const char *name, e
 
 struct settling_ticket alarm_service_begin(struct alarm_service *service)
 {
-    return service->journal ? journal_begin(service->journal) : (struct settling_ticket){ 0 };
+    pthread_mutex_lock(&service->thread.lock);
+    struct settling_ticket ticket = service->journal ? journal_begin(service->journal) : (struct settling_ticket){ 0 };
+    pthread_mutex_unlock(&service->thread.lock);
+    return ticket;
 }
 
 void alarm_service_end(struct alarm_service *service, struct settling_ticket *ticket)
 {
+    pthread_mutex_lock(&service->thread.lock);
     if (service->journal)
         journal_end(service->journal, ticket);
+    pthread_mutex_unlock(&service->thread.lock);
 }
 
 int alarm_service_settled(struct alarm_service *service, const struct settling_ticket *ticket)
 {
-    return service->journal ? journal_settled(service->journal, ticket) : 0;
+    bool any = ticket->last > ticket->first;
+    pthread_mutex_lock(&service->thread.lock);
+    int state = service->journal        ? journal_settled(service->journal, ticket)
+                : any && service->ending ? -EINPROGRESS
+                : any && service->lost   ? -EIO
+                                         : 0;
+    pthread_mutex_unlock(&service->thread.lock);
+    return state;
 }
 
 const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole)

@@ -301,12 +301,13 @@ struct journal *journal_start(const struct journal_params *params, struct alarms
     return journal;
 }
 
-void journal_stop(struct journal **pointer)
+bool journal_stop(struct journal **pointer)
 {
     struct journal *journal = *pointer;
     if (!journal)
-        return;
+        return true;
     thread_stop(&journal->thread);
+    bool all_written = journal->taken.count == 0;
     journal_file_close(&journal->file);
     mem_free(journal->waiting.at);
     mem_free(journal->taken.at);
@@ -314,6 +315,7 @@ void journal_stop(struct journal **pointer)
     thread_finish(&journal->thread);
     mem_free(journal);
     *pointer = NULL;
+    return all_written;
 }
 
 int journal_read(struct log *log, const char *folder, const struct journal_query *query,

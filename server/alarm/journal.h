@@ -18,13 +18,14 @@ struct journal_params {
 /* Opens the journal, restores the states of `alarms` from it, and starts the thread. A damaged file is renamed. Returns NULL if there is no
    thread (logged). */
 struct journal *journal_start(const struct journal_params *params, struct alarms *alarms, struct instant now);
-void journal_stop(struct journal **journal); /* writes what is pending and ends; &NULL is fine; leaves NULL */
+/* Writes pending rows and ends. &NULL: no-op. Leaves NULL. Returns whether all rows are on disk. */
+bool journal_stop(struct journal **journal);
 /* Queues a change to be written. Does not wait; names are copied. */
 void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag);
 int64_t journal_newest_utc_ns(const struct journal *journal); /* returns the time of the newest row that it had when it
    was opened, or got by journal_add_entry(). 0: none. Thread: that of the latter */
-/* Tell whether rows that are queued between begin and end are on disk (base/files/settling.h). end has them written at once, even if the
-   last try has just failed. None waits for the disk. */
+/* Tell whether rows that are queued between begin and end are on disk (base/files/settling.h). end has them written at once, even after a
+   try that failed. None waits for the disk. */
 struct settling_ticket journal_begin(struct journal *journal);
 void journal_end(struct journal *journal, struct settling_ticket *ticket);
 int journal_settled(struct journal *journal, const struct settling_ticket *ticket);
