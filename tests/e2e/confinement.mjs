@@ -145,6 +145,20 @@ test('plantcast-prep of the daemon ends at its limits of time and memory', { ski
     }
 }));
 
+test('a reader of the daemon ends at --limit import-seconds', { skip }, () => inFolder(async (folder) => {
+    const plant = await TinyPlant.create(), exports = join(plant.folder, 'exports');
+    try {
+        assert.equal(plant.prepare().code, 0);
+        mkdirSync(exports);
+        writeFileSync(join(exports, 'model.obj'), 'hang\n');
+        plant.bin = programs(folder, ESCAPE, 'plantcastd', 'plantcast-prep', 'plantcast-match');
+        await plant.startDaemon('--import=now', '--limit', 'import-seconds=1');
+        await plant.daemon.line(/the OBJ reader was ended after 1 s \(--timeout; plantcastd: --limit import-seconds\)/);
+    } finally {
+        await plant.destroy();
+    }
+}));
+
 // As a kernel without Landlock, which answers ENOSYS.
 const WITHOUT = `import errno, os, seccomp, sys
 calls = seccomp.SyscallFilter(seccomp.ALLOW)

@@ -3,7 +3,7 @@
  * for each attempt, "NAME succeeded" or "NAME refused ERROR". Its input names the targets: a line "PID PORT SECRET STATE-FILE".
  * As escape.so it is preloaded into a program that confines itself: the attempts run in its first fopen() under confinement. Then
  * PLANTCAST_TARGETS is that line, and PLANTCAST_OWN a folder that the program may write (default: the current one), where `escaped`
- * receives the lines, or stdout if that file cannot be made.
+ * receives the lines, or stdout if that file cannot be made. An input of the line "hang" makes it wait for ever.
  * usage: escape INPUT OUTPUT ... */
 #include <arpa/inet.h>
 #include <dirent.h>
@@ -441,7 +441,11 @@ int main(int argc, char **argv)
 {
     char line[1100] = "";
     FILE *input = argc > 1 ? fopen(argv[1], "r") : NULL;
-    if (!input || !fgets(line, sizeof(line), input) || !take_targets(line))
+    if (!input || !fgets(line, sizeof(line), input))
+        return 2;
+    while (!strcmp(line, "hang\n"))
+        pause();
+    if (!take_targets(line))
         return 2;
     fclose(input);
     try_all();
