@@ -179,7 +179,8 @@ static void add_surface(json_t *asset, const char *folder, uint64_t key)
     mem_free(path);
 }
 
-/* Tells the daemon which levels have triangles enough, so that it need not look for what they err by (server/field/drawn_error.h). */
+/* Tells the daemon in which levels no edge errs, for want of triangles, for its length or at a jump of the distance, so that it need not
+   measure their errors (server/field/drawn_error.h). */
 static void add_resolved(json_t *asset, const char *folder, uint64_t key)
 {
     char *text = folder_report(folder, key);
@@ -187,8 +188,12 @@ static void add_resolved(json_t *asset, const char *folder, uint64_t key)
     json_int_t resolved = 0;
     size_t i;
     json_array_foreach(json_object_get(report, "levels"), i, level)
-        if (i < 62 && json_integer_value(json_object_get(level, "limited_by_triangles")) == 0)
-            resolved |= (json_int_t)1 << i;
+    {
+        json_int_t left = json_integer_value(json_object_get(level, "limited_by_triangles")) +
+                          json_integer_value(json_object_get(level, "limited_by_length")) +
+                          json_integer_value(json_object_get(level, "limited_by_jumps"));
+        resolved |= (json_int_t)(i < 62 && left == 0) << i;
+    }
     json_object_set_new(asset, "resolved_levels", json_integer(resolved));
     json_decref(report);
     mem_free(text);
