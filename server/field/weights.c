@@ -128,6 +128,8 @@ static bool take_errors(struct weights *weights, const float *errors)
     for (size_t v = 0; weights->errors && v < weights->layout->vertex_count; v++) {
         weights->errors[v] = errors[v];
         weights->largest_error = fmaxf(weights->largest_error, errors[v]);
+        for (int b = 0; b < WEIGHTS_ERRING; b++)
+            weights->erring[b] += errors[v] >= ldexpf(1, -b) ? 1 / (float)weights->layout->vertex_count : 0;
     }
     weights->errors_version = 1;
     return weights->errors;

@@ -61,7 +61,8 @@ struct weights {
     float deviation;             /* gp: that of the prior */
     float *errors;               /* by vertex: linear interpolation error of the triangles around it (drawn_error.h); NULL: not measured */
     float largest_error;         /* the largest of them */
-    float erring[WEIGHTS_ERRING]; /* [b]: share of a level's surface whose error is at least 2^-b; of the level that has most */
+    float erring[WEIGHTS_ERRING]; /* [b]: share of a level's surface whose error is at least 2^-b; of the level that has most.
+                                     Prepared: share of the vertices */
     uint64_t measured_levels;    /* levels of detail that are in them, by bits */
     unsigned errors_version;     /* counts their changes */
     float *beyond_m;             /* fin, gp, by vertex: how far beyond the rim of what sensors know; else NULL */

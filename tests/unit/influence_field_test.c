@@ -258,6 +258,11 @@ CASE(test_picks_of_fin_tell_their_error)
     assert_true(off > 0 && marked < compared);
     u.snapshot->readings[0].value = u.snapshot->readings[1].value = 20; /* as all around */
     assert_true(look(&u, place_of(1) + 0.3)->uncertain == 0);
+    assert_true(u.scalars->drawn_error == 0);
+    finish(&u);
+    begin(&u, c, ", thickness_m: 0.001", ", interpolation: fin, ambient: 20, disc_m: 0.1", SENSORS); /* d = 0.075 m, most triangles err */
+    look(&u, 0);
+    assert_true(u.scalars->drawn_error > 1);
     finish(&u);
 }
 
