@@ -110,7 +110,7 @@ test('parameters, sizes and projections are echoed by the pictures that show the
     const { seq, group, ramp_interval: ramp, range, distance, unit } = await client.text('params');
     assert.deepEqual([seq, group, ramp, range, distance, unit], [5, 'pressure', 2, [0, 8], 'euclidean', 'bar']);
     const shown = await client.picture('parameters 5', (p) => p.params_seq === 5);
-    const markers = client.texts.findLast((m) => m.type === 'markers' && m.seq <= shown.seq); // told when they change
+    const markers = client.texts.findLast((m) => m.type === 'markers' && m.markers && m.seq <= shown.seq); // told when they change
     assert.deepEqual(markers?.markers.map(([tag]) => tag), [2], 'markers go before their frame');
     client.say('resize', { width: 200, height: 120, pixel_ratio: 2 });
     await client.picture('200x120', (p) => p.full_width === 200 && p.full_height === 120 && p.flags & FLAG.still);
