@@ -77,47 +77,42 @@ static bool add_attributes(struct cad_model *model, const char *path, const stru
 
 static void say_counts(struct text *said, const struct rvm_counts *counts)
 {
-    const struct {
-        size_t count;
-        const char *what;
-    } left_out[] = { { counts->empty, "primitives without extent, or with numbers that are not finite" },
-                     { counts->obstructions, "obstruction volumes" },
-                     { counts->insulations, "insulation volumes" },
-                     { counts->unknown_kinds, "primitives of an unknown kind" },
-                     { counts->unknown_chunks, "unknown chunks" } };
     text_add(said, "%zu primitives\n", counts->primitives);
     if (counts->covered_faces > 0)
         text_add(said, "left out: %zu faces, %.1f m2, that lie on a neighbour's face and cannot be seen (--keep-covered keeps them)\n",
                  counts->covered_faces, counts->covered_m2);
-    for (size_t i = 0; i < sizeof(left_out) / sizeof(left_out[0]); i++)
-        if (left_out[i].count > 0)
-            text_add(said, "left out: %zu %s\n", left_out[i].count, left_out[i].what);
+    if (counts->unknown_chunks > 0)
+        text_add(said, "error\t%zu\tRVM: unknown chunks are left out, the first one is %s\n", counts->unknown_chunks, counts->unknown_chunk);
 }
 
 static bool convert_rvm(const char *path, const char *attributes, const char *glb, const struct conversion_params *params,
                         struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     struct rvm_counts counts;
+    struct text findings = { 0 };
     size_t length;
     char *bytes = text_read_file(path, max_bytes, &length);
     if (!bytes)
         return fail(why, "%s", strerror(errno));
-    const struct rvm_params how = { .chord_m = params->chord_m, .keep_covered = params->keep_covered, .encoding = params->encoding };
+    const struct rvm_params how = { .chord_m = params->chord_m, .keep_covered = params->keep_covered, .encoding = params->encoding,
+                                     .findings = &findings };
     struct cad_model *model = cad_model_create();
     char *stem = file_name_stem(path);
     bool good = rvm_read(model, bytes, length, &how, &counts, why, CONVERSION_WHY_BYTES);
     mem_free(bytes);
-    if (good && counts.primitives > 0 && counts.empty == counts.primitives)
-        good = fail(why, "none of its %zu primitives can be shown: they have no extent, or numbers that are not finite", counts.primitives);
     if (good) {
         say_counts(said, &counts);
+        text_add(said, "%s", findings.at ? findings.at : "");
         encoding_say(said, "names", &counts.encoding);
     }
+    if (good && counts.primitives > 0 && counts.empty == counts.primitives)
+        good = fail(why, "none of its %zu primitives can be shown: they have no extent, or numbers that are not finite", counts.primitives);
     if (good && attributes) {
         const struct attribute_params read = { .encoding = params->encoding,
                                                .model_encoding = counts.encoding.ascii ? "" : counts.encoding.name };
         good = add_attributes(model, attributes, &read, said, why);
     }
+    text_finish(&findings);
     int status = good ? cad_glb_write(model, stem, glb) : 0;
     if (status != 0)
         good = fail(why, status == -EFBIG ? "a GLB file holds at most 4 GiB: export the plant in parts" : "%s", strerror(-status));

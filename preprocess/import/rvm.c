@@ -11,13 +11,15 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "preprocess/import/encoding.h"
+#include "preprocess/import/rvm_losses.h"
 #include "preprocess/import/rvm_shape.h"
 
-enum { MAX_DEPTH = 1000, HEADER = 24, MAX_NAME = 4096 };
+enum { MAX_DEPTH = 1000, HEADER = 24 };
 
 struct primitive {
     struct rvm_shape shape;
     int node;
+    size_t byte; /* where its chunk begins */
     size_t first_contour, first_point; /* while the arrays grow */
 };
 
@@ -38,9 +40,10 @@ struct reader {
     struct rvm_contour *contours;
     double (*points)[3];
     struct face *faces;
+    struct rvm_losses losses;
     size_t primitive_count, primitive_room, contour_count, contour_room, point_count, point_room, face_count, face_room;
     int stack[MAX_DEPTH], depth;
-    char encoding[64]; /* as the head says; "": nothing */
+    char *encoding; /* as the head says; NULL: nothing */
     char *why;
     size_t why_bytes;
 };
@@ -88,22 +91,26 @@ static bool read_float(struct reader *r, double *out)
     return true;
 }
 
-/* A number of words, then that many words of text that ends with the first 0. It stays in the file's encoding; control characters become
-   blanks. */
-static bool read_text(struct reader *r, char *out, size_t out_bytes)
+/* Reads a number of words, then that many words of text that ends with the first 0. Returns the text in the file's encoding, control
+ * characters as blanks, to be freed with mem_free; NULL on failure. */
+static char *read_text(struct reader *r)
 {
     uint32_t words;
     if (!read_word(r, &words))
-        return false;
-    if (words > (r->chunk_end - r->at) / 4)
-        return fail(r, "a text of %u bytes is longer than its chunk", words * 4U);
-    size_t length = strnlen((const char *)r->bytes + r->at, words * 4UL);
-    snprintf(out, out_bytes, "%.*s", (int)length, (const char *)r->bytes + r->at);
+        return NULL;
+    if (words > (r->chunk_end - r->at) / 4) {
+        fail(r, "a text of %u bytes is longer than its chunk", words * 4U);
+        return NULL;
+    }
+    const char *from = (const char *)r->bytes + r->at;
+    size_t length = strnlen(from, words * 4UL);
+    char *out = mem_array(length + 1, 1);
+    memcpy(out, from, length);
     for (char *c = out; *c; c++)
         if ((unsigned char)*c < 32 || *c == 127)
             *c = ' ';
     r->at += words * 4UL;
-    return true;
+    return out;
 }
 
 /* --- chunks ----------------------------------------------------------------------------------------------------------------------- */
@@ -111,13 +118,19 @@ static bool read_text(struct reader *r, char *out, size_t out_bytes)
 static bool read_head(struct reader *r)
 {
     uint32_t version;
-    char ignored[256]; /* info, note, date, user */
     if (!read_word(r, &version))
         return false;
-    for (int i = 0; i < 4; i++)
-        if (!read_text(r, ignored, sizeof(ignored)))
+    for (int i = 0; i < 4; i++) { /* info, note, date, user */
+        char *ignored = read_text(r);
+        if (!ignored)
             return false;
-    return version < 2 || read_text(r, r->encoding, sizeof(r->encoding));
+        mem_free(ignored);
+    }
+    if (version < 2)
+        return true;
+    mem_free(r->encoding);
+    r->encoding = read_text(r);
+    return r->encoding != NULL;
 }
 
 static bool read_color(struct reader *r)
@@ -133,20 +146,20 @@ static bool begin_group(struct reader *r)
 {
     uint32_t version, material;
     double reference_mm; /* a point near by; primitives do not depend on it */
-    char name[MAX_NAME];
-    if (!read_word(r, &version) || !read_text(r, name, sizeof(name)))
-        return false;
-    for (int axis = 0; axis < 3; axis++)
-        if (!read_float(r, &reference_mm))
-            return false;
-    if (!read_word(r, &material))
-        return false;
-    if (r->depth == MAX_DEPTH)
-        return fail(r, "groups are nested more than %d deep", MAX_DEPTH);
-    int node = cad_model_add_node(r->model, r->depth > 0 ? r->stack[r->depth - 1] : -1, name);
-    r->model->nodes[node].material = material;
-    r->stack[r->depth++] = node;
-    return true;
+    char *name = read_word(r, &version) ? read_text(r) : NULL;
+    bool good = name != NULL;
+    for (int axis = 0; good && axis < 3; axis++)
+        good = read_float(r, &reference_mm);
+    good = good && read_word(r, &material);
+    if (good && r->depth == MAX_DEPTH)
+        good = fail(r, "groups are nested more than %d deep", MAX_DEPTH);
+    if (good) {
+        int node = cad_model_add_node(r->model, r->depth > 0 ? r->stack[r->depth - 1] : -1, name);
+        r->model->nodes[node].material = material;
+        r->stack[r->depth++] = node;
+    }
+    mem_free(name);
+    return good;
 }
 
 static bool read_facets(struct reader *r, struct primitive *primitive)
@@ -179,11 +192,11 @@ static bool read_facets(struct reader *r, struct primitive *primitive)
     return true;
 }
 
-static bool read_primitive(struct reader *r, bool transparency)
+static bool read_primitive(struct reader *r)
 {
-    uint32_t version, kind, ignored;
+    uint32_t version, kind;
     double box;
-    struct primitive primitive = { 0 };
+    struct primitive primitive = { .byte = r->at - HEADER };
     if (r->depth == 0)
         return fail(r, "a primitive stands outside of every group");
     if (!read_word(r, &version) || !read_word(r, &kind))
@@ -194,13 +207,12 @@ static bool read_primitive(struct reader *r, bool transparency)
     for (int i = 0; i < 6; i++)
         if (!read_float(r, &box))
             return false;
-    if (transparency && !read_word(r, &ignored))
-        return false;
+    primitive.node = r->stack[r->depth - 1];
     if (kind < RVM_PYRAMID || kind > RVM_FACETS) {
         r->counts->unknown_kinds++;
+        rvm_losses_add(&r->losses, primitive.node, RVM_UNKNOWN_KIND, primitive.byte, "is of an unknown kind");
         return true;
     }
-    primitive.node = r->stack[r->depth - 1];
     primitive.shape.kind = (enum rvm_kind)kind;
     for (int i = 0; i < rvm_numbers[kind]; i++)
         if (!read_float(r, &primitive.shape.numbers[i]))
@@ -226,15 +238,15 @@ static bool read_chunk(struct reader *r, const char *id, bool *ended)
         return true;
     }
     if (!strcmp(id, "PRIM"))
-        return read_primitive(r, false);
-    if (!strcmp(id, "OBST"))
-        r->counts->obstructions++;
-    else if (!strcmp(id, "INSU"))
-        r->counts->insulations++;
+        return read_primitive(r);
+    bool obstruction = !strcmp(id, "OBST");
+    if (obstruction || !strcmp(id, "INSU"))
+        rvm_losses_add(&r->losses, r->depth > 0 ? r->stack[r->depth - 1] : -1, obstruction ? RVM_OBSTRUCTION : RVM_INSULATION,
+                       r->at - HEADER, NULL);
     else if (!strcmp(id, "END:"))
         *ended = true;
-    else if (strcmp(id, "MODL") != 0)
-        r->counts->unknown_chunks++;
+    else if (strcmp(id, "MODL") != 0 && r->counts->unknown_chunks++ == 0)
+        snprintf(r->counts->unknown_chunk, sizeof(r->counts->unknown_chunk), "%s at byte %zu", id, r->at - HEADER);
     return true;
 }
 
@@ -288,7 +300,7 @@ static void decode_names(struct reader *r, size_t first, const char *asked)
     struct charset_choice *choice = &r->counts->encoding;
     for (size_t i = first; i < r->model->node_count; i++)
         text_add(&all, "%s\n", r->model->nodes[i].name);
-    *choice = encoding_choose(all.at ? all.at : "", all.length, asked, r->encoding);
+    *choice = encoding_choose(all.at ? all.at : "", all.length, asked, r->encoding ? r->encoding : "");
     for (size_t i = first; i < r->model->node_count && !choice->ascii; i++) {
         char *name = r->model->nodes[i].name;
         r->model->nodes[i].name = charset_convert(name, strlen(name), choice->name, NULL);
@@ -383,6 +395,25 @@ static void leave_out_covered_faces(struct reader *r)
             }
 }
 
+static void tessellate(struct reader *r, const struct rvm_params *params)
+{
+    size_t *primitives = mem_array(r->model->node_count + 1, sizeof(*primitives)); /* of each node */
+    for (size_t i = 0; i < r->losses.count; i++)
+        if (r->losses.at[i].why)
+            primitives[r->losses.at[i].node]++;
+    for (size_t i = 0; i < r->primitive_count; i++) {
+        const struct primitive *from = &r->primitives[i];
+        const char *why = rvm_shape_tessellate(&from->shape, params->chord_m, &r->model->nodes[from->node]);
+        primitives[from->node]++;
+        r->counts->empty += why != NULL;
+        if (why)
+            rvm_losses_add(&r->losses, from->node, (int)from->shape.kind, from->byte, why);
+    }
+    if (params->findings)
+        rvm_losses_say(&r->losses, r->model, primitives, params->findings);
+    mem_free(primitives);
+}
+
 bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const struct rvm_params *params, struct rvm_counts *counts,
               char *why, size_t why_bytes)
 {
@@ -401,8 +432,10 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const st
         }
     if (!params->keep_covered)
         leave_out_covered_faces(r);
-    for (size_t i = 0; good && i < r->primitive_count; i++)
-        counts->empty += !rvm_shape_tessellate(&r->primitives[i].shape, params->chord_m, &model->nodes[r->primitives[i].node]);
+    if (good)
+        tessellate(r, params);
+    rvm_losses_finish(&r->losses);
+    mem_free(r->encoding);
     mem_free(r->primitives);
     mem_free(r->contours);
     mem_free(r->points);

@@ -4,6 +4,7 @@
 #ifndef PREPROCESS_IMPORT_RVM_H
 #define PREPROCESS_IMPORT_RVM_H
 #include "base/text/charset.h"
+#include "base/text/text.h"
 #include "preprocess/import/cad_model.h"
 
 struct rvm_counts {
@@ -11,8 +12,8 @@ struct rvm_counts {
     size_t covered_faces;                 /* lie on a neighbour's face: left out */
     double covered_m2;                    /* how large they are, together */
     size_t empty;                         /* primitives without extent, or with numbers that are not finite: left out */
-    size_t obstructions, insulations;     /* left out: volumes kept free, and lagging */
     size_t unknown_chunks, unknown_kinds; /* skipped */
+    char unknown_chunk[40];               /* the first one, as "ABCD at byte 120" */
     struct charset_choice encoding;       /* of its names */
 };
 
@@ -20,6 +21,7 @@ struct rvm_params {
     double chord_m;    /* no chord is further from the surface */
     bool keep_covered; /* faces that lie on a neighbour's face stay */
     const char *encoding; /* of its names, as a person says; NULL: as the file says, or as they look */
+    struct text *findings; /* what is lost is appended, as lines of findings.h; NULL: not wanted */
 };
 
 /* Appends the file's groups and their triangles to the model. `bytes` is the whole file.

@@ -451,11 +451,12 @@ static void contour_normal(const double (*points)[3], const struct rvm_contour *
     }
 }
 
-static bool add_facets(struct cad_node *node, const struct frame *frame, const struct rvm_shape *shape)
+static const char *add_facets(struct cad_node *node, const struct frame *frame, const struct rvm_shape *shape)
 {
+    size_t before = node->triangle_count;
     GLUtesselator *tess = gluNewTess();
     if (!tess)
-        return false;
+        return "is too large";
     struct polygon polygon = { .node = node, .frame = frame, .made = mem_array(MAX_CROSSINGS, sizeof(*polygon.made)) };
     gluTessCallback(tess, GLU_TESS_VERTEX_DATA, (_GLUfuncptr)on_vertex);
     gluTessCallback(tess, GLU_TESS_EDGE_FLAG, (_GLUfuncptr)on_edge_flag);
@@ -481,7 +482,7 @@ static bool add_facets(struct cad_node *node, const struct frame *frame, const s
     }
     gluDeleteTess(tess);
     mem_free(polygon.made);
-    return true;
+    return node->triangle_count > before ? NULL : "has no polygon with an area";
 }
 
 /* --- what readers call ------------------------------------------------------------------------------------------------------------ */
@@ -525,12 +526,16 @@ static bool is_finite(const struct rvm_shape *shape)
     return true;
 }
 
-bool rvm_shape_tessellate(const struct rvm_shape *shape, double chord_m, struct cad_node *node)
+const char *rvm_shape_tessellate(const struct rvm_shape *shape, double chord_m, struct cad_node *node)
 {
     struct frame frame;
     const double *n = shape->numbers;
-    if (!frame_of(shape->to_plant, &frame) || !is_finite(shape) || !has_extent(shape))
-        return false;
+    if (!is_finite(shape))
+        return "has numbers that are not finite";
+    if (!frame_of(shape->to_plant, &frame))
+        return "has a place that is flat or not finite";
+    if (!has_extent(shape))
+        return "has no extent";
     switch (shape->kind) {
     case RVM_PYRAMID: add_pyramid(node, &frame, n, shape->open_faces); break;
     case RVM_BOX: add_box(node, &frame, n, shape->open_faces); break;
@@ -544,7 +549,7 @@ bool rvm_shape_tessellate(const struct rvm_shape *shape, double chord_m, struct 
     case RVM_LINE: add_line(node, &frame, n); break;
     case RVM_FACETS: return add_facets(node, &frame, shape);
     }
-    return true;
+    return NULL;
 }
 
 static void circle_of(const struct frame *frame, const double centre[3], const double outward[3], double radius, struct rvm_face *face)

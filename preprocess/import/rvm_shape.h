@@ -52,7 +52,7 @@ enum { RVM_MAX_FACES = 6 };
 int rvm_shape_faces(const struct rvm_shape *shape, struct rvm_face faces[RVM_MAX_FACES]);
 
 /* Appends the primitive's triangles (or its line) to the node. No chord is further than chord_m from the true surface, except that a whole
- * turn has 8 to 256 corners. Returns false for a primitive without extent or with numbers that are not finite; nothing is added then. */
-bool rvm_shape_tessellate(const struct rvm_shape *shape, double chord_m, struct cad_node *node);
+ * turn has 8 to 256 corners. Returns NULL; or why nothing was added, as "has no extent". */
+const char *rvm_shape_tessellate(const struct rvm_shape *shape, double chord_m, struct cad_node *node);
 
 #endif

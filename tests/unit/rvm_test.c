@@ -106,13 +106,18 @@ static void add_primitive(struct text *file, uint32_t kind, const double m[12], 
     end(file, at);
 }
 
-static struct cad_model *read_text(const struct text *file, struct rvm_counts *counts)
+static struct cad_model *read_with(const struct text *file, const struct rvm_params *how, struct rvm_counts *counts)
 {
     char why[256];
     struct cad_model *model = cad_model_create();
-    if (!rvm_read(model, file->at, file->length, &params, counts, why, sizeof(why)))
+    if (!rvm_read(model, file->at, file->length, how, counts, why, sizeof(why)))
         fail_msg("%s", why);
     return model;
+}
+
+static struct cad_model *read_text(const struct text *file, struct rvm_counts *counts)
+{
+    return read_with(file, &params, counts);
 }
 
 static double area_m2(const struct cad_node *node)
@@ -298,7 +303,7 @@ TEST(test_a_polygon_keeps_its_hole)
     text_finish(&file);
 }
 
-TEST(test_what_is_not_shown_is_counted)
+TEST(test_what_is_not_shown_is_named)
 {
     struct text file = { 0 };
     struct rvm_counts counts;
@@ -320,15 +325,24 @@ TEST(test_what_is_not_shown_is_counted)
     add_primitive(&file, RVM_BOX, in_place, (double[]){ NAN, 1, 1 });
     end_group(&file);
     end_group(&file); /* one too many */
-    struct cad_model *model = read_text(&file, &counts);
-    assert_int_equal(counts.insulations, 1);
-    assert_int_equal(counts.obstructions, 1);
+    add_group(&file, "/H");
+    add_primitive(&file, RVM_CYLINDER, in_place, (double[]){ 50, 0 });
+    add_primitive(&file, RVM_CYLINDER, in_place, (double[]){ -50, 100 });
+    end_group(&file);
+    struct text said = { 0 };
+    struct rvm_params naming = params;
+    naming.findings = &said;
+    struct cad_model *model = read_with(&file, &naming, &counts);
     assert_int_equal(counts.unknown_kinds, 1);
-    assert_int_equal(counts.unknown_chunks, 1);
-    assert_int_equal(counts.empty, 2);
+    assert_string_equal(counts.unknown_chunk, "WHAT at byte 512");
+    assert_int_equal(counts.empty, 3);
     assert_int_equal(model->nodes[0].triangle_count, 0);
+    assert_string_equal(said.at, "lost\tbyte 408\t/G\tgroup\t\t3 of its 3 primitives are left out: the primitive at byte 408 is of an "
+                                 "unknown kind\nerror\t1\tRVM: /H: 1 of its 2 primitives is left out: the cylinder at byte 992 has no extent\n"
+                                 "left out: 1 obstruction volume of /G\nleft out: 1 insulation volume of /G\n");
     cad_model_destroy(&model);
     text_finish(&file);
+    text_finish(&said);
 }
 
 TEST(test_names_that_are_not_utf8_are_latin1)
@@ -343,6 +357,22 @@ TEST(test_names_that_are_not_utf8_are_latin1)
     assert_string_equal(model->nodes[0].name, "/PIÈCE ");
     cad_model_destroy(&model);
     text_finish(&file);
+}
+
+TEST(test_a_long_name_stays_whole)
+{
+    struct text file = { 0 }, name = { 0 };
+    struct rvm_counts counts;
+    while (name.length < 5000)
+        text_add(&name, "펌");
+    add_head(&file);
+    add_group(&file, name.at);
+    end_group(&file);
+    struct cad_model *model = read_text(&file, &counts);
+    assert_string_equal(model->nodes[0].name, name.at);
+    cad_model_destroy(&model);
+    text_finish(&file);
+    text_finish(&name);
 }
 
 /* Cut at each byte, and with each byte of the first 4 kB set to 255: read to an end, or refused with a place. */
