@@ -25,6 +25,7 @@
 #include "preprocess/import/unpack.h"
 #include "preprocess/model/gltf_shim.h"
 
+enum { MOST_NAMED = 20 };
 static const size_t max_bytes = (size_t)4 << 30;
 
 /* Returns false, so that callers can return it. */
@@ -82,7 +83,8 @@ static void say_counts(struct text *said, const struct rvm_counts *counts)
         text_add(said, "left out: %zu faces, %.1f m2, that lie on a neighbour's face and cannot be seen (--keep-covered keeps them)\n",
                  counts->covered_faces, counts->covered_m2);
     if (counts->unknown_chunks > 0)
-        text_add(said, "error\t%zu\tRVM: unknown chunks are left out, the first one is %s\n", counts->unknown_chunks, counts->unknown_chunk);
+        text_add(said, "error\t%zu\tRVM: unknown chunks are left out, the first one is %s\n",
+                 counts->unknown_chunks, counts->unknown_chunk);
 }
 
 static bool convert_rvm(const char *path, const char *attributes, const char *glb, const struct conversion_params *params,
@@ -147,6 +149,26 @@ static int read_ourselves(void *arg)
     return good ? 0 : 1;
 }
 
+/* Prints the nodes of a glTF model whose mesh has no triangles, as findings.h says. */
+static void say_empty_nodes(const struct gltf_model *model)
+{
+    struct text names = { 0 };
+    size_t count = 0;
+    for (uint32_t i = 0; i < model->node_count; i++) {
+        const struct gltf_node *node = &model->nodes[i];
+        const struct gltf_mesh *mesh = node->mesh >= 0 ? &model->meshes[node->mesh] : NULL;
+        if (!mesh || mesh->primitive_count > 0)
+            continue;
+        if (mesh->skipped_lines + mesh->skipped_points == 0)
+            printf("lost\t#%u\t%s\tnode\t\tits mesh has no triangles\n", node->number, node->name);
+        else if (count++ < MOST_NAMED)
+            text_add(&names, "%s%s", count > 1 ? ", " : "", *node->name ? node->name : "a node without a name");
+    }
+    if (count > 0)
+        printf("not shown: %zu nodes that are only lines or points: %s%s\n", count, names.at, count > MOST_NAMED ? ", ..." : "");
+    text_finish(&names);
+}
+
 /* In a child of its own, because the reader may be in a stranger's hands. plantcast-prep would refuse the same models. */
 static int check(void *arg)
 {
@@ -157,6 +179,8 @@ static int check(void *arg)
     bool good = model_source_open(&source, reading->output, why) && gltf_load(&model, &source, why);
     for (uint32_t i = 0; good && i < model.left_out_textures; i++)
         printf("left out: %s\n", model.left_out[i]);
+    if (good && reading->format->reader == FORMAT_GLTF)
+        say_empty_nodes(&model);
     if (good && model.node_count == 0)
         good = wrong(why, "there is nothing in it");
     if (!good)

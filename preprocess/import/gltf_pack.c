@@ -50,25 +50,27 @@ static json_int_t append(struct pack *pack, const void *bytes, size_t count)
 static bool take_buffers(struct pack *pack)
 {
     const json_t *list = json_object_get(pack->root, "buffers");
+    bool *standins = model_json_standins(pack->root), good = true;
     pack->offsets = mem_array(json_array_size(list) + 1, sizeof(*pack->offsets));
-    for (size_t i = 0; i < json_array_size(list); i++) {
+    for (size_t i = 0; good && i < json_array_size(list); i++) {
         char uri_why[MODEL_WHY_BYTES];
         const char *uri = uri_of(json_array_get(list, i));
         size_t size = pack->binary.size;
-        bool standin = !uri && model_json_is_standin(pack->root, i);
-        if (standin) {
-            pack->offsets[i] = 0; /* its views are decoded from another buffer */
-            continue;
+        if (!uri && standins[i])
+            continue; /* its views are decoded from another buffer */
+        if (!uri && (i > 0 || !pack->binary.at)) {
+            good = wrong(pack->why, "buffer %zu has no bytes of its own: pack the model into a GLB file by the program that made it", i);
+            break;
         }
-        if (!uri && (i > 0 || !pack->binary.at))
-            return wrong(pack->why, "buffer %zu has no bytes of its own: pack the model into a GLB file by the program that made it", i);
         unsigned char *own = uri ? model_uri_read(pack->source->folder, uri, &size, uri_why) : NULL;
         if (uri && !own)
-            return wrong(pack->why, "buffer %zu: %s", i, uri_why);
-        pack->offsets[i] = append(pack, own ? own : pack->binary.at, size);
+            good = wrong(pack->why, "buffer %zu: %s", i, uri_why);
+        else
+            pack->offsets[i] = append(pack, own ? own : pack->binary.at, size);
         mem_free(own);
     }
-    return true;
+    mem_free(standins);
+    return good;
 }
 
 /* Of a view, or of the view that its extension compresses. */
@@ -101,7 +103,9 @@ static const char *image_type(const unsigned char *bytes, size_t size)
         return "image/webp";
     if (size > 12 && !memcmp(bytes, "\xabKTX", 4))
         return "image/ktx2";
-    return size > 4 && !memcmp(bytes, "\x89PNG", 4) ? "image/png" : "image/jpeg";
+    if (size > 4 && !memcmp(bytes, "\x89PNG", 4))
+        return "image/png";
+    return size > 3 && !memcmp(bytes, "\xff\xd8\xff", 3) ? "image/jpeg" : "application/octet-stream";
 }
 
 static bool take_images(struct pack *pack)

@@ -46,7 +46,8 @@ static void say_group(const struct rvm_loss *first, size_t count, const struct c
              name_of(first->kind), first->byte, first->why);
 }
 
-static void say_volumes(const struct rvm_losses *losses, int kind, const char *what, const struct cad_model *model, struct text *said)
+static void say_volumes(const struct rvm_losses *losses, int kind, const char *what, const struct cad_model *model,
+                        struct text *said)
 {
     size_t count = 0, groups = 0;
     int last = -1;
@@ -60,7 +61,8 @@ static void say_volumes(const struct rvm_losses *losses, int kind, const char *w
         last = losses->at[i].node;
     }
     if (count > 0)
-        text_add(said, "left out: %zu %s volume%s%s%s\n", count, what, count > 1 ? "s" : "", names.at ? names.at : "", groups > MOST_NAMED ? ", ..." : "");
+        text_add(said, "left out: %zu %s volume%s%s%s\n", count, what, count > 1 ? "s" : "",
+                 names.at ? names.at : "", groups > MOST_NAMED ? ", ..." : "");
     text_finish(&names);
 }
 
@@ -83,7 +85,8 @@ void rvm_losses_say(struct rvm_losses *losses, const struct cad_model *model, co
         if (first)
             say_group(first, count, node, primitives[i], said);
         else if (primitives[i] > 0 && node->triangle_count + node->line_count == 0)
-            text_add(said, "lost\t#%zu\t%s\tgroup\t\tall its faces lie on faces of its neighbours (--keep-covered keeps them)\n", i, node->name);
+            text_add(said, "lost\t#%zu\t%s\tgroup\t\tall its faces lie on faces of its neighbours (--keep-covered keeps them)\n",
+                     i, node->name);
     }
     say_volumes(losses, RVM_OBSTRUCTION, "obstruction", model, said);
     say_volumes(losses, RVM_INSULATION, "insulation", model, said);

@@ -2,7 +2,7 @@
 /* What an RVM file holds and a model does not show, named by group. Thread: one per object. */
 #ifndef PREPROCESS_IMPORT_RVM_LOSSES_H
 #define PREPROCESS_IMPORT_RVM_LOSSES_H
-#include "base/text.h"
+#include "base/text/text.h"
 #include "preprocess/import/cad_model.h"
 
 /* In the place of a kind of primitive (enum rvm_kind). */

@@ -95,6 +95,8 @@ struct uv_lays {
 };
 uv_lays lays_of(const tinygltf::Model &m, int material);
 
+/* Notes what is not shown. read_materials() makes room. */
+void leave_out(work *w, const std::string &text);
 void read_materials(work *w);
 /* Takes those textures out of a material that lie in this way and cannot be drawn beyond 0..1, and says so. */
 void leave_out_bounded(work *w, int material, size_t lay);

@@ -108,11 +108,6 @@ float finite(double value, double otherwise)
     return std::isfinite(out) ? out : static_cast<float>(otherwise);
 }
 
-void leave_out(work *w, const std::string &text)
-{
-    w->model->left_out[w->model->left_out_textures++] = mem_strdup(text.c_str());
-}
-
 std::string material_what(const work &w, int number)
 {
     return "material " + std::to_string(number) + " '" + w.parsed.materials.at(static_cast<size_t>(number)).name.substr(0, 80) + "'";
@@ -168,6 +163,11 @@ void read_material(work *w, const tinygltf::Material &from, asset_material *to, 
 
 } // namespace
 
+void leave_out(work *w, const std::string &text)
+{
+    w->model->left_out[w->model->left_out_textures++] = mem_strdup(text.c_str());
+}
+
 uv_lays lays_of(const tinygltf::Model &m, int material)
 {
     uv_lays lays;
@@ -219,9 +219,9 @@ void read_materials(work *w)
     model->materials = new_array<asset_material>(w->parsed.materials.size() + 1);
     model->material_names = new_array<char *>(w->parsed.materials.size() + 1);
     model->textures = new_array<gltf_texture>(USE_COUNT * w->parsed.materials.size() + 1);
-    model->left_out = new_array<char *>(USE_COUNT * w->parsed.materials.size() + d->look_count + 1);
+    model->left_out = new_array<char *>(USE_COUNT * w->parsed.materials.size() + d->look_count + 2); /* 1: nodes in no scene */
     for (size_t i = 0; i < d->look_count; i++)
-        leave_out(w, std::string("the file requires ") + d->looks[i] + ", which only changes how it looks");
+        leave_out(w, d->looks[i]);
     for (const tinygltf::Material &material : w->parsed.materials) {
         int number = static_cast<int>(model->material_count);
         std::string what = material_what(*w, number);

@@ -164,6 +164,19 @@ std::vector<int> roots_of(const tinygltf::Model &m)
     return roots;
 }
 
+/* Nodes with a mesh that the scene does not reach. */
+void note_unreached(const tree &tree)
+{
+    size_t count = 0;
+    std::string first;
+    for (size_t i = 0; i < tree.seen.size(); i++)
+        if (!tree.seen[i] && tree.w->parsed.nodes[i].mesh >= 0 && count++ == 0)
+            first = node_what(tree.w->parsed, static_cast<int>(i));
+    if (count > 0)
+        leave_out(tree.w, "not in the scene that the file shows first: " + std::to_string(count) +
+                              (count > 1 ? " nodes with meshes, such as " : " node with a mesh, ") + first);
+}
+
 } // namespace
 
 void read_nodes(work *w)
@@ -173,6 +186,7 @@ void read_nodes(work *w)
     try {
         for (int root : roots_of(w->parsed))
             walk(&tree, root, -1, identity, 0);
+        note_unreached(tree);
         w->model->nodes = new_array<gltf_node>(tree.out.size() + 1);
     } catch (...) {
         for (gltf_node &node : tree.out)

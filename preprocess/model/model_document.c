@@ -16,13 +16,12 @@
 
 /* --- buffers ------------------------------------------------------------------------------------------------------------- */
 
-static bool load_buffer(struct document_work *work, size_t number, const json_t *buffer)
+static bool load_buffer(struct document_work *work, size_t number, const json_t *buffer, bool standin)
 {
     struct document_bytes bytes = { 0 };
     char uri_why[MODEL_WHY_BYTES];
     const char *uri = json_string_value(json_object_get(buffer, "uri"));
     uint64_t length = document_number(buffer, "byteLength");
-    bool standin = model_json_is_standin(work->root, number);
     if (uri) {
         bytes.at = bytes.own = model_uri_read(work->source->folder, uri, &bytes.size, uri_why);
         if (!bytes.at)
@@ -44,10 +43,11 @@ static bool load_buffer(struct document_work *work, size_t number, const json_t 
 static bool load_buffers(struct document_work *work)
 {
     const json_t *buffers = json_object_get(work->root, "buffers");
-    for (size_t i = 0; i < json_array_size(buffers); i++)
-        if (!load_buffer(work, i, json_array_get(buffers, i)))
-            return false;
-    return true;
+    bool *standins = model_json_standins(work->root), good = true;
+    for (size_t i = 0; good && i < json_array_size(buffers); i++)
+        good = load_buffer(work, i, json_array_get(buffers, i), standins[i]);
+    mem_free(standins);
+    return good;
 }
 
 static bool view_bytes(const struct document_work *work, size_t number, struct model_bytes *out)
@@ -156,16 +156,51 @@ static bool load_images(struct document_work *work)
     return true;
 }
 
-/* Extensions that are required and left out. */
-static void take_looks(struct document_work *work)
+static const char specular[] = "KHR_materials_pbrSpecularGlossiness";
+
+/* Notes extensions that are left out: required ones that only change looks, and others of which nothing is known. */
+static void take_left_out(struct document_work *work)
 {
-    const json_t *required = json_object_get(work->root, "extensionsRequired");
+    const json_t *required = json_object_get(work->root, "extensionsRequired"), *used = json_object_get(work->root, "extensionsUsed");
     struct model_document *d = work->document;
-    d->looks = mem_array(json_array_size(required) + 1, sizeof(*d->looks));
+    d->looks = mem_array(json_array_size(required) + json_array_size(used) + 1, sizeof(*d->looks));
     for (size_t i = 0; i < json_array_size(required); i++) {
         const char *name = json_string_value(json_array_get(required, i));
         if (name && model_rules_look(name))
-            d->looks[d->look_count++] = mem_strdup(name);
+            d->looks[d->look_count++] =
+                mem_printf("the file requires %.100s%s", name,
+                           strcmp(name, specular) == 0 ? ": its diffuse colours are kept, its specular ones are not"
+                                                       : ", which only changes how it looks");
+    }
+    for (size_t i = 0; i < json_array_size(used); i++) {
+        const char *name = json_string_value(json_array_get(used, i));
+        if (name && !model_rules_known(name) && !model_rules_look(name))
+            d->looks[d->look_count++] = mem_printf("the file uses %.100s, which is not supported", name);
+    }
+}
+
+static void move_member(json_t *to, const char *as, json_t *from, const char *name)
+{
+    json_t *value = json_object_get(from, name);
+    if (value && !json_is_null(value))
+        json_object_set(to, as, value);
+}
+
+/* A material of the older model has a diffuse colour in place of a base colour. A base colour that the file has as well stays. */
+static void take_diffuse_colors(json_t *root)
+{
+    const json_t *materials = json_object_get(root, "materials");
+    for (size_t i = 0; i < json_array_size(materials); i++) {
+        json_t *material = json_array_get(materials, i), *pbr = json_object_get(material, "pbrMetallicRoughness");
+        json_t *from = json_object_get(json_object_get(material, "extensions"), specular), *glossiness;
+        if (!json_is_object(from) || json_object_get(pbr, "baseColorFactor") || json_object_get(pbr, "baseColorTexture"))
+            continue;
+        pbr = json_pack("{s:i}", "metallicFactor", 0);
+        move_member(pbr, "baseColorFactor", from, "diffuseFactor");
+        move_member(pbr, "baseColorTexture", from, "diffuseTexture");
+        glossiness = json_object_get(from, "glossinessFactor");
+        json_object_set_new(pbr, "roughnessFactor", json_real(json_is_number(glossiness) ? 1 - json_number_value(glossiness) : 0));
+        json_object_set_new(material, "pbrMetallicRoughness", pbr);
     }
 }
 
@@ -187,10 +222,11 @@ static void strip(json_t *root)
 
 static bool make_plain(struct document_work *work)
 {
+    take_diffuse_colors(work->root);
     if (!model_rules_check(work->root, work->why) || !load_buffers(work) || !document_expand_meshopt(work) || !views_good(work) ||
         !document_expand_draco(work) || !fill_accessors(work) || !load_images(work))
         return false;
-    take_looks(work);
+    take_left_out(work);
     strip(work->root);
     work->document->json = json_dumps(work->root, JSON_COMPACT);
     if (!work->document->json)

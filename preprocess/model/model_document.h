@@ -25,7 +25,7 @@ struct model_document {
     size_t json_bytes;
     struct document_bytes *buffers;
     struct document_image *images;
-    char **looks; /* extensions that the file requires and that are left out: they only change how it looks */
+    char **looks; /* a text for each extension that is left out */
     size_t buffer_count, image_count, look_count;
     size_t total_bytes; /* of the buffers, but for those that are all zeros */
 };

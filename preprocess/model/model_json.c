@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "base/mem.h"
+
 #define MAX_LEVELS 64 /* of arrays and objects; glTF needs about ten, extras some more */
 
 static uint32_t read_u32(const unsigned char *at)
@@ -24,15 +26,15 @@ static bool glb_good(struct model_bytes file, struct model_bytes *json, struct m
     if (size < 20 || memcmp(b + 16, "JSON", 4) != 0 || json_bytes > size - 20)
         return wrong(why, "GLB: the first chunk is not JSON, or is cut off");
     *json = (struct model_bytes){ b + 20, json_bytes };
-    const unsigned char *next = b + 20 + json_bytes;
-    size_t left = size - 20 - json_bytes;
-    if (left < 8)
-        return true;
-    uint32_t bytes = read_u32(next);
-    if (bytes > left - 8)
-        return wrong(why, "GLB: the second chunk has %u bytes, but only %zu are left", bytes, left - 8);
-    if (memcmp(next + 4, "BIN\0", 4) == 0)
-        *binary = (struct model_bytes){ next + 8, bytes };
+    size_t at = 20 + (size_t)json_bytes;
+    while (!binary->at && size - at >= 8) { /* chunks of other kinds may lie between */
+        uint32_t bytes = read_u32(b + at);
+        if (bytes > size - at - 8)
+            return wrong(why, "GLB: the chunk at byte %zu has %u bytes, but only %zu are left", at, bytes, size - at - 8);
+        if (memcmp(b + at + 4, "BIN\0", 4) == 0)
+            *binary = (struct model_bytes){ b + at + 8, bytes };
+        at += 8 + (size_t)bytes;
+    }
     return true;
 }
 
@@ -90,19 +92,27 @@ static const json_t *meshopt_of(const json_t *object)
     return json_object_get(json_object_get(object, "extensions"), "EXT_meshopt_compression");
 }
 
-bool model_json_is_standin(const json_t *root, size_t buffer)
+/* The number of an object's buffer; `count` for one that is not there. */
+static size_t number_in(const json_t *object, size_t count)
 {
-    const json_t *views = json_object_get(root, "bufferViews"), *one = json_array_get(json_object_get(root, "buffers"), buffer);
-    bool compressed = false, plain = false;
-    if (json_is_true(json_object_get(meshopt_of(one), "fallback")))
-        return true;
+    const json_t *number = json_object_get(object, "buffer");
+    json_int_t buffer = json_is_integer(number) ? json_integer_value(number) : -1;
+    return buffer >= 0 && (size_t)buffer < count ? (size_t)buffer : count;
+}
+
+bool *model_json_standins(const json_t *root)
+{
+    const json_t *buffers = json_object_get(root, "buffers"), *views = json_object_get(root, "bufferViews");
+    size_t count = json_array_size(buffers);
+    bool *compressed = mem_array(count + 1, sizeof(*compressed)), *plain = mem_array(count + 1, sizeof(*plain));
     for (size_t i = 0; i < json_array_size(views); i++) {
-        const json_t *view = json_array_get(views, i), *number = json_object_get(view, "buffer");
-        const json_t *meshopt = meshopt_of(view), *source = json_object_get(meshopt, "buffer");
-        if (json_is_integer(number) && (size_t)json_integer_value(number) == buffer)
-            *(meshopt ? &compressed : &plain) = true;
-        if (json_is_integer(source) && (size_t)json_integer_value(source) == buffer)
-            plain = true;
+        const json_t *view = json_array_get(views, i), *meshopt = meshopt_of(view);
+        size_t buffer = number_in(view, count), source = number_in(meshopt, count);
+        (meshopt ? compressed : plain)[buffer] = true;
+        plain[source] = true;
     }
-    return compressed && !plain;
+    for (size_t i = 0; i < count; i++)
+        compressed[i] = (compressed[i] && !plain[i]) || json_is_true(json_object_get(meshopt_of(json_array_get(buffers, i)), "fallback"));
+    mem_free(plain);
+    return compressed;
 }

@@ -16,8 +16,8 @@ struct model_bytes { /* in somebody else's memory */
    none. Returns NULL if the chunks, the syntax or the depth are wrong, with the reason in why. */
 json_t *model_json_load(struct model_bytes file, struct model_bytes *binary, char why[MODEL_WHY_BYTES]);
 
-/* Whether a buffer only stands in for one that EXT_meshopt_compression compresses, for programs that cannot read that: it may have no
- * bytes. The file says so, or each view of it is compressed. */
-bool model_json_is_standin(const json_t *root, size_t buffer);
+/* Returns for each buffer whether it only stands in for one that EXT_meshopt_compression compresses, for programs that cannot read that:
+ * such a buffer may have no bytes. The file says so, or each view of it is compressed. Free with mem_free(). */
+bool *model_json_standins(const json_t *root);
 
 #endif

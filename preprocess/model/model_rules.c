@@ -299,7 +299,7 @@ static bool list_good(json_t *root, const char *list, char *why)
     return true;
 }
 
-static bool is_known(const char *name)
+bool model_rules_known(const char *name)
 {
     bool known = false;
     for (size_t i = 0; !known && i < sizeof(known_extensions) / sizeof(known_extensions[0]); i++)
@@ -312,7 +312,7 @@ bool model_rules_look(const char *name)
     bool look = false;
     for (size_t i = 0; !look && i < sizeof(look_extensions) / sizeof(look_extensions[0]); i++)
         look = strncmp(name, look_extensions[i], strlen(look_extensions[i])) == 0;
-    return look && !is_known(name);
+    return look && !model_rules_known(name);
 }
 
 static bool head_good(json_t *root, char *why)
@@ -326,7 +326,7 @@ static bool head_good(json_t *root, char *why)
         return wrong(why, "extensionsRequired is not a list");
     for (size_t i = 0; i < json_array_size(required); i++) {
         const char *name = json_string_value(json_array_get(required, i));
-        if (!name || (!is_known(name) && !model_rules_look(name)))
+        if (!name || (!model_rules_known(name) && !model_rules_look(name)))
             return wrong(why, "requires the extension %.100s, which is not supported", name ? name : "without a name");
     }
     static const struct rule scene = { "", "scene", INDEX, MAY, "scenes", 0 };

@@ -105,16 +105,28 @@ test('FBX: a geometric transform moves its own mesh and no child', { skip }, () 
     assert.ok(near(list[1].size, [4.54, 3.54, 0.5]), JSON.stringify(list[1])); /* from 2.54 to 7.08 */
 }));
 
+// A triangle in a glTF file, or a GLB file of these chunks.
+const triangle = Buffer.alloc(44);
+[0, 0, 0, 1, 0, 0, 1, 1, 0].forEach((v, i) => triangle.writeFloatLE(v, 4 * i));
+[0, 1, 2].forEach((v, i) => triangle.writeUInt16LE(v, 36 + 2 * i));
+const gltf = (uri, more = {}) => JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }],
+    nodes: [{ mesh: 0, name: 'T-1' }], meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
+    buffers: [{ byteLength: 42, uri }], bufferViews: [{ buffer: 0, byteLength: 36 }, { buffer: 0, byteOffset: 36, byteLength: 6 }],
+    accessors: [{ bufferView: 0, componentType: 5126, count: 3, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 0] },
+        { bufferView: 1, componentType: 5123, count: 3, type: 'SCALAR' }], ...more });
+function glbOf(...chunks) {
+    const head = Buffer.from('glTF\x02\0\0\0\0\0\0\0'), parts = chunks.flatMap(([kind, bytes]) => {
+        const size = Buffer.alloc(8, kind.padEnd(8, '\0'));
+        size.copyWithin(4, 0, 4);
+        size.writeUInt32LE(bytes.length);
+        return [size, bytes];
+    });
+    head.writeUInt32LE(12 + parts.reduce((sum, { length }) => sum + length, 0), 8);
+    return Buffer.concat([head, ...parts]);
+}
+
 test('glTF: names of files with percent signs and accents, required looks, missing pictures', { skip }, () => inFolder((folder) => {
-    const bytes = Buffer.alloc(42);
-    [0, 0, 0, 1, 0, 0, 1, 1, 0].forEach((v, i) => bytes.writeFloatLE(v, 4 * i));
-    [0, 1, 2].forEach((v, i) => bytes.writeUInt16LE(v, 36 + 2 * i));
-    const gltf = (uri, more = {}) => JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }],
-        nodes: [{ mesh: 0, name: 'T-1' }], meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
-        buffers: [{ byteLength: 42, uri }], bufferViews: [{ buffer: 0, byteLength: 36 }, { buffer: 0, byteOffset: 36, byteLength: 6 }],
-        accessors: [{ bufferView: 0, componentType: 5126, count: 3, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 0] },
-            { bufferView: 1, componentType: 5123, count: 3, type: 'SCALAR' }], ...more });
-    const file = (name) => writeFileSync(join(folder, name), bytes);
+    const file = (name) => writeFileSync(join(folder, name), triangle);
     for (const [name, uri] of [['tank 10%.bin', 'tank 10%.bin'], ['a+b#1.bin', 'a+b%231.bin'], ['50%25.bin', '50%25.bin'],
         ['Behälter.bin'.normalize('NFD'), 'Behälter.bin'.normalize('NFC')],
         ['Öl.bin'.normalize('NFC'), encodeURIComponent('Öl.bin'.normalize('NFD'))],
@@ -134,6 +146,64 @@ test('glTF: names of files with percent signs and accents, required looks, missi
     writeFileSync(join(folder, 'r.gltf'), gltf('a.bin', { extensionsRequired: ['CESIUM_RTC'] }));
     assert.match(plantcast('import', join(folder, 'r.gltf'), '-o', join(folder, 'other')).stderr,
         /requires the extension CESIUM_RTC, which is not supported/);
+}));
+
+const read = (folder, name, bytes) => {
+    writeFileSync(join(folder, name), bytes);
+    const said = plantcast('import', join(folder, name), '-o', join(folder, `${name}.plant`), '--report', join(folder, 'report.json'));
+    assert.equal(said.status, 0, said.stderr);
+    const bytesOfGlb = readFileSync(join(folder, `${name}.plant/${name.replace(/\.\w+$/, '')}.glb`));
+    return { ...JSON.parse(readFileSync(join(folder, 'report.json'))).models[0], out: said.stdout,
+        json: JSON.parse(bytesOfGlb.subarray(20, 20 + bytesOfGlb.readUInt32LE(12))) };
+};
+
+test('glTF: nodes without triangles, and nodes in no scene, are named', { skip }, () => inFolder((folder) => {
+    writeFileSync(join(folder, 'a.bin'), triangle);
+    const mesh = (mode, indices = 1) => ({ primitives: [{ attributes: { POSITION: 0 }, indices, mode }] });
+    const { lost, left_out, out } = read(folder, 'a.gltf', gltf('a.bin', { scenes: [{ nodes: [0, 1, 2, 3] }, { nodes: [4] }],
+        meshes: [mesh(4), mesh(1), mesh(0), mesh(4, 2)], accessors: [...JSON.parse(gltf('')).accessors,
+            { bufferView: 1, componentType: 5123, count: 0, type: 'SCALAR' }], extensionsUsed: ['ACME_bent', 'KHR_materials_unlit'],
+        nodes: [...['T-1', 'L-2', 'P-3', 'E-4'].map((name, i) => ({ name, mesh: i })), { name: 'S-5', mesh: 0 }] }));
+    assert.deepEqual(lost, [{ id: '#3', name: 'E-4', class: 'node', guid: '', why: 'its mesh has no triangles' }]);
+    assert.match(out, /not shown: 2 nodes that are only lines or points: L-2, P-3\n/);
+    assert.deepEqual(left_out, ['the file uses ACME_bent, which is not supported',
+        "not in the scene that the file shows first: 1 node with a mesh, node 4 'S-5'"]);
+}));
+
+test('glTF: the diffuse colour of the older materials, odd kinds of images, chunks of other kinds', { skip }, () => inFolder((folder) => {
+    const png = 'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR4nGP4z8DwHwAFAAH/iZk9HQAAAABJRU5ErkJggg==';
+    writeFileSync(join(folder, 'a.bin'), triangle);
+    const old = (more) => ({ name: 'paint', extensions: { KHR_materials_pbrSpecularGlossiness: more } });
+    const { left_out } = read(folder, 'a.gltf', gltf('a.bin', { extensionsRequired: ['KHR_materials_pbrSpecularGlossiness'],
+        images: ['image/jpg', 'application/octet-stream', ''].map((type) => ({ uri: `data:${type};base64,${png}` })),
+        textures: [{ source: 0 }, { source: 1 }, { source: 2 }], materials: [0, 1, 2].map((index) =>
+            old({ diffuseFactor: [1, 0, 0, 1], diffuseTexture: { index } })) }));
+    assert.deepEqual(left_out, ['the file requires KHR_materials_pbrSpecularGlossiness: its diffuse colours are kept, ' +
+        'its specular ones are not']);
+    const json = Buffer.from(JSON.stringify({ ...JSON.parse(gltf()), buffers: [{ byteLength: 42 }] }).padEnd(2000));
+    const [first, bin, other] = [['JSON', json], ['BIN', triangle], ['ACME', Buffer.alloc(8)]];
+    for (const [name, ...chunks] of [['after.glb', first, bin, other], ['between.glb', first, other, bin]])
+        assert.equal(boxed(folder, name, glbOf(...chunks)).triangles, 1, name);
+    assert.equal(boxed(folder, 'tail.glb', Buffer.concat([glbOf(first, bin), Buffer.alloc(12, 7)])).triangles, 1);
+}));
+
+// Of gltfpack: the compressed bytes, and a buffer without bytes for programs that cannot read them.
+const noPacker = spawnSync('gltfpack', ['-v']).error ? 'no gltfpack' : false;
+test('glTF: meshopt, with a fallback buffer that has no uri', { skip: skip || noPacker }, () => inFolder((folder) => {
+    writeFileSync(join(folder, 'a.bin'), triangle);
+    writeFileSync(join(folder, 'a.gltf'), gltf('a.bin'));
+    assert.equal(spawnSync('gltfpack', ['-i', join(folder, 'a.gltf'), '-o', join(folder, 'b.gltf'), '-cc', '-kn', '-noq'],
+        { timeout: 60000 }).status, 0);
+    const packed = JSON.parse(readFileSync(join(folder, 'b.gltf')));
+    const standIn = packed.buffers.findIndex(({ extensions }) => extensions?.EXT_meshopt_compression?.fallback);
+    assert.ok(standIn >= 0 && packed.bufferViews.some(({ extensions }) => extensions?.EXT_meshopt_compression), JSON.stringify(packed));
+    delete packed.buffers[standIn].uri;
+    const cases = { said: packed.buffers[standIn].extensions, unsaid: undefined };
+    for (const [name, extensions] of Object.entries(cases)) {
+        packed.buffers[standIn].extensions = extensions;
+        const { triangles, size } = boxed(folder, `${name}.gltf`, JSON.stringify(packed));
+        assert.ok(triangles === 1 && near(size, [1, 0, 1]), JSON.stringify(size)); // Z up: y of glTF is z
+    }
 }));
 
 test('a signal ends it, and nothing is left behind', { skip }, () => inFolder(async (folder) => {

@@ -8,15 +8,16 @@ const MOST_IDS = 20; // of one kind of error that are named
 
 // Returns the numbers of all statements that these refer to, themselves among them.
 function reached(model, ids) {
-    const found = new Set(), walk = (value) => {
-        if (Array.isArray(value))
-            value.forEach(walk);
-        else if (value?.type === REFERENCE && !found.has(value.value)) {
+    const found = new Set(), open = ids.map((value) => ({ type: REFERENCE, value }));
+    while (open.length > 0) {
+        const value = open.pop();
+        if (Array.isArray(value)) {
+            open.push(...value);
+        } else if (value?.type === REFERENCE && !found.has(value.value)) {
             found.add(value.value);
-            Object.values(model.line(value.value) ?? {}).forEach(walk);
+            open.push(...Object.values(model.line(value.value) ?? {}));
         }
-    };
-    ids.forEach((value) => walk({ type: REFERENCE, value }));
+    }
     return found;
 }
 
@@ -26,9 +27,9 @@ export function collectErrors() {
     const { log, error } = console, found = new Map();
     console.log = console.error = (...words) => {
         for (const line of words.join(' ').split('\n')) {
-            const [, text, id] = /\[error\]\s*(.*?)\s*(\d*)\s*$/.exec(line) ?? [];
+            const [, text, id] = /\[error\]\s*(.*?)\s*(\d*)\s*(?:\(type \d+\))?\s*$/.exec(line) ?? [];
             if (text)
-                found.set(text, [...found.get(text) ?? [], ...id ? [`#${id}`] : []]);
+                found.set(text, (found.get(text) ?? []).concat(id ? [`#${id}`] : []));
         }
     };
     return (model, solids) => { // lines as findings.h takes them
@@ -42,20 +43,23 @@ export function collectErrors() {
     };
 }
 
-// Returns the items of a shape, also of what it maps.
+// Returns the items of a shape, also of what it maps. Each representation is visited once: a file may map one into itself.
 function itemsOf(model, shape) {
-    const items = [];
-    const walk = (representation, depth) => {
+    const items = new Set(), seen = new Set(), open = [model.line(shape)?.Representations ?? []].flat().map((one) => one?.value);
+    while (open.length > 0) {
+        const representation = open.pop();
+        if (!representation || seen.has(representation))
+            continue;
+        seen.add(representation);
         for (const { value } of [model.line(representation)?.Items ?? []].flat().filter(Boolean)) {
-            const source = depth < 50 ? model.line(value)?.MappingSource?.value : null;
+            const source = model.line(value)?.MappingSource?.value;
             if (source)
-                walk(model.line(source)?.MappedRepresentation?.value, depth + 1);
+                open.push(model.line(source)?.MappedRepresentation?.value);
             else
-                items.push(value);
+                items.add(value);
         }
-    };
-    [model.line(shape)?.Representations ?? []].flat().filter(Boolean).forEach(({ value }) => walk(value, 0));
-    return items;
+    }
+    return [...items];
 }
 
 // Returns { lost, lines }: elements with a shape that is not shown, each as a line of findings.h; how many are only lines and points.

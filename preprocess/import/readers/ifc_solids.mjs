@@ -22,7 +22,7 @@ export function readSolids(path) {
     if (!existsSync(path))
         return { elements, failed };
     const { json, read } = parseGlb(path), number = (name) => Number(name.slice(1));
-    const geometries = json.meshes.map(({ primitives: [{ attributes: { POSITION, NORMAL }, indices }] }) => {
+    const geometries = (json.meshes ?? []).map(({ primitives: [{ attributes: { POSITION, NORMAL }, indices }] }) => {
         const points = read(POSITION, Float32Array, 3), normals = read(NORMAL, Float32Array, 3);
         const vertices = new Float32Array(2 * points.length);
         for (let i = 0; i < points.length; i += 3)
