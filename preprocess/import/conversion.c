@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/mem.h"
 #include "preprocess/child/child.h"
@@ -281,7 +282,7 @@ static bool ask_encoding(const struct reading *reading, char encoding[CHARSET_NA
 
 /* Has Open CASCADE build the solids of an IFC file that web-ifc does not build. ifc.mjs finds them in the folder of its output. Returns
  * false only if the user interrupted it: without these solids the model is still read. */
-static bool build_curved_solids(const struct reading *reading, struct text *said, char why[CONVERSION_WHY_BYTES])
+static bool build_curved_solids(const struct reading *reading, const char *list, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     char *program = import_format_program(import_format_of("x.step"));
     if (!program) {
@@ -290,7 +291,7 @@ static bool build_curved_solids(const struct reading *reading, struct text *said
     }
     struct child_paths paths = { 0 };
     char *output = mem_printf("%s/solids.glb", reading->folder), *chord = mem_printf("%g", reading->params->chord_m * 1000);
-    const char *const argv[] = { program, reading->path, output, chord, "-", "-", "-", NULL };
+    const char *const argv[] = { program, reading->path, output, chord, list, "-", "-", NULL };
     child_paths_add(&paths, reading->path, CONFINE_READ);
     child_paths_add(&paths, reading->folder, CONFINE_WRITE);
     child_paths_add(&paths, program, CONFINE_EXECUTE);
@@ -304,43 +305,76 @@ static bool build_curved_solids(const struct reading *reading, struct text *said
     return !interrupted;
 }
 
-static bool run_program(const struct reading *reading, struct child_paths *paths, struct text *said, char why[CONVERSION_WHY_BYTES])
+/* A program that reads a model, as the table of formats names it. */
+struct reader_program {
+    char *program, *runtime; /* runtime: NULL for a program by itself */
+    char encoding[CHARSET_NAME_BYTES]; /* "-": none is given */
+};
+
+static bool run_reader(const struct reading *reading, const struct reader_program *reader, struct child_paths *paths, struct text *said,
+                       char why[CONVERSION_WHY_BYTES])
 {
-    const struct import_format *format = reading->format;
     const struct conversion_params *params = reading->params;
-    char *program = import_format_program(format), *runtime = import_format_runtime(format), encoding[CHARSET_NAME_BYTES] = "-";
-    bool good = !strcmp(format->name, "IFC") ? ask_encoding(reading, encoding, said, why) : true;
-    if (params->encoding)
-        snprintf(encoding, sizeof(encoding), "%s", params->encoding);
-    if (good && !program)
-        good = fail(why, "%s is not read: %s", format->name, format->missing);
-    if (good && !strcmp(format->name, "IFC"))
-        good = build_curved_solids(reading, said, why);
-    if (!good) {
-        child_paths_finish(paths);
-        mem_free(program);
-        mem_free(runtime);
-        return false;
-    }
-    const char *units = params->units ? params->units : format->unitless ? params->mesh_units : NULL;
+    const char *units = params->units ? params->units : reading->format->unitless ? params->mesh_units : NULL;
     char *chord = mem_printf("%g", params->chord_m * 1000), *memory = mem_printf("--max-old-space-size=%zu", params->memory_bytes >> 20);
     const char *argv[11];
     int count = 0;
-    if (runtime) {
-        argv[count++] = runtime;
+    if (reader->runtime) {
+        argv[count++] = reader->runtime;
         argv[count++] = memory;
-        child_paths_add_folder_of(paths, program, CONFINE_READ);
+        child_paths_add_folder_of(paths, reader->program, CONFINE_READ);
     }
-    child_paths_add(paths, runtime ? runtime : program, CONFINE_EXECUTE);
-    const char *const rest[] = {
-        program, reading->path, reading->output, chord, units ? units : "-", params->up ? params->up : "-", encoding, NULL
-    };
+    child_paths_add(paths, reader->runtime ? reader->runtime : reader->program, CONFINE_EXECUTE);
+    const char *const rest[] = { reader->program,           reading->path,                   reading->output, chord,
+                                 units ? units : "-", params->up ? params->up : "-", reader->encoding, NULL };
     memcpy(argv + count, rest, sizeof(rest));
-    good = run(reading, &(struct child_params){ .argv = argv }, paths, said, why);
+    bool good = run(reading, &(struct child_params){ .argv = argv }, paths, said, why);
     mem_free(chord);
     mem_free(memory);
-    mem_free(program);
-    mem_free(runtime);
+    return good;
+}
+
+/* Reads an IFC file by web-ifc. If web-ifc lists elements that it does not build, Open CASCADE builds them, and the file is read once
+ * more with these. */
+static bool read_ifc(const struct reading *reading, struct reader_program *reader, struct text *said, char why[CONVERSION_WHY_BYTES])
+{
+    char *list = mem_printf("%s/asked.txt", reading->folder);
+    bool good = ask_encoding(reading, reader->encoding, said, why), again = good;
+    if (reading->params->encoding)
+        snprintf(reader->encoding, sizeof(reader->encoding), "%s", reading->params->encoding);
+    for (int pass = 0; again && pass < 2; pass++) {
+        struct text heard = { 0 };
+        struct child_paths paths = { 0 };
+        child_paths_add(&paths, reading->path, CONFINE_READ);
+        child_paths_add(&paths, reading->folder, CONFINE_WRITE);
+        why[0] = 0;
+        good = build_curved_solids(reading, list, &heard, why) && run_reader(reading, reader, &paths, &heard, why);
+        child_paths_finish(&paths);
+        again = pass == 0 && strcmp(why, "interrupted") != 0 && access(list, F_OK) == 0;
+        if (!again)
+            text_add(said, "%s", heard.at ? heard.at : "");
+        text_finish(&heard);
+    }
+    mem_free(list);
+    return good;
+}
+
+static bool run_program(const struct reading *reading, struct child_paths *paths, struct text *said, char why[CONVERSION_WHY_BYTES])
+{
+    const struct import_format *format = reading->format;
+    struct reader_program reader = { import_format_program(format), import_format_runtime(format), "-" };
+    bool good;
+    if (!reader.program) {
+        good = fail(why, "%s is not read: %s", format->name, format->missing);
+    } else if (!strcmp(format->name, "IFC")) {
+        good = read_ifc(reading, &reader, said, why);
+    } else {
+        snprintf(reader.encoding, sizeof(reader.encoding), "%s", reading->params->encoding ? reading->params->encoding : "-");
+        good = run_reader(reading, &reader, paths, said, why);
+    }
+    child_paths_finish(paths);
+    mem_free(reader.program);
+    mem_free(reader.runtime);
     return good;
 }
 

@@ -3,14 +3,15 @@
 // The spatial tree becomes nodes with GUID, class, storey and property sets; geometry that several elements have is there once. Its last
 // line on stderr says why it failed.
 import { createRequire } from 'node:module';
-import { readFileSync, writeFileSync } from 'node:fs';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { GlbWriter, relativeTo } from './glb_writer.mjs';
-import { collectErrors, findLosses } from './ifc_losses.mjs';
+import { collectErrors, findDamaged, findLosses } from './ifc_losses.mjs';
 import { readSolids, takeSolids } from './ifc_solids.mjs';
 
 const CORNERS = 24; // of a circle
+const MOST_NAMED = 20;
 const MAX_DEPTH = 400; // plantcast-prep reads 512 levels
 const NOT_SHOWN = new Set(['IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcSpace', 'IfcDistributionPort', 'IfcVirtualElement']);
 
@@ -197,6 +198,12 @@ function inUtf8(bytes, encoding) {
     return Buffer.from(decoder.decode(bytes));
 }
 
+// Lists elements that Open CASCADE is to build; plantcast-import then starts this program once more. A list that is there was answered.
+function askForSolids(list, elements) {
+    if (elements.length > 0 && !existsSync(list))
+        writeFileSync(list, `${[...new Set(elements)].join('\n')}\n`);
+}
+
 async function main([input, output, , , , encoding]) {
     const bytes = inUtf8(readFileSync(input), encoding), folder = dirname(fileURLToPath(import.meta.url));
     if (!bytes.subarray(0, 4096).toString('latin1').includes('ISO-10303-21'))
@@ -218,15 +225,19 @@ async function main([input, output, , , , encoding]) {
     const root = glb.addNode(-1, basename(input, extname(input)), null);
     const geometry = readGeometry(api, id, model), solids = readSolids(join(dirname(output), 'solids.glb'));
     takeSolids(model, solids, geometry, { styledItem: webIfc.IFCSTYLEDITEM, voids: webIfc.IFCRELVOIDSELEMENT });
-    const { drawn, storeys } = addTree(glb, model, geometry, root), said = errors(model, solids);
+    const { drawn, storeys } = addTree(glb, model, geometry, root);
+    errors.stop();
     const isShown = (element) => drawn.has(element) || NOT_SHOWN.has(model.classOf(element));
-    const { lost, lines } = findLosses(model, webIfc.IFCPRODUCT, isShown, solids.failed);
+    const { lost, lines, ids } = findLosses(model, webIfc.IFCPRODUCT, isShown, solids.failed);
+    askForSolids(join(dirname(output), 'asked.txt'), [...ids, ...findDamaged(model, webIfc.IFCPRODUCT, errors.at())]);
     if (drawn.size > 0)
         writeFileSync(output, glb.finished());
     const openings = [...model.ofType(webIfc.IFCRELVOIDSELEMENT)].length;
     process.stdout.write([`${schema}: ${drawn.size} elements with a shape, ${lost.length} lost, ${storeys} storeys, ${openings} openings ` +
         `cut; ${solids.elements.size} elements by Open CASCADE; of the others circles have ${CORNERS} corners (--chord does not apply)`,
-    ...lines > 0 ? [`not shown: ${lines} elements that are only lines or points`] : [], ...lost, ...said, ''].join('\n'));
+    ...lines.length > 0 ? [`not shown: ${lines.length} elements that are only lines or points: ${lines.slice(0, MOST_NAMED).join(', ')}${
+        lines.length > MOST_NAMED ? ', ...' : ''}`.replace(/[\t\n]/g, ' ')] : [],
+    ...lost, ...solids.said, ...errors.lines(model, solids), ''].join('\n'));
     if (drawn.size === 0)
         throw new Error(`there is no surface in it${lost.length > 0 ? `: ${lost.length} elements have no triangles, such as ` +
             lost[0].split('\t').slice(1).join(', ') : ''}`);

@@ -73,11 +73,8 @@ std::vector<piece> polyline(const model &in, const value &points)
 
 std::vector<piece> indexed(const model &in, const entity &curve)
 {
-    std::vector<gp_Pnt> points;
+    std::vector<gp_Pnt> points = points_of(in, curve[0]);
     std::vector<piece> out;
-    entity list = in.statements.get(curve[0]);
-    for (const value &at : list[0].list)
-        points.push_back(coordinates_of(in, at));
     for (size_t i = 0; curve[1].absent() && i + 1 < points.size(); i++)
         straight(points[i], points[i + 1], 1, &out);
     for (const value &segment : curve[1].list) {
@@ -260,6 +257,15 @@ gp_Pnt point_of(const model &in, const value &reference)
     if (!point.is("IFCCARTESIANPOINT"))
         throw unsupported(point.type);
     return coordinates_of(in, point[0]);
+}
+
+std::vector<gp_Pnt> points_of(const model &in, const value &reference)
+{
+    std::vector<gp_Pnt> out;
+    entity list = in.statements.get(reference);
+    for (const value &at : list[0].list)
+        out.push_back(coordinates_of(in, at));
+    return out;
 }
 
 gp_Dir direction_of(const model &in, const value &reference, const gp_Dir &otherwise)

@@ -21,26 +21,26 @@ function reached(model, ids) {
     return found;
 }
 
-// Collects what web-ifc prints; it has no other way to say what it left out. Returns a function that ends it and returns lines to print,
-// without errors in what Open CASCADE built instead.
+// Collects what web-ifc prints; it has no other way to say what it left out. Returns { stop, at, lines }: stop() ends it; at() returns the
+// numbers of statements with errors; lines() the lines to print, without errors in what Open CASCADE built instead.
 export function collectErrors() {
     const { log, error } = console, found = new Map();
     console.log = console.error = (...words) => {
         for (const line of words.join(' ').split('\n')) {
             const [, text, id] = /\[error\]\s*(.*?)\s*(\d*)\s*(?:\(type \d+\))?\s*$/.exec(line) ?? [];
             if (text)
-                found.set(text, (found.get(text) ?? []).concat(id ? [`#${id}`] : []));
+                found.set(text, (found.get(text) ?? []).concat(id ? [Number(id)] : []));
         }
     };
-    return (model, solids) => { // lines as findings.h takes them
-        Object.assign(console, { log, error });
+    const lines = (model, solids) => { // as findings.h takes them
         const built = found.size > 0 ? [...solids.elements.values()].flatMap(({ parts }) => parts.map(({ item }) => item)) : [];
         const instead = reached(model, built), left = [...found].map(([text, ids]) =>
-            [text, ids.filter((id) => !instead.has(Number(id.slice(1)))), ids.length > 0]);
+            [text, ids.filter((id) => !instead.has(id)), ids.length > 0]);
         return left.filter(([, ids, numbered]) => ids.length > 0 || !numbered).map(([text, ids]) =>
             fields('error', Math.max(ids.length, 1), `web-ifc: ${text} ${
-                [...ids.slice(0, MOST_IDS), ...ids.length > MOST_IDS ? ['...'] : []].join(' ')}`));
+                [...ids.slice(0, MOST_IDS).map((id) => `#${id}`), ...ids.length > MOST_IDS ? ['...'] : []].join(' ')}`));
     };
+    return { stop: () => Object.assign(console, { log, error }), at: () => new Set([...found.values()].flat()), lines };
 }
 
 // Returns the items of a shape, also of what it maps. Each representation is visited once: a file may map one into itself.
@@ -62,22 +62,36 @@ function itemsOf(model, shape) {
     return [...items];
 }
 
-// Returns { lost, lines }: elements with a shape that is not shown, each as a line of findings.h; how many are only lines and points.
+// Returns the elements in whose shapes web-ifc found errors.
+export function findDamaged(model, product, errors) {
+    const known = new Map(), isDamaged = (item) => {
+        if (!known.has(item))
+            known.set(item, [...reached(model, [item])].some((id) => errors.has(id)));
+        return known.get(item);
+    };
+    return errors.size === 0 ? [] : [...model.ofType(product)].filter((id) => {
+        const shape = model.line(id)?.Representation?.value;
+        return shape && itemsOf(model, shape).some(isDamaged);
+    });
+}
+
+// Returns { lost, lines, ids }: elements with a shape that is not shown, each as a line of findings.h; the elements that are only lines and
+// points; the numbers of the lost ones.
 export function findLosses(model, product, isShown, failed) {
-    const lost = [];
-    let lines = 0;
+    const lost = [], lines = [], ids = [];
     for (const id of model.ofType(product)) {
         const line = model.line(id), shape = line?.Representation?.value;
         if (!shape || isShown(id))
             continue;
         const items = itemsOf(model, shape), kinds = [...new Set(items.map((item) => model.classOf(item) || 'a missing statement'))];
         if (items.length > 0 && kinds.every((kind) => LINES.test(kind))) {
-            lines++;
+            lines.push(model.nameOf(id) || `#${id}`);
             continue;
         }
         const reason = [id, ...items].map((item) => failed.get(item)).find(Boolean);
         const why = items.length === 0 ? 'its representation is empty' : kinds.join(', ') + (reason ? `: ${reason}` : '');
+        ids.push(id);
         lost.push(fields('lost', `#${id}`, model.nameOf(id) ?? '', model.classOf(id), line.GlobalId?.value ?? 'no GUID', why));
     }
-    return { lost, lines };
+    return { lost, lines, ids };
 }

@@ -5,11 +5,15 @@
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepBuilderAPI_GTransform.hxx>
+#include <GCPnts_QuasiUniformDeflection.hxx>
+#include <GeomAdaptor_Curve.hxx>
 #include <ShapeFix_Face.hxx>
 #include <TopoDS.hxx>
 #include <gp_Circ.hxx>
 #include <gp_Elips.hxx>
 #include <gp_Pln.hxx>
+
+#include <cmath>
 
 #include "preprocess/import/readers/ifc_shape.hh"
 
@@ -145,6 +149,39 @@ std::vector<TopoDS_Face> parametric(const std::string &type, const lengths &d)
     throw unsupported(type);
 }
 
+/* Returns points along pieces, no chord further than chord_mm from the curve. */
+std::vector<gp_Pnt> points_along(const std::vector<piece> &pieces, double chord_mm)
+{
+    std::vector<gp_Pnt> out = { pieces.front().start() };
+    for (const piece &part : pieces) {
+        double low = std::fmin(part.first, part.last), high = std::fmax(part.first, part.last);
+        GCPnts_QuasiUniformDeflection along(GeomAdaptor_Curve(part.curve), chord_mm, low, high);
+        for (int i = 2; along.IsDone() && i <= along.NbPoints(); i++)
+            out.push_back(along.Value(part.first > part.last ? along.NbPoints() + 1 - i : i));
+    }
+    return out;
+}
+
+/* The outline of a centre line in XY with a thickness; corners are mitred, ends are square to the line. */
+TopoDS_Wire thickened(const std::vector<piece> &pieces, double thickness, double chord_mm)
+{
+    std::vector<gp_Pnt> line = points_along(pieces, chord_mm), right;
+    std::vector<corner> out;
+    for (size_t i = 0; i < line.size(); i++) {
+        size_t before = i > 0 ? i - 1 : 0, after = i + 1 < line.size() ? i : i - 1;
+        gp_Vec in(line[before], line[before + 1]), on(line[after], line[after + 1]);
+        gp_Vec left = gp_Vec(gp::DZ()).Crossed(in.Normalized()) + gp_Vec(gp::DZ()).Crossed(on.Normalized());
+        if (left.Magnitude() < 0.2) /* the mitre would be longer than ten times the thickness */
+            throw unsupported("a centre line that turns back");
+        gp_Vec side = left.Normalized() * (thickness / 2 / (left.Magnitude() / 2));
+        out.push_back({ line[i].X() + side.X(), line[i].Y() + side.Y(), 0 });
+        right.push_back(line[i].Translated(-side));
+    }
+    for (size_t i = right.size(); i-- > 0;)
+        out.push_back({ right[i].X(), right[i].Y(), 0 });
+    return outline(out);
+}
+
 std::vector<TopoDS_Face> profile_within(const model &in, const entity &profile, int depth);
 
 /* Of parts that are moved, or of several profiles. */
@@ -179,6 +216,8 @@ std::vector<TopoDS_Face> profile_within(const model &in, const entity &profile, 
             holes.push_back(wire_of(pieces_of(in, in.statements.get(reference))));
         return faces_of(wire_of(pieces_of(in, in.statements.get(profile[2]))), holes);
     }
+    if (profile.is("IFCCENTERLINEPROFILEDEF"))
+        return faces_of(thickened(pieces_of(in, in.statements.get(profile[2])), in.length * file::number(profile[3]), in.chord_mm), {});
     if (profile.is("IFCCOMPOSITEPROFILEDEF") || profile.is("IFCDERIVEDPROFILEDEF") || profile.is("IFCMIRROREDPROFILEDEF"))
         return assembled(in, profile, depth);
     lengths d(10);
@@ -196,6 +235,14 @@ std::vector<TopoDS_Face> profile_within(const model &in, const entity &profile, 
 std::vector<TopoDS_Face> profile_of(const model &in, const entity &profile)
 {
     return profile_within(in, profile, 0);
+}
+
+std::vector<TopoDS_Shape> profile_shapes_of(const model &in, const entity &profile)
+{
+    if (profile.is("IFCARBITRARYOPENPROFILEDEF"))
+        return { wire_of(pieces_of(in, in.statements.get(profile[2]))) };
+    std::vector<TopoDS_Face> faces = profile_of(in, profile);
+    return { faces.begin(), faces.end() };
 }
 
 } // namespace ifc

@@ -49,6 +49,8 @@ double volume_of(const triangles &all);
 /* --- ifc_curve.cc */
 double length_of(const piece &part); /* in mm */
 gp_Pnt point_of(const model &in, const value &reference);
+/* Of an IfcCartesianPointList. */
+std::vector<gp_Pnt> points_of(const model &in, const value &reference);
 /* Of an IfcDirection; `otherwise` where it is absent. */
 gp_Dir direction_of(const model &in, const value &reference, const gp_Dir &otherwise);
 /* Of an IfcAxis2Placement2D or 3D; the identity where it is absent. */
@@ -66,18 +68,34 @@ TopoDS_Wire wire_of(const std::vector<piece> &pieces);
 /* --- ifc_profile.cc */
 /* The faces of a profile, in the XY plane. */
 std::vector<TopoDS_Face> profile_of(const model &in, const entity &profile);
+/* The same; of an open profile its curve, which sweeps a surface. */
+std::vector<TopoDS_Shape> profile_shapes_of(const model &in, const entity &profile);
 
 /* --- ifc_sweep.cc */
-/* Sweeps faces along pieces, square to them. The faces are in the XY plane, whose X is turned towards `up`. */
-TopoDS_Shape swept(const std::vector<TopoDS_Face> &faces, const std::vector<piece> &pieces, const gp_Dir &up);
+/* Sweeps faces along pieces, square to them. The faces are in the XY plane, whose X is turned towards `x` at the start. `up` turns with
+ * none of them. */
+TopoDS_Shape swept(const std::vector<TopoDS_Face> &faces, const std::vector<piece> &pieces, const gp_Dir &x, const gp_Dir &up);
 TopoDS_Shape disk_of(const model &in, const entity &item);
+
+/* --- ifc_sections.cc */
+/* Joins faces that follow each other, holes to holes. */
+TopoDS_Shape through_faces(const std::vector<TopoDS_Face> &faces);
+TopoDS_Face moved(const TopoDS_Face &face, const gp_Trsf &place);
+/* An IfcSectionedSpine or IfcSectionedSolidHorizontal. */
+TopoDS_Shape sections_of(const model &in, const entity &item);
 
 /* --- ifc_brep.cc */
 /* An IfcAdvancedBrep, read by Open CASCADE's reader for STEP, whose entities are the same. */
 TopoDS_Shape brep_of(const model &in, const entity &item);
 
+/* --- ifc_faces.cc */
+bool has_flat_faces(const std::string &type);
+/* Whether the faces of such an item are bounded by edges, not by points alone: ifc_brep.cc reads these. */
+bool has_edges(const model &in, const entity &item);
+TopoDS_Shape flat_faces_of(const model &in, const entity &item);
+
 /* --- ifc_solid.cc */
-/* Whether items of this type are built here, and not by web-ifc. */
+/* Whether items of this type are always built here. Others are where web-ifc fails. */
 bool is_built(const std::string &type);
 /* A solid item, or a boolean result of such. */
 TopoDS_Shape solid_of(const model &in, const entity &item, int depth);

@@ -4,6 +4,8 @@
 
 #include <Standard_Failure.hxx>
 #include <cmath>
+#include <fstream>
+#include <set>
 
 #include "preprocess/import/readers/ifc_shape.hh"
 #include "preprocess/import/readers/reader.hh"
@@ -73,6 +75,7 @@ struct writer {
     struct glb_scene *scene;
     std::map<int, part> parts;      /* by item */
     std::map<int, std::string> failed; /* items and elements that are left to web-ifc, and why */
+    std::set<int> asked; /* elements of which web-ifc builds nothing, or not all */
     size_t elements = 0;
 };
 
@@ -143,8 +146,10 @@ struct placed_item {
     gp_GTrsf place;
 };
 
-/* Collects the items of a representation, and of those that it maps. Clears *whole if one of them is left to web-ifc. */
-void collect(writer *w, const entity &representation, const gp_GTrsf &above, int depth, std::vector<placed_item> *out, bool *whole)
+/* Collects the items of a representation, and of those that it maps. Clears *whole if one of them is left to web-ifc.
+ * all: items of every type are built. */
+void collect(writer *w, const entity &representation, const gp_GTrsf &above, int depth, bool all, std::vector<placed_item> *out,
+             bool *whole)
 {
     const model &in = w->in;
     if (depth > MAX_CHAIN)
@@ -154,8 +159,8 @@ void collect(writer *w, const entity &representation, const gp_GTrsf &above, int
         if (item.is("IFCMAPPEDITEM")) {
             entity map = in.statements.get(item[0]);
             gp_GTrsf place = above * operator_of(in, in.statements.get(item[1])) * gp_GTrsf(placement_of(in, map[0]));
-            collect(w, in.statements.get(map[1]), place, depth + 1, out, whole);
-        } else if (wanted(in, item, 0) && build(w, item)) {
+            collect(w, in.statements.get(map[1]), place, depth + 1, all, out, whole);
+        } else if ((all || wanted(in, item, 0)) && build(w, item)) {
             out->push_back({ item.id, above });
         } else {
             *whole = false;
@@ -211,7 +216,7 @@ void add_element(writer *w, const entity &product)
     for (const value &reference : shape[2].list) {
         entity representation = w->in.statements.get(reference);
         if (is_body(representation))
-            collect(w, representation, gp_GTrsf(), 0, &items, &whole);
+            collect(w, representation, gp_GTrsf(), 0, w->asked.count(product.id) > 0, &items, &whole);
     }
     if (items.empty())
         return;
@@ -239,13 +244,24 @@ bool has_any(const file &in)
 
 } // namespace ifc
 
-void ifc_shapes_write(const char *input, const char *output, double chord_mm)
+/* Numbers that blanks separate. */
+static std::set<int> numbers_in(const char *path)
+{
+    std::ifstream list(path);
+    std::set<int> out;
+    for (int number; list >> number;)
+        out.insert(number);
+    return out;
+}
+
+void ifc_shapes_write(const char *input, const char *output, double chord_mm, const char *asked)
 {
     ifc::file statements(input);
-    if (!ifc::has_any(statements))
+    std::set<int> elements = numbers_in(asked);
+    if (elements.empty() && !ifc::has_any(statements))
         return;
     ifc::model in = ifc::model_of(statements, chord_mm);
-    ifc::writer w = { in, glb_scene_create("plantcast-import, Open CASCADE"), {}, {} };
+    ifc::writer w = { in, glb_scene_create("plantcast-import, Open CASCADE"), {}, {}, elements };
     statements.each([&](int id, const std::string &) {
         try {
             if (!statements.is_rooted(id))

@@ -35,14 +35,14 @@ namespace
 constexpr double FAR_MM = 1e6; /* how far a half space reaches where it has a boundary */
 
 /* Calls build(face) for each face and puts what comes together. */
-template <typename builder> TopoDS_Shape each(const std::vector<TopoDS_Face> &faces, const builder &build)
+template <typename builder> TopoDS_Shape each(const std::vector<TopoDS_Shape> &faces, const builder &build)
 {
     TopoDS_Compound out;
     BRep_Builder into;
     if (faces.size() == 1)
         return build(faces[0]);
     into.MakeCompound(out);
-    for (const TopoDS_Face &face : faces)
+    for (const TopoDS_Shape &face : faces)
         into.Add(out, build(face));
     return out;
 }
@@ -52,108 +52,70 @@ TopoDS_Shape placed(const model &in, const value &at, const TopoDS_Shape &shape)
     return shape.Moved(TopLoc_Location(placement_of(in, at)));
 }
 
-TopoDS_Shape through(const std::vector<TopoDS_Wire> &sections)
-{
-    BRepOffsetAPI_ThruSections loft(Standard_True, Standard_True);
-    for (const TopoDS_Wire &section : sections)
-        loft.AddWire(section);
-    loft.Build();
-    if (!loft.IsDone())
-        throw unsupported("sections that cannot be joined");
-    return loft.Shape();
-}
-
-/* Outlines of a face, its outer one first. */
-std::vector<TopoDS_Wire> wires_of(const TopoDS_Face &face)
-{
-    std::vector<TopoDS_Wire> out = { BRepTools::OuterWire(face) };
-    for (TopExp_Explorer at(face, TopAbs_WIRE); at.More(); at.Next())
-        if (!at.Current().IsSame(out[0]))
-            out.push_back(TopoDS::Wire(at.Current()));
-    return out;
-}
-
-/* Joins faces that follow each other, holes to holes. */
-TopoDS_Shape through_faces(const std::vector<TopoDS_Face> &faces)
-{
-    TopoDS_Shape out;
-    std::vector<std::vector<TopoDS_Wire>> outlines;
-    for (const TopoDS_Face &face : faces) {
-        outlines.push_back(wires_of(face));
-        if (outlines.back().size() != outlines[0].size())
-            throw unsupported("sections with different holes");
-    }
-    for (size_t i = 0; i < outlines[0].size(); i++) {
-        std::vector<TopoDS_Wire> sections;
-        for (const std::vector<TopoDS_Wire> &wires : outlines)
-            sections.push_back(wires[i]);
-        out = i == 0 ? through(sections) : BRepAlgoAPI_Cut(out, through(sections)).Shape();
-    }
-    return out;
-}
-
-TopoDS_Face moved(const TopoDS_Face &face, const gp_Trsf &place)
-{
-    return TopoDS::Face(BRepBuilderAPI_Transform(face, place, Standard_True).Shape());
-}
-
 TopoDS_Shape extruded(const model &in, const entity &item)
 {
-    std::vector<TopoDS_Face> faces = profile_of(in, in.statements.get(item[0]));
+    entity profile = in.statements.get(item[0]);
     gp_Vec along = gp_Vec(direction_of(in, item[2], gp::DZ())) * (in.length * file::number(item[3]));
     TopoDS_Shape out;
     if (item.is("IFCEXTRUDEDAREASOLIDTAPERED")) {
         gp_Trsf end;
         end.SetTranslation(along);
-        out = through_faces({ faces.at(0), moved(profile_of(in, in.statements.get(item[4])).at(0), end) });
+        out = through_faces({ profile_of(in, profile).at(0), moved(profile_of(in, in.statements.get(item[4])).at(0), end) });
     } else {
-        out = each(faces, [&](const TopoDS_Face &face) { return BRepPrimAPI_MakePrism(face, along).Shape(); });
+        out = each(profile_shapes_of(in, profile), [&](const TopoDS_Shape &face) { return BRepPrimAPI_MakePrism(face, along).Shape(); });
     }
     return placed(in, item[1], out);
 }
 
 TopoDS_Shape revolved(const model &in, const entity &item)
 {
-    std::vector<TopoDS_Face> faces = profile_of(in, in.statements.get(item[0]));
+    std::vector<TopoDS_Shape> faces = profile_shapes_of(in, in.statements.get(item[0]));
     entity axis = in.statements.get(item[2]);
     gp_Ax1 around(point_of(in, axis[0]), direction_of(in, axis[1], gp::DZ()));
     double angle = std::fmin(in.angle * std::fabs(file::number(item[3])), 2 * M_PI);
     if (file::number(item[3]) < 0)
         around.Reverse();
-    TopoDS_Shape out = each(faces, [&](const TopoDS_Face &face) {
+    TopoDS_Shape out = each(faces, [&](const TopoDS_Shape &face) {
         return angle > 2 * M_PI - 1e-9 ? BRepPrimAPI_MakeRevol(face, around).Shape() : BRepPrimAPI_MakeRevol(face, around, angle).Shape();
     });
     return placed(in, item[1], out);
 }
 
-/* Along a curve, with the profile's X towards a fixed direction, or square to a plane. */
-TopoDS_Shape along_curve(const model &in, const entity &item)
+/* The direction of the profile's X where the curve begins, and one that is square to it along the whole curve. */
+struct trihedron {
+    gp_Dir x, up;
+};
+
+/* X is normal to the surface. Surfaces that a straight line generates keep that line's direction along the curve. */
+trihedron on_surface(const model &in, const entity &surface, const piece &first)
 {
-    gp_Dir up = gp::DX();
-    bool whole = false;
-    if (item.is("IFCFIXEDREFERENCESWEPTAREASOLID")) {
-        up = direction_of(in, item[5], gp::DX());
-    } else {
-        entity surface = in.statements.get(item[5]);
-        if (!surface.is("IFCPLANE"))
-            throw unsupported("a profile that follows " + surface.type);
-        up = gp::DZ().Transformed(placement_of(in, surface[0]));
+    gp_Trsf place = placement_of(in, surface[surface.is("IFCSURFACEOFLINEAREXTRUSION") ? 1 : 0]);
+    gp_Dir z = gp::DZ().Transformed(place);
+    if (surface.is("IFCPLANE"))
+        return { z, z };
+    if (surface.is("IFCCYLINDRICALSURFACE")) {
+        gp_Vec out(gp::Origin().Transformed(place), first.start());
+        return { gp_Dir(out - gp_Vec(z) * out.Dot(gp_Vec(z))), z };
     }
-    std::vector<piece> pieces = trimmed(pieces_of(in, in.statements.get(item[2])), item[3], item[4], &whole);
-    if (whole)
-        printf("error\t1\tOpen CASCADE: #%d: its parameters are outside of its curve: the whole curve is taken\n", item.id);
-    return placed(in, item[1], swept(profile_of(in, in.statements.get(item[0])), pieces, up));
+    if (!surface.is("IFCSURFACEOFLINEAREXTRUSION"))
+        throw unsupported("a profile that follows " + surface.type);
+    gp_Dir along = direction_of(in, surface[2], gp::DZ()).Transformed(place);
+    return { gp_Dir(first.tangent(false).Crossed(gp_Vec(along))), along };
 }
 
-TopoDS_Shape spine_of(const model &in, const entity &item)
+/* Along a curve, with the profile's X towards a fixed direction, or normal to a surface. */
+TopoDS_Shape along_curve(const model &in, const entity &item)
 {
-    const std::vector<value> &sections = item[1].list, &places = item[2].list;
-    std::vector<TopoDS_Face> faces;
-    if (sections.size() < 2 || sections.size() != places.size())
-        throw unsupported("a spine without sections");
-    for (size_t i = 0; i < sections.size(); i++)
-        faces.push_back(moved(profile_of(in, in.statements.get(sections[i])).at(0), placement_of(in, places[i])));
-    return through_faces(faces);
+    bool whole = false;
+    std::vector<piece> pieces = trimmed(pieces_of(in, in.statements.get(item[2])), item[3], item[4], &whole);
+    trihedron frame = { gp::DX(), gp::DX() };
+    if (item.is("IFCFIXEDREFERENCESWEPTAREASOLID"))
+        frame.x = frame.up = direction_of(in, item[5], gp::DX());
+    else
+        frame = on_surface(in, in.statements.get(item[5]), pieces.front());
+    if (whole)
+        printf("error\t1\tOpen CASCADE: #%d: its parameters are outside of its curve: the whole curve is taken\n", item.id);
+    return placed(in, item[1], swept(profile_of(in, in.statements.get(item[0])), pieces, frame.x, frame.up));
 }
 
 TopoDS_Shape pyramid(double x, double y, double height)
@@ -233,6 +195,7 @@ bool is_built(const std::string &type)
                                          "IFCFIXEDREFERENCESWEPTAREASOLID",
                                          "IFCSURFACECURVESWEPTAREASOLID",
                                          "IFCSECTIONEDSPINE",
+                                         "IFCSECTIONEDSOLIDHORIZONTAL",
                                          "IFCEXTRUDEDAREASOLIDTAPERED",
                                          "IFCCSGSOLID",
                                          "IFCBLOCK",
@@ -260,14 +223,18 @@ TopoDS_Shape solid_of(const model &in, const entity &item, int depth)
         return revolved(in, item);
     if (item.is("IFCFIXEDREFERENCESWEPTAREASOLID") || item.is("IFCSURFACECURVESWEPTAREASOLID"))
         return along_curve(in, item);
-    if (item.is("IFCSECTIONEDSPINE"))
-        return spine_of(in, item);
+    if (item.is("IFCSECTIONEDSPINE") || item.is("IFCSECTIONEDSOLIDHORIZONTAL"))
+        return sections_of(in, item);
     if (item.is("IFCCSGSOLID"))
         return solid_of(in, in.statements.get(item[0]), depth + 1);
     if (item.is("IFCBOOLEANRESULT") || item.is("IFCBOOLEANCLIPPINGRESULT"))
         return boolean(in, item, depth);
     if (item.type.find("HALFSPACE") != std::string::npos)
         return half_space(in, item);
+    if (has_flat_faces(item.type) && !has_edges(in, item))
+        return flat_faces_of(in, item);
+    if (has_flat_faces(item.type))
+        return brep_of(in, item);
     TopoDS_Shape out = primitive(in, item);
     if (out.IsNull())
         throw unsupported(item.type);

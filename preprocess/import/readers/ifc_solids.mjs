@@ -59,14 +59,18 @@ function styles(model, type) {
     return (item) => found.get(item);
 }
 
-// Puts solids in the place of what web-ifc draws of the same items. An element with openings stays as web-ifc cut it.
+// Puts solids in the place of what web-ifc draws of the same items. An element with openings stays as web-ifc cut it. Sets solids.said to
+// lines of findings.h about what is not as it should be.
 export function takeSolids(model, solids, { shown, known }, { styledItem, voids }) {
     const colorOf = styles(model, styledItem), cut = new Set();
     model.relate(voids, 'RelatingBuildingElement', 'RelatedOpeningElement', (element) => cut.add(element));
+    solids.said = [];
     for (const [element, { whole, parts }] of solids.elements) {
         const drawn = shown.get(element) ?? [], built = new Set(parts.map(({ item }) => item));
         if (drawn.length > 0 && cut.has(element))
             continue;
+        if (cut.has(element))
+            solids.said.push(`error\t1\tOpen CASCADE: #${element}: its openings are not cut`);
         const others = whole ? [] : drawn.filter(({ geometryExpressID }) => !built.has(geometryExpressID));
         shown.set(element, [...others, ...parts.map(({ item, geometry, place }) => {
             const same = drawn.find(({ geometryExpressID }) => geometryExpressID === item);

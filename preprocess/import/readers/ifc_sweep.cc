@@ -57,9 +57,9 @@ gp_Trsf start_of(const std::vector<piece> &pieces, const gp_Dir *up)
     return out;
 }
 
-TopoDS_Shape along(const TopoDS_Face &face, const std::vector<piece> &pieces, const gp_Dir *up)
+TopoDS_Shape along(const TopoDS_Face &face, const std::vector<piece> &pieces, const gp_Dir *x, const gp_Dir *up)
 {
-    TopoDS_Face placed = TopoDS::Face(BRepBuilderAPI_Transform(face, start_of(pieces, up), Standard_True).Shape());
+    TopoDS_Face placed = TopoDS::Face(BRepBuilderAPI_Transform(face, start_of(pieces, x), Standard_True).Shape());
     TopoDS_Wire spine = wire_of(pieces), outer = BRepTools::OuterWire(placed);
     TopoDS_Shape out = wire_swept(outer, spine, up);
     for (TopExp_Explorer wires(placed, TopAbs_WIRE); wires.More(); wires.Next())
@@ -104,7 +104,7 @@ TopoDS_Shape pipe(const TopoDS_Face &face, const std::vector<piece> &pieces)
 
 TopoDS_Shape mitred(const TopoDS_Face &face, const std::vector<piece> &pieces)
 {
-    return along(face, pieces, nullptr);
+    return along(face, pieces, nullptr, nullptr);
 }
 
 /* Sweeps a disk along all pieces. What the volume must be is known: area times length. Where a way of sweeping leaves another one, corners
@@ -143,15 +143,15 @@ TopoDS_Face disk(double radius, double hole)
 
 } // namespace
 
-TopoDS_Shape swept(const std::vector<TopoDS_Face> &faces, const std::vector<piece> &pieces, const gp_Dir &up)
+TopoDS_Shape swept(const std::vector<TopoDS_Face> &faces, const std::vector<piece> &pieces, const gp_Dir &x, const gp_Dir &up)
 {
     if (faces.size() == 1)
-        return along(faces[0], pieces, &up);
+        return along(faces[0], pieces, &x, &up);
     TopoDS_Compound out;
     BRep_Builder builder;
     builder.MakeCompound(out);
     for (const TopoDS_Face &face : faces)
-        builder.Add(out, along(face, pieces, &up));
+        builder.Add(out, along(face, pieces, &x, &up));
     return out;
 }
 

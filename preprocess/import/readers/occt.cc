@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: STEP and IGES by Open CASCADE, in a process of its own. The
  * assembly tree becomes nodes; a part is tessellated once and shared by all its places. Of IFC files it builds some solids
- * (ifc_shapes.hh). Prints what it noticed; its last line on stderr says why it failed. */
+ * (ifc_shapes.hh); UNITS is then the path of a list of elements. Prints what it noticed; its last line on stderr says why it failed. */
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Interface_InterfaceModel.hxx>
@@ -434,7 +434,7 @@ void convert_or_refuse(char **arguments)
     try {
         if (has_ending(arguments[0], ".ifc")) {
             Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
-            ifc_shapes_write(arguments[0], arguments[1], chord_mm);
+            ifc_shapes_write(arguments[0], arguments[1], chord_mm, arguments[3]);
         } else {
             convert(arguments[0], arguments[1], chord_mm, !strcmp(arguments[4], "y"), arguments[5]);
         }

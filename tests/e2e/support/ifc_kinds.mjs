@@ -72,6 +72,9 @@ const extruded = [rectangle, ['solid', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame}
 const ofBox = { volume: 200 * 100 * 50 * 1e-9, size: [0.2, 0.1, 0.05] };
 const turned = [point('far', 0, 500, 0), ['axis', 'IFCAXIS1PLACEMENT(#{far},#{x})']];
 
+const upright = (name, along) => [[`${name}at`, `IFCPOINTBYDISTANCEEXPRESSION(IFCLENGTHMEASURE(${along.toFixed(6)}),$,$,$,$)`],
+    [name, `IFCAXIS2PLACEMENTLINEAR(#{${name}at},$,$)`]];
+
 // [name, schemas, statements, what is right, representation type]
 export const KINDS = [
     ['extrusion', ['IFC2X3', 'IFC4'], [rectangle, ['item', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame},#{z},50.)']], ofBox],
@@ -115,6 +118,33 @@ export const KINDS = [
     ['sectioned spine', ['IFC2X3', 'IFC4'], [rectangle, point('end', 0, 0, 400), ['spine', 'IFCPOLYLINE((#{o},#{end}))'],
         ['there', 'IFCAXIS2PLACEMENT3D(#{end},$,$)'], ['item', 'IFCSECTIONEDSPINE(#{spine},(#{profile},#{profile}),(#{frame},#{there}))']],
     { volume: 20000 * 400e-9, size: [0.2, 0.1, 0.4] }],
+    ['profile along a curve on a plane', ['IFC2X3', 'IFC4'], [...bend, rectangle, ['plane', 'IFCPLANE(#{frame})'],
+        ['item', 'IFCSURFACECURVESWEPTAREASOLID(#{profile},#{frame},#{arc},0.,3.14159265358979,#{plane})']],
+    { volume: 20000 * HALF_TURN * 1e-9, size: [0.55, 1.1, 0.2] }],
+    ['profile along a curve on a wall', ['IFC4'], [...bend, rectangle, ['edge', 'IFCARBITRARYOPENPROFILEDEF(.CURVE.,$,#{arc})'],
+        ['wall', 'IFCSURFACEOFLINEAREXTRUSION(#{edge},#{frame},#{z},100.)'],
+        ['item', 'IFCSURFACECURVESWEPTAREASOLID(#{profile},#{frame},#{arc},0.,3.14159265358979,#{wall})']],
+    { volume: 20000 * HALF_TURN * 1e-9, size: [0.6, 1.2, 0.1] }],
+    ['profile along a curve on a cylinder', ['IFC4'], [...bend, rectangle, ['round', 'IFCCYLINDRICALSURFACE(#{at},500.)'],
+        ['item', 'IFCSURFACECURVESWEPTAREASOLID(#{profile},#{frame},#{arc},0.,3.14159265358979,#{round})']],
+    { volume: 20000 * HALF_TURN * 1e-9, size: [0.6, 1.2, 0.1] }],
+    ['sections upright on two lines', ['IFC4X3_ADD2'], [...corner, rectangle, ['curve', 'IFCPOLYLINE((#{a},#{b},#{c}))'],
+        ...upright('first', 0), ...upright('last', 1750),
+        ['item', 'IFCSECTIONEDSOLIDHORIZONTAL(#{curve},(#{profile},#{profile}),(#{first},#{last}))']],
+    { volume: 20000 * 1750e-9, size: [1.75, 0.2, 0.1] }],
+    ['sections upright on an arc', ['IFC4X3_ADD2'], [...bend, rectangle, ...upright('first', 0), ...upright('last', HALF_TURN),
+        ['item', 'IFCSECTIONEDSOLIDHORIZONTAL(#{arc},(#{profile},#{profile}),(#{first},#{last}))']],
+    { volume: 20000 * HALF_TURN * 1e-9, size: [0.6, 1.2, 0.1] }],
+    ['centre-line profile extruded', ['IFC2X3', 'IFC4'], [...corner, ['line', 'IFCPOLYLINE((#{a},#{b},#{c}))'],
+        ['profile', 'IFCCENTERLINEPROFILEDEF(.AREA.,$,#{line},20.)'],
+        ['item', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame},#{z},500.)']], { volume: 20 * 3250 * 500e-9, size: [1.76, 1.51, 0.5] }],
+    ['asymmetric I-shape extruded', ['IFC2X3'], [point('zero', 0, 0), ['flat', 'IFCAXIS2PLACEMENT2D(#{zero},$)'],
+        ['profile', 'IFCASYMMETRICISHAPEPROFILEDEF(.AREA.,$,#{flat},100.,200.,10.,20.,$,60.,15.,$,$)'],
+        ['item', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame},#{z},500.)']],
+    { volume: (100 * 20 + 60 * 15 + 165 * 10) * 500e-9, size: [0.1, 0.2, 0.5] }],
+    ['face with two outer bounds', ['IFC2X3'], [...box, ...facets.filter(([name]) => !/^f[45]$/.test(name)),
+        ['f4', 'IFCFACE((#{fb4},#{fb5}))'],
+        ['shell', 'IFCCLOSEDSHELL((#{f0},#{f1},#{f2},#{f3},#{f4}))'], ['item', 'IFCFACETEDBREP(#{shell})']], ofBox, 'Brep'],
     ['mapped item', ['IFC2X3', 'IFC4'], [...extruded, ['source', "IFCSHAPEREPRESENTATION(#{context},'Body','SweptSolid',(#{solid}))"],
         ['map', 'IFCREPRESENTATIONMAP(#{frame},#{source})'], ['onto', 'IFCCARTESIANTRANSFORMATIONOPERATOR3D($,$,#{o},2.,$)'],
         ['item', 'IFCMAPPEDITEM(#{map},#{onto})']], { volume: 8e-3, size: [0.4, 0.2, 0.1] }, 'MappedRepresentation'],

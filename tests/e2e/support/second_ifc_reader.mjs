@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A second reader of IFC, which shares no code with web-ifc or Open CASCADE: ifc-lite, in WebAssembly. It draws circles coarsely.
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+
+const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
+const minus = (a, b) => a.map((v, i) => v - b[i]);
+
+// Returns null where it is not installed, else a function that takes the bytes of a file and returns { area (m2), size (m: x, y, z) } of
+// all that the file shows, or null if that is nothing. Openings are left out.
+export async function secondReader() {
+    let lite;
+    try {
+        lite = await import('@ifc-lite/wasm');
+    } catch {
+        return null;
+    }
+    lite.initSync({ module: readFileSync(createRequire(import.meta.url).resolve('@ifc-lite/wasm/ifc-lite_bg.wasm')) });
+    return (bytes) => {
+        const api = new lite.IfcAPI(), head = api.buildPrePassOnce(bytes);
+        const meshes = api.processGeometryBatch(bytes, head.jobs, head.unitScale, 0, 0, 0, false, head.voidKeys, head.voidCounts,
+            head.voidValues, head.styleIds, head.styleColors, head.planeAngleToRadians);
+        const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+        let area = 0;
+        for (let i = 0; i < meshes.length; i++) {
+            const { ifcType, positions, origin, indices } = meshes.get(i); // Y up
+            const at = (k) => [0, 1, 2].map((axis) => positions[3 * k + axis] + origin[axis]);
+            for (let k = 0; ifcType !== 'IfcOpeningElement' && k + 2 < indices.length; k += 3) {
+                const [a, b, c] = [0, 1, 2].map((corner) => at(indices[k + corner]));
+                area += Math.hypot(...cross(minus(b, a), minus(c, a))) / 2;
+                for (const p of [a, b, c])
+                    p.forEach((v, axis) => { low[axis] = Math.min(low[axis], v); high[axis] = Math.max(high[axis], v); });
+            }
+        }
+        meshes.free();
+        api.free();
+        const [x, y, z] = minus(high, low);
+        return area > 0 ? { area, size: [x, z, y] } : null;
+    };
+}
