@@ -190,22 +190,24 @@ $(out)/lib/sim.a: $(call objects,$(filter-out %/sim.c,$(sim_sources)))
 $(out)/lib/%.a:
 	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^
 
+# Headers that are made.
+made_headers := $(gen)/glad/include/glad/gl.h $(gen)/words_refused.h
 # Loops that choose between two numbers become wide only if no comparison can trap.
 $(call objects,server/surface/surface_field.c preprocess/subdivision/interp_weights.c): CFLAGS += -fno-trapping-math
-$(out)/obj/%.o: %.c Makefile $(out)/codecs | $(gen)/glad/include/glad/gl.h
+$(out)/obj/%.o: %.c Makefile $(out)/codecs | $(made_headers)
 	@mkdir -p $(@D); echo "  CC   $<"
 	@$(CC) $(cflags) -c -o $@ $<
-$(out)/obj/%.o: %.cc Makefile
+$(out)/obj/%.o: %.cc Makefile | $(made_headers)
 	@mkdir -p $(@D); echo "  CXX  $<"
 	@$(CXX) $(cxxflags) -c -o $@ $<
-$(out)/obj/%.wide.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
+$(out)/obj/%.wide.o: %.c Makefile | $(made_headers)
 	@mkdir -p $(@D); echo "  CC   $< (wide)"
 	@$(CC) $(cflags) -mavx2 -DSOFT_SET=_wide -c -o $@ $<
 # No product and sum in one, which has other bits.
-$(out)/obj/%.widest.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
+$(out)/obj/%.widest.o: %.c Makefile | $(made_headers)
 	@mkdir -p $(@D); echo "  CC   $< (widest)"
 	@$(CC) $(cflags) -mavx2 $(addprefix -mavx512,f vl bw dq) -mprefer-vector-width=256 -ffp-contract=off -DSOFT_SET=_widest -c -o $@ $<
-$(out)/obj/%.pic.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
+$(out)/obj/%.pic.o: %.c Makefile | $(made_headers)
 	@mkdir -p $(@D); echo "  CC   $< (shared)"
 	@$(CC) $(cflags) -fPIC -c -o $@ $<
 $(out)/obj/%.pic.o: %.cc Makefile
@@ -239,6 +241,10 @@ $(shell mkdir -p $(gen); echo '#define PLANTCAST_COMMIT "$(COMMIT)"' | cmp -s - 
 embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl shaders/maps/*.csv clients/fleet/*)
 $(gen)/embedded.c: deploy/embed $(embedded_files)
 	@mkdir -p $(@D); deploy/embed $(embedded_files) >$@.new && mv $@.new $@
+
+# Words that programs share with the page, one file per subject and language.
+$(gen)/words_refused.h: deploy/words clients/web/words/refused.en.js
+	@mkdir -p $(@D); deploy/words REFUSED clients/web/words/refused.en.js >$@.new && mv $@.new $@
 
 # --- tests: one program per file --------------------------------------------------------------------------------------------
 unit_tests := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/unit/*_test.c))

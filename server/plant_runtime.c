@@ -140,7 +140,8 @@ static bool start_other_plants(struct plant_runtime *runtime)
 static void start_placing(struct plant_runtime *runtime)
 {
     const struct plant_runtime_context *context = runtime->context;
-    char *folder = plant_runtime_prepared_folder(context->params, runtime->plant), *why;
+    char *folder = plant_runtime_prepared_folder(context->params, runtime->plant);
+    struct refusal why;
     runtime->placing = placing_create(&(struct placing_params){ .log = context->log,
                                                                 .workers = context->workers,
                                                                 .scene = runtime->scene,
@@ -148,9 +149,11 @@ static void start_placing(struct plant_runtime *runtime)
                                                                 .notify = context->notify,
                                                                 .notify_arg = context->notify_arg });
     runtime->tag_list = tag_file_read(runtime->plant->tags_path, &why);
-    if (why)
-        log_warn(context->log, "%s", why);
-    mem_free(why);
+    if (!runtime->tag_list) {
+        char text[REFUSAL_TEXT_BYTES];
+        refusal_text(&why, text);
+        log_warn(context->log, "%s", text);
+    }
     mem_free(folder);
 }
 

@@ -32,6 +32,7 @@ struct reload {
     char by[TOKEN_NAME_BYTES];     /* who asked for the one that is under way */
     const struct tag_save *saving; /* for whom this is done; NULL: for nobody's list */
     const char *kept;              /* the list before it */
+    struct refusal refusal;        /* why the list was not written; REFUSAL_NONE: it was */
     pthread_mutex_t put_lock; /* held while the runtime is replaced, or begins to lead: one after the other */
     struct thread leader;     /* does not wait until a plant is read, matched or prepared. Under its lock: */
     bool leads;
@@ -71,10 +72,12 @@ static void say(void *arg)
 static char *saved_text(const struct reload *reload, bool good, const json_t *object)
 {
     json_t *said = json_pack("{s:s,s:I,s:b}", "type", "tags_saved", "seq", (json_int_t)reload->saving->seq, "saved", good);
-    static const char *const names[] = { "configuration", "changes", "errors", "unaudited" };
+    static const char *const names[] = { "configuration", "changes", "errors", "unaudited", "unaudited_refusal" };
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
         if (json_object_get(object, names[i]))
             json_object_set(said, names[i], json_object_get(object, names[i]));
+    if (reload->refusal.code)
+        json_object_set_new(said, "refusal", refusal_json(&reload->refusal));
     if (good)
         json_object_set_new(said, "kept", json_string(strrchr(reload->kept, '/') + 1));
     return json_text(said, 0);
@@ -103,7 +106,7 @@ static void answer(struct reload *reload, bool good, json_t *object)
     audit_end(reload->context->audit, &ticket);
     int error = audit_wait(reload->context->audit, &ticket);
     if (error)
-        json_object_set_new(object, "unaudited", json_string(atomic_file_not_kept(error)));
+        refusal_add_unaudited(object, atomic_file_not_kept(error));
     if (reload->saving) {
         verdict.client = reload->saving->client;
         verdict.saved = saved_text(reload, good, object);
@@ -315,8 +318,13 @@ static void save_now(struct reload *reload, const struct tag_save *save)
     char *kept = NULL, *why = NULL;
     int lock = lock_folder(reload, &why);
     reload->saving = save;
-    if (lock < 0 || !tag_file_put(save, &kept, &why)) {
+    reload->refusal = (struct refusal){ .code = REFUSAL_NONE };
+    if (lock < 0) {
         refuse(reload, &none, why);
+    } else if (!tag_file_put(save, &kept, &reload->refusal)) {
+        char text[REFUSAL_TEXT_BYTES];
+        refusal_text(&reload->refusal, text);
+        refuse(reload, &none, text);
     } else {
         reload->kept = kept;
         log_info(log, "tag list: %s by %s; as it was: %s", save->path, save->who, kept);

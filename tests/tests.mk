@@ -64,7 +64,7 @@ layers:
 stand_alone := $(filter-out $(if $(video),,clients/video/%),$(shell git ls-files -co --exclude-standard '*.h'))
 stand_alone := $(patsubst %.h,$(out)/obj/%.h.alone,$(stand_alone))
 headers: $(stand_alone)
-$(out)/obj/%.h.alone: %.h | $(gen)/glad/include/glad/gl.h
+$(out)/obj/%.h.alone: %.h | $(made_headers)
 	@mkdir -p $(@D) && $(CC) $(filter-out -MMD,$(cflags)) -MD -MF $(@:.alone=.d) -MT $@ -fsyntax-only -x c $< && touch $@
 
 bench_programs := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/bench/*_bench.c))

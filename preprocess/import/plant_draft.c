@@ -189,10 +189,10 @@ static void add_asset(struct text *out, const struct plant_draft_model *from, si
 
 bool plant_draft_is_begun(const char *path)
 {
-    char *why, *text = tag_file_read(path, &why);
+    struct refusal why;
+    char *text = tag_file_read(path, &why);
     bool is = text && !strncmp(text, begun, strlen(begun));
     mem_free(text);
-    mem_free(why);
     return is;
 }
 

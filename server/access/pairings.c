@@ -77,7 +77,7 @@ bool pairings_secret_valid(const char *secret)
     return strlen(secret) == SECRET_CHARS && !strncmp(secret, "pc_", 3) && strspn(secret + 3, "0123456789abcdef") == SECRET_CHARS - 3;
 }
 
-const char *pairings_refusal(const struct pairings *pairings)
+enum refusal_code pairings_refusal(const struct pairings *pairings)
 {
     return kept_list_refusal(&pairings->kept);
 }
@@ -113,12 +113,12 @@ bool pairings_find(const void *pairings, const uint8_t hash[TOKEN_HASH_BYTES], s
     return true;
 }
 
-const char *pairings_revoke(struct pairings *pairings, const char *id)
+enum refusal_code pairings_revoke(struct pairings *pairings, const char *id)
 {
-    const char *why = pairings_refusal(pairings);
+    enum refusal_code why = pairings_refusal(pairings);
     size_t at = kept_list_find(pairings->kept.list, id);
     if (why || at == json_array_size(pairings->kept.list))
-        return why ? why : "there is no such device";
+        return why ? why : REFUSAL_DEVICELESS;
     json_t *list = json_copy(pairings->kept.list);
     json_array_remove(list, at);
     return kept_list_put(&pairings->kept, list);
@@ -269,14 +269,14 @@ enum pairing pairings_ask(struct pairings *pairings, const struct pairing_reques
     return ask(pairings, hash, request, now_ns, digits, left_s);
 }
 
-static const char *keep(struct pairings *pairings, const struct waiting *waiting, const char *id, const char *who, int64_t now_us)
+static enum refusal_code keep(struct pairings *pairings, const struct waiting *waiting, const char *id, const char *who, int64_t now_us)
 {
     char hash[HASH_CHARS + 1];
     hex_print(waiting->hash, TOKEN_HASH_BYTES, hash);
     json_t *device = json_pack("{s:s,s:s,s:s,s:i,s:s,s:s,s:I}", "id", id, "hash", hash, "wall", waiting->place.wall, "display",
                                waiting->place.display, "from", waiting->from, "by", who, "time_us", (json_int_t)now_us);
     if (!device)
-        return "it is no UTF-8";
+        return REFUSAL_NOT_UTF8;
     json_t *list = json_copy(pairings->kept.list);
     json_array_append_new(list, device);
     return kept_list_put(&pairings->kept, list);
@@ -290,23 +290,23 @@ static bool may_try(struct pairings *pairings, int64_t now_ns)
     return pairings->wrong < PAIRING_WRONG;
 }
 
-const char *pairings_approve(struct pairings *pairings, const char *digits, const char *who, int64_t now_ns, int64_t now_us,
+enum refusal_code pairings_approve(struct pairings *pairings, const char *digits, const char *who, int64_t now_ns, int64_t now_us,
                              char id[TOKEN_NAME_BYTES])
 {
-    const char *why = pairings_refusal(pairings);
+    enum refusal_code why = pairings_refusal(pairings);
     if (why)
         return why;
     if (!may_try(pairings, now_ns))
-        return "too many wrong digits; try again in a minute";
+        return REFUSAL_GUESSES;
     forget_old(pairings, now_ns);
     struct waiting *waiting = find_digits(pairings, digits);
     if (!waiting) {
         if (pairings->wrong++ == 0)
             pairings->wrong_ns = now_ns;
-        return "no display shows these digits";
+        return REFUSAL_DIGITS;
     }
     if (json_array_size(pairings->kept.list) == PAIRED_DEVICES)
-        return "there are as many devices as there may be";
+        return REFUSAL_DEVICES;
     int n = 0;
     do
         snprintf(id, TOKEN_NAME_BYTES, "%s.%d.%d", waiting->place.wall, waiting->place.display, ++n);

@@ -7,6 +7,7 @@
 #include <jansson.h>
 
 #include "access/tokens.h"
+#include "base/refusal.h"
 #include "views/wall_remote.h"
 
 enum {
@@ -37,17 +38,17 @@ void pairings_close(struct pairings **pairings); /* &NULL is fine; leaves NULL *
 /* Returns whether a device may have that secret: of the form of a token (tokens_make), which has 256 bits. */
 bool pairings_secret_valid(const char *secret);
 /* Returns why no device can be paired (static), or NULL. */
-const char *pairings_refusal(const struct pairings *pairings);
+enum refusal_code pairings_refusal(const struct pairings *pairings);
 /* Returns whether the device is paired; if it waits, its digits and for how long they are good. PAIRING_FULL: too many wait.
    PAIRING_OTHER: the device is paired as another display, and that secret is for no second one. now_ns: monotonic. */
 enum pairing pairings_ask(struct pairings *pairings, const struct pairing_request *request, int64_t now_ns, char digits[PAIRING_DIGITS + 1],
                           int *left_s);
 /* Pairs the device that shows those digits. who: approves it; now_us: UTC. Returns NULL with the id of the device, or why it could not
    (static). */
-const char *pairings_approve(struct pairings *pairings, const char *digits, const char *who, int64_t now_ns, int64_t now_us,
+enum refusal_code pairings_approve(struct pairings *pairings, const char *digits, const char *who, int64_t now_ns, int64_t now_us,
                              char id[TOKEN_NAME_BYTES]);
 /* Revokes a device. Returns NULL, or why it could not (static). */
-const char *pairings_revoke(struct pairings *pairings, const char *id);
+enum refusal_code pairings_revoke(struct pairings *pairings, const char *id);
 /* Looks a paired device up by the hash of its secret, for tokens_set_pairings(). pairings: a struct pairings. Returns false if there is
    none. */
 bool pairings_find(const void *pairings, const uint8_t hash[TOKEN_HASH_BYTES], struct token_holder *out);

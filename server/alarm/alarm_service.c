@@ -329,11 +329,11 @@ uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, vo
     return number;
 }
 
-const char *alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act)
+enum refusal_code alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act)
 {
-    const char *why = "there is no such alarm";
+    enum refusal_code why = REFUSAL_OTHERWISE;
     if (thread_is_stopping(&service->thread))
-        return "the plant is being loaded anew; try again";
+        return REFUSAL_ANEW;
     pthread_mutex_lock(&service->thread.lock);
     int index = alarms_find_named(service->alarms, name, kind);
     if (index >= 0)

@@ -7,6 +7,7 @@
 #include "alarm/journal_file.h"
 #include "base/log/log.h"
 #include "base/metrics/counters.h"
+#include "base/refusal.h"
 
 struct alarm_service_params {
     struct log *log;
@@ -39,9 +40,9 @@ uint64_t alarm_service_number(const struct alarm_service *service);
    normal. Returns alarm_service_number(). */
 uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, void (*each)(void *arg, const struct alarm *alarm),
                                void *arg);
-/* Does what an operator asks for: acknowledges, shelves and so on. name: of a tag, or for ALARM_LINK of a device. Returns NULL, or why it
-   was refused (static). */
-const char *alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act);
+/* Does what an operator asks for: acknowledges, shelves and so on. name: of a tag, or for ALARM_LINK of a device. Returns why it
+   was refused, or REFUSAL_NONE. */
+enum refusal_code alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act);
 /* Tell whether changes of alarms between begin and end are in the journal on disk (base/files/settling.h). Without a journal they are. What
    is not is in force, but lost if the daemon is killed now. */
 struct settling_ticket alarm_service_begin(struct alarm_service *service);

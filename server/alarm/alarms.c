@@ -621,23 +621,23 @@ void alarms_tick(struct alarms *alarms, const struct snapshot *snapshot)
 
 /* --- people ----------------------------------------------------------------------------------------------------------------- */
 
-static const char *refusal(enum alarm_event event)
+static enum refusal_code refusal_of(enum alarm_event event)
 {
     switch (event) {
-    case ALARM_ACKNOWLEDGE: return "there is nothing to acknowledge";
-    case ALARM_RESET: return "it is not latched, or still there, or not acknowledged";
-    default: return "it is not in a state for that";
+    case ALARM_ACKNOWLEDGE: return REFUSAL_QUIET;
+    case ALARM_RESET: return REFUSAL_LATCHED;
+    default: return REFUSAL_OTHERWISE;
     }
 }
 
-const char *alarms_act(struct alarms *alarms, int index, const struct alarm_act *act, struct instant now)
+enum refusal_code alarms_act(struct alarms *alarms, int index, const struct alarm_act *act, struct instant now)
 {
     struct alarm *alarm = &alarms->list[index];
     bool shelves = act->event == ALARM_SHELVE;
     if (alarms->plant->alarms != ALARMS_LOCAL)
-        return "alarms are another system's here";
+        return REFUSAL_ELSEWHERE;
     if (shelves && (act->for_ns <= 0 || act->for_ns > ALARM_LONGEST_SHELF_NS))
-        return "a shelf has an end, within a week";
+        return REFUSAL_SHELF;
     char who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES];
     memcpy(who, alarm->who, sizeof(who));
     memcpy(reason, alarm->reason, sizeof(reason));
@@ -653,12 +653,12 @@ const char *alarms_act(struct alarms *alarms, int index, const struct alarm_act 
              now.mono_ns);
     if (outcome == ALARM_CHANGED) {
         alarms_watch(alarms, index);
-        return NULL;
+        return REFUSAL_NONE;
     }
     memcpy(alarm->who, who, sizeof(who));
     memcpy(alarm->reason, reason, sizeof(reason));
     alarm->until = until;
-    return outcome == ALARM_AS_IT_WAS ? "it is so already" : refusal(act->event);
+    return outcome == ALARM_AS_IT_WAS ? REFUSAL_OTHERWISE : refusal_of(act->event);
 }
 
 /* --- what there is ---------------------------------------------------------------------------------------------------------- */

@@ -7,6 +7,7 @@
 
 #include "alarm/alarm_state.h"
 #include "alarm/condition.h"
+#include "base/refusal.h"
 #include "plant/plant.h"
 #include "value/snapshot.h"
 #include "value/store.h"
@@ -76,7 +77,7 @@ struct alarm_act {
     const char *who, *reason;
 };
 /* Does what an operator asks for, to the alarm of that index. Returns NULL, or why it was refused (static). */
-const char *alarms_act(struct alarms *alarms, int index, const struct alarm_act *act, struct instant now);
+enum refusal_code alarms_act(struct alarms *alarms, int index, const struct alarm_act *act, struct instant now);
 
 /* --- queries --- */
 size_t alarms_count(const struct alarms *alarms);

@@ -177,18 +177,24 @@ static bool of_group(const struct plant *plant, const struct field_params *param
     return tag >= 0 && (size_t)tag < plant->tag_count && plant->tags[tag].group == params->group && plant->tags[tag].asset >= 0;
 }
 
+bool field_params_placed(const struct plant *plant, const struct field_params *params)
+{
+    bool placed = params->sensor < 0 || of_group(plant, params, params->sensor);
+    for (size_t i = 0; i < params->override_count; i++)
+        placed = placed && of_group(plant, params, params->overrides[i].tag);
+    return placed;
+}
+
 static const char *sensors_wrong(const struct plant *plant, const struct field_params *params)
 {
     if (params->show == SHOW_DISTANCE && params->sensor < 0)
         return "sensor: needed to show a distance";
-    if (params->sensor >= 0 && !of_group(plant, params, params->sensor))
-        return "sensor: it has no place in the shown group";
+    if (!field_params_placed(plant, params))
+        return "sensors: one has no place in the shown group";
     if (params->show == SHOW_DIFFERENCE && params->baseline == 0)
         return "baseline: needed to show a difference";
     for (size_t i = 0; i < params->override_count; i++) {
         const struct field_override *o = &params->overrides[i];
-        if (!of_group(plant, params, o->tag))
-            return "sensors: one has no place in the shown group";
         if ((o->strength != FIELD_AS_CONFIGURED && !within((double)o->strength, 0, 100)) ||
             (o->decay != FIELD_AS_CONFIGURED && !within((double)o->decay, 0, 100)))
             return "sensors: strength and decay of 0..100 expected";

@@ -44,6 +44,8 @@ void field_params_default(const struct plant *plant, int group, struct field_par
 void field_params_set_show(const struct plant *plant, struct field_params *params, enum field_show show);
 /* Returns whether two sets of parameters are equal. */
 bool field_params_equal(const struct field_params *a, const struct field_params *b);
+/* Returns whether each sensor that the parameters name has a place in the shown group. */
+bool field_params_placed(const struct plant *plant, const struct field_params *params);
 /* Checks the parameters: 0 <= strength, decay <= 100; 0.5 <= power <= 16; radius 0 or 1e-3..1e6 m; reach > 0. Returns NULL if they are
    valid, else a static text that says what is wrong. */
 const char *field_params_wrong(const struct plant *plant, const struct field_params *params);

@@ -212,7 +212,7 @@ static bool append(struct log *log, const char *folder, const char *path, const 
     return good;
 }
 
-const char *loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check)
+enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check)
 {
     struct text row = { 0 };
     add_row(&row, loop_checks->plant, tag, check);
@@ -227,7 +227,7 @@ const char *loop_checks_add(struct loop_checks *loop_checks, int tag, const stru
     loop_checks->numbers[tag] = ++loop_checks->number;
     loop_checks->begun = true;
     mark_unproven(loop_checks);
-    return NULL;
+    return REFUSAL_NONE;
 }
 
 /* --- what there is ---------------------------------------------------------------------------------------------------------------- */

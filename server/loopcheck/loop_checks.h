@@ -4,6 +4,7 @@
 #ifndef LOOPCHECK_LOOP_CHECKS_H
 #define LOOPCHECK_LOOP_CHECKS_H
 #include "base/log/log.h"
+#include "base/refusal.h"
 #include "base/text/text.h"
 #include "plant/plant.h"
 
@@ -32,7 +33,7 @@ struct loop_checks;
 struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder);
 void loop_checks_close(struct loop_checks **loop_checks); /* &NULL is fine; leaves NULL */
 /* Adds a record of a tag and writes it to the disk. Returns NULL, or why it could not (static). */
-const char *loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
+enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
 /* Returns the last record of a tag. */
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag);
 /* Returns whether any tag has been checked; from then on, tags that have not passed are marked as unproven. */

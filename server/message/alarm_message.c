@@ -40,7 +40,8 @@ static bool take_alarm(const struct plant *plant, const json_t *pair, struct ala
     request->kinds[request->count] = (uint8_t)alarm_kind_find(kind);
     request->tags[request->count] = find_named(plant, tag, alarm_kind_find(kind));
     if (request->tags[request->count] < 0)
-        message_fail(error, "bad_field", "alarms: there is no %s '%s'", strcmp(kind, "LINK") ? "tag" : "device", quoted(tag, name));
+        message_refuse_with(error, "bad_field", "alarms", strcmp(kind, "LINK") ? REFUSAL_NO_TAG : REFUSAL_NO_DEVICE, "name=%s",
+                            quoted(tag, name));
     else if (!request->kinds[request->count])
         message_fail(error, "bad_field", "alarms: LL, L, H, HH, ALM, BAD or LINK expected, found '%s'", quoted(kind, name));
     else
@@ -79,9 +80,10 @@ char *alarm_do(struct alarm_service *alarm_service, const struct plant *plant, c
     for (int i = 0; i < request->count; i++) {
         enum alarm_kind kind = (enum alarm_kind)request->kinds[i];
         const char *name = kind == ALARM_LINK ? devices->list[request->tags[i]].name : plant->tags[request->tags[i]].name;
-        const char *why = alarm_service_act(alarm_service, name, kind, &act);
+        enum refusal_code why = alarm_service_act(alarm_service, name, kind, &act);
         if (why)
-            json_array_append_new(refused, json_pack("[s,s,s]", name, alarm_kind_name(kind), why));
+            json_array_append_new(refused, json_pack("[s,s,s,o]", name, alarm_kind_name(kind), refusal_words(why),
+                                                     refusal_json(&(struct refusal){ .code = why })));
     }
     int done = request->count - (int)json_array_size(refused);
     json_t *answer = json_pack("{s:s,s:I,s:i,s:o}", "type", "alarmed", "seq", (json_int_t)message->seq, "done", done, "refused", refused);

@@ -101,7 +101,7 @@ static bool take_tag(const struct plant *plant, const char *text, struct alarm_q
     strncpy(query->tag, text, sizeof(query->tag) - 1);
     if (plant_find_tag(plant, text) >= 0 || is_device(plant, text))
         return true;
-    message_fail(error, "unknown_tag", "tag: there is no tag or device '%.60s'", text);
+    message_refuse_with(error, "unknown_tag", "tag", REFUSAL_NO_TAG, "name=%.60s", text);
     return false;
 }
 

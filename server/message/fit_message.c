@@ -16,8 +16,8 @@ bool fit_parse(const struct plant *plant, const json_t *o, struct fit *out, stru
     char quote[48];
     *out = (struct fit){ .projection = PROJECTION_AS_IT_IS };
     if (!framing_find(plant, json_string_value(id), &out->framing) || (id && !json_is_string(id) && !json_is_null(id))) {
-        message_fail(error, "bad_field", "id: '%s' is no asset of this plant, and no tag that stands on one",
-                     json_is_string(id) ? quoted(json_string_value(id), quote) : "(not a text)");
+        message_refuse_with(error, "bad_field", "id", REFUSAL_NO_ASSET, "name=%s",
+                            json_is_string(id) ? quoted(json_string_value(id), quote) : "(not a text)");
         return false;
     }
     if (!may_name(o, "side", names_side, &side, &given, error) ||

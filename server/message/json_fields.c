@@ -28,7 +28,7 @@ bool may_number(const json_t *o, const char *name, double low, double high, doub
     if (!value)
         return true;
     if (!in_range(value, low, high)) {
-        message_fail(error, "bad_field", "%s: a number from %g to %g expected", name, low, high);
+        message_refuse_with(error, "bad_field", name, REFUSAL_BETWEEN, "low=%g\nhigh=%g", low, high);
         return false;
     }
     *out = json_number_value(value);

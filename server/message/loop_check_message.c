@@ -20,9 +20,9 @@ bool loop_check_parse(const struct plant *plant, const json_t *o, struct message
     request->tag = tag ? plant_find_tag(plant, tag) : -1;
     request->fail = json_is_true(fail);
     if (request->tag < 0)
-        message_fail(error, "bad_field", "tag: there is no tag '%s'", quoted(tag ? tag : "", name));
+        message_refuse_with(error, "bad_field", "tag", REFUSAL_NO_TAG, "name=%s", quoted(tag ? tag : "", name));
     else if (plant->tags[request->tag].source < 0)
-        message_fail(error, "bad_field", "tag: %s is computed from others; prove those", quoted(tag, name));
+        message_refuse_with(error, "bad_field", "tag", REFUSAL_COMPUTED, "tag=%s", quoted(tag, name));
     else if (fail && !json_is_boolean(fail))
         message_fail(error, "bad_field", "fail: true or false expected");
     else
@@ -46,15 +46,17 @@ char *loop_check_do(struct loop_checks *loop_checks, const struct plant *plant, 
                                 .tolerance = request->tolerance };
     snprintf(check.who, sizeof(check.who), "%s", who);
     snprintf(check.remark, sizeof(check.remark), "%s", request->remark);
-    const char *why = loop_checks_add(loop_checks, request->tag, &check);
-    const char *because = why    ? why
-                          : near ? (request->fail ? "said to have failed" : "")
-                          : good ? "the value is beyond the tolerance"
-                                 : "the reading is not good";
-    return json_text(json_pack("{s:s,s:I,s:s,s:b,s:b,s:o,s:s}", "type", "proved", "seq", (json_int_t)message->seq, "tag",
-                               plant->tags[request->tag].name, "kept", !why, "passed", check.state == LOOP_CHECK_PASSED && !why, "value",
-                               number(check.value), "why", because),
-                     9);
+    enum refusal_code lost = loop_checks_add(loop_checks, request->tag, &check);
+    enum refusal_code why = lost                    ? lost
+                            : near && request->fail ? REFUSAL_FAILED
+                            : near                  ? REFUSAL_NONE
+                            : good                  ? REFUSAL_TOLERANCE
+                                                    : REFUSAL_READING;
+    json_t *answer = json_pack("{s:s,s:I,s:s,s:b,s:b,s:o}", "type", "proved", "seq", (json_int_t)message->seq, "tag",
+                               plant->tags[request->tag].name, "kept", !lost, "passed", check.state == LOOP_CHECK_PASSED && !lost, "value",
+                               number(check.value));
+    refusal_add(answer, why);
+    return json_text(answer, 9);
 }
 
 char *loop_checks_text(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all)

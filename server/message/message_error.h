@@ -2,15 +2,24 @@
 /* The refusal of a client's message or query. Pure; any thread. */
 #ifndef MESSAGE_MESSAGE_ERROR_H
 #define MESSAGE_MESSAGE_ERROR_H
+#include "base/refusal.h"
 
 struct message_error {
-    const char *code; /* of PROTOCOL.md, static */
-    char text[240];
-    char about[24];    /* type of the message that is refused; "": unknown */
-    int retry_after_s; /* when to try again; 0: not said */
+    const char *code; /* kind of the error, of PROTOCOL.md, static */
+    char text[REFUSAL_TEXT_BYTES];
+    struct refusal refusal; /* REFUSAL_NONE: a mistake of the client's program, in English only */
+    char about[24];         /* type of the message that is refused; "": unknown */
+    int retry_after_s;      /* when to try again; 0: not said */
 };
 
-/* Fills the error with a code (static) and a formatted text, which is cut to fit. Leaves `about` as it is. */
+/* Fills the error with a code (static) and a formatted English text, which is cut to fit. Leaves `about` as it is. */
 void message_fail(struct message_error *error, const char *code, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+/* Fills the error with a refusal that has no arguments. field: name of the member that is refused, or NULL. */
+void message_refuse(struct message_error *error, const char *code, const char *field, enum refusal_code refusal);
+/* Fills the error with a refusal; args as of refusal_set(). */
+void message_refuse_with(struct message_error *error, const char *code, const char *field, enum refusal_code refusal, const char *args, ...)
+    __attribute__((format(printf, 5, 6)));
+/* Puts "field: " before the text. */
+void message_error_within(struct message_error *error, const char *field);
 
 #endif

@@ -8,7 +8,8 @@
 
 /* Takes the index of what the member names. -1: it is not there. */
 static bool find_named(const json_t *o, const struct plant *plant, const char *member,
-                       int (*find)(const struct plant *plant, const char *name), int *out, struct message_error *error)
+                       int (*find)(const struct plant *plant, const char *name), enum refusal_code missing, int *out,
+                       struct message_error *error)
 {
     const json_t *name = json_object_get(o, member);
     const char *text = json_is_string(name) ? json_string_value(name) : "";
@@ -16,7 +17,7 @@ static bool find_named(const json_t *o, const struct plant *plant, const char *m
     *out = *text ? find(plant, text) : -1;
     if (*out >= 0 || !name)
         return true;
-    message_fail(error, "bad_field", "%s: there is no %s '%s'", member, member, quoted(text, cut));
+    message_refuse_with(error, "bad_field", member, missing, "name=%s", quoted(text, cut));
     return false;
 }
 
@@ -26,8 +27,8 @@ bool note_parse(const struct plant *plant, const json_t *o, struct message *out,
     double until_us = 0;
     if (!need_seq(o, &out->seq, error) || !need_words(o, "text", true, note->text, sizeof(note->text), error) ||
         !need_words(o, "name", false, note->name, sizeof(note->name), error) ||
-        !find_named(o, plant, "tag", plant_find_tag, &note->tag, error) ||
-        !find_named(o, plant, "asset", plant_find_asset, &note->asset, error) ||
+        !find_named(o, plant, "tag", plant_find_tag, REFUSAL_NO_TAG, &note->tag, error) ||
+        !find_named(o, plant, "asset", plant_find_asset, REFUSAL_NO_ASSET, &note->asset, error) ||
         !may_vector(o, "position", note->position_m, &note->has_position, error) ||
         !may_number(o, "until_us", 1, 9e15, &until_us, NULL, error))
         return false;
@@ -60,9 +61,10 @@ char *note_do(struct notes *notes, const struct plant *plant, const struct messa
                                .position_m = request->has_position ? request->position_m : NULL,
                                .until_us = request->until_us };
     bool adds = message->type == MESSAGE_NOTE;
-    const char *why = adds ? notes_add(notes, &note, person, now_us, id) : notes_end(notes, request->id, person, now_us);
+    enum refusal_code why = adds ? notes_add(notes, &note, person, now_us, id) : notes_end(notes, request->id, person, now_us);
     mem_free(person);
-    return json_text(json_pack("{s:s,s:I,s:s,s:b,s:s}", "type", "noted", "seq", (json_int_t)message->seq, "id", adds ? id : request->id,
-                               "kept", !why, "why", why ? why : ""),
-                     0);
+    json_t *answer = json_pack("{s:s,s:I,s:s,s:b}", "type", "noted", "seq", (json_int_t)message->seq, "id", adds ? id : request->id, "kept",
+                               !why);
+    refusal_add(answer, why);
+    return json_text(answer, 0);
 }

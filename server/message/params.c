@@ -16,8 +16,8 @@ static bool parse_group(const struct plant *plant, const json_t *o, struct param
     if (!value)
         return true;
     if (!json_is_string(value) || (out->field.group = plant_find_group(plant, json_string_value(value))) < 0) {
-        message_fail(error, "bad_field", "group: '%s' is no group of this plant",
-                     json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
+        message_refuse_with(error, "bad_field", "group", REFUSAL_NO_GROUP, "name=%s",
+                            json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
         return false;
     }
     out->given |= GIVEN_GROUP;
@@ -106,11 +106,11 @@ static bool parse_range(const json_t *o, struct params_change *out, struct messa
     out->range_max = json_number_value(high);
     bool numbers = json_array_size(value) == 2 && json_is_number(low) && json_is_number(high);
     if (!numbers || !(out->range_max > out->range_min))
-        message_fail(error, "bad_field", "range: [min, max] with min < max, or null expected");
+        message_refuse(error, "bad_field", "range", REFUSAL_RANGE);
     else if (!(fabs(out->range_min) <= NUMBER_MAX && fabs(out->range_max) <= NUMBER_MAX))
-        message_fail(error, "bad_field", "range: a number from %g to %g expected", -NUMBER_MAX, NUMBER_MAX);
+        message_refuse_with(error, "bad_field", "range", REFUSAL_BETWEEN, "low=%g\nhigh=%g", -NUMBER_MAX, NUMBER_MAX);
     else if (!(out->range_max - out->range_min > RANGE_LEAST))
-        message_fail(error, "bad_field", "range: [min, max] with min < max by more than %g expected", RANGE_LEAST);
+        message_refuse(error, "bad_field", "range", REFUSAL_RANGE);
     else
         return true;
     return false;
@@ -123,8 +123,8 @@ static bool parse_colormap(const json_t *o, struct params_change *out, struct me
     if (!value)
         return true;
     if (!json_is_string(value) || (out->colormap = colormap_find(json_string_value(value))) < 0) {
-        message_fail(error, "bad_field", "colormap: '%s' is unknown",
-                     json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
+        message_refuse_with(error, "bad_field", "colormap", REFUSAL_UNKNOWN, "name=%s",
+                            json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
         return false;
     }
     out->given |= GIVEN_COLORMAP;
@@ -142,8 +142,8 @@ static bool parse_selected(const struct plant *plant, const json_t *o, struct pa
     if (json_is_null(value))
         return true;
     if (!json_is_string(value) || (out->selected_asset = plant_find_asset(plant, json_string_value(value))) < 0) {
-        message_fail(error, "bad_field", "selected: '%s' is no asset of this plant",
-                     json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
+        message_refuse_with(error, "bad_field", "selected", REFUSAL_NO_ASSET, "name=%s",
+                            json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
         return false;
     }
     return true;
@@ -175,8 +175,8 @@ static bool parse_environment(const struct plant *plant, const json_t *o, struct
     if (!value)
         return true;
     if (!json_is_string(value) || (out->environment = plant_find_environment(plant, json_string_value(value))) < 0) {
-        message_fail(error, "bad_field", "environment: '%s' is neither 'sky' nor one of this plant's",
-                     json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
+        message_refuse_with(error, "bad_field", "environment", REFUSAL_UNKNOWN, "name=%s",
+                            json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
         return false;
     }
     out->given |= GIVEN_ENVIRONMENT;

@@ -34,15 +34,15 @@ static bool take_list(const json_t *list, double *numbers, int most, int *count)
     return json_is_array(list);
 }
 
-/* Why take_list refused it. else_text: what else may be given. */
-static void fail_list(const json_t *list, const char *name, int most, const char *else_text, struct message_error *error)
+/* Fills *error with the reason why take_list() returned false. */
+static void fail_list(const json_t *list, const char *name, int most, struct message_error *error)
 {
     for (size_t i = 0; i < json_array_size(list); i++)
         if (fabs(json_number_value(json_array_get(list, i))) > NUMBER_MAX) {
-            message_fail(error, "bad_field", "%s: a number from %g to %g expected", name, -NUMBER_MAX, NUMBER_MAX);
+            message_refuse_with(error, "bad_field", name, REFUSAL_BETWEEN, "low=%g\nhigh=%g", -NUMBER_MAX, NUMBER_MAX);
             return;
         }
-    message_fail(error, "bad_field", "%s: at most %d numbers, ascending, or %s expected", name, most, else_text);
+    message_refuse_with(error, "bad_field", name, REFUSAL_NUMBERS, "count=%d", most);
 }
 
 static bool parse_breaks(const json_t *o, struct params_change *out, struct message_error *error)
@@ -57,7 +57,7 @@ static bool parse_breaks(const json_t *o, struct params_change *out, struct mess
     if (json_is_null(value) || out->breaks_of_group || out->breaks_of_limits ||
         take_list(value, out->color_scale.breaks, SCALE_BREAKS, &out->color_scale.break_count))
         return true;
-    fail_list(value, "breaks", SCALE_BREAKS, "'group', 'limits' or null", error);
+    fail_list(value, "breaks", SCALE_BREAKS, error);
     return false;
 }
 
@@ -72,9 +72,9 @@ static bool parse_isolines(const json_t *o, struct params_change *out, struct me
         take_list(value, out->color_scale.lines, VIEW_LINES, &out->color_scale.line_count))
         return true;
     if (out->isoline_step > NUMBER_MAX)
-        message_fail(error, "bad_field", "isolines: a number from 0 to %g expected", NUMBER_MAX);
+        message_refuse_with(error, "bad_field", "isolines", REFUSAL_BETWEEN, "low=0\nhigh=%g", NUMBER_MAX);
     else
-        fail_list(value, "isolines", VIEW_LINES, "a step above 0, or null", error);
+        fail_list(value, "isolines", VIEW_LINES, error);
     return false;
 }
 
@@ -114,8 +114,7 @@ static bool take_isolines(const struct params_change *change, struct view *view,
     color_scale->line_count = change->color_scale.line_count;
     memcpy(color_scale->lines, change->color_scale.lines, sizeof(color_scale->lines));
     if (step > 0 && (view->range_max - view->range_min) / step > VIEW_LINES - 1) {
-        message_fail(error, "bad_field", "isolines: a step of %g makes more than %d lines from %g to %g", step, VIEW_LINES, view->range_min,
-                     view->range_max);
+        message_refuse_with(error, "bad_field", "isolines", REFUSAL_LINES, "step=%g\ncount=%d", step, VIEW_LINES);
         return false;
     }
     for (double n = ceil(view->range_min / step - 1e-9); step > 0 && n * step <= view->range_max + 1e-9 * step; n++)
@@ -136,6 +135,6 @@ bool params_apply_paint(const struct plant *plant, const struct params_change *c
         view->color_scale.log = change->color_scale.log;
     if (!view->color_scale.log || view->range_min > 0)
         return true;
-    message_fail(error, "bad_field", "scale: 'log' needs a range above 0; that of '%s' begins at %g", group->id, view->range_min);
+    message_refuse(error, "bad_field", "scale", REFUSAL_LOG);
     return false;
 }

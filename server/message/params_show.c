@@ -16,7 +16,7 @@ static int find_tag(const struct plant *plant, const char *field, const char *ta
     char name[48];
     int found = plant_find_tag(plant, tag);
     if (found < 0)
-        message_fail(error, "bad_field", "%s: '%s' is no tag of this plant", field, quoted(tag, name));
+        message_refuse_with(error, "bad_field", field, REFUSAL_NO_TAG, "name=%s", quoted(tag, name));
     return found;
 }
 
@@ -159,12 +159,12 @@ static bool find_baseline(const struct params_context *context, const struct par
         return false;
     }
     if (change->baseline == BASELINE_SET && !baselines_may_set(context->baselines, change->baseline_name)) {
-        message_fail(error, "bad_field", "baseline: %d are kept already; remove one", BASELINES_NAMED);
+        message_refuse_with(error, "bad_field", "baseline", REFUSAL_KEPT, "count=%d", BASELINES_NAMED);
         return false;
     }
     uint32_t found = keeps ? UINT32_MAX : baselines_find(context->baselines, change->baseline_name);
     if (!found) {
-        message_fail(error, "bad_field", "baseline: '%s' is unknown", quoted(change->baseline_name, name));
+        message_refuse_with(error, "bad_field", "baseline", REFUSAL_UNKNOWN, "name=%s", quoted(change->baseline_name, name));
         return false;
     }
     if (change->baseline != BASELINE_REMOVE)
@@ -192,23 +192,19 @@ static bool may_show(const struct plant *plant, const struct field_params *field
     int first;
     const struct plant_group *of = &plant->groups[field->group];
     if (field->show == SHOW_DISTANCE && plant->tags[field->sensor].place_assumed) {
-        message_fail(error, "bad_field", "sensor: nobody has said where on '%s' it is, so there are no distances from it",
-                     quoted(plant->assets[plant->tags[field->sensor].asset].id, asset));
+        message_refuse_with(error, "bad_field", "sensor", REFUSAL_ASSUMED, "asset=%s",
+                            quoted(plant->assets[plant->tags[field->sensor].asset].id, asset));
         return false;
     }
     if (plant_cuts_singles(of))
         return true;
     size_t count = field->interpolation == INTERPOLATION_PAPER ? plant_singles(plant, field->group, &first) : 0;
     if (count > 0)
-        message_fail(error, "bad_field",
-                     "interpolation: 'paper' is not prepared where '%s' has one sensor (%zu of %zu assets, first '%s'); "
-                     "write 'singles: cut' at that group in the plant file",
-                     quoted(of->id, group), count, plant->asset_count, quoted(plant->assets[first].id, asset));
+        message_refuse_with(error, "bad_field", "interpolation", REFUSAL_UNCUT, "group=%s\ncount=%zu\nall=%zu\nasset=%s",
+                            quoted(of->id, group), count, plant->asset_count, quoted(plant->assets[first].id, asset));
     else if (field->show == SHOW_DISTANCE && plant_is_single(plant, field->sensor))
-        message_fail(error, "bad_field",
-                     "sensor: distances are not prepared where '%s' has one sensor, as on '%s'; "
-                     "write 'singles: cut' at that group in the plant file",
-                     quoted(of->id, group), quoted(plant->assets[plant->tags[field->sensor].asset].id, asset));
+        message_refuse_with(error, "bad_field", "sensor", REFUSAL_FAR_UNCUT, "group=%s\nasset=%s", quoted(of->id, group),
+                            quoted(plant->assets[plant->tags[field->sensor].asset].id, asset));
     else
         return true;
     return false;
@@ -226,6 +222,10 @@ bool params_apply_show(const struct params_context *context, const struct params
         field->sensor = change->field.sensor;
     if (!apply_sensors(change, field, error) || !find_baseline(context, change, field, error))
         return false;
+    if (!field_params_placed(context->scene->plant, field)) {
+        message_refuse(error, "bad_field", "sensors", REFUSAL_PLACELESS);
+        return false;
+    }
     const char *wrong = field_params_wrong(context->scene->plant, field);
     if (wrong) {
         message_fail(error, "bad_field", "%s", wrong);

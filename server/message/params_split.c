@@ -11,7 +11,6 @@ static const char *const common[] = { "light",    "environment", "backdrop", "st
 bool split_parse(const struct plant *plant, const json_t *o, struct split_change *out, struct message_error *error)
 {
     const json_t *value = json_object_get(o, "split");
-    char text[sizeof(error->text)];
     memset(out, 0, sizeof(*out));
     if (!value)
         return true;
@@ -29,8 +28,7 @@ bool split_parse(const struct plant *plant, const json_t *o, struct split_change
         }
     if (params_parse(plant, value, &out->right, error))
         return true;
-    memcpy(text, error->text, sizeof(text));
-    message_fail(error, "bad_field", "split: %.*s", (int)sizeof(text) - 10, text);
+    message_error_within(error, "split");
     return false;
 }
 
@@ -44,7 +42,7 @@ bool split_apply(const struct params_context *context, const struct split_change
     if (change->mode != SPLIT_ON)
         return true;
     if (view->width_px < VIEW_SPLIT_LEAST_PX) {
-        message_fail(error, "bad_field", "split: %d pixels are too narrow for two pictures", view->width_px);
+        message_refuse(error, "bad_field", "split", REFUSAL_NARROW);
         return false;
     }
     view_half(view, 1, &right); /* where it was not split, the right half begins as the left one is */

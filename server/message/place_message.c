@@ -32,9 +32,9 @@ static bool take_move(const struct plant *plant, const json_t *o, struct place_m
     if (!tag || !asset)
         message_fail(error, "bad_field", "moves: objects with tag, asset and position expected");
     else if (out->tag < 0)
-        message_fail(error, "bad_field", "moves: there is no tag '%s'", quoted(tag, name));
+        message_refuse_with(error, "bad_field", "moves", REFUSAL_NO_TAG, "name=%s", quoted(tag, name));
     else if (out->asset < 0)
-        message_fail(error, "bad_field", "moves: there is no asset '%s'", quoted(asset, name));
+        message_refuse_with(error, "bad_field", "moves", REFUSAL_NO_ASSET, "name=%s", quoted(asset, name));
     else
         return need_vector(o, "position", out->position_m, error);
     return false;
@@ -61,7 +61,7 @@ bool coverage_parse(const struct plant *plant, const json_t *o, struct message *
     char name[48];
     out->coverage.group = group ? plant_find_group(plant, group) : -1;
     if (group && out->coverage.group < 0) {
-        message_fail(error, "bad_field", "group: there is no group '%s'", quoted(group, name));
+        message_refuse_with(error, "bad_field", "group", REFUSAL_NO_GROUP, "name=%s", quoted(group, name));
         return false;
     }
     return need_seq(o, &out->seq, error) && may_number(o, "far_m", 1e-3, 1e6, &out->coverage.far_m, NULL, error);
@@ -92,9 +92,9 @@ bool accept_places_parse(const struct plant *plant, const json_t *o, struct mess
                                        .within_m = -1,
                                        .confidence = -1 };
     if (asset && filter->asset < 0)
-        message_fail(error, "bad_field", "asset: there is no asset '%s'", quoted(asset, name));
+        message_refuse_with(error, "bad_field", "asset", REFUSAL_NO_ASSET, "name=%s", quoted(asset, name));
     else if (group && filter->group < 0)
-        message_fail(error, "bad_field", "group: there is no group '%s'", quoted(group, name));
+        message_refuse_with(error, "bad_field", "group", REFUSAL_NO_GROUP, "name=%s", quoted(group, name));
     else if (!need_words(o, "pattern", false, filter->pattern, sizeof(filter->pattern), error))
         return false;
     else if (!is_simple(filter->pattern))
@@ -203,7 +203,7 @@ static json_t *lines_of(const char *before, const char *after, size_t *more)
 }
 
 /* The list with the moves in it. NULL: *why. */
-static char *edited(const struct plant *plant, const char *before, const struct place_set *set, char **why)
+static char *edited(const struct plant *plant, const char *before, const struct place_set *set, struct refusal *why)
 {
     struct tag_edit edits[PLACING_MOVES];
     const struct placed *placed;
@@ -221,9 +221,13 @@ static char *edited(const struct plant *plant, const char *before, const struct 
     return tag_edit(before, edits, count, why);
 }
 
-char *tags_saved_text(uint32_t seq, bool saved, const char *why)
+char *tags_refused_text(uint32_t seq, const struct refusal *why)
 {
-    return json_text(json_pack("{s:s,s:I,s:b,s:[s]}", "type", "tags_saved", "seq", (json_int_t)seq, "saved", saved, "errors", why), 9);
+    char text[REFUSAL_TEXT_BYTES];
+    refusal_text(why, text);
+    return json_text(json_pack("{s:s,s:I,s:b,s:[o],s:o}", "type", "tags_saved", "seq", (json_int_t)seq, "saved", false, "errors",
+                               string(text), "refusal", refusal_json(why)),
+                     9);
 }
 
 static char *conflict_text(const struct plant *plant, const struct message *message, const char *before, const char *now)
@@ -255,7 +259,7 @@ static struct tag_save *order_of(const struct plant *plant, const char *before, 
 
 /* Returns the tag list that the message asks for (mem_free); NULL with the reason in *why. */
 static char *wanted_list(const struct scene *scene, const char *before, const struct place_set *set, const struct message *message,
-                         uint8_t *outcome, char **why)
+                         uint8_t *outcome, struct refusal *why)
 {
     const struct plant *plant = scene->plant;
     if (message->type == MESSAGE_RESTORE_TAGS) {
@@ -321,7 +325,8 @@ char *tags_diff_text(const struct scene *scene, const char *before, const struct
                      const char *who, struct tag_save **order)
 {
     const struct plant *plant = scene->plant;
-    char *why = NULL, *now = tag_file_read(plant->tags_path, &why), *text = NULL;
+    struct refusal why;
+    char *now = tag_file_read(plant->tags_path, &why), *text = NULL;
     uint8_t *outcome = mem_array(plant->tag_count + 1, 1);
     bool conflict = now && strcmp(now, before) != 0;
     char *after = now && !conflict ? wanted_list(scene, before, set, message, outcome, &why) : NULL;
@@ -329,7 +334,7 @@ char *tags_diff_text(const struct scene *scene, const char *before, const struct
     if (conflict)
         text = conflict_text(plant, message, before, now);
     else if (!after)
-        text = tags_saved_text(message->seq, false, why);
+        text = tags_refused_text(message->seq, &why);
     else if (message->type == MESSAGE_ACCEPT_PLACES)
         text = accepted_text(plant, message, outcome, after);
     else
@@ -338,6 +343,5 @@ char *tags_diff_text(const struct scene *scene, const char *before, const struct
         *order = order_of(plant, before, after, message, who);
     mem_free(outcome);
     mem_free(now);
-    mem_free(why);
     return text;
 }

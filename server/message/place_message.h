@@ -21,7 +21,7 @@ char *coverage_text(const struct scene *scene, const struct place_set *set, cons
    set: NULL for the last two. who: the user's name. */
 char *tags_diff_text(const struct scene *scene, const char *before, const struct place_set *set, const struct message *message,
                      const char *who, struct tag_save **order);
-/* Returns `tags_saved`: whether a list was put in force, or why not; mem_free. */
-char *tags_saved_text(uint32_t seq, bool saved, const char *why);
+/* Returns `tags_saved` of a list that was not put in force; mem_free. */
+char *tags_refused_text(uint32_t seq, const struct refusal *why);
 
 #endif

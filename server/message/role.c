@@ -16,13 +16,11 @@ static bool params_allowed(enum role role, const struct params_change *change, s
 {
     bool shared = change->baseline == BASELINE_SET || change->baseline == BASELINE_REMOVE || change->baseline == BASELINE_NOW;
     if (role < ROLE_OPERATOR && shared) {
-        message_fail(error, "not_allowed", "baseline: to keep or forget one takes the role operator, not %s", name_of(names_role, role));
+        message_refuse(error, "not_allowed", "baseline", REFUSAL_ROLE_OPERATOR);
         return false;
     }
     if (role < ROLE_ENGINEER && (change->given & ENGINEERS)) {
-        message_fail(error, "not_allowed",
-                     "fill, strength, decay, power, radius_m, reach_m, sensors: to change them takes the role engineer, not %s",
-                     name_of(names_role, role));
+        message_refuse(error, "not_allowed", "fill, strength, decay, power, radius_m, reach_m, sensors", REFUSAL_ROLE_ENGINEER);
         return false;
     }
     return true;
@@ -33,8 +31,8 @@ static bool alarm_allowed(enum role role, const struct message *message, struct 
     bool service = message->alarm.action == ALARM_TAKE_OUT || message->alarm.action == ALARM_PUT_BACK;
     if (role >= (service ? ROLE_ENGINEER : ROLE_OPERATOR))
         return true;
-    message_fail(error, "not_allowed", "%s takes the role %s, not %s", alarm_event_name((enum alarm_event)message->alarm.action),
-                 service ? "engineer" : "operator", name_of(names_role, role));
+    message_refuse(error, "not_allowed", alarm_event_name((enum alarm_event)message->alarm.action),
+                   service ? REFUSAL_ROLE_ENGINEER : REFUSAL_ROLE_OPERATOR);
     return false;
 }
 
@@ -63,11 +61,11 @@ bool role_may_send(enum role role, const struct message *message, struct message
     bool saves = message->type == MESSAGE_SAVE_TAGS || message->type == MESSAGE_ACCEPT_PLACES || message->type == MESSAGE_RESTORE_TAGS;
     bool engineers = saves || message->type == MESSAGE_PLACE || message->type == MESSAGE_COVERAGE || message->type == MESSAGE_LOOP_CHECK;
     if (engineers && role < ROLE_ENGINEER) {
-        message_fail(error, "not_allowed", "to place or prove sensors takes the role engineer, not %s", name_of(names_role, role));
+        message_refuse(error, "not_allowed", "to place or prove sensors", REFUSAL_ROLE_ENGINEER);
         return false;
     }
     if ((message->type == MESSAGE_PAIR || message->type == MESSAGE_UNPAIR) && role < ROLE_ENGINEER) {
-        message_fail(error, "not_allowed", "to let a display in takes the role engineer, not %s", name_of(names_role, role));
+        message_refuse(error, "not_allowed", "to let a display in", REFUSAL_ROLE_ENGINEER);
         return false;
     }
     const char *operators = message->type == MESSAGE_SAVE_VIEW || message->type == MESSAGE_REMOVE_VIEW ? "to save or remove views"
@@ -75,7 +73,7 @@ bool role_may_send(enum role role, const struct message *message, struct message
                             : message->type == MESSAGE_SEND_TO_WALL || message->type == MESSAGE_POINT  ? "to send something to a wall"
                                                                                                        : NULL;
     if (operators && role < ROLE_OPERATOR) {
-        message_fail(error, "not_allowed", "%s takes the role operator, not %s", operators, name_of(names_role, role));
+        message_refuse(error, "not_allowed", operators, REFUSAL_ROLE_OPERATOR);
         return false;
     }
     if (message->type != MESSAGE_PARAMS && !message->has_params)

@@ -251,12 +251,13 @@ static bool add(json_t *o, const char *arg, struct message_error *error)
         json_t *value = arg[n] == '=' ? value_of(known[i].kind, arg + n + 1, &inner) : NULL;
         if (value)
             return json_object_set_new(o, known[i].kind == BOX ? "clip" : known[i].name, value) == 0;
-        message_fail(error, "bad_field", "%s: %s", known[i].name, inner.code ? inner.text : expected[known[i].kind]);
         if (!inner.code)
-            strcat(error->text, " expected");
+            message_fail(&inner, "bad_field", "%s expected", expected[known[i].kind]);
+        *error = inner;
+        message_error_within(error, known[i].name);
         return false;
     }
-    message_fail(error, "bad_field", "'%s' is unknown", quoted(arg, name));
+    message_refuse_with(error, "bad_field", NULL, REFUSAL_UNKNOWN, "name=%s", quoted(arg, name));
     return false;
 }
 

@@ -45,10 +45,10 @@ char *view_edit_do(struct named_views *views, const struct message *message, con
 {
     const struct named_view_edit *edit = &message->view_edit;
     bool saves = message->type == MESSAGE_SAVE_VIEW;
-    const char *why = saves ? named_views_save(views, edit, who, time_us) : named_views_remove(views, edit->id);
-    return json_text(json_pack("{s:s,s:I,s:s,s:b,s:s}", "type", "view_saved", "seq", (json_int_t)message->seq, "id", edit->id, "kept", !why,
-                               "why", why ? why : ""),
-                     0);
+    enum refusal_code why = saves ? named_views_save(views, edit, who, time_us) : named_views_remove(views, edit->id);
+    json_t *answer = json_pack("{s:s,s:I,s:s,s:b}", "type", "view_saved", "seq", (json_int_t)message->seq, "id", edit->id, "kept", !why);
+    refusal_add(answer, why);
+    return json_text(answer, 0);
 }
 
 /* A tour is told as views that are shown in turn, each for a while of its own. */

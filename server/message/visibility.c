@@ -18,8 +18,11 @@ static bool parse_set(const struct plant *plant, const json_t *o, const char *na
         const char *id = json_string_value(json_array_get(list, i));
         int asset = id ? plant_find_asset(plant, id) : -1;
         if (asset < 0 || asset >= ASSET_SET_MAX) {
-            message_fail(error, "bad_field", asset < 0 ? "%s: '%s' is no asset of this plant" : "%s: '%s' is beyond the first %d assets",
-                         name, id ? quoted(id, quote) : "(not a text)", ASSET_SET_MAX);
+            const char *said = id ? quoted(id, quote) : "(not a text)";
+            if (asset < 0)
+                message_refuse_with(error, "bad_field", name, REFUSAL_NO_ASSET, "name=%s", said);
+            else
+                message_fail(error, "bad_field", "%s: '%s' is beyond the first %d assets", name, said, ASSET_SET_MAX);
             return false;
         }
         asset_set_add(out, asset);

@@ -90,8 +90,8 @@ char *send_to_wall_do(struct wall_remote *remote, const struct message *message,
                                       .title = message->view_edit.title,
                                       .held = message->wall.held,
                                       .desk = message->wall.desk };
-    const char *why = wall_remote_order(remote, &order, who, now_us);
-    return json_text(json_pack("{s:s,s:I,s:b,s:s}", "type", "sent_to_wall", "seq", (json_int_t)message->seq, "kept", !why, "why",
-                               why ? why : ""),
-                     0);
+    enum refusal_code why = wall_remote_order(remote, &order, who, now_us);
+    json_t *answer = json_pack("{s:s,s:I,s:b}", "type", "sent_to_wall", "seq", (json_int_t)message->seq, "kept", !why);
+    refusal_add(answer, why);
+    return json_text(answer, 0);
 }

@@ -14,16 +14,16 @@
 static const char LOCAL[] = "local";            /* a user of this machine who needs no token */
 static const char SIGNED_IN[] = " (signed in)"; /* suffix of a person whose name somebody else has as well */
 
-static const struct refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n" };
-static const struct refusal WRONG_HOST = { 403, "this server is not asked for by that name (Host); --host NAME lets it\n" };
-static const struct refusal LOCAL_ONLY = { 403, "this server answers to localhost, 127.0.0.1 and [::1] only\n" };
-static const struct refusal PROXY = { 403, "a proxy speaks for somebody here; the server needs --behind-proxy for that\n" };
-static const struct refusal IN_QUERY = { 400, "a token does not belong in a URL, where logs and histories keep it: send it as "
+static const struct http_refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n" };
+static const struct http_refusal WRONG_HOST = { 403, "this server is not asked for by that name (Host); --host NAME lets it\n" };
+static const struct http_refusal LOCAL_ONLY = { 403, "this server answers to localhost, 127.0.0.1 and [::1] only\n" };
+static const struct http_refusal PROXY = { 403, "a proxy speaks for somebody here; the server needs --behind-proxy for that\n" };
+static const struct http_refusal IN_QUERY = { 400, "a token does not belong in a URL, where logs and histories keep it: send it as "
                                               "Authorization: Bearer, in the subprotocol list, or in hello\n" };
-static const struct refusal BAD_TOKEN = { 401, "this token is not, or no longer, let in\n" };
-static const struct refusal HELD = { 429, "too many wrong tokens came from this address; try again in 5 s\n" };
-static const struct refusal TOO_LONG = { 431, "a header is too long\n" };
-static const struct refusal TOO_MANY = { 503, "this address has as many connections as one may have; try again later\n" };
+static const struct http_refusal BAD_TOKEN = { 401, "this token is not, or no longer, let in\n" };
+static const struct http_refusal HELD = { 429, "too many wrong tokens came from this address; try again in 5 s\n" };
+static const struct http_refusal TOO_LONG = { 431, "a header is too long\n" };
+static const struct http_refusal TOO_MANY = { 503, "this address has as many connections as one may have; try again later\n" };
 
 /* --- connections ------------------------------------------------------------------------------------------------------ */
 
@@ -143,7 +143,7 @@ static bool has_forwarding(struct lws *wsi)
 }
 
 /* Behind a proxy its connections are those of whom it names. False: *refusal. */
-static bool find_client(struct server_context *server, struct lws *wsi, struct connection *connection, struct refusal *refusal)
+static bool find_client(struct server_context *server, struct lws *wsi, struct connection *connection, struct http_refusal *refusal)
 {
     bool proxied = server->params.access.behind_proxy && connection->usage->local;
     char list[512] = "", *address = connection->address;
@@ -251,7 +251,7 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
 }
 
 /* NULL: it is let in, and connection->holder is whose it is. */
-static const struct refusal *judge_token(struct server_context *server, struct lws *wsi, const char *token)
+static const struct http_refusal *judge_token(struct server_context *server, struct lws *wsi, const char *token)
 {
     struct connection *connection = connection_of(wsi);
     struct token_holder holder;
@@ -299,14 +299,14 @@ static bool is_http_1_0(struct lws *wsi)
     return connection_header(wsi, WSI_TOKEN_HTTP, version, sizeof(version)) && !strcmp(version, "HTTP/1.0");
 }
 
-bool connection_identify(struct server_context *server, struct lws *wsi, struct refusal *refusal)
+bool connection_identify(struct server_context *server, struct lws *wsi, struct http_refusal *refusal)
 {
     const struct access_params *params = &server->params.access;
     struct connection *connection = connection_of(wsi);
     char host[256], name[256] = "", *token = connection->token;
     bool has_host = lws_hdr_total_length(wsi, WSI_TOKEN_HOST) > 0;
-    const struct refusal *bad_token;
-    *refusal = (struct refusal){ 0 };
+    const struct http_refusal *bad_token;
+    *refusal = (struct http_refusal){ 0 };
     connection->holder = (struct token_holder){ 0 };
     connection->role = ROLE_NOBODY;
     if (!find_client(server, wsi, connection, refusal))

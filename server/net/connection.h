@@ -25,12 +25,12 @@ void connection_set_answered(struct server_context *server, struct lws *wsi, boo
 /* Returns the identity of an open connection. */
 struct connection *connection_of(struct lws *wsi);
 
-struct refusal {
+struct http_refusal {
     int status;
     const char *text; /* static */
 };
 /* Reads the headers of a request and sets role, client and holder by them. Returns false with *refusal holding the answer. */
-bool connection_identify(struct server_context *server, struct lws *wsi, struct refusal *refusal);
+bool connection_identify(struct server_context *server, struct lws *wsi, struct http_refusal *refusal);
 /* Adds a suffix to the name of a person who is signed in if a token has the same name, or if it is `local`: journals and the audit trail
    must tell them apart. */
 void connection_tell_apart(const struct server_context *server, struct token_holder *person);

@@ -39,7 +39,7 @@ static int refuse_protocol(struct server_context *server, struct lws *wsi, const
 int stream_check_upgrade(struct server_context *server, struct lws *wsi)
 {
     char path[16], list[512];
-    struct refusal refusal;
+    struct http_refusal refusal;
     bool there = lws_hdr_copy(wsi, path, sizeof(path), WSI_TOKEN_GET_URI) >= 0, core = there && !strcmp(path, CORE_PATH);
     const char *spoken = core ? CORE_SUBPROTOCOL : WIRE_SUBPROTOCOL, *why = NULL;
     if (!core && (!there || strcmp(path, "/stream") != 0))

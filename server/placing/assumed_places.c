@@ -85,7 +85,7 @@ size_t assumed_places_choose(const struct scene *scene, const struct assumed_fil
     return accepted;
 }
 
-char *assumed_places_accept(const struct plant *plant, const char *list, const uint8_t *outcome, char **why)
+char *assumed_places_accept(const struct plant *plant, const char *list, const uint8_t *outcome, struct refusal *why)
 {
     struct tag_edit *edits = mem_array(plant->tag_count + 1, sizeof(*edits));
     size_t count = 0;

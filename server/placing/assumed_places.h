@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/refusal.h"
 #include "scene/scene.h"
 
 struct assumed_filter {
@@ -29,7 +30,7 @@ enum assumed_outcome {
 size_t assumed_places_choose(const struct scene *scene, const struct assumed_filter *filter, uint8_t *outcome);
 /* Returns the tag list with `Place` cleared in the rows of the accepted tags and nothing else changed; NULL with the reason in *why. The
    caller frees either (mem_free). */
-char *assumed_places_accept(const struct plant *plant, const char *list, const uint8_t *outcome, char **why);
+char *assumed_places_accept(const struct plant *plant, const char *list, const uint8_t *outcome, struct refusal *why);
 /* Writes the filter in words, for the audit trail. */
 void assumed_filter_text(const struct plant *plant, const struct assumed_filter *filter, char *out, size_t size);
 

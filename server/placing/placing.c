@@ -272,20 +272,20 @@ static int find_same(const struct place_set *set, const struct place_move *move)
     return -1;
 }
 
-static bool check(const struct placing *placing, const struct place_move *moves, size_t i, char why[160])
+static bool check(const struct placing *placing, const struct place_move *moves, size_t i, struct refusal *why)
 {
     const struct plant *plant = placing->params.scene->plant;
     const struct plant_tag *tag = &plant->tags[moves[i].tag];
-    why[0] = 0;
+    why->code = REFUSAL_NONE;
     if (tag->group < 0)
-        snprintf(why, 160, "%s belongs to no group: its row of the tag list has to name one first", tag->name);
+        refusal_set(why, REFUSAL_GROUPLESS, "tag=%s", tag->name);
     for (size_t j = 0; j < i; j++)
         if (moves[j].tag == moves[i].tag)
-            snprintf(why, 160, "%s is there twice", tag->name);
-    return !why[0];
+            refusal_set(why, REFUSAL_TWICE, "tag=%s", tag->name);
+    return why->code == REFUSAL_NONE;
 }
 
-bool place_set_moves(struct place_set *set, const struct place_move *moves, size_t count, char why[160])
+bool place_set_moves(struct place_set *set, const struct place_move *moves, size_t count, struct refusal *why)
 {
     struct placing *placing = set->placing;
     struct entry entries[PLACING_MOVES] = { 0 };
@@ -297,8 +297,8 @@ bool place_set_moves(struct place_set *set, const struct place_move *moves, size
         if (!check(placing, moves, i, why))
             return false;
         if (same[i] < 0 && !find_place(placing, &moves[i], &entries[i], &placed[i])) {
-            snprintf(why, 160, "%s: that place is farther from %s than it is large", placing->params.scene->plant->tags[moves[i].tag].name,
-                     placing->params.scene->assets[moves[i].asset].plant->id);
+            refusal_set(why, REFUSAL_FAR, "tag=%s\nasset=%s", placing->params.scene->plant->tags[moves[i].tag].name,
+                   placing->params.scene->assets[moves[i].asset].plant->id);
             return false;
         }
     }

@@ -4,6 +4,7 @@
 #ifndef PLACING_PLACING_H
 #define PLACING_PLACING_H
 #include "base/log/log.h"
+#include "base/refusal.h"
 #include "base/workers.h"
 #include "field/trials.h"
 #include "placing/sensor_coverage.h"
@@ -50,7 +51,7 @@ struct place_set *place_set_create(struct placing *placing);
 void place_set_destroy(struct place_set **set);
 /* Replaces the set's moves: at most PLACING_MOVES, each tag once; unchanged ones keep their distances. Returns false with nothing changed,
    and why says which tag cannot be there (it has no group, or the point is farther from the asset than that is large). */
-bool place_set_moves(struct place_set *set, const struct place_move *moves, size_t count, char why[160]);
+bool place_set_moves(struct place_set *set, const struct place_move *moves, size_t count, struct refusal *why);
 /* Returns the number of the trial that stands for the set; 0: it has no moves. */
 uint32_t place_set_trial(const struct place_set *set);
 /* Writes the set's moves to *out, valid until the set changes. Returns their number. */

@@ -28,11 +28,12 @@ void tag_save_free(struct tag_save *save)
     mem_free(save);
 }
 
-char *tag_file_read(const char *path, char **why)
+char *tag_file_read(const char *path, struct refusal *why)
 {
     size_t bytes;
     char *text = text_read_file(path, MOST_BYTES, &bytes);
-    *why = text ? NULL : mem_printf("%s cannot be read: %s", text_base_name(path), strerror(errno));
+    if (!text)
+        refusal_set(why, REFUSAL_UNREAD_FILE, "file=%s\nerror=%s", text_base_name(path), strerror(errno));
     return text;
 }
 
@@ -41,21 +42,33 @@ void tag_file_hash(const char *text, char out[17])
     snprintf(out, 17, "%016" PRIx64, (uint64_t)XXH3_64bits(text, strlen(text)));
 }
 
+static void cannot_write(struct refusal *why, const char *file, int error)
+{
+    if (error == ENOSPC || error == EDQUOT)
+        refusal_set(why, REFUSAL_DISK_FULL, "file=%s", file);
+    else if (error == EACCES || error == EPERM || error == EROFS)
+        refusal_set(why, REFUSAL_FOLDER_LOCKED, "file=%s", file);
+    else
+        refusal_set(why, REFUSAL_UNWRITTEN, "file=%s\nerror=%s", file, strerror(error));
+}
+
 /* Owner and rights stay with it. */
-char *tag_file_keep(const char *path, char **why)
+char *tag_file_keep(const char *path, struct refusal *why)
 {
     for (int n = 1; n < MOST_VERSIONS; n++) {
         char *name = mem_printf("%s.%d", path, n);
         if (link(path, name) == 0)
             return name;
         int error = errno;
-        mem_free(name);
-        if (error == EEXIST)
+        if (error == EEXIST) {
+            mem_free(name);
             continue;
-        *why = mem_printf("the list as it is cannot be kept as %s.%d: %s", text_base_name(path), n, strerror(error));
+        }
+        cannot_write(why, text_base_name(name), error);
+        mem_free(name);
         return NULL;
     }
-    *why = mem_printf("there are %d versions beside %s", MOST_VERSIONS, text_base_name(path));
+    cannot_write(why, text_base_name(path), ENFILE);
     return NULL;
 }
 
@@ -79,19 +92,19 @@ static int replace(const struct tag_save *save)
     return error;
 }
 
-bool tag_file_put(const struct tag_save *save, char **kept, char **why)
+bool tag_file_put(const struct tag_save *save, char **kept, struct refusal *why)
 {
     char *now = tag_file_read(save->path, why);
     bool same = now && !strcmp(now, save->before);
     if (now && !same)
-        *why = mem_printf("%s was changed by somebody else meanwhile", text_base_name(save->path));
+        refusal_set(why, REFUSAL_CHANGED, "file=%s", text_base_name(save->path));
     mem_free(now);
     char *name = same ? tag_file_keep(save->path, why) : NULL;
     if (!name)
         return false;
     int error = replace(save);
     if (error) {
-        *why = mem_printf("%s cannot be written: %s", text_base_name(save->path), strerror(-error));
+        cannot_write(why, text_base_name(save->path), -error);
         unlink(name);
         mem_free(name);
         return false;

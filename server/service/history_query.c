@@ -27,7 +27,7 @@ static bool take_tags(const struct plant *plant, const char *list, struct histor
         name[n] = 0;
         int tag = plant_find_tag(plant, name);
         if (tag < 0) {
-            message_fail(error, "unknown_tag", "tags: there is no tag '%.60s'", name);
+            message_refuse_with(error, "unknown_tag", "tags", REFUSAL_NO_TAG, "name=%.60s", name);
             return false;
         }
         if (has_tag(query, tag)) {

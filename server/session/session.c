@@ -244,7 +244,7 @@ static bool on_alarm(struct session *session, const struct message *message, str
 {
     const struct session_context *context = session->context;
     if (!context->alarm_service || context->plant->alarms != ALARMS_LOCAL) {
-        message_fail(error, "not_allowed", "alarms are another system's here: nothing can be acknowledged or shelved");
+        message_refuse(error, "not_allowed", NULL, REFUSAL_ELSEWHERE);
         return false;
     }
     const struct kept_action action = session_kept_begin(session);
@@ -313,11 +313,12 @@ static bool on_pair(struct session *session, const struct message *message, int6
     if (!pairs)
         snprintf(id, sizeof(id), "%s", message->pair.device);
     const struct kept_action action = session_kept_begin(session);
-    const char *why = pairs ? pairings_approve(context->pairings, message->pair.digits, session_who(session), now_ns, now_utc_ns / 1000, id)
-                            : pairings_revoke(context->pairings, id);
-    char *answer = json_text(json_pack("{s:s,s:I,s:s,s:b,s:s}", "type", "paired", "seq", (json_int_t)message->seq,
-                                       "id", id, "kept", !why, "why", why ? why : ""),
-                             0);
+    const char *digits = message->pair.digits;
+    enum refusal_code why = pairs ? pairings_approve(context->pairings, digits, session_who(session), now_ns, now_utc_ns / 1000, id)
+                                  : pairings_revoke(context->pairings, id);
+    json_t *said = json_pack("{s:s,s:I,s:s,s:b}", "type", "paired", "seq", (json_int_t)message->seq, "id", id, "kept", !why);
+    refusal_add(said, why);
+    char *answer = json_text(said, 0);
     session_record_pair(session, message, id, answer);
     session_kept_reply(session, &action, answer, NULL);
     return true;

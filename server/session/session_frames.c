@@ -22,7 +22,6 @@ enum { SMALL_PX = 128 };                        /* sides that are not made small
 /* The one who already has a frame keeps it; a new one would look at nothing. */
 static void on_failure(struct session *session, const struct frame_request *request)
 {
-    const struct view *view = &request->view;
     struct message_error error = { 0 };
     if (session->delivery.newest_number == 0) {
         session_close(session, 1013, "no memory for another picture: try later, or a smaller one");
@@ -33,8 +32,7 @@ static void on_failure(struct session *session, const struct frame_request *requ
     if (session->demand.failure_said)
         return;
     session->demand.failure_said = true;
-    message_fail(&error, "no_picture", "%dx%d cannot be drawn: the server is out of memory; the last picture stays", view->width_px,
-                 view->height_px);
+    message_refuse(&error, "no_picture", NULL, REFUSAL_MEMORY);
     session_reply_error(session, &error);
 }
 

@@ -28,7 +28,7 @@ static void say_not_kept(json_t *answer, int error)
 {
     json_object_set(answer, "not_kept", json_object_get(answer, "done"));
     json_object_set_new(answer, "done", json_integer(0));
-    json_object_set_new(answer, "why", json_string(atomic_file_not_kept(error)));
+    refusal_add(answer, atomic_file_not_kept(error));
 }
 
 static void answer_now(struct session *session, struct kept_answer *kept, int journal_error, int audit_error)
@@ -36,10 +36,10 @@ static void answer_now(struct session *session, struct kept_answer *kept, int jo
     json_t *answer = journal_error || audit_error ? json_loads(kept->text, 0, NULL) : NULL;
     if (answer && journal_error) {
         say_not_kept(answer, journal_error);
-        session_record_not_kept(session, kept->what, atomic_file_not_kept(journal_error));
+        session_record_not_kept(session, kept->what, refusal_words(atomic_file_not_kept(journal_error)));
     }
     if (answer && audit_error)
-        json_object_set_new(answer, "unaudited", json_string(atomic_file_not_kept(audit_error)));
+        refusal_add_unaudited(answer, atomic_file_not_kept(audit_error));
     if (answer) {
         mem_free(kept->text);
         kept->text = json_text(answer, 0);

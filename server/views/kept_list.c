@@ -47,14 +47,12 @@ void kept_list_close(struct kept_list *kept)
     mem_free(kept->path);
 }
 
-const char *kept_list_refusal(const struct kept_list *kept)
+enum refusal_code kept_list_refusal(const struct kept_list *kept)
 {
-    return !kept->path       ? "this daemon records nothing (history: record: no): such is kept beside the history"
-           : kept->unreadable ? "the file that keeps it cannot be read; the log says why"
-                              : NULL;
+    return !kept->path ? REFUSAL_UNRECORDED : kept->unreadable ? REFUSAL_KEPT_UNREAD : REFUSAL_NONE;
 }
 
-const char *kept_list_put(struct kept_list *kept, json_t *list)
+enum refusal_code kept_list_put(struct kept_list *kept, json_t *list)
 {
     json_t *file = json_pack("{s:i,s:O}", "version", 1, kept->kind->key, list);
     char *text = json_dumps(file, JSON_INDENT(1));
@@ -71,7 +69,7 @@ const char *kept_list_put(struct kept_list *kept, json_t *list)
     json_decref(kept->list);
     kept->list = list;
     kept->number++;
-    return NULL;
+    return REFUSAL_NONE;
 }
 
 bool kept_list_mirror(struct kept_list *kept, json_t *list)
@@ -81,7 +79,7 @@ bool kept_list_mirror(struct kept_list *kept, json_t *list)
     if (json_equal(kept->list, list))
         return true;
     if (kept->path && !kept->unreadable) /* of a core that stands by: it is its own, once it leads */
-        return kept_list_put(kept, json_incref(list)) == NULL;
+        return kept_list_put(kept, json_incref(list)) == REFUSAL_NONE;
     json_decref(kept->list);
     kept->list = json_incref(list);
     kept->number++;

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "base/log/log.h"
+#include "base/refusal.h"
 
 struct kept_list_kind {
     const char *file, *key;           /* the file's name, and the member that is the list */
@@ -32,9 +33,9 @@ void kept_list_close(struct kept_list *kept);
 /* Returns the index of the entry with that id; the length of the list: there is none. */
 size_t kept_list_find(const json_t *list, const char *id);
 /* Returns why nothing can be changed (static), or NULL. */
-const char *kept_list_refusal(const struct kept_list *kept);
+enum refusal_code kept_list_refusal(const struct kept_list *kept);
 /* Takes a list in place of the one there is, once it is on disk (without a folder, at once). Returns NULL, or why it could not (static). */
-const char *kept_list_put(struct kept_list *kept, json_t *list);
+enum refusal_code kept_list_put(struct kept_list *kept, json_t *list);
 
 /* Takes a list as another daemon keeps it, and writes nothing. Returns false if it is none of that kind; then nothing changed. */
 bool kept_list_mirror(struct kept_list *kept, json_t *list);

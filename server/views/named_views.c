@@ -69,10 +69,10 @@ void named_views_close(struct named_views **pointer)
 
 /* --- changes ---------------------------------------------------------------------------------------------------------------- */
 
-static const char *refusal(const struct named_views *views, const char *id)
+static enum refusal_code refusal(const struct named_views *views, const char *id)
 {
-    const char *why = kept_list_refusal(&views->kept);
-    return why ? why : find_fixed(views->plant, id) ? "this view is in the plant file, and is changed there" : NULL;
+    enum refusal_code why = kept_list_refusal(&views->kept);
+    return why ? why : find_fixed(views->plant, id) ? REFUSAL_FIXED : REFUSAL_NONE;
 }
 
 /* The versions of a view once it is another: those of before, and itself first. */
@@ -93,20 +93,20 @@ static bool same(const json_t *view, const struct named_view_edit *edit)
            !strcmp(json_string_value(json_object_get(view, "view")), edit->address);
 }
 
-const char *named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us)
+enum refusal_code named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us)
 {
-    const char *why = refusal(views, edit->id);
+    enum refusal_code why = refusal(views, edit->id);
     size_t count = json_array_size(views->kept.list), at = kept_list_find(views->kept.list, edit->id);
     json_t *old = json_array_get(views->kept.list, at), *list, *view;
     if (why || (!old && count >= NAMED_VIEWS))
-        return why ? why : "there are as many views as there may be; remove one";
+        return why ? why : REFUSAL_VIEWS;
     if (old && same(old, edit)) /* only its place */
         view = json_incref(old);
     else
         view = json_pack("{s:s,s:s,s:s,s:s,s:I,s:o}", "id", edit->id, "title", edit->title, "view", edit->address, "by", who, "time_us",
                          (json_int_t)time_us, "before", old ? versions(old) : json_array());
     if (!view)
-        return "it is no UTF-8";
+        return REFUSAL_NOT_UTF8;
     list = json_copy(views->kept.list);
     if (old)
         json_array_remove(list, at);
@@ -117,12 +117,12 @@ const char *named_views_save(struct named_views *views, const struct named_view_
     return kept_list_put(&views->kept, list);
 }
 
-const char *named_views_remove(struct named_views *views, const char *id)
+enum refusal_code named_views_remove(struct named_views *views, const char *id)
 {
-    const char *why = refusal(views, id);
+    enum refusal_code why = refusal(views, id);
     size_t at = kept_list_find(views->kept.list, id);
     if (why || at == json_array_size(views->kept.list))
-        return why ? why : "there is no such view";
+        return why ? why : REFUSAL_VIEWLESS;
     json_t *list = json_copy(views->kept.list);
     json_array_remove(list, at);
     return kept_list_put(&views->kept, list);

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "base/log/log.h"
+#include "base/refusal.h"
 #include "plant/plant.h"
 #include "plant/walls/wall.h"
 
@@ -25,9 +26,9 @@ struct named_views;
 struct named_views *named_views_open(struct log *log, const struct plant *plant, const char *folder);
 void named_views_close(struct named_views **views); /* &NULL is fine; leaves NULL */
 /* Saves a view, new or changed, and writes the file. who: the person; time_us: UTC. Returns NULL, or why it could not (static). */
-const char *named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us);
+enum refusal_code named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us);
 /* Removes a saved view, with its earlier versions, and writes the file. Returns NULL, or why it could not (static). */
-const char *named_views_remove(struct named_views *views, const char *id);
+enum refusal_code named_views_remove(struct named_views *views, const char *id);
 /* Returns a number that increases with each change; 0: there has been no view. */
 uint64_t named_views_number(const struct named_views *views);
 /* Returns the message `views` with all of them, without earlier versions, or with those of the view `id` as `before` (NULL: of none),

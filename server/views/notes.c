@@ -102,20 +102,20 @@ static void make_id(const json_t *list, int64_t now_us, char id[NOTE_ID_BYTES])
     while (kept_list_find(list, id) < json_array_size(list));
 }
 
-const char *notes_add(struct notes *notes, const struct note *note, const char *who, int64_t now_us, char id[NOTE_ID_BYTES])
+enum refusal_code notes_add(struct notes *notes, const struct note *note, const char *who, int64_t now_us, char id[NOTE_ID_BYTES])
 {
-    const char *why = kept_list_refusal(&notes->kept);
+    enum refusal_code why = kept_list_refusal(&notes->kept);
     if (why)
         return why;
     if (count(notes->kept.list, now_us, false) >= NOTES)
-        return "there are as many notes as there may be; remove one";
+        return REFUSAL_NOTES;
     if (note->until_us && note->until_us <= now_us)
-        return "the note would have ended already";
+        return REFUSAL_NOTE_ENDED;
     make_id(notes->kept.list, now_us, id);
     json_t *entry = json_pack("{s:s,s:s,s:s,s:I,s:I,s:I,s:s}", "id", id, "text", note->text, "by", who, "time_us", (json_int_t)now_us,
                               "until_us", (json_int_t)note->until_us, "ended_us", (json_int_t)0, "ended_by", "");
     if (!entry)
-        return "it is no UTF-8";
+        return REFUSAL_NOT_UTF8;
     if (note->position_m)
         json_object_set_new(entry, "position", json_pack("[f,f,f]", note->position_m[0], note->position_m[1], note->position_m[2]));
     else
@@ -126,12 +126,12 @@ const char *notes_add(struct notes *notes, const struct note *note, const char *
     return kept_list_put(&notes->kept, list);
 }
 
-const char *notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us)
+enum refusal_code notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us)
 {
-    const char *why = kept_list_refusal(&notes->kept);
+    enum refusal_code why = kept_list_refusal(&notes->kept);
     size_t at = kept_list_find(notes->kept.list, id);
     if (why || at == json_array_size(notes->kept.list) || has_ended(json_array_get(notes->kept.list, at), now_us))
-        return why ? why : "there is no such note";
+        return why ? why : REFUSAL_NOTELESS;
     json_t *list = json_copy(notes->kept.list), *note = json_copy(json_array_get(list, at)), *by = json_string(who);
     json_object_set_new(note, "ended_us", json_integer(now_us));
     json_object_set_new(note, "ended_by", by ? by : json_string(""));

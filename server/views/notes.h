@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "base/log/log.h"
+#include "base/refusal.h"
 
 enum { NOTES = 100, NOTES_ENDED = 400 /* of these the newest are kept */, NOTE_TEXT_BYTES = 401, NOTE_ID_BYTES = 24 };
 #define NOTES_FILE "notes.json"
@@ -25,9 +26,9 @@ struct notes;
 struct notes *notes_open(struct log *log, const char *folder);
 void notes_close(struct notes **notes); /* &NULL is fine; leaves NULL */
 /* Adds a note of a person and writes the file. Returns NULL and its id, or why it could not (static). */
-const char *notes_add(struct notes *notes, const struct note *note, const char *who, int64_t now_us, char id[NOTE_ID_BYTES]);
+enum refusal_code notes_add(struct notes *notes, const struct note *note, const char *who, int64_t now_us, char id[NOTE_ID_BYTES]);
 /* Ends a note and writes the file. Returns NULL, or why it could not (static). */
-const char *notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us);
+enum refusal_code notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us);
 /* Returns a number that increases with each change; 0: there has been no note. */
 uint64_t notes_number(const struct notes *notes);
 /* Return the message `notes` with the notes in force at an instant, or with all that were in force in a span of time, with how they ended.

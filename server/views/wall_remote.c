@@ -96,7 +96,7 @@ static void print_id(const struct wall_place *place, char id[NAMED_VIEW_ID_BYTES
     snprintf(id, NAMED_VIEW_ID_BYTES + WALL_AREA_BYTES + 8, "%s/%d/%s", place->wall, place->display, place->area);
 }
 
-const char *wall_remote_order(struct wall_remote *remote, const struct wall_order *order, const char *who, int64_t now_us)
+enum refusal_code wall_remote_order(struct wall_remote *remote, const struct wall_order *order, const char *who, int64_t now_us)
 {
     char id[NAMED_VIEW_ID_BYTES + WALL_AREA_BYTES + 8];
     const struct wall_place *place = &order->place;
@@ -107,7 +107,7 @@ const char *wall_remote_order(struct wall_remote *remote, const struct wall_orde
                               place->area, "view", order->view, "title", order->title, "held", order->held, "desk", order->desk, "by", who,
                               "time_us", (json_int_t)now_us);
     if (!entry)
-        return "it is no UTF-8";
+        return REFUSAL_NOT_UTF8;
     json_t *list = json_copy(remote->kept.list);
     size_t at = kept_list_find(list, id);
     if (at < json_array_size(list))

@@ -6,6 +6,7 @@
 #include <jansson.h>
 
 #include "base/log/log.h"
+#include "base/refusal.h"
 #include "plant/plant.h"
 #include "plant/walls/wall.h"
 
@@ -32,7 +33,7 @@ void wall_remote_close(struct wall_remote **remote); /* &NULL is fine; leaves NU
 /* Returns what of a place is not in the plant file (static), or NULL. */
 const char *wall_place_wrong(const struct plant *plant, const struct wall_place *place);
 /* Does it, and writes the file. The place must be in the plant file. Returns NULL, or why it could not (static). */
-const char *wall_remote_order(struct wall_remote *remote, const struct wall_order *order, const char *who, int64_t now_us);
+enum refusal_code wall_remote_order(struct wall_remote *remote, const struct wall_order *order, const char *who, int64_t now_us);
 /* Has a pane show where somebody points. position_m: NULL: nowhere any more. */
 void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who,
                        const char *desk);

@@ -103,5 +103,5 @@ test('the loss of their device is one alarm, journalled for each of them, and ov
     });
     const unknown = await fetch(`http://127.0.0.1:${plant.port}/api/v1/alarms/journal?tag=plc9`);
     assert.equal(unknown.status, 400);
-    assert.match(await unknown.text(), /there is no tag or device 'plc9'/);
+    assert.match(await unknown.text(), /this plant has no tag “plc9”/);
 });

@@ -94,11 +94,11 @@ test('what cannot be is refused with the reason, and nothing moves', options, as
         assert.deepEqual([code, about], ['bad_field', 'place']);
         assert.match(text, pattern);
     };
-    await wrong([{ tag: 'XX', asset: 'E-101', position: [0, 0, 0] }], /no tag 'XX'/);
-    await wrong([{ tag: 'TI-1', asset: 'XX', position: [0, 0, 0] }], /no asset 'XX'/);
-    await wrong([{ tag: 'TI-1', asset: 'E-101', position: [50, 0, 0] }], /TI-1: that place is farther from E-101 than it is large/);
+    await wrong([{ tag: 'XX', asset: 'E-101', position: [0, 0, 0] }], /no tag “XX”/);
+    await wrong([{ tag: 'TI-1', asset: 'XX', position: [0, 0, 0] }], /no equipment “XX”/);
+    await wrong([{ tag: 'TI-1', asset: 'E-101', position: [50, 0, 0] }], /TI-1: that place is too far from E-101/);
     await wrong([{ tag: 'TI-1', asset: 'E-101', position: [0, 0, 'a'] }], /position/);
-    await wrong([1, 2].map((z) => ({ tag: 'TI-1', asset: 'E-101', position: [0, 0, z / 4] })), /TI-1 is there twice/);
+    await wrong([1, 2].map((z) => ({ tag: 'TI-1', asset: 'E-101', position: [0, 0, z / 4] })), /TI-1 is moved twice/);
     engineer.say('save_tags', { seq: ++seq });
     assert.match((await engineer.text('error')).text, /no sensor has been moved/);
     place(engineer, [{ tag: 'TI-1', asset: 'E-101', position: [1, 0, 0] }]);

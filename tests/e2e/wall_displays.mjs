@@ -140,12 +140,12 @@ test('another display has its own panes', options, async () => {
 test('a view that names what the plant does not have is not shown, and said', options, async () => {
     const { list } = await (await fetch(new URL('api/v1/views', plant.url))).json();
     const wrong = Object.fromEntries(list.map(({ id, wrong: why }) => [id, why]));
-    assert.match(wrong.gone, /group: 'presure' is no group of this plant/);
+    assert.match(wrong.gone, /group: this plant has no quantity “presure”/);
     assert.match(wrong.odd, /show_only: a picture cannot show that/);
     assert.deepEqual([wrong.whole, wrong.above, wrong.since], [undefined, undefined, undefined]);
     const { stdout, status } = spawnSync(join(BIN, 'plantcastd'), ['--check', plant.file], { encoding: 'utf8' });
     assert.equal(status, 0, stdout);
-    assert.match(stdout, /plant\.yaml:\d+: warning: view gone: group: 'presure' is no group of this plant/);
+    assert.match(stdout, /plant\.yaml:\d+: warning: view gone: group: this plant has no quantity “presure”/);
     assert.match(stdout, /warning: view odd: .*show_only/);
     assert.doesNotMatch(stdout, /view (whole|above|since):/);
     const other = await openPage(`${plant.url}?wall=room&display=4`, { viewport: { width: 1280, height: 720 } });

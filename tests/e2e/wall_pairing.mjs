@@ -267,8 +267,8 @@ test('a viewer notes, sends and points at nothing; who may stands in the audit t
     }), [asked, globals]);
     await post(wall.page, 'wall');
     for (const what of ['to note something', 'to send something to a wall'])
-        assert.match(audit(), new RegExp(`refused.*room\\.1\\.1.*${what} takes the role operator`));
-    assert.equal(audit().split('to send something to a wall takes').length - 1, 2); // sending, and pointing
+        assert.match(audit(), new RegExp(`refused.*room\\.1\\.1.*${what}: that takes the role operator`));
+    assert.equal(audit().split('to send something to a wall: that takes').length - 1, 2); // sending, and pointing
     await desk.page.waitForFunction(() => globalThis.plantcast.session.connection.state === 'open', null, { timeout: 60000 });
     await post(desk.page, 'page');
     assert.match(audit(), /engineer-1.*at E-101: Manhole open/);

@@ -159,7 +159,7 @@ TEST(test_split_and_bands)
     mem_free(options);
     assert_int_equal(draw("--split group=flow"), 2);
     assert_int_equal(draw("--group pressure --scale log"), 2);
-    assert_true(said("scale: 'log' needs a range above 0; that of 'pressure' begins at 0"));
+    assert_true(said("scale: a logarithmic scale needs a range above 0"));
 }
 
 TEST(test_usage)

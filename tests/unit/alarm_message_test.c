@@ -129,7 +129,9 @@ CASE(what_is_asked_is_done_or_refused)
     assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1);
     assert_int_equal(json_array_size(refused), 2);
     assert_string_equal(json_string_value(json_array_get(json_array_get(refused, 0), 2)), "there is nothing to acknowledge");
-    assert_string_equal(json_string_value(json_array_get(json_array_get(refused, 1), 2)), "there is no such alarm");
+    assert_string_equal(json_string_value(json_array_get(json_array_get(refused, 1), 2)), "its state is another one by now");
+    const json_t *refusal = json_array_get(json_array_get(refused, 0), 3);
+    assert_string_equal(json_string_value(json_object_get(refusal, "code")), "quiet");
     json_decref(answer);
     uint64_t number = 0;
     char *text = alarms_text(NULL, s->alarm_service, s->plant, 0, &number);
@@ -161,7 +163,7 @@ CASE(a_device_has_its_own)
     assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1); /* a carried one is not to be acknowledged */
     json_decref(answer);
     assert_false(ask(s, "{\"type\":\"alarm\",\"seq\":2,\"action\":\"acknowledge\",\"alarms\":[[\"TT-1\",\"LINK\"]]}", &message, &error));
-    assert_non_null(strstr(error.text, "there is no device 'TT-1'"));
+    assert_non_null(strstr(error.text, "this plant has no device “TT-1”"));
     json_t *api = parse(alarms_api_text(s->alarm_service, s->plant, &(struct alarm_query){ .limit = 10 }, 5000));
     assert_int_equal(json_integer_value(json_object_get(json_object_get(api, "counts"), "active")), 1);
     json_decref(api);

@@ -110,7 +110,7 @@ static const char *word(const struct stage *s, int tag, enum alarm_kind kind)
     return alarm_status_name(alarm_status_of(alarms_at(s->alarms, alarms_find(s->alarms, tag, kind))));
 }
 
-static const char *act(struct stage *s, int second, int tag, enum alarm_kind kind, enum alarm_event event, int for_s)
+static enum refusal_code act(struct stage *s, int second, int tag, enum alarm_kind kind, enum alarm_event event, int for_s)
 {
     const struct alarm_act wish = { event, for_s * S, "kim", event == ALARM_SHELVE ? "transmitter is being changed" : "" };
     return alarms_act(s->alarms, alarms_find(s->alarms, tag, kind), &wish, at(second));
@@ -131,15 +131,15 @@ TEST(a_life_of_local_alarms)
     hear(&s, 2, 0, 91, QUALITY_GOOD);
     assert_told(&s, "1 TT.H raise: normal > unacknowledged\n2 TT.HH raise: normal > unacknowledged\n");
     assert_int_equal(s.told[0], ALARM_HH);
-    assert_null(act(&s, 3, 0, ALARM_H, ALARM_ACKNOWLEDGE, 0));
-    assert_string_equal(act(&s, 3, 0, ALARM_H, ALARM_ACKNOWLEDGE, 0), "there is nothing to acknowledge");
+    assert_int_equal(act(&s, 3, 0, ALARM_H, ALARM_ACKNOWLEDGE, 0), REFUSAL_NONE);
+    assert_int_equal(act(&s, 3, 0, ALARM_H, ALARM_ACKNOWLEDGE, 0), REFUSAL_QUIET);
     hear(&s, 4, 0, 88, QUALITY_GOOD); /* within the deadband of HH */
     hear(&s, 5, 0, 87.9, QUALITY_GOOD);
     hear(&s, 6, 0, 50, QUALITY_GOOD);
     assert_told(&s, "3 TT.H acknowledge: unacknowledged > acknowledged by kim\n"
                     "5 TT.HH clear: unacknowledged > returned\n6 TT.H clear: acknowledged > normal\n");
     assert_int_equal(s.told[0], ALARM_HH); /* nobody has seen it yet */
-    assert_null(act(&s, 7, 0, ALARM_HH, ALARM_ACKNOWLEDGE, 0));
+    assert_int_equal(act(&s, 7, 0, ALARM_HH, ALARM_ACKNOWLEDGE, 0), REFUSAL_NONE);
     assert_told(&s, "7 TT.HH acknowledge: returned > normal by kim\n");
     assert_int_equal(s.told[0], ALARM_NONE);
     end(&s);
@@ -193,22 +193,22 @@ TEST(shelves_end_and_come_back)
     struct stage s;
     begin(&s, ALARMS_LOCAL);
     hear(&s, 1, 0, 85, QUALITY_GOOD);
-    assert_non_null(act(&s, 2, 0, ALARM_H, ALARM_SHELVE, 0));
-    assert_non_null(act(&s, 2, 0, ALARM_H, ALARM_SHELVE, 8 * 86400));
-    assert_null(act(&s, 2, 0, ALARM_H, ALARM_SHELVE, 60));
+    assert_int_not_equal(act(&s, 2, 0, ALARM_H, ALARM_SHELVE, 0), REFUSAL_NONE);
+    assert_int_not_equal(act(&s, 2, 0, ALARM_H, ALARM_SHELVE, 8 * 86400), REFUSAL_NONE);
+    assert_int_equal(act(&s, 2, 0, ALARM_H, ALARM_SHELVE, 60), REFUSAL_NONE);
     assert_int_equal(s.told[0], ALARM_NONE);
     const struct alarm *alarm = alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H));
     assert_string_equal(alarm->reason, "transmitter is being changed");
     assert_true(alarm->until.utc_ns == UTC + 62 * S);
-    assert_null(act(&s, 30, 0, ALARM_H, ALARM_SHELVE, 60)); /* for longer */
+    assert_int_equal(act(&s, 30, 0, ALARM_H, ALARM_SHELVE, 60), REFUSAL_NONE); /* for longer */
     tick(&s, 61);
     s.log[0] = 0;
     tick(&s, 90);
     assert_told(&s, "90 TT.H unshelve: shelved > unacknowledged\n");
     assert_string_equal(alarm->reason, "");
-    assert_null(act(&s, 91, 0, ALARM_H, ALARM_TAKE_OUT, 0));
+    assert_int_equal(act(&s, 91, 0, ALARM_H, ALARM_TAKE_OUT, 0), REFUSAL_NONE);
     hear(&s, 92, 0, 50, QUALITY_GOOD);
-    assert_null(act(&s, 93, 0, ALARM_H, ALARM_PUT_BACK, 0));
+    assert_int_equal(act(&s, 93, 0, ALARM_H, ALARM_PUT_BACK, 0), REFUSAL_NONE);
     assert_told(&s, "91 TT.H out_of_service: unacknowledged > out_of_service by kim\n92 TT.H clear: out_of_service > out_of_service\n"
                     "93 TT.H in_service: out_of_service > normal by kim\n");
     end(&s);
@@ -236,8 +236,8 @@ TEST(display_acknowledges_nothing)
     struct stage s;
     begin(&s, ALARMS_DISPLAY);
     hear(&s, 1, 0, 95, QUALITY_GOOD);
-    assert_string_equal(act(&s, 2, 0, ALARM_HH, ALARM_ACKNOWLEDGE, 0), "alarms are another system's here");
-    assert_non_null(act(&s, 2, 0, ALARM_HH, ALARM_SHELVE, 60));
+    assert_int_equal(act(&s, 2, 0, ALARM_HH, ALARM_ACKNOWLEDGE, 0), REFUSAL_ELSEWHERE);
+    assert_int_not_equal(act(&s, 2, 0, ALARM_HH, ALARM_SHELVE, 60), REFUSAL_NONE);
     hear(&s, 3, 0, 50, QUALITY_GOOD);
     assert_told(&s, "1 TT.H raise: normal > active\n1 TT.HH raise: normal > active\n3 TT.H clear: active > normal\n"
                     "3 TT.HH clear: active > normal\n");
@@ -414,7 +414,7 @@ static void set_all(struct stage *s, uint32_t quality)
         s->snapshot->readings[tag].quality = quality;
 }
 
-static const char *act_on_link(struct stage *s, int second, const char *name, enum alarm_event event)
+static enum refusal_code act_on_link(struct stage *s, int second, const char *name, enum alarm_event event)
 {
     int index = alarms_find_named(s->alarms, name, ALARM_LINK);
     assert_true(index >= 0);
@@ -449,7 +449,7 @@ TEST(a_lost_device_is_one_alarm)
                     "17 PT.BAD raise: normal > suppressed\n");
     assert_int_equal(active_count(&s), 1);
     assert_int_equal(s.told[0], ALARM_NONE); /* that it is bad, its marker shows by itself */
-    assert_null(act_on_link(&s, 19, "a", ALARM_ACKNOWLEDGE));
+    assert_int_equal(act_on_link(&s, 19, "a", ALARM_ACKNOWLEDGE), REFUSAL_NONE);
     assert_int_equal(alarms_find_named(s.alarms, "b", ALARM_LINK), -1);
     hear(&s, 20, 0, 50, QUALITY_GOOD);
     assert_told(&s, "19 a.LINK acknowledge: unacknowledged > acknowledged by kim\n20 a.LINK clear: acknowledged > normal\n"
@@ -472,7 +472,7 @@ TEST(those_that_went_before_are_carried_too)
         hear(&s, 2, 0, 50, QUALITY_GOOD);
         hear(&s, 3, 0, 0, QUALITY_BAD_COMMUNICATION_ERROR);
         if (seen)
-            assert_null(act(&s, 3, 0, ALARM_BAD, ALARM_ACKNOWLEDGE, 0));
+            assert_int_equal(act(&s, 3, 0, ALARM_BAD, ALARM_ACKNOWLEDGE, 0), REFUSAL_NONE);
         s.log[0] = 0;
         hear_all(&s, 4, 0, QUALITY_BAD_COMMUNICATION_ERROR);
         assert_told(&s, seen ? "4 a.LINK raise: normal > unacknowledged\n"
@@ -575,7 +575,7 @@ TEST(a_device_without_limits_has_an_alarm)
     hear_all(&s, 30, 50, QUALITY_BAD_COMMUNICATION_ERROR);
     tick(&s, 41);
     assert_told(&s, "40 a.LINK raise: normal > unacknowledged\n");
-    assert_null(act_on_link(&s, 42, "a", ALARM_ACKNOWLEDGE));
+    assert_int_equal(act_on_link(&s, 42, "a", ALARM_ACKNOWLEDGE), REFUSAL_NONE);
     hear(&s, 43, 4, 1, QUALITY_GOOD);
     assert_told(&s, "42 a.LINK acknowledge: unacknowledged > acknowledged by kim\n43 a.LINK clear: acknowledged > normal\n");
     end(&s);

@@ -77,7 +77,7 @@ CASE(queries_are_judged)
         const char *args[3], *says;
     } bad[] = {
         { { "from=-1h" }, "tags: expected the names" },
-        { { "tags=A \"1\",C" }, "tags: there is no tag 'C'" },
+        { { "tags=A \"1\",C" }, "tags: this plant has no tag “C”" },
         { { "tags=A \"1\"", "from=2026-10-25T02:30:00" }, "from: expected an instant" },
         { { "tags=A \"1\"", "to=x" }, "to: expected an instant" },
         { { "tags=A \"1\"", "from=-1h", "to=-2h" }, "from: expected an earlier instant" },

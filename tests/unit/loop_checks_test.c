@@ -79,10 +79,10 @@ TEST_WITH(test_unproven_is_said_only_once_somebody_began, set_up, tear_down)
     expect_unproven(f, false, false);
     struct loop_check failed = passed;
     failed.state = LOOP_CHECK_FAILED;
-    assert_null(loop_checks_add(f->loop_checks, 0, &failed));
+    assert_int_equal(loop_checks_add(f->loop_checks, 0, &failed), REFUSAL_NONE);
     assert_true(loop_checks_begun(f->loop_checks));
     expect_unproven(f, true, true);
-    assert_null(loop_checks_add(f->loop_checks, 0, &passed));
+    assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     expect_unproven(f, false, true);
     assert_int_equal(loop_checks_number(f->loop_checks), 2);
     assert_int_equal(loop_checks_number_of(f->loop_checks, 0), 2);
@@ -92,7 +92,7 @@ TEST_WITH(test_unproven_is_said_only_once_somebody_began, set_up, tear_down)
 TEST_WITH(test_a_proof_outlives_the_daemon, set_up, tear_down)
 {
     struct fixture *f = *state;
-    assert_null(loop_checks_add(f->loop_checks, 0, &passed));
+    assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     open_again(f);
     const struct loop_check *check = loop_checks_of(f->loop_checks, 0);
     assert_int_equal(check->state, LOOP_CHECK_PASSED);
@@ -108,7 +108,7 @@ TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
 {
     struct fixture *f = *state;
     struct plant_tag *tag = &f->plant->tags[0], was = *tag;
-    assert_null(loop_checks_add(f->loop_checks, 0, &passed));
+    assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     uint64_t before = loop_check_fingerprint(f->plant, 0);
     for (int change = 0; change < 6; change++) {
         *tag = was;
@@ -144,10 +144,10 @@ static char *read_file(const struct fixture *f)
 TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
 {
     struct fixture *f = *state;
-    assert_null(loop_checks_add(f->loop_checks, 0, &passed));
+    assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     char *path = temp_path(f->folder, LOOP_CHECKS_FILE), *whole = read_file(f);
     size_t length = strlen(whole);
-    assert_null(loop_checks_add(f->loop_checks, 1, &passed));
+    assert_int_equal(loop_checks_add(f->loop_checks, 1, &passed), REFUSAL_NONE);
     char *both = read_file(f);
     size_t end = strlen(both);
     for (size_t cut = length; cut < end - 1; cut++) { /* at every byte of the second line */
@@ -155,7 +155,7 @@ TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
         open_again(f);
         assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
         assert_int_equal(loop_checks_of(f->loop_checks, 1)->state, LOOP_CHECK_NONE);
-        assert_null(loop_checks_add(f->loop_checks, 1, &passed));
+        assert_int_equal(loop_checks_add(f->loop_checks, 1, &passed), REFUSAL_NONE);
         open_again(f);
         assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
         assert_int_equal(loop_checks_of(f->loop_checks, 1)->state, LOOP_CHECK_PASSED);
@@ -172,11 +172,11 @@ TEST_WITH(test_what_cannot_be_kept_is_refused_and_counts_for_nothing, set_up, te
     assert_int_equal(chmod(f->folder, 0555), 0);
     if (root)
         assert_int_equal(seteuid(NOBODY), 0);
-    const char *why = loop_checks_add(f->loop_checks, 0, &passed);
+    enum refusal_code why = loop_checks_add(f->loop_checks, 0, &passed);
     if (root)
         assert_int_equal(seteuid(0), 0);
     assert_int_equal(chmod(f->folder, 0755), 0);
-    assert_string_equal(why, "it could not be kept on disk; the log says why");
+    assert_int_equal(why, REFUSAL_DISK);
     assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_NONE);
     assert_false(loop_checks_begun(f->loop_checks));
 }
@@ -185,7 +185,7 @@ TEST_WITH(test_the_folder_is_made_where_nobody_has_yet, set_up, tear_down)
 {
     struct fixture *f = *state;
     assert_int_equal(rmdir(f->folder), 0);
-    assert_null(loop_checks_add(f->loop_checks, 0, &passed));
+    assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     open_again(f);
     assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
 }
@@ -194,7 +194,7 @@ TEST_WITH(test_all_tags_with_a_source_are_told, set_up, tear_down)
 {
     struct fixture *f = *state;
     struct text text = { 0 };
-    assert_null(loop_checks_add(f->loop_checks, 0, &passed));
+    assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     loop_checks_print(f->loop_checks, &text);
     assert_int_equal(strncmp(text.at, "Time,Tag Name,Result,", 21), 0);
     assert_non_null(strstr(text.at, "\n2023-11-14T22:13:20Z,\"TI-1\",pass,42,\"\",42.3,0.5,"

@@ -48,7 +48,7 @@ static void open_again(struct fixture *f)
     f->views = named_views_open(f->log, &f->plant, f->history);
 }
 
-static const char *save(struct fixture *f, const char *id, const char *title, int at)
+static enum refusal_code save(struct fixture *f, const char *id, const char *title, int at)
 {
     struct named_view_edit edit = { .at = at, .address = "group=t&show=value" };
     snprintf(edit.id, sizeof(edit.id), "%s", id);
@@ -80,18 +80,18 @@ CASE(they_are_kept_in_order)
 {
     uint64_t number = named_views_number(f->views);
     assert_true(number == 1);
-    assert_null(save(f, "b", "B", -1));
-    assert_null(save(f, "c", "C", -1));
-    assert_null(save(f, "a", "A", 0));
+    assert_int_equal(save(f, "b", "B", -1), REFUSAL_NONE);
+    assert_int_equal(save(f, "c", "C", -1), REFUSAL_NONE);
+    assert_int_equal(save(f, "a", "A", 0), REFUSAL_NONE);
     assert_order(f, "all a b c");
-    assert_null(save(f, "a", "A", 2));
+    assert_int_equal(save(f, "a", "A", 2), REFUSAL_NONE);
     assert_order(f, "all b c a");
-    assert_null(save(f, "b", "Other", -1)); /* stays where it is */
+    assert_int_equal(save(f, "b", "Other", -1), REFUSAL_NONE); /* stays where it is */
     assert_true(named_views_number(f->views) == number + 5);
     open_again(f);
     assert_order(f, "all b c a");
-    assert_null(named_views_remove(f->views, "c"));
-    assert_non_null(named_views_remove(f->views, "c"));
+    assert_int_equal(named_views_remove(f->views, "c"), REFUSAL_NONE);
+    assert_int_not_equal(named_views_remove(f->views, "c"), REFUSAL_NONE);
     open_again(f);
     assert_order(f, "all b a");
 }
@@ -99,13 +99,13 @@ CASE(they_are_kept_in_order)
 CASE(what_they_were_is_kept)
 {
     char title[8];
-    assert_null(save(f, "a", "0", -1));
+    assert_int_equal(save(f, "a", "0", -1), REFUSAL_NONE);
     assert_int_equal(versions_of(f, "a", 1), 0);
-    assert_null(save(f, "a", "0", 0)); /* nothing but its place */
+    assert_int_equal(save(f, "a", "0", 0), REFUSAL_NONE); /* nothing but its place */
     assert_int_equal(versions_of(f, "a", 1), 0);
     for (int i = 1; i < 2 * NAMED_VIEW_VERSIONS; i++) {
         snprintf(title, sizeof(title), "%d", i);
-        assert_null(save(f, "a", title, -1));
+        assert_int_equal(save(f, "a", title, -1), REFUSAL_NONE);
     }
     open_again(f);
     assert_int_equal(versions_of(f, "a", 1), NAMED_VIEW_VERSIONS);
@@ -114,11 +114,11 @@ CASE(what_they_were_is_kept)
 
 CASE(the_plant_file_has_its_own)
 {
-    assert_non_null(save(f, "all", "Mine", -1));
-    assert_non_null(named_views_remove(f->views, "all"));
-    assert_null(save(f, "mine", "Mine", -1));
+    assert_int_not_equal(save(f, "all", "Mine", -1), REFUSAL_NONE);
+    assert_int_not_equal(named_views_remove(f->views, "all"), REFUSAL_NONE);
+    assert_int_equal(save(f, "mine", "Mine", -1), REFUSAL_NONE);
     f->plant.view_count = 0;
-    assert_null(save(f, "all", "Mine", -1));
+    assert_int_equal(save(f, "all", "Mine", -1), REFUSAL_NONE);
     f->plant.view_count = 1; /* has it again: that one counts */
     assert_order(f, "all mine");
 }
@@ -128,10 +128,10 @@ CASE(there_is_a_limit)
     char id[16];
     for (int i = 0; i < NAMED_VIEWS; i++) {
         snprintf(id, sizeof(id), "v%d", i);
-        assert_null(save(f, id, "V", -1));
+        assert_int_equal(save(f, id, "V", -1), REFUSAL_NONE);
     }
-    assert_non_null(save(f, "more", "V", -1));
-    assert_null(save(f, "v0", "Other", -1));
+    assert_int_not_equal(save(f, "more", "V", -1), REFUSAL_NONE);
+    assert_int_equal(save(f, "v0", "Other", -1), REFUSAL_NONE);
 }
 
 CASE(what_cannot_be_read_is_not_written_over)
@@ -144,7 +144,7 @@ CASE(what_cannot_be_read_is_not_written_over)
         char *path = temp_write_text(f->folder, "history/" NAMED_VIEWS_FILE, files[i]), text[200] = "";
         open_again(f);
         assert_order(f, "all");
-        assert_non_null(save(f, "a", "A", -1));
+        assert_int_not_equal(save(f, "a", "A", -1), REFUSAL_NONE);
         FILE *file = fopen(path, "re");
         assert_non_null(file);
         text[fread(text, 1, sizeof(text) - 1, file)] = 0;
@@ -158,9 +158,9 @@ CASE(without_a_folder_none_is_saved)
 {
     struct named_views *views = named_views_open(f->log, &f->plant, NULL);
     struct named_view_edit edit = { .id = "a", .title = "A", .address = "group=t", .at = -1 };
-    assert_non_null(named_views_save(views, &edit, "kim", 1));
+    assert_int_not_equal(named_views_save(views, &edit, "kim", 1), REFUSAL_NONE);
     named_views_close(&views);
     edit.title[0] = (char)0xff; /* no UTF-8: refused, and nothing changes */
-    assert_non_null(named_views_save(f->views, &edit, "kim", 1));
+    assert_int_not_equal(named_views_save(f->views, &edit, "kim", 1), REFUSAL_NONE);
     assert_order(f, "all");
 }

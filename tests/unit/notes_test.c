@@ -47,7 +47,7 @@ static void open_again(struct fixture *f)
     f->notes = notes_open(f->log, f->history);
 }
 
-static const char *add(struct fixture *f, const char *text, int64_t at_us, int64_t until_us)
+static enum refusal_code add(struct fixture *f, const char *text, int64_t at_us, int64_t until_us)
 {
     return notes_add(f->notes, &(struct note){ .text = text, .tag = "TI-1", .until_us = until_us }, "kim", at_us, f->id);
 }
@@ -69,20 +69,20 @@ CASE(they_end_by_their_time_or_by_hand)
 {
     char first[NOTE_ID_BYTES];
     assert_int_equal(notes_number(f->notes), 0);
-    assert_null(add(f, "stays", NOON, 0));
+    assert_int_equal(add(f, "stays", NOON, 0), REFUSAL_NONE);
     strcpy(first, f->id);
-    assert_null(add(f, "hour", NOON, NOON + 3600 * S));
+    assert_int_equal(add(f, "hour", NOON, NOON + 3600 * S), REFUSAL_NONE);
     assert_string_not_equal(first, f->id);
-    assert_non_null(add(f, "over", NOON, NOON - S));
+    assert_int_not_equal(add(f, "over", NOON, NOON - S), REFUSAL_NONE);
     assert_notes(notes_text(f->notes, NOON + S), "stays hour");
     assert_notes(notes_text_between(f->notes, NOON - S, NOON - S), ""); /* before they were written */
     assert_true(notes_differ(f->notes, NOON - S, NOON + S) && notes_differ(f->notes, NOON + 3600 * S, NOON + S));
     assert_false(notes_differ(f->notes, NOON + S, NOON + 2 * S));
     assert_notes(notes_text(f->notes, NOON + 3600 * S), "stays");
-    assert_non_null(notes_end(f->notes, f->id, "lee", NOON + 3601 * S)); /* it has ended */
-    assert_non_null(notes_end(f->notes, "n1", "lee", NOON));
+    assert_int_not_equal(notes_end(f->notes, f->id, "lee", NOON + 3601 * S), REFUSAL_NONE); /* it has ended */
+    assert_int_not_equal(notes_end(f->notes, "n1", "lee", NOON), REFUSAL_NONE);
     open_again(f);
-    assert_null(notes_end(f->notes, first, "lee", NOON + 7200 * S));
+    assert_int_equal(notes_end(f->notes, first, "lee", NOON + 7200 * S), REFUSAL_NONE);
     open_again(f);
     assert_notes(notes_text(f->notes, NOON + 7200 * S), "");
     assert_notes(notes_text_between(f->notes, NOON + 1800 * S, NOON + 9000 * S), "stays hour");
@@ -93,12 +93,12 @@ CASE(they_end_by_their_time_or_by_hand)
 CASE(there_is_a_limit)
 {
     for (int i = 0; i < NOTES; i++)
-        assert_null(add(f, "n", NOON, NOON + 60 * S));
-    assert_non_null(add(f, "more", NOON, 0));
+        assert_int_equal(add(f, "n", NOON, NOON + 60 * S), REFUSAL_NONE);
+    assert_int_not_equal(add(f, "more", NOON, 0), REFUSAL_NONE);
     for (int round = 1; round <= 6; round++)
         for (int i = 0; i < NOTES; i++)
-            assert_null(add(f, "n", NOON + round * 100 * S, NOON + (round * 100 + 60) * S));
-    assert_null(add(f, "last", NOON + 1000 * S, 0));
+            assert_int_equal(add(f, "n", NOON + round * 100 * S, NOON + (round * 100 + 60) * S), REFUSAL_NONE);
+    assert_int_equal(add(f, "last", NOON + 1000 * S, 0), REFUSAL_NONE);
     open_again(f); /* a file of no more than there may be */
     char *text = notes_text_between(f->notes, 0, INT64_MAX);
     json_t *message = json_loads(text, 0, NULL);
@@ -110,8 +110,8 @@ CASE(there_is_a_limit)
 CASE(they_are_at_what_they_say)
 {
     const double place[3] = { 1, 2.5, -3 };
-    assert_null(notes_add(f->notes, &(struct note){ .text = "p", .position_m = place }, "kim", NOON, f->id));
-    assert_null(notes_add(f->notes, &(struct note){ .text = "a", .asset = "E-1" }, "kim", NOON, f->id));
+    assert_int_equal(notes_add(f->notes, &(struct note){ .text = "p", .position_m = place }, "kim", NOON, f->id), REFUSAL_NONE);
+    assert_int_equal(notes_add(f->notes, &(struct note){ .text = "a", .asset = "E-1" }, "kim", NOON, f->id), REFUSAL_NONE);
     open_again(f);
     char *text = notes_text(f->notes, NOON);
     assert_non_null(strstr(text, "\"position\":[1.0,2.5,-3.0]"));
@@ -127,7 +127,7 @@ CASE(what_cannot_be_read_is_not_written_over)
         char *path = temp_write_text(f->folder, "history/" NOTES_FILE, files[i]), text[200] = "";
         open_again(f);
         assert_notes(notes_text(f->notes, NOON), "");
-        assert_non_null(add(f, "a", NOON, 0));
+        assert_int_not_equal(add(f, "a", NOON, 0), REFUSAL_NONE);
         FILE *file = fopen(path, "re");
         assert_non_null(file);
         text[fread(text, 1, sizeof(text) - 1, file)] = 0;
@@ -135,12 +135,12 @@ CASE(what_cannot_be_read_is_not_written_over)
         assert_string_equal(text, files[i]);
         mem_free(path);
     }
-    assert_non_null(notes_add(f->notes, &(struct note){ .text = "\xff", .tag = "t" }, "kim", NOON, f->id));
+    assert_int_not_equal(notes_add(f->notes, &(struct note){ .text = "\xff", .tag = "t" }, "kim", NOON, f->id), REFUSAL_NONE);
 }
 
 CASE(without_a_folder_none_is_made)
 {
     struct notes *notes = notes_open(f->log, NULL);
-    assert_non_null(notes_add(notes, &(struct note){ .text = "a", .tag = "t" }, "kim", NOON, f->id));
+    assert_int_not_equal(notes_add(notes, &(struct note){ .text = "a", .tag = "t" }, "kim", NOON, f->id), REFUSAL_NONE);
     notes_close(&notes);
 }

@@ -67,7 +67,7 @@ static bool is_found(const struct fixture *f, int i)
     return pairings_find(f->pairings, hash, &holder);
 }
 
-static const char *approve(struct fixture *f, const char *digits, int64_t now_ns)
+static enum refusal_code approve(struct fixture *f, const char *digits, int64_t now_ns)
 {
     char id[TOKEN_NAME_BYTES];
     return pairings_approve(f->pairings, digits, "eve", now_ns, 7, id);
@@ -82,7 +82,7 @@ CASE(a_device_is_bound_kept_and_revoked)
     assert_int_equal(ask(f, 1, 3 * NS_PER_S, again), PAIRING_WAITS);
     assert_string_equal(digits, again);
     assert_false(is_found(f, 1));
-    assert_null(approve(f, digits, 3 * NS_PER_S));
+    assert_int_equal(approve(f, digits, 3 * NS_PER_S), REFUSAL_NONE);
     assert_int_equal(ask(f, 1, 4 * NS_PER_S, again), PAIRING_DONE);
     print_secret(1, secret);
     struct pairing_request other = { secret, ROOM, (const uint8_t[16]){ 0 }, "10.0.0.5" };
@@ -92,7 +92,7 @@ CASE(a_device_is_bound_kept_and_revoked)
     other.place = ROOM;
     strcpy(other.place.wall, "hall");
     assert_int_equal(pairings_ask(f->pairings, &other, 4 * NS_PER_S, again, &left_s), PAIRING_OTHER);
-    assert_non_null(approve(f, digits, 4 * NS_PER_S)); /* once only */
+    assert_int_not_equal(approve(f, digits, 4 * NS_PER_S), REFUSAL_NONE); /* once only */
     pairings_close(&f->pairings);
     f->pairings = pairings_open(f->log, f->folder);
     snprintf(path, sizeof(path), "%s/tokens", f->folder);
@@ -112,8 +112,8 @@ CASE(a_device_is_bound_kept_and_revoked)
     assert_non_null(strstr(text, "\"from\":\"10.0.0.5\""));
     assert_null(strstr(text, "hash"));
     mem_free(text);
-    assert_non_null(pairings_revoke(f->pairings, "nobody"));
-    assert_null(pairings_revoke(f->pairings, holder.name));
+    assert_int_not_equal(pairings_revoke(f->pairings, "nobody"), REFUSAL_NONE);
+    assert_int_equal(pairings_revoke(f->pairings, holder.name), REFUSAL_NONE);
     assert_int_equal(tokens_role(tokens, &holder, 0), ROLE_NOBODY);
     tokens_destroy(&tokens);
 }
@@ -122,7 +122,7 @@ CASE(digits_expire)
 {
     char digits[PAIRING_DIGITS + 1], others[PAIRING_DIGITS + 1];
     ask(f, 1, 0, digits);
-    assert_non_null(approve(f, digits, PAIRING_QUIET_S * NS_PER_S)); /* it has not asked since */
+    assert_int_not_equal(approve(f, digits, PAIRING_QUIET_S * NS_PER_S), REFUSAL_NONE); /* it has not asked since */
     int64_t now_ns = 1000 * NS_PER_S, begun_ns = now_ns;
     ask(f, 1, now_ns, digits);
     for (; now_ns < begun_ns + PAIRING_S * NS_PER_S; now_ns += 2 * NS_PER_S)
@@ -130,8 +130,8 @@ CASE(digits_expire)
     assert_string_equal(digits, others);
     ask(f, 1, now_ns, others);
     assert_string_not_equal(digits, others); /* but once in a million */
-    assert_non_null(approve(f, digits, now_ns));
-    assert_null(approve(f, others, now_ns));
+    assert_int_not_equal(approve(f, digits, now_ns), REFUSAL_NONE);
+    assert_int_equal(approve(f, others, now_ns), REFUSAL_NONE);
 }
 
 CASE(few_wait_and_few_guesses_are_judged)
@@ -156,11 +156,10 @@ CASE(few_wait_and_few_guesses_are_judged)
                                   &left_s),
                      PAIRING_FULL); /* eight from that address */
     for (int i = 0, now_s = PAIRING_QUIET_S; i < PAIRING_WRONG; i++)
-        if (approve(f, "abcdef", now_s * NS_PER_S) == NULL)
-            fail();
-    assert_non_null(approve(f, more, (PAIRING_QUIET_S + 1) * NS_PER_S)); /* right, and not judged */
+        assert_int_not_equal(approve(f, "abcdef", now_s * NS_PER_S), REFUSAL_NONE);
+    assert_int_not_equal(approve(f, more, (PAIRING_QUIET_S + 1) * NS_PER_S), REFUSAL_NONE); /* right, and not judged */
     assert_int_equal(ask(f, PAIRINGS, (PAIRING_QUIET_S + 30) * NS_PER_S, more), PAIRING_WAITS);
-    assert_null(approve(f, more, (PAIRING_QUIET_S + 61) * NS_PER_S));
+    assert_int_equal(approve(f, more, (PAIRING_QUIET_S + 61) * NS_PER_S), REFUSAL_NONE);
 }
 
 static enum pairing look(const struct pairings *pairings, int i, int64_t now_ns, char digits[PAIRING_DIGITS + 1])
@@ -201,10 +200,10 @@ CASE(a_renderer_asks_its_core)
     assert_string_equal(there, ""); /* no longer good */
     mirror(f, renderer, (PAIRING_S + 2) * NS_PER_S);
     assert_int_equal(look(renderer, 3, (PAIRING_S + 2) * NS_PER_S, there), PAIRING_WAITS);
-    assert_null(approve(f, digits, NS_PER_S));
+    assert_int_equal(approve(f, digits, NS_PER_S), REFUSAL_NONE);
     mirror(f, renderer, NS_PER_S);
     assert_int_equal(look(renderer, 3, NS_PER_S, there), PAIRING_DONE);
-    assert_null(pairings_revoke(f->pairings, "room.2.1"));
+    assert_int_equal(pairings_revoke(f->pairings, "room.2.1"), REFUSAL_NONE);
     mirror(f, renderer, NS_PER_S);
     assert_int_equal(look(renderer, 3, NS_PER_S, there), PAIRING_WAITS);
     json_object_set_new(request, "hash", json_string("12"));
@@ -224,14 +223,14 @@ CASE(what_is_not_kept_lets_nobody_in)
     char path[512];
     pairings_close(&f->pairings);
     f->pairings = pairings_open(f->log, NULL);
-    assert_non_null(pairings_refusal(f->pairings));
+    assert_int_not_equal(pairings_refusal(f->pairings), REFUSAL_NONE);
     pairings_close(&f->pairings);
     snprintf(path, sizeof(path), "%s/%s", f->folder, PAIRINGS_FILE);
     const char *bad = "{\"devices\":[{\"id\":\"a b\","
                       "\"hash\":\"00\",\"wall\":\"w\",\"display\":1,\"from\":\"\",\"by\":\"\",\"time_us\":1}]}";
     assert_int_equal(atomic_file_put(path, bad, strlen(bad)), 0);
     f->pairings = pairings_open(f->log, f->folder);
-    assert_non_null(pairings_refusal(f->pairings));
+    assert_int_not_equal(pairings_refusal(f->pairings), REFUSAL_NONE);
     assert_false(pairings_secret_valid("pc_1234"));
     assert_false(pairings_secret_valid(""));
 }

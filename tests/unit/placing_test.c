@@ -94,13 +94,13 @@ static struct sensor_coverage_answer *collect(struct fixture *f, bool gaps)
     }
 }
 
-static bool move(struct fixture *f, const struct place_move *moves, size_t count, const char *why_not)
+static bool move(struct fixture *f, const struct place_move *moves, size_t count, enum refusal_code why_not)
 {
-    char why[160];
-    bool moved = place_set_moves(f->set, moves, count, why);
-    assert_int_equal(moved, why_not == NULL);
+    struct refusal why;
+    bool moved = place_set_moves(f->set, moves, count, &why);
+    assert_int_equal(moved, why_not == REFUSAL_NONE);
     if (why_not)
-        assert_string_equal(why, why_not);
+        assert_int_equal(why.code, why_not);
     return moved;
 }
 
@@ -108,7 +108,7 @@ TEST_WITH(test_a_move_is_a_trial_at_once_and_a_better_one_later, set_up, tear_do
 {
     struct fixture *f = *state;
     const struct placed *placed;
-    move(f, &(struct place_move){ .tag = 0, .position_m = { 10.5, 0.5, 1.02 } }, 1, NULL);
+    move(f, &(struct place_move){ .tag = 0, .position_m = { 10.5, 0.5, 1.02 } }, 1, REFUSAL_NONE);
     uint32_t first = place_set_trial(f->set);
     assert_true(first != 0 && trials_live(placing_trials(f->placing), first));
     assert_int_equal(place_set_get(f->set, &placed), 1);
@@ -138,14 +138,14 @@ TEST_WITH(test_what_stays_keeps_its_distances, set_up, tear_down)
     struct fixture *f = *state;
     struct place_move moves[TAGS] = { { .tag = 0, .position_m = { 10.5, 0.5, 1 } }, { .tag = 1, .position_m = { 10.5, 0.5, 0 } } };
     const struct placed *placed;
-    move(f, moves, 1, NULL);
+    move(f, moves, 1, REFUSAL_NONE);
     assert_null(collect(f, false));
-    move(f, moves, TAGS, NULL);
+    move(f, moves, TAGS, REFUSAL_NONE);
     place_set_get(f->set, &placed);
     assert_int_equal(placed[0].state, PLACED_READY);
     assert_null(collect(f, false));
     assert_int_equal(placed[1].state, PLACED_READY);
-    move(f, NULL, 0, NULL);
+    move(f, NULL, 0, REFUSAL_NONE);
     assert_int_equal(place_set_trial(f->set), 0);
 }
 
@@ -153,13 +153,13 @@ CASE(test_what_cannot_be_is_refused_and_nothing_moves)
 {
     struct place_move here = { .tag = 0, .position_m = { 10.5, 0.5, 1 } }, far = { .tag = 1, .position_m = { 60, 0, 0 } };
     const struct placed *placed;
-    move(f, &here, 1, NULL);
+    move(f, &here, 1, REFUSAL_NONE);
     uint32_t trial = place_set_trial(f->set);
-    move(f, (struct place_move[]){ here, far }, 2, "BOX-2: that place is farther from BOX than it is large");
-    move(f, (struct place_move[]){ here, here }, 2, "BOX-1 is there twice");
+    move(f, (struct place_move[]){ here, far }, 2, REFUSAL_FAR);
+    move(f, (struct place_move[]){ here, here }, 2, REFUSAL_TWICE);
     f->toy->plant.tags[1].group = -1;
     far.position_m[0] = 11;
-    move(f, &far, 1, "BOX-2 belongs to no group: its row of the tag list has to name one first");
+    move(f, &far, 1, REFUSAL_GROUPLESS);
     assert_int_equal(place_set_get(f->set, &placed), 1);
     assert_int_equal(placed[0].move.tag, 0);
     assert_int_equal(place_set_trial(f->set), trial);
@@ -167,7 +167,7 @@ CASE(test_what_cannot_be_is_refused_and_nothing_moves)
 
 CASE(test_gaps_are_of_what_the_set_has_moved)
 {
-    move(f, &(struct place_move){ .tag = 0, .position_m = { 11, 0.5, 0.4 } }, 1, NULL); /* beside the other one */
+    move(f, &(struct place_move){ .tag = 0, .position_m = { 11, 0.5, 0.4 } }, 1, REFUSAL_NONE); /* beside the other one */
     collect(f, false);
     for (int moved = 0; moved < 2; moved++) {
         placing_request_coverage(f->placing, moved ? f->set : NULL, 0, 0.8, f->snapshot, 7, 3 + (uint32_t)moved);
@@ -186,8 +186,8 @@ CASE(test_a_set_that_goes_takes_its_questions_along)
 {
     for (int i = 0; i < 20; i++) {
         struct place_set *other = place_set_create(f->placing);
-        char why[160];
-        assert_true(place_set_moves(other, &(struct place_move){ .tag = 0, .position_m = { 10.5, 0.05 * i, 1 } }, 1, why));
+        struct refusal why;
+        assert_true(place_set_moves(other, &(struct place_move){ .tag = 0, .position_m = { 10.5, 0.05 * i, 1 } }, 1, &why));
         placing_request_coverage(f->placing, other, 0, 0, f->snapshot, 1, 1);
         place_set_destroy(&other);
         assert_null(other);

@@ -37,24 +37,25 @@ static int tear_down(void **state)
 
 static void expect_text(const char *folder, const char *name, const char *want)
 {
-    char *path = temp_path(folder, name), *why = NULL, *text = tag_file_read(path, &why);
+    struct refusal why;
+    char *path = temp_path(folder, name), *text = tag_file_read(path, &why);
     assert_non_null(text);
-    assert_null(why);
     assert_string_equal(text, want);
     mem_free(text);
     mem_free(path);
 }
 
-static bool put(const struct fixture *f, char *before, char *after, char **kept, char **why)
+static bool put(const struct fixture *f, char *before, char *after, char **kept, struct refusal *why)
 {
     struct tag_save save = { .path = f->path, .before = before, .after = after };
-    *kept = *why = NULL;
+    *kept = NULL;
     return tag_file_put(&save, kept, why);
 }
 
 CASE(test_every_list_stays_beside_the_next)
 {
-    char *kept, *why, *taken = temp_write_text(f->folder, "tags.csv.2", "somebody's own\n");
+    struct refusal why;
+    char *kept, *taken = temp_write_text(f->folder, "tags.csv.2", "somebody's own\n");
     static const char *const names[] = { "tags.csv.1", "tags.csv.3" };
     char *texts[] = { "one\n", "two\n", "three\n" };
     assert_int_equal(chmod(f->path, 0640), 0);
@@ -74,28 +75,30 @@ CASE(test_every_list_stays_beside_the_next)
 
 CASE(test_what_was_put_is_put_back)
 {
-    char *kept, *why, *gone;
+    char *kept, *unkept, *gone;
+    struct refusal why;
     assert_true(put(f, "one\n", "two\n", &kept, &why));
-    assert_true(tag_file_put_back(&(struct tag_save){ .path = f->path }, kept, &why));
+    assert_true(tag_file_put_back(&(struct tag_save){ .path = f->path }, kept, &unkept));
     expect_text(f->folder, "tags.csv", "one\n");
     assert_int_equal(access(kept, F_OK), -1);
-    assert_false(tag_file_put_back(&(struct tag_save){ .path = f->path }, kept, &why));
-    assert_non_null(strstr(why, "tags.csv cannot be put back from tags.csv.1: No such file"));
-    mem_free(why);
+    assert_false(tag_file_put_back(&(struct tag_save){ .path = f->path }, kept, &unkept));
+    assert_non_null(strstr(unkept, "tags.csv cannot be put back from tags.csv.1: No such file"));
+    mem_free(unkept);
     mem_free(kept);
     gone = temp_path(f->folder, "none.csv");
     assert_null(tag_file_read(gone, &why));
-    assert_string_equal(why, "none.csv cannot be read: No such file or directory");
-    mem_free(why);
+    assert_int_equal(why.code, REFUSAL_UNREAD_FILE);
+    assert_string_equal(why.args, "file=none.csv\nerror=No such file or directory");
     mem_free(gone);
 }
 
 CASE(test_a_list_that_changed_meanwhile_is_not_written_over)
 {
-    char *kept, *why;
+    char *kept;
+    struct refusal why;
     assert_false(put(f, "another\n", "two\n", &kept, &why));
-    assert_string_equal(why, "tags.csv was changed by somebody else meanwhile");
-    mem_free(why);
+    assert_int_equal(why.code, REFUSAL_CHANGED);
+    assert_string_equal(why.args, "file=tags.csv");
     expect_text(f->folder, "tags.csv", "one\n");
     char *first = temp_path(f->folder, "tags.csv.1");
     assert_int_equal(access(first, F_OK), -1);
@@ -105,7 +108,8 @@ CASE(test_a_list_that_changed_meanwhile_is_not_written_over)
 /* As the daemon sees it whose service may not write there. */
 CASE(test_a_folder_that_may_not_be_written_is_said)
 {
-    char *kept, *why;
+    char *kept;
+    struct refusal why;
     assert_int_equal(chmod(f->folder, 0555), 0);
     bool root = geteuid() == 0;
     if (root)
@@ -116,8 +120,8 @@ CASE(test_a_folder_that_may_not_be_written_is_said)
     assert_int_equal(chmod(f->folder, 0755), 0);
     assert_false(saved);
     assert_null(kept);
-    assert_string_equal(why, "the list as it is cannot be kept as tags.csv.1: Permission denied");
-    mem_free(why);
+    assert_int_equal(why.code, REFUSAL_FOLDER_LOCKED);
+    assert_string_equal(why.args, "file=tags.csv.1");
     expect_text(f->folder, "tags.csv", "one\n");
 }
 

@@ -46,7 +46,7 @@ static int tear_down(void **state)
 
 static const struct wall_place MAIN = { "room", "main", 1 };
 
-static const char *order(struct fixture *f, const char *view, bool held)
+static enum refusal_code order(struct fixture *f, const char *view, bool held)
 {
     return wall_remote_order(f->remote, &(struct wall_order){ MAIN, view, "Title", held, "Desk 2" }, "kim", 7);
 }
@@ -63,16 +63,16 @@ static void assert_list(char *text, size_t count, const char *part)
 
 CASE(the_newest_order_counts_and_is_kept)
 {
-    assert_null(order(f, "group=t", false));
-    assert_null(order(f, "group=p", false));
+    assert_int_equal(order(f, "group=t", false), REFUSAL_NONE);
+    assert_int_equal(order(f, "group=p", false), REFUSAL_NONE);
     wall_remote_close(&f->remote);
     f->remote = wall_remote_open(f->log, &f->plant, f->folder);
     assert_list(wall_remote_text(f->remote), 1, "group=p");
     uint64_t number = wall_remote_number(f->remote);
-    assert_null(order(f, "", true));
+    assert_int_equal(order(f, "", true), REFUSAL_NONE);
     assert_true(wall_remote_number(f->remote) > number);
     assert_list(wall_remote_text(f->remote), 1, "\"held\":true");
-    assert_null(order(f, "", false));
+    assert_int_equal(order(f, "", false), REFUSAL_NONE);
     assert_list(wall_remote_text(f->remote), 0, "walls");
 }
 
@@ -84,7 +84,7 @@ CASE(places_are_those_of_the_plant_file)
     assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "main", 2 }));
     assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "side", 1 }));
     assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "none", 1 }));
-    assert_null(order(f, "group=t", false));
+    assert_int_equal(order(f, "group=t", false), REFUSAL_NONE);
     f->display.pane_count = 0; /* the plant is loaded anew, and has no such pane */
     assert_list(wall_remote_text(f->remote), 0, "walls");
     f->display.pane_count = 2;
@@ -123,6 +123,6 @@ CASE(without_a_folder_it_is_forgotten_with_the_daemon)
 {
     wall_remote_close(&f->remote);
     f->remote = wall_remote_open(f->log, &f->plant, NULL);
-    assert_null(order(f, "group=t", false));
+    assert_int_equal(order(f, "group=t", false), REFUSAL_NONE);
     assert_list(wall_remote_text(f->remote), 1, "group=t");
 }

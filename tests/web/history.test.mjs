@@ -75,7 +75,7 @@ test('requests carry the token, and failures are said in the server’s words', 
     const fetcher = async (url, options) => { seen = [url, options.headers.Authorization]; return { ok: true }; };
     await ask('api/x', { tags: 'A,B' }, 'secret', fetcher);
     assert.deepEqual(seen, ['api/x?tags=A%2CB', 'Bearer secret']);
-    const refusal = async () => ({ ok: false, status: 404, text: async () => 'nothing here\n' });
+    const refusal = async () => new Response('nothing here\n', { status: 404 });
     await assert.rejects(ask('api/x', {}, null, refusal), /^Error: nothing here$/);
     const gone = () => Promise.reject(new TypeError('Failed to fetch'));
     await assert.rejects(ask('api/x', {}, null, gone), /^Error: The server cannot be reached$/);

@@ -196,12 +196,13 @@ test('what of our view is not in this plant is left out and said; the rest is as
     const { connection, sockets, events } = makeSession({ camera: WANTED.camera, params });
     connection.start();
     sockets[0].accept();
-    const texts = ['selected: \'E-9\' is no asset of this plant', 'ghost: \'P-9\' is no asset of this plant'];
-    for (const text of texts)
-        sockets[0].say({ type: 'error', code: 'bad_field', text, about: 'hello' });
+    const errors = [['selected', 'E-9'], ['ghost', 'P-9']].map(([field, name]) => ({ type: 'error', code: 'bad_field',
+        text: `${field}: this plant has no equipment “${name}”`, refusal: { code: 'no_asset', args: { name } }, about: 'hello' }));
+    for (const error of errors)
+        sockets[0].say(error);
     const again = sockets[0].sent.at(-1);
     assert.deepEqual([again.camera.eye, again.params], [WANTED.camera.eye, { seq: 1, group: 'pressure' }]);
-    assert.deepEqual(events, texts.map((text) => ['astray', text]));
+    assert.deepEqual(events, errors.map((error) => ['astray', error]));
     sockets[0].say({ type: 'error', code: 'bad_field', text: 'group: \'pressure\' is no group of this plant', about: 'hello' });
     assert.deepEqual(sockets[0].sent.at(-1).params, undefined);
 });

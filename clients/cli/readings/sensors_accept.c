@@ -37,26 +37,29 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Saves the list. Takes `before` and `after`. */
-static int save(const char *path, char *before, char *after, char **why)
+/* Saves the list. Takes `before` and `after`; failed: why one of them is NULL. */
+static int save(const char *path, char *before, char *after, const struct refusal *failed)
 {
     struct tag_save saved = { .path = (char *)path, .before = before, .after = after };
     char *kept = NULL;
-    bool good = before && after && tag_file_put(&saved, &kept, why);
+    struct refusal why = *failed;
+    bool good = before && after && tag_file_put(&saved, &kept, &why);
+    char text[REFUSAL_TEXT_BYTES];
+    refusal_text(&why, text);
     if (good)
         printf("%s: written; the previous list is %s\n", path, text_base_name(kept));
     else
-        fprintf(stderr, "plantcast: %s: %s\n", path, *why ? *why : "cannot be read");
+        fprintf(stderr, "plantcast: %s: %s\n", path, text);
     mem_free(kept);
     mem_free(before);
     mem_free(after);
-    mem_free(*why);
     return good ? 0 : 1;
 }
 
 static int undo(const struct accept_options *options, const char *path)
 {
-    char *why = NULL, *version = mem_printf("%.*s%s", (int)(text_base_name(path) - path), path, text_base_name(options->undo));
+    struct refusal why = { .code = REFUSAL_NONE };
+    char *version = mem_printf("%.*s%s", (int)(text_base_name(path) - path), path, text_base_name(options->undo));
     char *before = tag_file_read(path, &why), *after = before ? tag_file_read(version, &why) : NULL;
     mem_free(version);
     return save(path, before, after, &why);
@@ -121,7 +124,8 @@ static int accept_in(const struct accept_options *options, const struct plant *p
     if (scene)
         print_outcome(plant, outcome, options->dry_run);
     if (count > 0 && !options->dry_run) {
-        char *why = NULL, *before = tag_file_read(path, &why), *after = before ? assumed_places_accept(plant, before, outcome, &why) : NULL;
+        struct refusal why = { .code = REFUSAL_NONE };
+        char *before = tag_file_read(path, &why), *after = before ? assumed_places_accept(plant, before, outcome, &why) : NULL;
         code = save(path, before, after, &why);
     }
     mem_free(outcome);

@@ -174,7 +174,7 @@ session.on('views', () => {
 
 // Where a link leads, and what of it, or of the view before, is not in this plant.
 let arrived = false, astray = [];
-session.on('astray', (text) => astray.push(text));
+session.on('astray', (message) => astray.push(message));
 function arrive() {
     const link = arrived ? null : address, refused = astray;
     if (refused.length > 0 || (!arrived && location.hash.length > 1))
@@ -184,18 +184,19 @@ function arrive() {
 }
 
 let toastTimer;
-session.on('error', async ({ text, about, code }) => {
+session.on('error', async ({ text, about, code, refusal }) => {
     console.warn(`error about ${about}: ${text}`);
     if (about === 'ack')
         return; // nothing that a person did
     const { put, refusalText } = await import('../core/refusals.js');
-    tell(put('refused', { text: refusalText(text, code) }));
+    tell(put('page.refused', { text: refusalText(text, refusal, code) }));
 });
 
 // It was done, and is not, or not all of it, on the server's disk.
-session.on('unkept', async ({ not_kept: count, why, unaudited }) => {
+session.on('unkept', async ({ not_kept: count, why, refusal, unaudited, unaudited_refusal: missing }) => {
     const { put, refusalText } = await import('../core/refusals.js');
-    tell(put(count ? 'unkept' : 'unaudited', { text: refusalText(count ? why : unaudited) }), 5 * TOAST_MS);
+    tell(count ? put('page.unkept', { text: refusalText(why, refusal) })
+        : put('page.unaudited', { text: refusalText(unaudited, missing) }), 5 * TOAST_MS);
 });
 
 function tell(text, ms = TOAST_MS) {

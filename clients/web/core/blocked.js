@@ -21,8 +21,8 @@ async function whyBlocked(url) {
     if (refused) // the handshake reached the server
         return refused;
     const proxy = proxyOf(answer.headers), isNginx = /nginx|openresty/i.test(proxy);
-    const needs = isNginx ? put('blocked_lines', { lines: NGINX }) : put('blocked_page');
-    return put('blocked', { proxy: proxy || put('blocked_proxy'), needs });
+    const needs = isNginx ? put('page.blocked_lines', { lines: NGINX }) : put('page.blocked_page');
+    return put('page.blocked', { proxy: proxy || put('page.blocked_proxy'), needs });
 }
 
 // Asks over HTTP, and gives the connection the reason that was found.

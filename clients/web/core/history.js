@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Converts responses of /api/v1/history and of the alarm journal to what charts and the time bar draw. Pure, except for ask().
 import { calls } from './alarms.js';
-import { refusalText } from './refusals.js';
+import { answerText } from './refusals.js';
 import { say } from './words.js';
 
 export const BAD = 2, UNCERTAIN = 1; // the two top bits of a status code
@@ -15,7 +15,7 @@ export async function ask(path, query, token, fetcher = fetch) {
         throw new Error(say('reason.unreachable'));
     });
     if (!response.ok)
-        throw new Error(refusalText((await response.text()).trim() || `HTTP ${response.status}`));
+        throw new Error(await answerText(response));
     return response;
 }
 

@@ -30,8 +30,8 @@ export const asAsked = (camera) => (camera.height_m === undefined ? camera : cam
 
 export class Session {
     // wanted: { camera or null, params, time } from the page's address. Events: hello (a new connection), welcome, params, shown, time,
-    // tags (indices), status, alarms, alarmed (message), frame (frame), camera, error (message), astray (text: why a part of our view
-    // is not asked for again), denied (message: we need a token, or another one), ignored (what).
+    // tags (indices), status, alarms, alarmed (message), frame (frame), camera, error (message), astray (message: a part of our view
+    // is refused, and not asked for again), denied (message: we need a token, or another one), ignored (what).
     constructor({ connection, now, wanted = { camera: null, params: {} }, codecs = ['jpeg', 'png'] }) {
         Object.assign(this, { connection, now, codecs });
         this.listeners = new Map();
@@ -532,7 +532,7 @@ const HANDLERS = {
             return;
         }
         if (message.about === 'hello' && !this.welcomed && this.helloParts.length > 0) {
-            this.emit('astray', message.text); // our view of before is of another plant, or of another version
+            this.emit('astray', message); // our view of before is of another plant, or of another version
             this.helloWithout(message.text.split(':')[0]);
             return;
         }

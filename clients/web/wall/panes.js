@@ -81,7 +81,7 @@ function ViewsPane(pane, context) {
     function showView(page, order, wrong) {
         const id = pane.items[at];
         if (wrong)
-            setText(why, say('named.wrong', { why: refusalText(wrong) }));
+            setText(why, say('named.wrong', { why: refusalText(wrong.wrong, wrong.refusal) }));
         else if (order?.view)
             page.modules.use('views', (views) => views.lookAt(order.view));
         else if (page.session.model.plant.only)
@@ -127,10 +127,11 @@ function ViewsPane(pane, context) {
             sessionStorage.setItem(remembered, at); // a display that is loaded anew goes on
             shown = null;
         }
-        const { view, wrong } = viewsOf(page.session).find(({ id }) => id === pane.items[at]) ?? {}, { width, height } = page.session.size;
+        const { view, wrong, refusal } = viewsOf(page.session).find(({ id }) => id === pane.items[at]) ?? {};
+        const { width, height } = page.session.size;
         const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}/${isGone(alarm.state)}`
             : JSON.stringify([at, order, view, wrong, width, height]);
-        const unshown = alarm || order?.view ? null : wrong;
+        const unshown = alarm || order?.view || !wrong ? null : { wrong, refusal };
         element.classList.toggle('unshown', Boolean(unshown));
         element.classList.toggle('called', Boolean(alarm));
         element.classList.toggle('coming', Boolean(alarm) && ofOther(page.session, alarm)); // no legend of another quantity below its name

@@ -58,7 +58,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     // --- what is shown, by who leads
 
     let refused = '';
-    session.on('error', ({ text }) => { refused = text; });
+    session.on('error', ({ text, refusal, code }) => { refused = refusalText(text, refusal, code); });
 
     let at = 0, changedAt = null, shown = null, called = null, wrong = null; // wrong: with the view that it shows, by who leads
     const timeOf = (us) => zoneClock(words.model.plant.time_zone)(us / 1000).time;
@@ -84,7 +84,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         }
         const view = session.views.find(({ id }) => id === pane.items[at]);
         const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}/${isGone(alarm.state)}` : JSON.stringify([at, order, view]);
-        wrong = !alarm && !order?.view ? view?.wrong : null;
+        wrong = !alarm && !order?.view && view?.wrong ? view : null;
         if (wanted === shown)
             return;
         if (alarm) {
@@ -138,7 +138,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
             : silent ? say('walls.lost', { time: timeOf(words.clockUs(session.freshAt)) })
                 : words.model.live === false ? say('health.nodata')
                     : session.tiles.leads && others.length > 0 ? say('walls.missing', { displays: others.join(', ') })
-                        : session.tiles.leads && wrong ? say('named.wrong', { why: refusalText(wrong) }) : '');
+                        : session.tiles.leads && wrong ? say('named.wrong', { why: refusalText(wrong.wrong, wrong.refusal) }) : '');
         tell(text, Boolean(own || silent || refusal()));
         element.classList.toggle('blank', Boolean(own || silent || !picture));
     }

@@ -73,6 +73,7 @@ chosen: Gewählte Bänder
 temperature: Temperatur
 pressure: Druck
 vibration: Schwingung
+vibration velocity: Schwinggeschwindigkeit
 flow: Durchfluss
 level: Füllstand
 gas: Gas

@@ -73,6 +73,7 @@ chosen: Chosen bands
 temperature: Temperature
 pressure: Pressure
 vibration: Vibration
+vibration velocity: Vibration velocity
 flow: Flow
 level: Level
 gas: Gas

@@ -73,6 +73,7 @@ chosen: 선택한 구간
 temperature: 온도
 pressure: 압력
 vibration: 진동
+vibration velocity: 진동 속도
 flow: 유량
 level: 레벨
 gas: 가스

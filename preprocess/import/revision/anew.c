@@ -37,7 +37,8 @@ static int fail_at(const char *path, const char *why)
 /* Takes the text. versioned: somebody may have written the one of before. */
 static int add_text(struct making *making, struct one_text *one, const char *name, char *after, bool versioned)
 {
-    char *path = mem_printf("%s/%s", making->params->folder, name), *why = NULL;
+    char *path = mem_printf("%s/%s", making->params->folder, name);
+    struct refusal why = { .code = REFUSAL_NONE };
     int status = 0;
     *one = (struct one_text){ .name = name, .before = access(path, F_OK) == 0 ? tag_file_read(path, &why) : NULL, .after = after };
     if (one->before && after && !strcmp(one->before, after)) {
@@ -47,8 +48,11 @@ static int add_text(struct making *making, struct one_text *one, const char *nam
     }
     if (one->before && one->after && versioned)
         one->kept = tag_file_keep(path, &why);
-    if (why)
-        status = fail_at(path, why);
+    if (why.code) {
+        char text[REFUSAL_TEXT_BYTES];
+        refusal_text(&why, text);
+        status = fail_at(path, text);
+    }
     struct revision_file *file = &making->files[making->file_count];
     *file = (struct revision_file){ name, NULL, one->before };
     if (status == 0 && one->after) {
@@ -57,7 +61,6 @@ static int add_text(struct making *making, struct one_text *one, const char *nam
         status = error == 0 ? 0 : fail_at(path, strerror(-error));
     }
     making->file_count += one->before || one->after;
-    mem_free(why);
     mem_free(path);
     return status;
 }

@@ -401,17 +401,20 @@ static bool something_stays(const struct planning *p)
 static bool compose(struct planning *p)
 {
     const struct revision_input *input = p->input;
-    char why[ASSET_EDIT_WHY_BYTES] = "", *wrong = NULL;
+    char why[ASSET_EDIT_WHY_BYTES] = "";
     p->revision->plant_text = asset_edit_apply(input->plant_text, p->assets, input->plant->asset_count, p->added.at, why);
     if (!p->revision->plant_text) {
         snprintf(p->why, MODEL_WHY_BYTES, "%s: %s", input->plant->path, why);
         return false;
     }
     if (p->tag_count > 0 && input->tags_text) {
+        struct refusal wrong;
+        char text[REFUSAL_TEXT_BYTES];
         p->revision->tags_text = tag_edit(input->tags_text, p->tags, p->tag_count, &wrong);
-        if (!p->revision->tags_text)
-            snprintf(p->why, MODEL_WHY_BYTES, "%s: %s", input->plant->tags_path, wrong);
-        mem_free(wrong);
+        if (!p->revision->tags_text) {
+            refusal_text(&wrong, text);
+            snprintf(p->why, MODEL_WHY_BYTES, "%s: %.300s", input->plant->tags_path, text);
+        }
         return p->revision->tags_text != NULL;
     }
     return true;

@@ -118,14 +118,14 @@ int atomic_file_keep(const char *path, const void *bytes, size_t count)
     return put_parts(path, &(struct atomic_file_part){ bytes, count }, 1, true);
 }
 
-const char *atomic_file_not_kept(int error)
+enum refusal_code atomic_file_not_kept(int error)
 {
     switch (-error) {
     case ENOSPC:
     case EDQUOT:
-    case EFBIG: return "it could not be kept on disk: the disk is full";
-    case EROFS: return "it could not be kept on disk: the disk is read-only";
-    case ETIMEDOUT: return "it could not be kept on disk: the disk does not answer within a second";
-    default: return "it could not be kept on disk; the log says why";
+    case EFBIG: return REFUSAL_DISK_FULL;
+    case EROFS: return REFUSAL_DISK_LOCKED;
+    case ETIMEDOUT: return REFUSAL_DISK_SLOW;
+    default: return REFUSAL_DISK;
     }
 }

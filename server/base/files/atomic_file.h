@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <sys/types.h>
 
+#include "base/refusal.h"
+
 struct atomic_file {
     char *path, *beside; /* NULL: none is begun */
     int fd;              /* open for reading and writing; rights and owner may be set on it */
@@ -26,7 +28,7 @@ int atomic_file_put(const char *path, const void *bytes, size_t count);
 /* The same with fsync, for data that the daemon confirms as kept. */
 int atomic_file_keep(const char *path, const void *bytes, size_t count);
 /* Translates the error of a write (-errno) into a sentence for the user whose change was not kept. Static. */
-const char *atomic_file_not_kept(int error);
+enum refusal_code atomic_file_not_kept(int error);
 struct atomic_file_part {
     const void *bytes;
     size_t count;

@@ -129,7 +129,7 @@ static const struct {
 };
 static const char RELOAD_PATH[] = "/api/v1/reload", LOGOUT_PATH[] = "/logout"; /* POST */
 
-static int refuse(struct request *request, const struct refusal *refusal)
+static int refuse(struct request *request, const struct http_refusal *refusal)
 {
     bool whose = refusal->status == HTTP_STATUS_UNAUTHORIZED, held = refusal->status == 429 || refusal->status == 503;
     request->close |= refusal->status == HTTP_STATUS_SERVICE_UNAVAILABLE;
@@ -147,12 +147,17 @@ static bool is_foreign_page(struct lws *wsi)
     return lws_hdr_custom_copy(wsi, site, sizeof(site), "sec-fetch-site:", 15) > 0 && !strcmp(site, "cross-site");
 }
 
-static const struct refusal NEED_TOKEN = { HTTP_STATUS_UNAUTHORIZED, "a token is needed: Authorization: Bearer TOKEN\n" };
-static const struct refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, "viewers get pictures only\n" };
-static const struct refusal NOT_IN_VIEWS = { HTTP_STATUS_FORBIDDEN, "this token is good for pictures of some views only\n" };
-static const struct refusal NOT_ON_DISPLAY = { HTTP_STATUS_FORBIDDEN, "this device is good for its display of a wall only\n" };
-static const struct refusal NOT_ENGINEER = { HTTP_STATUS_FORBIDDEN, "this takes the role engineer\n" };
-static const struct refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other sites do not get this\n" };
+static const struct http_refusal NEED_TOKEN = { HTTP_STATUS_UNAUTHORIZED, "a token is needed: Authorization: Bearer TOKEN\n" };
+static const struct http_refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, "viewers get pictures only\n" };
+static const struct http_refusal NOT_IN_VIEWS = { HTTP_STATUS_FORBIDDEN, "this token is good for pictures of some views only\n" };
+static const struct http_refusal NOT_ON_DISPLAY = { HTTP_STATUS_FORBIDDEN, "this device is good for its display of a wall only\n" };
+static const struct http_refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other sites do not get this\n" };
+
+/* Refuses somebody who is no engineer. */
+static int refuse_others(struct request *request, enum role role)
+{
+    return role == ROLE_NOBODY ? refuse(request, &NEED_TOKEN) : request_refuse(request, HTTP_STATUS_FORBIDDEN, REFUSAL_ROLE_ENGINEER);
+}
 
 static int serve_route(struct server_context *server, struct request *request, size_t i)
 {
@@ -168,7 +173,7 @@ static int serve_route(struct server_context *server, struct request *request, s
         bool engineer = routes[i].least == ROLE_ENGINEER;
         connection_record(server, request->wsi, "access", "refused", routes[i].path,
                           engineer ? "it takes the role engineer" : "pictures only");
-        return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : engineer ? &NOT_ENGINEER : &NOT_FOR_YOU);
+        return engineer ? refuse_others(request, role) : refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_FOR_YOU);
     }
     if (routes[i].least > ROLE_NOBODY && is_foreign_page(request->wsi))
         return refuse(request, &FOREIGN);
@@ -181,7 +186,7 @@ static int serve_post(struct server_context *server, struct request *request, co
     request->close = true; /* there may be a body that nobody reads */
     if (role < ROLE_ENGINEER) {
         connection_record(server, request->wsi, "access", "refused", path, "it takes the role engineer");
-        return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_ENGINEER);
+        return refuse_others(request, role);
     }
     if (is_foreign_page(request->wsi))
         return refuse(request, &FOREIGN);
@@ -195,7 +200,7 @@ static int serve(struct server_context *server, struct request *request, const c
     bool post = lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0 &&
                 (!strcmp(path, RELOAD_PATH) || !strcmp(path, LOGOUT_PATH) || import_takes_post(server, path));
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
-    struct refusal refusal;
+    struct http_refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
     request->sandboxed = false; /* the same struct serves all requests of a connection */
     counter_inc(server->counters.requests, 1);

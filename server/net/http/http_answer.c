@@ -44,6 +44,17 @@ static bool add_policies(struct request *request, const char *content_policy, un
     return added;
 }
 
+/* In ASCII: a header has no other letters. */
+static bool add_refusal(const struct refusal *refusal, struct lws *wsi, unsigned char **p, unsigned char *end)
+{
+    json_t *object = refusal_json(refusal);
+    char *text = json_dumps(object, JSON_COMPACT | JSON_ENSURE_ASCII);
+    bool added = text && add_header(wsi, "plantcast-refusal:", text, p, end);
+    free(text);
+    json_decref(object);
+    return added;
+}
+
 bool request_write_head(struct request *request, int status, const char *type, const char *extra_name, const char *extra)
 {
     unsigned char buffer[LWS_PRE + HEAD_BYTES], *start = buffer + LWS_PRE, *p = start, *end = buffer + sizeof(buffer) - 1;
@@ -64,6 +75,9 @@ bool request_write_head(struct request *request, int status, const char *type, c
         return false;
     mem_free(request->set_cookie);
     request->set_cookie = NULL;
+    if (request->refusal.code && !add_refusal(&request->refusal, wsi, &p, end))
+        return false;
+    request->refusal.code = REFUSAL_NONE;
     return lws_finalize_write_http_header(wsi, start, &p, end) == 0;
 }
 
@@ -130,11 +144,19 @@ int request_answer_later(struct request *request, const char *why)
     return request_answer(request, HTTP_STATUS_SERVICE_UNAVAILABLE, HTTP_TEXT, mem_strdup(why), strlen(why), "retry-after:", "2");
 }
 
+int request_refuse(struct request *request, int status, enum refusal_code code)
+{
+    char *text = mem_printf("%s\n", refusal_words(code));
+    bool later = status == HTTP_STATUS_SERVICE_UNAVAILABLE;
+    request->refusal = (struct refusal){ .code = code };
+    return request_answer(request, status, HTTP_TEXT, text, strlen(text), later ? "retry-after:" : NULL, later ? "2" : NULL);
+}
+
 int request_answer_unreadable(const struct server_context *server, struct request *request)
 {
     if (server->params.plant.core_link && !server->params.plant.history_folder)
-        return request_answer_later(request, "history is the core's, and it does not give it now; try again\n");
-    return request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "history cannot be read; the log says why\n");
+        return request_refuse(request, HTTP_STATUS_SERVICE_UNAVAILABLE, REFUSAL_CORELESS);
+    return request_refuse(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, REFUSAL_UNREADABLE);
 }
 
 int request_answer_json(struct request *request, char *text)
@@ -145,6 +167,7 @@ int request_answer_json(struct request *request, char *text)
 int request_answer_error(struct request *request, const struct message_error *error)
 {
     char *text = mem_printf("%s\n", error->text);
+    request->refusal = error->refusal;
     int status = strcmp(error->code, "not_allowed") == 0 ? HTTP_STATUS_FORBIDDEN : HTTP_STATUS_BAD_REQUEST;
     return request_answer(request, status, HTTP_TEXT, text, strlen(text), NULL, NULL);
 }

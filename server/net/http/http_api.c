@@ -48,7 +48,7 @@ static int ask_recorded(struct server_context *server, struct request *request, 
     struct args args;
     int64_t now_us = clock_plant_ns() / 1000;
     if (!server->history_queries)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+        return request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_UNRECORDED);
     if (!request_args(request->wsi, &args, &error) ||
         !(gaps ? history_query_parse_gaps(args.list, args.count, now_us, &query, &error)
                : history_query_parse(server->params.plant.scene->plant, args.list, args.count, now_us, &query, &error)))
@@ -74,7 +74,7 @@ int ask_drift(struct server_context *server, struct request *request)
     struct message_error error = { 0 };
     struct args args;
     if (!server->history_queries)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+        return request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_UNRECORDED);
     if (!request_args(request->wsi, &args, &error) ||
         !history_query_parse_drift(server->params.plant.scene->plant, args.list, args.count, clock_plant_ns() / 1000, &query, &error))
         return request_answer_error(request, &error);
@@ -107,7 +107,7 @@ int ask_journal(struct server_context *server, struct request *request)
     struct history_query query = { .journal = true };
     struct message_error error = { 0 };
     if (!server->history_queries)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+        return request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_UNRECORDED);
     if (!read_alarm_query(server, request, true, &query.alarms, &error))
         return request_answer_error(request, &error);
     return await_history(server, request, &query);
@@ -302,9 +302,9 @@ int api_pair(struct server_context *server, struct request *request)
     char secret[256];
     if (!server->tokens)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "displays are not let in by digits here\n");
-    const char *why = server->params.plant.core_link ? NULL : pairings_refusal(server->params.plant.pairings);
+    enum refusal_code why = server->params.plant.core_link ? REFUSAL_NONE : pairings_refusal(server->params.plant.pairings);
     if (why)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, why);
+        return request_refuse(request, HTTP_STATUS_NOT_FOUND, why);
     if (!request_args(request->wsi, &args, &error))
         return request_answer_error(request, &error);
     for (size_t i = 0; i < args.count; i++)
@@ -333,7 +333,7 @@ int api_loop_checks(struct server_context *server, struct request *request)
 {
     struct text text = { 0 };
     if (!server->params.plant.loop_checks)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+        return request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_UNRECORDED);
     loop_checks_print(server->params.plant.loop_checks, &text);
     return request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text.at, text.length,
                           "content-disposition:", "attachment; filename=\"proofs.csv\"");

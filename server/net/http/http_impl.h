@@ -21,6 +21,7 @@ struct request {
     bool close;                  /* after the answer */
     bool sandboxed;              /* the answer belongs to a document with an origin and, in Chromium, a process of its own */
     char *set_cookie;            /* sent with the next head; NULL: none */
+    struct refusal refusal;      /* sent with the next head, as the header Plantcast-Refusal; REFUSAL_NONE: none */
     char *body;
     size_t count, sent;
     struct address_usage *holder; /* in whose answer_bytes the body is counted; NULL: in none. The connection holds the reference */
@@ -49,7 +50,6 @@ struct args { /* of the query, decoded */
 };
 
 #define HTTP_TEXT "text/plain; charset=utf-8"
-#define HTTP_NOTHING_RECORDED "this daemon records nothing (history: record: no)\n"
 
 /* Functions that return int return what the lws callback is to return. */
 
@@ -66,6 +66,8 @@ void chunked_append(struct request *request, char *body, size_t count, bool last
 int chunked_write(struct server_context *server, struct request *request);
 /* Sends 503 with Retry-After. */
 int request_answer_later(struct request *request, const char *why);
+/* Sends a refusal that has no arguments; with 503 also Retry-After. */
+int request_refuse(struct request *request, int status, enum refusal_code code);
 /* Says that history cannot be read: 500, or of a renderer, whose core has it, 503 with Retry-After. */
 int request_answer_unreadable(const struct server_context *server, struct request *request);
 /* Sends JSON; takes text (mem_free). */

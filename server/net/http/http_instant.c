@@ -21,7 +21,7 @@ int ask_instant(struct server_context *server, struct request *request)
     struct message_error error = { 0 };
     struct args args;
     if (!server->history_loader)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+        return request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_UNRECORDED);
     if (!request_args(request->wsi, &args, &error))
         return request_answer_error(request, &error);
     const char *text = arg_of(&args, "at_us");

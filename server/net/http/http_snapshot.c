@@ -119,7 +119,7 @@ static void begin(struct server_context *server, struct request *request)
 static bool may_ask(struct server_context *server, struct request *request, const struct view *view, int *result)
 {
     if (view->at_us && !server->history_loader) {
-        *result = request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+        *result = request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_UNRECORDED);
         return false;
     }
     const char *why = server->picture_count >= server->quotas->at[QUOTA_SNAPSHOTS] ? "too many pictures are being made; try again\n"

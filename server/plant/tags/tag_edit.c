@@ -249,20 +249,19 @@ static char *all_rows(struct list *list, const char *text, const struct tag_edit
     return out.at;
 }
 
-char *tag_edit(const char *text, const struct tag_edit *edits, size_t count, char **why)
+char *tag_edit(const char *text, const struct tag_edit *edits, size_t count, struct refusal *why)
 {
     const char *begin = strncmp(text, "\xEF\xBB\xBF", 3) ? text : text + 3;
     struct list list = { .separator = csv_separator(begin), .at = begin };
     bool *done = mem_array(count + 1, sizeof(*done));
     char *out = NULL;
-    *why = NULL;
     if (read_header(&list))
         out = all_rows(&list, text, edits, count, done);
     else
-        *why = mem_strdup("the tag list has no column 'Tag Name'");
+        *why = (struct refusal){ .code = REFUSAL_NO_TAG_COLUMN };
     for (size_t i = 0; out && i < count; i++)
         if (!done[i]) {
-            *why = mem_printf("tag %s is not in the tag list", edits[i].tag);
+            refusal_set(why, REFUSAL_UNLISTED, "tag=%s", edits[i].tag);
             mem_free(out);
             out = NULL;
         }

@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/refusal.h"
+
 struct tag_edit {
     const char *tag;
     const char *asset, *group; /* ids; NULL: unchanged */
@@ -26,7 +28,7 @@ enum { TAG_LINES = 200 };
 
 /* Returns the new text; free with mem_free(). Returns NULL if a tag is missing or the list is invalid, with the reason in *why
    (mem_free()). */
-char *tag_edit(const char *text, const struct tag_edit *edits, size_t count, char **why);
+char *tag_edit(const char *text, const struct tag_edit *edits, size_t count, struct refusal *why);
 /* Appends the lines in which two texts differ to *out, at most TAG_LINES of them. With as many lines in both, it compares them one by one;
    otherwise it lists all lines between the first and the last difference, equal ones too: first those removed, then those added.
    Free with tag_lines_finish(). */

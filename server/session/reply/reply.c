@@ -57,6 +57,8 @@ char *reply_error_text(const struct message_error *error)
 {
     json_t *object = json_pack("{s:s,s:s,s:o,s:o}", "type", "error", "code", error->code, "text", string(error->text), "about",
                                error->about[0] ? string(error->about) : json_null());
+    if (error->refusal.code)
+        json_object_set_new(object, "refusal", refusal_json(&error->refusal));
     if (error->retry_after_s > 0)
         json_object_set_new(object, "retry_after_s", json_integer(error->retry_after_s));
     return json_text(object, DIGITS);

@@ -178,8 +178,11 @@ char *reply_camera_text(const struct camera *camera, uint32_t seq)
 void reply_add_wrong(const struct session_context *context, json_t *view, const char *address)
 {
     struct message_error error = { 0 };
-    if (!view_named_check(context->scene, address, &error))
-        json_object_set_new(view, "wrong", string(error.text));
+    if (view_named_check(context->scene, address, &error))
+        return;
+    json_object_set_new(view, "wrong", string(error.text));
+    if (error.refusal.code)
+        json_object_set_new(view, "refusal", refusal_json(&error.refusal));
 }
 
 char *reply_views_text(const struct session_context *context, const char *id)

@@ -79,7 +79,7 @@ void session_inherit(struct session *heir, const struct session *session)
 void session_lead_nobody(struct session *session, uint64_t heir)
 {
     struct message_error error = { .about = "lead" };
-    message_fail(&error, "bad_field", "session: %llu does not follow this one", (unsigned long long)heir);
+    message_refuse_with(&error, "bad_field", "session", REFUSAL_GONE, "session=%llu", (unsigned long long)heir);
     session_reply_error(session, &error);
 }
 
@@ -103,7 +103,8 @@ void session_say_followers(struct session *session, const uint64_t *sessions, si
 void session_follow_nobody(struct session *session)
 {
     struct message_error error = { .about = "follow" };
-    message_fail(&error, "bad_field", "session: %llu is not connected, or is this one", (unsigned long long)session->following.wanted);
+    message_refuse_with(&error, "bad_field", "session", REFUSAL_GONE, "session=%llu",
+                        (unsigned long long)session->following.wanted);
     session_reply_error(session, &error);
 }
 

@@ -36,13 +36,13 @@ static void show(struct session *session, int64_t now_ns)
 
 bool session_on_place(struct session *session, const struct message *message, int64_t now_ns, struct message_error *error)
 {
-    char why[160];
+    struct refusal why;
     if (!can_place(session, error))
         return false;
     if (!session->placement.set)
         session->placement.set = place_set_create(session->context->placing);
-    if (!place_set_moves(session->placement.set, message->place.moves, message->place.count, why)) {
-        message_fail(error, "bad_field", "moves: %s", why);
+    if (!place_set_moves(session->placement.set, message->place.moves, message->place.count, &why)) {
+        message_refuse_with(error, "bad_field", "moves", why.code, "%s", why.args);
         return false;
     }
     session->placement.seq = message->seq;
@@ -86,16 +86,16 @@ bool session_save_tags(struct session *session, const struct message *message, s
     if (!can_place(session, error))
         return false;
     if (!context->tag_list) {
-        message_fail(error, "not_allowed", "the tag list could not be read when the plant was loaded");
+        message_refuse(error, "not_allowed", NULL, REFUSAL_UNREAD);
         return false;
     }
     bool moves = message->type == MESSAGE_SAVE_TAGS;
     if (moves && (!session->placement.set || place_set_get(session->placement.set, &placed) == 0)) {
-        message_fail(error, "bad_field", "save_tags: no sensor has been moved");
+        message_refuse(error, "bad_field", "save_tags", REFUSAL_UNMOVED);
         return false;
     }
     if (context->saving) {
-        session_reply(session, tags_saved_text(message->seq, false, "another list is being put in force; look again in a moment"));
+        session_reply(session, tags_refused_text(message->seq, &(struct refusal){ .code = REFUSAL_BUSY }));
         return true;
     }
     tag_save_free(session->placement.save);
@@ -110,7 +110,7 @@ bool session_check_loop(struct session *session, const struct message *message, 
 {
     const struct session_context *context = session->context;
     if (!context->loop_checks) {
-        message_fail(error, "no_history", "this daemon records nothing (history: record: no): proofs are kept beside the history");
+        message_refuse(error, "no_history", "proofs are kept beside the history", REFUSAL_UNRECORDED);
         return false;
     }
     const struct kept_action action = session_kept_begin(session);

@@ -99,7 +99,7 @@ bool session_on_time(struct session *session, const struct time_request *request
         return true;
     }
     if (!session->context->snapshot_cache) {
-        message_fail(error, "no_history", "this daemon records nothing (history: record: no)");
+        message_refuse(error, "no_history", NULL, REFUSAL_UNRECORDED);
         return false;
     }
     if (!request->has_at && here_us == 0) {
@@ -152,7 +152,7 @@ bool session_wants_historical_snapshot(struct session *session, int64_t now_ns, 
 static void on_failure(struct session *session)
 {
     struct message_error error = { .about = "time" };
-    message_fail(&error, "no_history", "history cannot be read; the server's log says why");
+    message_refuse(&error, "no_history", NULL, REFUSAL_UNREADABLE);
     session_reply_error(session, &error);
     session->travel.wanted_us = 0;
     session->travel.asked = session->travel.first = false;

@@ -272,9 +272,9 @@ export class AlarmList {
         byId('shelve').close();
     }
 
-    answered({ refused, not_kept: count, why }) {
-        const texts = refused.map(([tag, kind, cause]) => `${tag} ${kind}: ${refusalText(cause)}`);
-        setText(byId('alarms-refused'), [...texts, ...(count ? [put('unkept', { text: refusalText(why) })] : [])].join('; '));
+    answered({ refused, not_kept: count, why, refusal }) {
+        const texts = refused.map(([tag, kind, ...cause]) => `${tag} ${kind}: ${refusalText(...cause)}`);
+        setText(byId('alarms-refused'), [...texts, ...(count ? [put('page.unkept', { text: refusalText(why, refusal) })] : [])].join('; '));
     }
 }
 

@@ -2,7 +2,7 @@
 // Accepts many assumed places at once, filtered by equipment, name, distance from the surface and confidence of the match. The places are
 // counted and marked on the model first, and the previous list can be restored.
 import { tellAsEngineer } from '../../core/requests.js';
-import { refusalText } from '../../core/refusals.js';
+import { whyNotSaved } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
 import { make, setText } from '../common/dom.js';
 import { store, stored } from '../common/storage.js';
@@ -127,14 +127,15 @@ export class Accepting {
     }
 
     // Returns whether `tags_saved` answers a request of this part.
-    onSaved({ saved, kept, errors }) {
+    onSaved(message) {
+        const { saved, kept } = message;
         const { sent } = this;
         if (!sent)
             return false;
         this.sent = null;
         this.ask();
         if (!saved)
-            setText(this.note, say('eng.unsaved', { text: errors.map(refusalText).join('; ') }));
+            setText(this.note, say('eng.unsaved', { text: whyNotSaved(message) }));
         else if (sent === 'accept')
             setText(this.note, say('accept.saved', { count: this.accepted, kept }));
         else

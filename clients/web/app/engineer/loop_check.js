@@ -161,10 +161,10 @@ export class LoopCheck {
     }
 
     // On to the next that is not proven.
-    onProved({ tag, passed, value, why }) {
+    onProved({ tag, passed, value, why, refusal }) {
         const { model } = this.session, { tags } = this, at = tags.findIndex(({ name }) => name === tag);
         const text = value === null ? say('novalue') : this.text(model.tag(tag), value);
-        const because = `${refusalText(why)} (${text})`;
+        const because = `${refusalText(why, refusal)} (${text})`;
         setText(this.result, passed ? say('eng.passed', { tag, value: text }) : say('eng.failed', { tag, why: because }));
         const next = [...tags.slice(at + 1), ...tags.slice(0, at)].find((one) => this.stateOf(one) !== 'pass');
         if (passed && next)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sensors are placed: chosen from a list, put onto the surface by a click or dragged there, and the list is saved.
 import { numberText } from '../../core/format.js';
-import { refusalText } from '../../core/refusals.js';
+import { whyNotSaved } from '../../core/refusals.js';
 import { askPick, tellAsEngineer } from '../../core/requests.js';
 import { say } from '../../core/words.js';
 import { make, setText } from '../common/dom.js';
@@ -257,12 +257,12 @@ export class Placing {
     }
 
     onSaved(message) {
-        const { saved, kept, errors } = message;
+        const { saved, kept } = message;
         this.confirmed = null;
         if (this.accepting.onSaved(message))
             return this.show();
         this.saving = false;
-        setText(this.note, saved ? say('eng.saved', { kept }) : say('eng.unsaved', { text: errors.map(refusalText).join('; ') }));
+        setText(this.note, saved ? say('eng.saved', { kept }) : say('eng.unsaved', { text: whyNotSaved(message) }));
         if (saved) {
             this.moves = this.undone = [];
             this.tag = null;

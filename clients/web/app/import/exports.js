@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Requests of those who bring a plant in, and how far the server is.
-import { refusalText } from '../../core/refusals.js';
+import { answerText } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
 
 const LOOK_MS = 700;
@@ -20,7 +20,7 @@ export class Exports {
             throw new Error(say('reason.unreachable'));
         });
         if (!answer.ok)
-            throw Object.assign(new Error(refusalText((await answer.text()).trim() || `HTTP ${answer.status}`)), { status: answer.status });
+            throw Object.assign(new Error(await answerText(answer)), { status: answer.status });
         return answer;
     }
 

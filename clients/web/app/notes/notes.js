@@ -32,7 +32,7 @@ export class Notes {
             session.on(name, () => this.hear());
         session.on('pointed', () => this.point());
         session.on('params', () => this.offer());
-        session.on('noted', ({ kept, why }) => (kept ? this.onKept() : tell(refusalText(why))));
+        session.on('noted', ({ kept, why, refusal }) => (kept ? this.onKept() : tell(refusalText(why, refusal))));
         setInterval(() => this.tick(), TICK_MS);
         this.hear();
         this.point();

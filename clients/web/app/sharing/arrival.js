@@ -9,18 +9,18 @@ export class Arrival {
         this.page = page;
     }
 
-    // link: { camera, params, tag } that opened the page; null: not the first time. refused: what the server did not take of our view.
+    // link: { camera, params, tag } that opened the page; null: not the first time. refused: `error` messages about our view.
     come(link, refused) {
         const { session, selection, selectTag, tell } = this.page, { model } = session;
-        const why = refused.map((text) => refusalText(text)), unknown = selection.tag && !model.tag(selection.tag);
+        const why = refused.map(({ text, refusal }) => refusalText(text, refusal)), unknown = selection.tag && !model.tag(selection.tag);
         if (unknown) {
-            why.push(put('no', { name: selection.tag, kind: put('kind.tag') }));
+            why.push(put('no_tag', { name: selection.tag }));
             selectTag(null);
         }
         if (link && !link.camera)
             this.goTo(model.tag(link.tag), model.asset(link.params.selected));
         if (why.length > 0)
-            tell(put(link ? 'link' : 'refused', { why: why.join('; '), text: why.join('; ') }), NOTE_MS);
+            tell(put(link ? 'page.link' : 'page.refused', { why: why.join('; '), text: why.join('; ') }), NOTE_MS);
     }
 
     goTo(tag, asset) {

@@ -17,7 +17,7 @@ export class Devices {
         this.element = make('fieldset', { id: 'devices', hidden: true }, make('legend', {}, say('devices.legend')), this.list, form);
         byId('views').append(this.element);
         session.on('welcome', () => this.learn());
-        session.on('paired', ({ kept, why }) => (kept ? this.learn() : tell(refusalText(why))));
+        session.on('paired', ({ kept, why, refusal }) => (kept ? this.learn() : tell(refusalText(why, refusal))));
         this.learn();
     }
 

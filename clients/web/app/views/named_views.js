@@ -21,7 +21,7 @@ export class NamedViews {
         byId('views').prepend(this.element);
         session.on('views', () => this.show());
         session.on('welcome', () => this.show());
-        session.on('view_saved', ({ kept, why }) => (kept ? this.onKept() : tell(refusalText(why))));
+        session.on('view_saved', ({ kept, why, refusal }) => (kept ? this.onKept() : tell(refusalText(why, refusal))));
         this.show();
     }
 
@@ -40,7 +40,7 @@ export class NamedViews {
         }
         this.look(view.view, fly);
         if (view.wrong)
-            this.tell(say('named.wrong', { why: refusalText(view.wrong) }));
+            this.tell(say('named.wrong', { why: refusalText(view.wrong, view.refusal) }));
         this.opened = id;
         this.mark();
     }
@@ -100,7 +100,7 @@ export class NamedViews {
         if (known)
             picture.src = known.url;
         const open = make('button', { type: 'button', class: 'named-open', onclick: () => this.open(view.id) }, picture,
-            make('span', {}, view.title, view.wrong ? make('em', {}, refusalText(view.wrong)) : null));
+            make('span', {}, view.title, view.wrong ? make('em', {}, refusalText(view.wrong, view.refusal)) : null));
         return make('li', { 'data-id': view.id }, open, !view.fixed && this.may ? this.moreOf(view, saved) : null);
     }
 

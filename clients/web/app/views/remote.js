@@ -34,7 +34,7 @@ export class Remote {
         this.devices = new Devices(page);
         session.on('walls', () => this.show());
         session.on('welcome', () => this.learn());
-        session.on('sent_to_wall', ({ kept, why }) => kept || tell(refusalText(why)));
+        session.on('sent_to_wall', ({ kept, why, refusal }) => kept || tell(refusalText(why, refusal)));
         session.on('picked', (picked) => { this.heardSeq = picked.seq; this.onPicked(picked); });
         setInterval(() => this.pointing && this.ask(), POINT_MS);
         this.learn();
