@@ -143,6 +143,17 @@ test('a lost device raises an alarm of its own; rings keep their names and say s
     assert.equal((await labels(desk.page)).length, 2);
 });
 
+test('a refusal is said in the reader\'s language, over the stream and over HTTP', options, async () => {
+    await german.page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'E-9' }));
+    await waitForText(german.page, '#toast', '^Der Server hat abgelehnt: in dieser Anlage gibt es „E-9“ nicht \\(Ausrüstung\\)$');
+    await shoot(german.page, 'refused-de');
+    await german.page.evaluate(() => globalThis.plantcast.session.setParams({ range: [1, -1] }));
+    await waitForText(german.page, '#toast', '^Der Server hat abgelehnt: der Bereich muss unter seinem Ende beginnen$');
+    const answer = await fetch(`${url}api/v1/history?tags=Ü-1&from=2026-01-01T00:00:00Z&to=2026-01-02T00:00:00Z`);
+    assert.deepEqual(JSON.parse(answer.headers.get('plantcast-refusal')), { code: 'no_tag', args: { name: 'Ü-1' } });
+    assert.equal(await answer.text(), 'tags: this plant has no tag “Ü-1”\n');
+});
+
 test('the server is lost: the equipment list goes grey as the strip and the picture do', options, async () => {
     const { page } = desk, list = page.locator('#assets-list');
     if (await page.locator('#assets-toggle').getAttribute('aria-expanded') !== 'true')
