@@ -191,7 +191,7 @@ $(out)/lib/%.a:
 	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^
 
 # Headers that are made.
-made_headers := $(gen)/glad/include/glad/gl.h $(gen)/words_refused.h
+made_headers := $(gen)/glad/include/glad/gl.h $(patsubst %,$(gen)/words_%.h,refused overlay video)
 # Loops that choose between two numbers become wide only if no comparison can trap.
 $(call objects,server/surface/surface_field.c preprocess/subdivision/interp_weights.c): CFLAGS += -fno-trapping-math
 $(out)/obj/%.o: %.c Makefile $(out)/codecs | $(made_headers)
@@ -243,8 +243,12 @@ $(gen)/embedded.c: deploy/embed $(embedded_files)
 	@mkdir -p $(@D); deploy/embed $(embedded_files) >$@.new && mv $@.new $@
 
 # Words that programs share with the page, one file per subject and language.
-$(gen)/words_refused.h: deploy/words clients/web/words/refused.en.js
-	@mkdir -p $(@D); deploy/words REFUSED clients/web/words/refused.en.js >$@.new && mv $@.new $@
+word_files = $(foreach l,$(2),clients/web/words/$(1).$(l).js)
+$(gen)/words_refused.h: $(call word_files,refused,en)
+$(gen)/words_overlay.h: $(call word_files,overlay,en ko de)
+$(gen)/words_video.h: $(call word_files,video,en ko de)
+$(gen)/words_%.h: deploy/words
+	@mkdir -p $(@D); deploy/words $* $(filter %.js,$^) >$@.new && mv $@.new $@
 
 # --- tests: one program per file --------------------------------------------------------------------------------------------
 unit_tests := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/unit/*_test.c))

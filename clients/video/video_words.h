@@ -1,41 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a video says of itself, in English, Korean and German. Thread: any. */
+/* Words of cards and strips, in English, Korean and German (clients/web/words/video.*.js). Thread: any. */
 #ifndef VIDEO_WORDS_H
 #define VIDEO_WORDS_H
 #include <glib.h>
 
 #include "render/view.h"
+#include "words_video.h"
 
-enum video_word {
-    /* Headlines of cards */
-    VIDEO_STARTING,
-    VIDEO_NOT_LET_IN,
-    VIDEO_NO_VIEW,
-    VIDEO_NO_PICTURE,
-    VIDEO_TOO_SLOW,
-    VIDEO_SILENT,
-    VIDEO_NO_CONNECTION,
-    VIDEO_NO_VALUES,
-    /* What else they say */
-    VIDEO_SINCE,
-    VIDEO_NOTHING_YET,
-    VIDEO_TOKEN,
-    VIDEO_TOKENS,
-    VIDEO_ANSWERS,
-    VIDEO_VIEWS,
-    VIDEO_NONE,
-    VIDEO_TOOK,
-    VIDEO_EARLIER,
-    VIDEO_NO_PNG,
-    VIDEO_NO_ANSWER,
-    VIDEO_NO_URL,
-    VIDEO_NO_VALUE,
-    VIDEO_SAID, /* what a server or a library says, as it is */
-    /* The strip */
-    VIDEO_AGE_S,
-    VIDEO_AGE_MIN,
-    VIDEO_WORDS
-};
+#define VIDEO_MEMBER(name, ...) VIDEO_##name,
+enum video_word { VIDEO_WORDS(VIDEO_MEMBER) VIDEO_WORDS };
+#undef VIDEO_MEMBER
 
 /* Chooses the language of cards and strip: en, ko or de. Says so if no installed font has its letters. Before any other call. */
 void video_choose_language(const char *language);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The words of the page: the same keys in every language, none missing, none for nothing, each in its file, and how one language is chosen.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { chooseLanguage, LANGUAGES, phrase, readWords, say, sayIfKnown } from '../../clients/web/core/words.js';
 import { filesIn, graph } from './modules.mjs';
@@ -34,6 +34,23 @@ test('a file of words: sections, plurals, and lines that say nothing', () => {
         { a: 'x: y', 'b.c d.e': '{n}', 'b.f': { one: '1 f', other: '{count} f' } });
     for (const bad of ['a', 'a:', '[b', 'f(): x', 'a: '])
         assert.throws(() => readWords(bad), /no words: /, bad);
+});
+
+test('words of the server: every language has every key with as many values, and C uses each', async () => {
+    const sources = (folder) => readdirSync(new URL(folder, WEB)).filter((name) => /\.[ch]$/.test(name))
+        .map((name) => read(`${folder}${name}`));
+    const subjects = [['overlay', 'WORD_', ['../../server/render/overlay/', '../video/']], ['video', 'VIDEO_', ['../video/']]];
+    for (const [name, prefix, folders] of subjects) {
+        const texts = folders.flatMap(sources).join('\n'), [english, ...others] = await Promise.all(LANGUAGES.map((language) =>
+            tableOf(`words/${name}.${language}.js`)));
+        for (const table of others) {
+            assert.deepEqual(Object.keys(table), Object.keys(english), name);
+            for (const [key, text] of Object.entries(table))
+                assert.equal(text.split('{}').length, english[key].split('{}').length, `${name}: ${key}: ${text}`);
+        }
+        assert.deepEqual(Object.keys(english).filter((key) => !/^(?:look|interpolation|distance)_/.test(key) &&
+            !new RegExp(`\\b${prefix}${key.toUpperCase()}\\b`).test(texts)), [], `${name}: words that nobody uses`);
+    }
 });
 
 test('no key is said twice in a language', () => {

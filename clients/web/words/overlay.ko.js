@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words that the server draws over pictures, in Korean. The build makes a C header from it; a value takes the place of each {}.
+export default `
+no_limits: 한계 없음
+no_data: 데이터 없음
+uncertain: 불확실
+drawn_error: 불확실: 그린 값의
+drawn_error_2: 오차 최대 {}
+unproven: 미확인
+place_assumed: 위치 추정
+direction_unknown: 방향 모름
+priority_1: 알람, 우선순위 1
+priority_2: 알람, 우선순위 2
+priority_3: 알람, 우선순위 3
+priority_4: 알람, 우선순위 4
+by_limits: 태그마다 정해진 한계 기준
+logarithmic: 로그 눈금
+deviation: 표준 편차
+misread: 잘못 읽기 쉬움
+glossy: 광택: 빛이
+glossy_2: 색을 바꿈
+bad: 불량
+held_since: {}부터 유지
+unknown_then: 당시에는 모름
+from: {}에서의 거리
+hot_spot: 보이는 과열부: {}
+hot_spot_size: {} m 크기, 범위의 {} %
+since: {} 이후
+alarms: 알람 {}건
+worst: 최고 {}
+no_values: 값 없음
+old_s: {}초 전 값
+old_min: {}분 전 값
+old_h: {}시간 전 값
+configuration: 구성 {}
+clock_unset: 시계 동기화 안 됨
+simulated: 모의값
+no_live_data: 실시간 데이터 없음
+history: 이력
+no_data_then: 데이터 없음
+unseen_one: 보이지 않는 알람 {}건
+unseen: 보이지 않는 알람 {}건
+unseen_such_as: 보이지 않는 알람 {}건 중
+look_default: 계측 모양
+look_glossy: 광택 모양
+look_flat: 평면 모양
+look_materials: 재질
+interpolation_shepard: Shepard
+interpolation_paper: 논문의 알고리즘 1
+interpolation_harmonic: 벽면 열전도
+interpolation_fin: 열전도와 공기로의 손실
+interpolation_gp: 가장 그럴듯한 값
+distance_geodesic: 측지 거리
+distance_euclidean: 직선 거리
+distance_heat: 열에 의한 측지 거리
+power: 지수 {}
+strength: 세기 {}
+decay: 감쇠 {}
+radius: 반경 {} m
+radius_automatic: 반경 자동
+reach: 도달 거리 {} m
+reach_unlimited: 도달 거리 무제한
+not_filled: 채우지 않음
+filled: 이웃 값으로 채움
+weighted: 직접 가중한 센서: {}
+as_configured: 설정대로의 센서
+`;
