@@ -79,8 +79,10 @@ static void print_list(const struct run *run)
                list->differing > 5 ? ", ..." : "");
     if (list->renamed > 0)
         printf("%s: %zu tags have the name of a tag in another folder: called by their path\n", path, list->renamed);
-    for (const char *line = list->remarks.at; line && *line; line += strcspn(line, "\n") + 1)
-        printf("%s: %.*s\n", path, (int)strcspn(line, "\n"), line);
+    for (const char *line = list->remarks.at, *end; line && *line; line = *end ? end + 1 : end) {
+        end = line + strcspn(line, "\n");
+        printf("%s: %.*s\n", path, (int)(end - line), line);
+    }
     if (list->nameless > 0)
         printf("%s: %zu rows have no name: left out\n", path, list->nameless);
     if (list->control > 0)

@@ -11,7 +11,7 @@
 #include "base/mem.h"
 #include "base/text/text.h"
 
-enum { MAX_SHEETS = 64, MAX_BYTES = 1 << 28 /* of all cells; a shared string counts in each */ };
+enum { MAX_SHEETS = 1024, MAX_BYTES = 1 << 28 /* of all cells; a shared string counts in each */ };
 static const size_t max_part_bytes = (size_t)512 << 20;
 
 struct sheet {
@@ -205,13 +205,18 @@ struct book {
     struct sheet sheet; /* first: handlers of any part are given it */
     struct book_sheet sheets[MAX_SHEETS];
     int count;
+    bool too_many;
 };
 
 static void sheet_begins(void *data, const char *name, const char **attributes)
 {
     struct book *book = data;
-    if (strcmp(local(name), "sheet") != 0 || book->count == MAX_SHEETS)
+    if (strcmp(local(name), "sheet") != 0)
         return;
+    if (book->count == MAX_SHEETS) {
+        book->too_many = true;
+        return;
+    }
     struct book_sheet *at = &book->sheets[book->count++];
     snprintf(at->name, sizeof(at->name), "%s", attribute(attributes, "name"));
     for (; *attributes; attributes += 2)
@@ -239,6 +244,10 @@ static bool find_sheets(struct book *book, unzFile zip, char *why, size_t why_by
     if (read_part(&book->sheet, zip, "xl/workbook.xml", sheet_begins, nothing_ends, why, why_bytes) < 0 ||
         read_part(&book->sheet, zip, "xl/_rels/workbook.xml.rels", relation_begins, nothing_ends, why, why_bytes) < 0)
         return false;
+    if (book->too_many) {
+        snprintf(why, why_bytes, "more than %d sheets; save the sheet with the tags by itself", MAX_SHEETS);
+        return false;
+    }
     for (int i = 0; i < MAX_SHEETS && book->count == i; i++) {
         char part[64];
         snprintf(part, sizeof(part), "xl/worksheets/sheet%d.xml", i + 1);

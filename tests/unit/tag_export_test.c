@@ -520,6 +520,40 @@ TEST(test_sheets)
     mem_free(path);
 }
 
+/* A workbook that names `count` sheets, all of which are stored in one part. */
+static bool read_sheets(int count, struct tag_export *list)
+{
+    char *path = temp_path(folder, "sheets.xlsx");
+    struct text workbook = { 0 };
+    text_add(&workbook, "<workbook xmlns:r=\"r\"><sheets>");
+    for (int i = 1; i <= count; i++)
+        text_add(&workbook, "<sheet name=\"S%d\" r:id=\"a\"/>", i);
+    text_add(&workbook, "</sheets></workbook>");
+    struct text relations = { 0 };
+    text_add(&relations, "<Relationships><Relationship Id=\"a\" Target=\"worksheets/last.xml\"/></Relationships>");
+    zipFile zip = zipOpen(path, APPEND_STATUS_CREATE);
+    add_part(zip, "xl/workbook.xml", workbook.at);
+    add_part(zip, "xl/_rels/workbook.xml.rels", relations.at);
+    add_part(zip, "xl/worksheets/last.xml", SHEET("<row>" CELL("A1", "Tag") CELL("B1", "Unit") "</row><row>" CELL("A2", "TT-1") "</row>"));
+    zipClose(zip, NULL);
+    *list = (struct tag_export){ 0 };
+    bool good = tag_export_read(list, path, NULL, why, sizeof(why));
+    text_finish(&workbook);
+    text_finish(&relations);
+    mem_free(path);
+    return good;
+}
+
+TEST(test_many_sheets)
+{
+    struct tag_export list;
+    assert_true(read_sheets(70, &list));
+    assert_non_null(strstr(list.remarks.at, "of 70"));
+    tag_export_finish(&list);
+    assert_false(read_sheets(1025, &list));
+    assert_non_null(strstr(why, "more than 1024 sheets"));
+}
+
 TEST(test_refused)
 {
     static const struct {
