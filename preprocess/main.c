@@ -49,7 +49,7 @@ static const char usage[] =
     "SIGINT and SIGTERM end it within 5 s: what is finished by then is kept, and the next run goes on from there.\n"
     "Exit status: 0 good, 1 something is wrong with the input or the disk, 2 wrong use.\n";
 
-struct options {
+struct prep_options {
     bool distances, json, all, debug_view, diff, help;
     const char *plant, *output, *asset, *sensor, *views, *revision; /* revision: what plant is compared with */
     double tolerance_m;
@@ -92,7 +92,7 @@ static int wrong_use(const char *what, const char *about)
 }
 
 /* 0, or the exit status. */
-static int read_options(int argc, char **argv, struct options *options)
+static int read_options(int argc, char **argv, struct prep_options *options)
 {
     static const struct option known[] = { { "output", required_argument, NULL, 'o' },
                                            { "report", required_argument, NULL, 'r' },
@@ -162,7 +162,7 @@ static int read_options(int argc, char **argv, struct options *options)
     return 0;
 }
 
-static bool run_distances(const struct options *options, struct log *log, struct workers *workers, const struct plant *plant,
+static bool run_distances(const struct prep_options *options, struct log *log, struct workers *workers, const struct plant *plant,
                           const char *folder, struct diag *diag)
 {
     struct prepare prepare;
@@ -197,8 +197,8 @@ static bool say_early(const struct plant *plant, size_t memory_bytes)
     return fits;
 }
 
-static bool run_all(const struct options *options, struct log *log, struct workers *workers, const struct plant *plant, const char *folder,
-                    struct service_patience *patience, struct diag *diag)
+static bool run_all(const struct prep_options *options, struct log *log, struct workers *workers, const struct plant *plant,
+                    const char *folder, struct service_patience *patience, struct diag *diag)
 {
     struct prepare prepare;
     struct prepare_params params = {
@@ -225,7 +225,7 @@ static bool run_all(const struct options *options, struct log *log, struct worke
     return good;
 }
 
-static bool run_diff(const struct options *options, struct diag *diag)
+static bool run_diff(const struct prep_options *options, struct diag *diag)
 {
     struct diff diff;
     bool good = diff_run(&diff, options->plant, options->revision, options->tolerance_m, diag);
@@ -267,7 +267,7 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
     return status == 0;
 }
 
-static bool run_plant(const struct options *options, char **argv, struct diag *diag)
+static bool run_plant(const struct prep_options *options, char **argv, struct diag *diag)
 {
     struct plant *plant = plant_load(options->plant, diag);
     if (!plant)
@@ -296,7 +296,7 @@ static bool run_plant(const struct options *options, char **argv, struct diag *d
 
 int main(int argc, char **argv)
 {
-    struct options options = { 0 };
+    struct prep_options options = { 0 };
     struct diag diag = { 0 };
     int status = read_options(argc, argv, &options);
     if (status != 0)

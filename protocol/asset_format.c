@@ -17,15 +17,15 @@ static const char *const section_names[ASSET_SECTION_COUNT] = {
     "clusters",  "materials", "textures",  "texels",           "sensors", "geodesic", "names",
 };
 
-struct check {
+struct format_check {
     struct asset_view view;
     const char *bytes;
     size_t size;
     char *why;
 };
 
-static bool wrong(struct check *c, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
-static bool wrong(struct check *c, const char *fmt, ...)
+static bool wrong(struct format_check *c, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+static bool wrong(struct format_check *c, const char *fmt, ...)
 {
     va_list ap;
     va_start(ap, fmt);
@@ -42,7 +42,7 @@ static bool finite_all(const float *values, size_t count)
     return true;
 }
 
-static bool header_good(struct check *c, bool fresh)
+static bool header_good(struct format_check *c, bool fresh)
 {
     const struct asset_header *h = (const struct asset_header *)c->bytes;
     if ((uintptr_t)c->bytes % ASSET_ALIGN != 0)
@@ -65,7 +65,7 @@ static bool header_good(struct check *c, bool fresh)
     return true;
 }
 
-static bool counts_good(struct check *c)
+static bool counts_good(struct format_check *c)
 {
     const struct asset_header *h = c->view.header;
     if (h->vertex_count < 3 || h->index_count < 3 || h->primitive_count < 1 || h->level_count < 1 || h->material_count < 1)
@@ -79,7 +79,7 @@ static bool counts_good(struct check *c)
     return true;
 }
 
-static bool sections_good(struct check *c)
+static bool sections_good(struct format_check *c)
 {
     const struct asset_header *h = c->view.header;
     uint64_t end = sizeof(*h);
@@ -98,13 +98,13 @@ static bool sections_good(struct check *c)
     return true;
 }
 
-static const void *section(const struct check *c, enum asset_section which)
+static const void *section(const struct format_check *c, enum asset_section which)
 {
     const struct asset_section_entry *s = &c->view.header->sections[which];
     return s->bytes ? c->bytes + s->offset : NULL;
 }
 
-static void view_point(struct check *c)
+static void view_point(struct format_check *c)
 {
     struct asset_view *v = &c->view;
     v->positions_m = section(c, ASSET_POSITIONS);
@@ -124,7 +124,7 @@ static void view_point(struct check *c)
     v->names = section(c, ASSET_NAMES);
 }
 
-static bool names_good(struct check *c)
+static bool names_good(struct format_check *c)
 {
     uint64_t bytes = c->view.header->sections[ASSET_NAMES].bytes;
     if (bytes == 0 || c->view.names[bytes - 1] != 0)
@@ -132,12 +132,12 @@ static bool names_good(struct check *c)
     return true;
 }
 
-static bool name_good(const struct check *c, uint32_t name)
+static bool name_good(const struct format_check *c, uint32_t name)
 {
     return name < c->view.header->sections[ASSET_NAMES].bytes;
 }
 
-static bool vertices_good(struct check *c)
+static bool vertices_good(struct format_check *c)
 {
     const struct asset_view *v = &c->view;
     const struct asset_header *h = v->header;
@@ -162,7 +162,7 @@ static bool vertices_good(struct check *c)
     return true;
 }
 
-static bool primitive_good(struct check *c, uint32_t number, uint32_t vertex_limit)
+static bool primitive_good(struct format_check *c, uint32_t number, uint32_t vertex_limit)
 {
     const struct asset_view *v = &c->view;
     const struct asset_primitive *p = &v->primitives[number];
@@ -178,7 +178,7 @@ static bool primitive_good(struct check *c, uint32_t number, uint32_t vertex_lim
     return true;
 }
 
-static bool levels_good(struct check *c)
+static bool levels_good(struct format_check *c)
 {
     const struct asset_view *v = &c->view;
     const struct asset_header *h = v->header;
@@ -209,7 +209,7 @@ static bool levels_good(struct check *c)
 }
 
 /* A box that is too small, or a cone too narrow, would make holes in the picture. */
-static bool cluster_good(struct check *c, uint32_t number)
+static bool cluster_good(struct format_check *c, uint32_t number)
 {
     const struct asset_view *v = &c->view;
     const struct asset_cluster *cluster = &v->clusters[number];
@@ -233,7 +233,7 @@ static bool cluster_good(struct check *c, uint32_t number)
     return true;
 }
 
-static bool clusters_good(struct check *c)
+static bool clusters_good(struct format_check *c)
 {
     const struct asset_view *v = &c->view;
     uint32_t next = 0, count = v->header->cluster_count;
@@ -255,7 +255,7 @@ static bool clusters_good(struct check *c)
     return true;
 }
 
-static bool texture_good(const struct check *c, uint32_t texture, bool second)
+static bool texture_good(const struct format_check *c, uint32_t texture, bool second)
 {
     return texture == ASSET_NO_TEXTURE ||
            (texture < c->view.header->texture_count && (second ? c->view.second_texcoords : c->view.texcoords));
@@ -269,7 +269,7 @@ static bool unit_range(const float *values, int count)
     return true;
 }
 
-static bool material_good(struct check *c, uint32_t number)
+static bool material_good(struct format_check *c, uint32_t number)
 {
     const struct asset_material *m = &c->view.materials[number];
     const uint32_t textures[] = { m->base_color_texture, m->metallic_roughness_texture, m->normal_texture, m->occlusion_texture,
@@ -291,7 +291,7 @@ static bool material_good(struct check *c, uint32_t number)
     return true;
 }
 
-static bool materials_good(struct check *c)
+static bool materials_good(struct format_check *c)
 {
     const struct asset_header *h = c->view.header;
     uint64_t texel_bytes = h->sections[ASSET_TEXELS].bytes;
@@ -313,7 +313,7 @@ static bool materials_good(struct check *c)
 }
 
 /* Every code of a distance is one: nothing to check there. */
-static bool sensors_good(struct check *c)
+static bool sensors_good(struct format_check *c)
 {
     const struct asset_view *v = &c->view;
     const struct asset_header *h = v->header;
@@ -329,7 +329,7 @@ static bool sensors_good(struct check *c)
 
 static bool check_all(struct asset_view *view, const void *bytes, size_t size, bool fresh, char why[WHY_BYTES])
 {
-    struct check c = { .bytes = bytes, .size = size, .why = why };
+    struct format_check c = { .bytes = bytes, .size = size, .why = why };
     if (!header_good(&c, fresh) || !counts_good(&c) || !sections_good(&c))
         return false;
     view_point(&c);

@@ -33,7 +33,7 @@ static int cmd_clip(int argc, char **argv)
     return 1;
 }
 
-static const struct command {
+static const struct cli_command {
     const char *name, *help;
     int (*run)(int argc, char **argv);
 } commands[] = {

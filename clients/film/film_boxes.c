@@ -15,7 +15,7 @@ static const size_t MOST_MOOV_BYTES = (size_t)256 << 20;
 
 /* Content in hexadecimal digits. '?': any digit; 'W', 'H': the four digits of the width and of the height in pixels; '*' at the end: any
    further bytes. `children`: where boxes within begin; 0: it has none. */
-struct rule {
+struct box_rule {
     const char *type, *parent, *content;
     size_t children;
     bool required;
@@ -26,7 +26,7 @@ struct rule {
 #define ANY_8 "????????????????"
 #define ANY_32 ANY_8 ANY_8 ANY_8 ANY_8
 
-static const struct rule rules[] = {
+static const struct box_rule rules[] = {
     { "ftyp", "", "*", 0, true },
     { "free", "", "", 0, false },
     { "wide", "", "", 0, false },
@@ -66,7 +66,7 @@ static const struct rule rules[] = {
 };
 enum { RULES = sizeof(rules) / sizeof(*rules) };
 
-struct walk {
+struct box_walk {
     struct film_size size;
     bool seen[RULES];
     char *why;
@@ -87,7 +87,7 @@ static unsigned nibble(const uint8_t *bytes, size_t i)
     return i % 2 ? bytes[i / 2] & 15 : bytes[i / 2] >> 4;
 }
 
-static bool digit_fits(const struct walk *walk, char expected, size_t run, unsigned value)
+static bool digit_fits(const struct box_walk *walk, char expected, size_t run, unsigned value)
 {
     unsigned size = (unsigned)(expected == 'W' ? walk->size.width_px : walk->size.height_px);
     if (expected == 'W' || expected == 'H')
@@ -96,7 +96,7 @@ static bool digit_fits(const struct walk *walk, char expected, size_t run, unsig
 }
 
 /* Alternatives are separated by '|'. */
-static bool content_fits(const struct walk *walk, const char *expected, const uint8_t *bytes, size_t count)
+static bool content_fits(const struct box_walk *walk, const char *expected, const uint8_t *bytes, size_t count)
 {
     size_t i = 0, run = 0;
     for (; *expected && *expected != '*' && *expected != '|' && i < 2 * count; expected++, i++) {
@@ -133,7 +133,7 @@ static bool has_two_sets(const uint8_t *at, size_t count)
 }
 
 /* Takes one box of the parent. content: NULL where the table asks for none. */
-static bool take_box(struct walk *walk, int rule, const uint8_t *type, const char *parent, const uint8_t *content, size_t count)
+static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const char *parent, const uint8_t *content, size_t count)
 {
     char *why = walk->why, name[5] = "";
     for (int i = 0; i < 4; i++)
@@ -151,7 +151,7 @@ static bool take_box(struct walk *walk, int rule, const uint8_t *type, const cha
 }
 
 /* The size, which all boxes have to agree with, stands in the innermost of them. */
-static void learn_size(struct walk *walk, const uint8_t *moov, size_t count)
+static void learn_size(struct box_walk *walk, const uint8_t *moov, size_t count)
 {
     for (size_t i = 4; i + 32 <= count; i++)
         if (memcmp(moov + i, "avc1", 4) == 0) {
@@ -161,7 +161,7 @@ static void learn_size(struct walk *walk, const uint8_t *moov, size_t count)
         }
 }
 
-static bool take_boxes(struct walk *walk, const char *parent, const uint8_t *bytes, size_t count)
+static bool take_boxes(struct box_walk *walk, const char *parent, const uint8_t *bytes, size_t count)
 {
     char *why = walk->why;
     while (count >= HEAD) {
@@ -180,7 +180,7 @@ static bool take_boxes(struct walk *walk, const char *parent, const uint8_t *byt
     return count == 0 || FAIL("there are bytes behind the last box in %s", parent);
 }
 
-static bool take_moov(struct walk *walk, FILE *file, uint64_t count)
+static bool take_moov(struct box_walk *walk, FILE *file, uint64_t count)
 {
     char *why = walk->why;
     uint8_t *moov = count <= MOST_MOOV_BYTES ? mem_try_array(count + 1, 1) : NULL;
@@ -196,7 +196,7 @@ static bool take_moov(struct walk *walk, FILE *file, uint64_t count)
 }
 
 /* Takes one of the outermost boxes, of which mdat may be as long as the disk. */
-static bool take_outer(struct walk *walk, FILE *file, uint64_t *left)
+static bool take_outer(struct box_walk *walk, FILE *file, uint64_t *left)
 {
     char *why = walk->why;
     uint8_t head[HEAD] = { 0 }, longer[HEAD];
@@ -217,7 +217,7 @@ static bool take_outer(struct walk *walk, FILE *file, uint64_t *left)
     return fseeko(file, (off_t)length, SEEK_CUR) == 0 || FAIL("it cannot be read");
 }
 
-static bool has_all(const struct walk *walk)
+static bool has_all(const struct box_walk *walk)
 {
     char *why = walk->why;
     for (int i = 0; i < RULES; i++)
@@ -228,7 +228,7 @@ static bool has_all(const struct walk *walk)
 
 bool film_boxes_plain(const char *path, struct film_size *size, char why[FILM_BOXES_WHY_BYTES])
 {
-    struct walk walk = { .why = why };
+    struct box_walk walk = { .why = why };
     FILE *file = fopen(path, "rb");
     bool good = file && fseeko(file, 0, SEEK_END) == 0;
     if (!good)

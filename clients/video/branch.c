@@ -6,7 +6,7 @@
 
 static const gint64 WAIT_US = 5 * G_USEC_PER_SEC;
 
-static void drop(struct branch *branch)
+static void drop(struct video_branch *branch)
 {
     if (!branch->pipeline)
         return;
@@ -19,7 +19,7 @@ static void drop(struct branch *branch)
 }
 
 /* Prints what it said, if it is an error. */
-static bool has_failed(struct branch *branch)
+static bool has_failed(struct video_branch *branch)
 {
     GstBus *bus = gst_element_get_bus(branch->pipeline);
     GstMessage *message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
@@ -36,7 +36,7 @@ static bool has_failed(struct branch *branch)
     return true;
 }
 
-bool branch_begin(struct branch *branch)
+bool branch_begin(struct video_branch *branch)
 {
     GError *error = NULL;
     char *text = g_strdup_printf(OUTPUTS_SOURCE " ! %s", branch->text);
@@ -62,7 +62,7 @@ bool branch_begin(struct branch *branch)
     return true;
 }
 
-void branch_look(struct branch *branch)
+void branch_look(struct video_branch *branch)
 {
     gint64 now_us = g_get_monotonic_time();
     if (branch->pipeline && has_failed(branch)) {
@@ -75,7 +75,7 @@ void branch_look(struct branch *branch)
     }
 }
 
-void branch_end(struct branch *branch)
+void branch_end(struct video_branch *branch)
 {
     drop(branch);
     g_clear_pointer(&branch->text, g_free);

@@ -7,7 +7,7 @@
 
 enum { KEY_S = 2, MOST_WAITING = 2 };
 
-struct encoder {
+struct video_encoder {
     GstElement *pipeline;
     GstAppSrc *in;
     struct outputs *outputs;
@@ -18,7 +18,7 @@ struct encoder {
 
 static GstFlowReturn on_unit(GstAppSink *sink, gpointer data)
 {
-    struct encoder *encoder = data;
+    struct video_encoder *encoder = data;
     GstSample *sample = gst_app_sink_pull_sample(sink);
     if (!sample)
         return GST_FLOW_EOS;
@@ -27,7 +27,7 @@ static GstFlowReturn on_unit(GstAppSink *sink, gpointer data)
     return GST_FLOW_OK;
 }
 
-struct encoder *encoder_create(const struct options *options, struct outputs *outputs)
+struct video_encoder *encoder_create(const struct video_options *options, struct outputs *outputs)
 {
     GError *error = NULL;
     char *text = g_strdup_printf(
@@ -46,7 +46,7 @@ struct encoder *encoder_create(const struct options *options, struct outputs *ou
         gst_clear_object(&pipeline);
         return NULL;
     }
-    struct encoder *encoder = g_new0(struct encoder, 1);
+    struct video_encoder *encoder = g_new0(struct video_encoder, 1);
     encoder->pipeline = pipeline;
     encoder->in = GST_APP_SRC(gst_bin_get_by_name(GST_BIN(pipeline), "in"));
     encoder->outputs = outputs;
@@ -59,9 +59,9 @@ struct encoder *encoder_create(const struct options *options, struct outputs *ou
     return encoder;
 }
 
-void encoder_destroy(struct encoder **pointer)
+void encoder_destroy(struct video_encoder **pointer)
 {
-    struct encoder *encoder = *pointer;
+    struct video_encoder *encoder = *pointer;
     if (!encoder)
         return;
     gst_element_set_state(encoder->pipeline, GST_STATE_NULL);
@@ -71,13 +71,13 @@ void encoder_destroy(struct encoder **pointer)
     *pointer = NULL;
 }
 
-bool encoder_is_ready(const struct encoder *encoder)
+bool encoder_is_ready(const struct video_encoder *encoder)
 {
     return gst_app_src_get_current_level_bytes(encoder->in) < MOST_WAITING * encoder->frame_bytes;
 }
 
 /* By the clock, whatever frames were left out before it. */
-static void ask_for_key(struct encoder *encoder)
+static void ask_for_key(struct video_encoder *encoder)
 {
     GstStructure *structure = gst_structure_new("GstForceKeyUnit", "timestamp", G_TYPE_UINT64, GST_CLOCK_TIME_NONE, "stream-time",
                                                 G_TYPE_UINT64, GST_CLOCK_TIME_NONE, "running-time", G_TYPE_UINT64, GST_CLOCK_TIME_NONE,
@@ -85,7 +85,7 @@ static void ask_for_key(struct encoder *encoder)
     gst_element_send_event(GST_ELEMENT(encoder->in), gst_event_new_custom(GST_EVENT_CUSTOM_DOWNSTREAM, structure));
 }
 
-void encoder_add(struct encoder *encoder, GstBuffer *pixels, guint64 index)
+void encoder_add(struct video_encoder *encoder, GstBuffer *pixels, guint64 index)
 {
     guint64 group = index / (guint64)(KEY_S * encoder->fps) + 1;
     if (group != encoder->groups)
@@ -96,7 +96,7 @@ void encoder_add(struct encoder *encoder, GstBuffer *pixels, guint64 index)
     gst_app_src_push_buffer(encoder->in, pixels);
 }
 
-bool encoder_is_good(struct encoder *encoder)
+bool encoder_is_good(struct video_encoder *encoder)
 {
     GstBus *bus = gst_element_get_bus(encoder->pipeline);
     GstMessage *message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);

@@ -13,15 +13,15 @@
 #include "source.h"
 #include "video_words.h"
 
-struct program {
-    struct options options;
+struct video_program {
+    struct video_options options;
     GMainLoop *loop;
     struct canvas canvas;
-    struct source *source;
+    struct video_source *source;
     struct outputs *outputs;
-    struct encoder *encoder;
+    struct video_encoder *encoder;
     struct rtsp *rtsp;
-    struct branch srt;
+    struct video_branch srt;
     struct metrics *metrics; /* NULL: off */
     bool card; /* in the newest frame */
     GSource *ticks;
@@ -38,7 +38,7 @@ static void add_metric(GString *out, const char *name, const char *type, const c
     g_string_append_printf(out, "# HELP %s %s\n# TYPE %s %s\n%s %" G_GUINT64_FORMAT "\n", name, help, name, type, name, value);
 }
 
-static void tell_metrics(struct program *program)
+static void tell_metrics(struct video_program *program)
 {
     GString *out = g_string_new("");
     struct outputs_counts counts;
@@ -59,7 +59,7 @@ static void tell_metrics(struct program *program)
 
 /* --- frames ------------------------------------------------------------------------------------------------------------------------ */
 
-static void draw(struct program *program, guint64 index)
+static void draw(struct video_program *program, guint64 index)
 {
     int stride_bytes = program->options.width_px * 4;
     struct shown look;
@@ -81,7 +81,7 @@ static void draw(struct program *program, guint64 index)
     encoder_add(program->encoder, pixels, index);
 }
 
-static gint64 time_of(const struct program *program, guint64 index)
+static gint64 time_of(const struct video_program *program, guint64 index)
 {
     return program->begin_us + (gint64)(index * G_USEC_PER_SEC / (guint64)program->options.fps);
 }
@@ -89,7 +89,7 @@ static gint64 time_of(const struct program *program, guint64 index)
 /* Frames go by the clock: where one comes too late, those it missed are left out. */
 static gboolean on_tick(gpointer data)
 {
-    struct program *program = data;
+    struct video_program *program = data;
     gint64 now_us = g_get_monotonic_time();
     guint64 index = (guint64)(now_us - program->begin_us) * (guint64)program->options.fps / G_USEC_PER_SEC;
     if (index < program->next) /* woken a little early */
@@ -118,7 +118,7 @@ static gboolean dispatch(GSource *source, GSourceFunc callback, gpointer data)
     return callback(data);
 }
 
-static void begin_ticks(struct program *program)
+static void begin_ticks(struct video_program *program)
 {
     static GSourceFuncs funcs = { .dispatch = dispatch };
     gint64 rest_us = g_get_real_time() % G_USEC_PER_SEC; /* several of one picture draw at the same instants */
@@ -133,13 +133,13 @@ static void begin_ticks(struct program *program)
 
 static gboolean on_signal(gpointer data)
 {
-    g_main_loop_quit(((struct program *)data)->loop);
+    g_main_loop_quit(((struct video_program *)data)->loop);
     return G_SOURCE_CONTINUE;
 }
 
-static bool begin(struct program *program)
+static bool begin(struct video_program *program)
 {
-    const struct options *options = &program->options;
+    const struct video_options *options = &program->options;
     program->canvas = (struct canvas){ .width_px = options->width_px, .height_px = options->height_px, .time_code = options->time_code };
     program->outputs = outputs_create();
     if (options->srt_port)
@@ -150,7 +150,7 @@ static bool begin(struct program *program)
            (!options->http_port || (program->metrics = metrics_create(options->http_port)));
 }
 
-static void end(struct program *program)
+static void end(struct video_program *program)
 {
     if (program->ticks) {
         g_source_destroy(program->ticks);
@@ -165,7 +165,7 @@ static void end(struct program *program)
     g_main_loop_unref(program->loop);
 }
 
-static int run(struct program *program)
+static int run(struct video_program *program)
 {
     program->loop = g_main_loop_new(NULL, FALSE);
     program->code = begin(program) ? 0 : 1;
@@ -185,7 +185,7 @@ static int run(struct program *program)
 
 int main(int argc, char **argv)
 {
-    struct program program = { 0 };
+    struct video_program program = { 0 };
     setlocale(LC_CTYPE, "");
     signal(SIGPIPE, SIG_IGN);
     int code = options_read(&program.options, &argc, &argv);

@@ -17,7 +17,7 @@ struct metrics {
     char *text;
 };
 
-struct request {
+struct metrics_request {
     struct metrics *metrics;
     GSocketConnection *connection;
 };
@@ -63,7 +63,7 @@ static void answer(struct metrics *metrics, GOutputStream *out, bool known)
 
 static gpointer serve(gpointer data)
 {
-    struct request *request = data;
+    struct metrics_request *request = data;
     GIOStream *stream = G_IO_STREAM(request->connection);
     char text[MOST_REQUEST_BYTES + 1];
     if (read_request(g_io_stream_get_input_stream(stream), text))
@@ -85,8 +85,8 @@ static gboolean on_connection(GSocketService *service, GSocketConnection *connec
     if (g_atomic_int_get(&metrics->connections) >= MOST_CONNECTIONS)
         return TRUE; /* it is closed */
     g_socket_set_timeout(g_socket_connection_get_socket(connection), IDLE_S);
-    struct request *request = g_new(struct request, 1);
-    *request = (struct request){ .metrics = g_atomic_rc_box_acquire(metrics), .connection = g_object_ref(connection) };
+    struct metrics_request *request = g_new(struct metrics_request, 1);
+    *request = (struct metrics_request){ .metrics = g_atomic_rc_box_acquire(metrics), .connection = g_object_ref(connection) };
     g_atomic_int_inc(&metrics->connections);
     g_thread_unref(g_thread_new("metrics", serve, request));
     return TRUE;

@@ -59,7 +59,7 @@ static char *first_line(const char *path)
     return text;
 }
 
-static int read_readers(struct options *options, const char *path)
+static int read_readers(struct video_options *options, const char *path)
 {
     char *line = first_line(path), *colon = line ? strchr(line, ':') : NULL;
     int code = -1;
@@ -79,7 +79,7 @@ static int read_readers(struct options *options, const char *path)
     return code;
 }
 
-static int read_url(struct options *options, int argc, char **argv)
+static int read_url(struct video_options *options, int argc, char **argv)
 {
     if (argc != 2)
         return wrong("the URL of one daemon is expected, as http://HOST:PORT/ (--help tells more)");
@@ -94,7 +94,7 @@ static int read_url(struct options *options, int argc, char **argv)
     return good ? -1 : wrong("'%s' is not http://HOST:PORT/ or https://HOST:PORT/, with a path where a proxy serves it below one", argv[1]);
 }
 
-static int read_size(struct options *options, const char *text)
+static int read_size(struct video_options *options, const char *text)
 {
     int n = 0;
     if (text && (sscanf(text, "%dx%d%n", &options->width_px, &options->height_px, &n) != 2 || text[n]))
@@ -111,7 +111,7 @@ static int check_number(const char *name, int value, int least, int most)
     return value >= least && value <= most ? -1 : wrong("%s %d: expected %d to %d", name, value, least, most);
 }
 
-static int check_numbers(const struct options *options)
+static int check_numbers(const struct video_options *options)
 {
     const struct {
         const char *name;
@@ -132,7 +132,7 @@ static bool is_loopback(const char *address)
     return !strcmp(address, "::1") || (inet_pton(AF_INET, address, &four) == 1 && ntohl(four.s_addr) >> 24 == 127);
 }
 
-static int check_together(const struct options *options, bool open_readers)
+static int check_together(const struct video_options *options, bool open_readers)
 {
     unsigned char address[16];
     if (options->view && options->query)
@@ -151,11 +151,11 @@ static int check_together(const struct options *options, bool open_readers)
     return -1;
 }
 
-int options_read(struct options *options, int *argc, char ***argv)
+int options_read(struct video_options *options, int *argc, char ***argv)
 {
     char *size = NULL, *readers_path = NULL;
     gboolean open_readers = FALSE, time_code = FALSE, version = FALSE;
-    *options = (struct options){ .width_px = 1280, .height_px = 720, .fps = 10, .kbps = 4000, .every_ms = 1000 };
+    *options = (struct video_options){ .width_px = 1280, .height_px = 720, .fps = 10, .kbps = 4000, .every_ms = 1000 };
     options->most_readers = 64;
     const GOptionEntry entries[] = {
         { "view", 0, 0, G_OPTION_ARG_STRING, &options->view, "a view with a name, of the plant file or saved in the page", "ID" },
@@ -212,11 +212,11 @@ int options_read(struct options *options, int *argc, char ***argv)
     return code;
 }
 
-void options_finish(struct options *options)
+void options_finish(struct video_options *options)
 {
     char *const texts[] = { options->url,    options->view,     options->query,      options->token, options->ca_path,
                             options->listen, options->language, options->token_path, options->user,  options->password };
     for (size_t i = 0; i < G_N_ELEMENTS(texts); i++)
         g_free(texts[i]);
-    *options = (struct options){ 0 };
+    *options = (struct video_options){ 0 };
 }

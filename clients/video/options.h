@@ -7,7 +7,7 @@
 
 enum { OPTIONS_MOST_READERS = 512 };
 
-struct options {
+struct video_options {
     char *url;             /* of the daemon, with a slash at its end */
     char *view, *query;    /* id of a view with a name; or names and values as /snapshot.png takes them; both NULL: the whole plant */
     char *language;        /* of cards, strip and legend: en, ko or de */
@@ -22,7 +22,7 @@ struct options {
 
 /* Reads the command line and the files that it names. Returns -1, or the exit code with everything said. The caller finishes the options
    in either case. Before any thread starts. */
-int options_read(struct options *options, int *argc, char ***argv);
-void options_finish(struct options *options);
+int options_read(struct video_options *options, int *argc, char ***argv);
+void options_finish(struct video_options *options);
 
 #endif

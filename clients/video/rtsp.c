@@ -55,7 +55,7 @@ static GstRTSPMediaFactory *factory_create(struct rtsp *rtsp, bool closed)
 }
 
 /* By digest: the password does not go over the network. */
-static void set_reader(GstRTSPServer *server, const struct options *options)
+static void set_reader(GstRTSPServer *server, const struct video_options *options)
 {
     GstRTSPAuth *auth = gst_rtsp_auth_new();
     GstRTSPToken *token = gst_rtsp_token_new(GST_RTSP_TOKEN_MEDIA_FACTORY_ROLE, G_TYPE_STRING, READER, NULL);
@@ -66,7 +66,7 @@ static void set_reader(GstRTSPServer *server, const struct options *options)
     g_object_unref(auth);
 }
 
-struct rtsp *rtsp_create(const struct options *options, struct outputs *outputs)
+struct rtsp *rtsp_create(const struct video_options *options, struct outputs *outputs)
 {
     struct rtsp *rtsp = g_new0(struct rtsp, 1);
     char *port = g_strdup_printf("%d", options->rtsp_port);

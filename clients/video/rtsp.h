@@ -7,7 +7,7 @@
 
 struct rtsp;
 /* Listens. Returns NULL with the reason printed. The caller destroys it. */
-struct rtsp *rtsp_create(const struct options *options, struct outputs *outputs);
+struct rtsp *rtsp_create(const struct video_options *options, struct outputs *outputs);
 void rtsp_destroy(struct rtsp **rtsp);       /* &NULL is fine; leaves NULL */
 guint rtsp_readers(const struct rtsp *rtsp); /* sessions; NULL is fine */
 

@@ -22,8 +22,8 @@ enum { MOST_BYTES = 128 << 20 }; /* of an answer */
 
 enum ask { ASK_PLANT, ASK_VIEWS, ASK_PICTURE, ASK_COUNT };
 
-struct source {
-    const struct options *options;
+struct video_source {
+    const struct video_options *options;
     struct http_request http; /* while `asking`, a thread of its own has it */
     CURLcode code;            /* how the request ended */
     bool asking;
@@ -60,7 +60,7 @@ static void keep(char *said, char *out, gsize size)
 }
 
 /* The card speaks its language, the log English. */
-static void fail(struct source *source, enum video_word headline, enum video_word detail, const char *a, const char *b)
+static void fail(struct video_source *source, enum video_word headline, enum video_word detail, const char *a, const char *b)
 {
     char said[sizeof(source->said)];
     keep(video_say(video_language(), headline, NULL, NULL), source->headline, sizeof(source->headline));
@@ -72,13 +72,13 @@ static void fail(struct source *source, enum video_word headline, enum video_wor
 }
 
 /* Nothing of it may be seen any more. */
-static void bar(struct source *source)
+static void bar(struct video_source *source)
 {
     source->barred = true;
     g_clear_pointer(&source->picture, cairo_surface_destroy);
 }
 
-static void refuse(struct source *source, long status)
+static void refuse(struct video_source *source, long status)
 {
     const struct text *body = &source->http.answer;
     char *words = g_strndup(body->at ? body->at : "", MIN(body->length, 160));
@@ -102,7 +102,7 @@ static void refuse(struct source *source, long status)
 
 /* --- what comes ------------------------------------------------------------------------------------------ */
 
-static void take_plant(struct source *source, const json_t *o)
+static void take_plant(struct video_source *source, const json_t *o)
 {
     const char *zone = json_string_value(json_object_get(json_object_get(o, "plant"), "time_zone"));
     GTimeZone *found = zone ? g_time_zone_new_identifier(zone) : NULL;
@@ -139,7 +139,7 @@ static char *query_of(const char *view, struct message_error *error)
     return g_string_free(query, !good);
 }
 
-static void take_view(struct source *source, const char *view, const char *title)
+static void take_view(struct video_source *source, const char *view, const char *title)
 {
     struct message_error error = { 0 };
     g_free(source->view_title);
@@ -157,7 +157,7 @@ static void take_view(struct source *source, const char *view, const char *title
     }
 }
 
-static void take_views(struct source *source, const json_t *o)
+static void take_views(struct video_source *source, const json_t *o)
 {
     const json_t *one;
     size_t i;
@@ -189,7 +189,7 @@ static guint32 big_endian(const guint8 *at)
 }
 
 /* Returns the picture; NULL if the answer is none, or has another size than was asked for. */
-static cairo_surface_t *decode(const struct options *options, const struct text *body)
+static cairo_surface_t *decode(const struct video_options *options, const struct text *body)
 {
     const guint8 *at = (const guint8 *)body->at;
     if (body->length < 24 || big_endian(at + 16) != (guint32)options->width_px ||
@@ -198,7 +198,7 @@ static cairo_surface_t *decode(const struct options *options, const struct text 
     return png_read(at, body->length);
 }
 
-static void take_picture(struct source *source)
+static void take_picture(struct video_source *source)
 {
     struct curl_header *header = NULL;
     CURLHcode found = curl_easy_header(source->http.handle, "Plantcast-Frame", 0, CURLH_HEADER, -1, &header);
@@ -228,7 +228,7 @@ static void take_picture(struct source *source)
     source->pictures++;
 }
 
-static void on_answer(struct source *source)
+static void on_answer(struct video_source *source)
 {
     long status = 0;
     curl_easy_getinfo(source->http.handle, CURLINFO_RESPONSE_CODE, &status);
@@ -269,7 +269,7 @@ static void on_answer(struct source *source)
 /* In a thread of the request's own: the main loop goes on drawing frames. */
 static void perform(GTask *task, gpointer object, gpointer data, GCancellable *cancel)
 {
-    struct source *source = data;
+    struct video_source *source = data;
     (void)object;
     (void)cancel;
     source->code = curl_easy_perform(source->http.handle);
@@ -278,7 +278,7 @@ static void perform(GTask *task, gpointer object, gpointer data, GCancellable *c
 
 static void on_performed(GObject *object, GAsyncResult *result, gpointer data)
 {
-    struct source *source = data;
+    struct video_source *source = data;
     (void)object;
     (void)result;
     source->asking = false;
@@ -287,9 +287,9 @@ static void on_performed(GObject *object, GAsyncResult *result, gpointer data)
     text_finish(&source->http.answer);
 }
 
-static char *url_of(const struct source *source, enum ask ask)
+static char *url_of(const struct video_source *source, enum ask ask)
 {
-    const struct options *options = source->options;
+    const struct video_options *options = source->options;
     if (ask != ASK_PICTURE)
         return g_strconcat(options->url, ask == ASK_PLANT ? "api/v1/plant" : "api/v1/views", NULL);
     GString *url = g_string_new(options->url);
@@ -307,7 +307,7 @@ static char *url_of(const struct source *source, enum ask ask)
     return g_string_free(url, FALSE);
 }
 
-static void ask(struct source *source, enum ask what, gint64 now_us)
+static void ask(struct video_source *source, enum ask what, gint64 now_us)
 {
     static const gint64 again_us[ASK_COUNT] = { [ASK_PLANT] = 600 * G_USEC_PER_SEC, [ASK_VIEWS] = VIEWS_US };
     char *url = url_of(source, what);
@@ -334,7 +334,7 @@ static void ask(struct source *source, enum ask what, gint64 now_us)
 }
 
 /* Pictures go before all but the view that they are of. */
-static void go_on(struct source *source, gint64 now_us)
+static void go_on(struct video_source *source, gint64 now_us)
 {
     if (source->asking || now_us < source->wait_until_us)
         return;
@@ -351,7 +351,7 @@ static void go_on(struct source *source, gint64 now_us)
 
 /* --- what may be shown ------------------------------------------------------------------------------------------ */
 
-void source_look(struct source *source, struct shown *out)
+void source_look(struct video_source *source, struct shown *out)
 {
     gint64 now_us = g_get_monotonic_time();
     go_on(source, now_us);
@@ -377,20 +377,20 @@ void source_look(struct source *source, struct shown *out)
     out->since_us = source->since_us;
 }
 
-guint64 source_pictures(const struct source *source)
+guint64 source_pictures(const struct video_source *source)
 {
     return source->pictures;
 }
 
 /* --- life ------------------------------------------------------------------------------------------ */
 
-struct source *source_create(const struct options *options)
+struct video_source *source_create(const struct video_options *options)
 {
     if (options->ca_path && access(options->ca_path, R_OK) != 0) {
         fprintf(stderr, "plantcast-video: %s: %s\n", options->ca_path, g_strerror(errno));
         return NULL;
     }
-    struct source *source = g_new0(struct source, 1);
+    struct video_source *source = g_new0(struct video_source, 1);
     source->options = options;
     source->zone = g_time_zone_new_local();
     source->http = (struct http_request){ .most_bytes = MOST_BYTES, .stop = &source->ended };
@@ -405,9 +405,9 @@ struct source *source_create(const struct options *options)
     return source;
 }
 
-void source_destroy(struct source **pointer)
+void source_destroy(struct video_source **pointer)
 {
-    struct source *source = *pointer;
+    struct video_source *source = *pointer;
     if (!source)
         return;
     *pointer = NULL;

@@ -6,13 +6,13 @@
 #include "canvas.h"
 #include "options.h"
 
-struct source;
+struct video_source;
 /* Begins to fetch. options have to stay. Returns NULL with the reason printed. The caller destroys it. */
-struct source *source_create(const struct options *options);
-void source_destroy(struct source **source); /* &NULL is fine; leaves NULL */
+struct video_source *source_create(const struct video_options *options);
+void source_destroy(struct video_source **source); /* &NULL is fine; leaves NULL */
 /* Looks after requests that take too long, begins those that are due, and says what is to be seen. Call it for each frame. What *out points
    to belongs to the source until the next call. */
-void source_look(struct source *source, struct shown *out);
-guint64 source_pictures(const struct source *source); /* how many it got */
+void source_look(struct video_source *source, struct shown *out);
+guint64 source_pictures(const struct video_source *source); /* how many it got */
 
 #endif

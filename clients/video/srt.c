@@ -7,7 +7,7 @@
 
 enum { LATENCY_MS = 200, KEY_BYTES = 16 };
 
-static gboolean on_connecting(GstElement *sink, GSocketAddress *address, const char *stream, struct branch *branch)
+static gboolean on_connecting(GstElement *sink, GSocketAddress *address, const char *stream, struct video_branch *branch)
 {
     (void)sink;
     (void)address;
@@ -15,7 +15,7 @@ static gboolean on_connecting(GstElement *sink, GSocketAddress *address, const c
     return g_atomic_int_get(&branch->readers) < branch->options->most_readers;
 }
 
-static void on_added(GstElement *sink, int fd, GSocketAddress *address, struct branch *branch)
+static void on_added(GstElement *sink, int fd, GSocketAddress *address, struct video_branch *branch)
 {
     (void)sink;
     (void)fd;
@@ -23,7 +23,7 @@ static void on_added(GstElement *sink, int fd, GSocketAddress *address, struct b
     g_atomic_int_inc(&branch->readers);
 }
 
-static void on_removed(GstElement *sink, int fd, GSocketAddress *address, struct branch *branch)
+static void on_removed(GstElement *sink, int fd, GSocketAddress *address, struct video_branch *branch)
 {
     (void)sink;
     (void)fd;
@@ -31,9 +31,9 @@ static void on_removed(GstElement *sink, int fd, GSocketAddress *address, struct
     g_atomic_int_add(&branch->readers, -1);
 }
 
-static void prepare(struct branch *branch, GstElement *pipeline)
+static void prepare(struct video_branch *branch, GstElement *pipeline)
 {
-    const struct options *options = branch->options;
+    const struct video_options *options = branch->options;
     bool six = strchr(options->listen, ':') != NULL;
     char *uri = g_strdup_printf("srt://%s%s%s:%d?mode=listener", six ? "[" : "", options->listen, six ? "]" : "", options->srt_port);
     GstElement *sink = gst_bin_get_by_name(GST_BIN(pipeline), "sink");
@@ -47,11 +47,11 @@ static void prepare(struct branch *branch, GstElement *pipeline)
     g_free(uri);
 }
 
-void srt_init(struct branch *srt, const struct options *options, struct outputs *outputs)
+void srt_init(struct video_branch *srt, const struct video_options *options, struct outputs *outputs)
 {
-    *srt = (struct branch){ .name = "SRT",
-                            .text = g_strdup("mpegtsmux alignment=7 ! srtsink name=sink"),
-                            .outputs = outputs,
-                            .prepare = prepare,
-                            .options = options };
+    *srt = (struct video_branch){ .name = "SRT",
+                                  .text = g_strdup("mpegtsmux alignment=7 ! srtsink name=sink"),
+                                  .outputs = outputs,
+                                  .prepare = prepare,
+                                  .options = options };
 }

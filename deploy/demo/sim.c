@@ -43,7 +43,7 @@ static const char usage_text[] =
     "The column `Sim Loop` says where in the process a tag is; any word will do. PLANT.map beside PLANT.yaml may have lines as\n"
     "for --map, `values FILE` (beside it), `speed X`, `loop` and # comments. Upsets, one after the other:\n";
 
-struct options {
+struct sim_options {
     const char *plant, *bind, *broker;
     int port, control;
     double speed;
@@ -79,7 +79,7 @@ static bool read_speed(const char *text, double *out)
     return false;
 }
 
-static bool take_option(struct options *options, int option, const char *text, struct diag *diag)
+static bool take_option(struct sim_options *options, int option, const char *text, struct diag *diag)
 {
     struct in_addr address;
     switch (option) {
@@ -101,7 +101,7 @@ static bool take_option(struct options *options, int option, const char *text, s
 }
 
 /* EXIT_SUCCESS: go on. EXIT_USAGE: said what is wrong. -1: only help was wanted. */
-static int read_options(struct options *options, int argc, char **argv)
+static int read_options(struct sim_options *options, int argc, char **argv)
 {
     static const struct option known[] = {
         { "port", required_argument, NULL, 'p' },     { "bind", required_argument, NULL, 'b' },
@@ -131,7 +131,7 @@ static int read_options(struct options *options, int argc, char **argv)
 }
 
 /* Reads PLANT.map beside PLANT.yaml, if there is one. */
-static void read_map_file(struct options *options, struct diag *diag)
+static void read_map_file(struct sim_options *options, struct diag *diag)
 {
     const char *dot = strrchr(options->plant, '.'), *slash = strrchr(options->plant, '/');
     int stem = dot && (!slash || dot > slash) ? (int)(dot - options->plant) : (int)strlen(options->plant);
@@ -184,7 +184,7 @@ static void serve(struct sim *sim, struct sim_port *ports, size_t count, double 
     }
 }
 
-static bool listen_and_serve(struct sim *sim, const struct options *options)
+static bool listen_and_serve(struct sim *sim, const struct sim_options *options)
 {
     size_t count = sim->device_count + (options->control > 0), open = 0;
     struct sim_port *ports = mem_array(count, sizeof(*ports));
@@ -209,7 +209,7 @@ static bool listen_and_serve(struct sim *sim, const struct options *options)
     return good;
 }
 
-static int run(struct options *options)
+static int run(struct sim_options *options)
 {
     struct diag diag = { 0 };
     struct sim sim = { 0 };
@@ -234,7 +234,7 @@ static int run(struct options *options)
 
 int main(int argc, char **argv)
 {
-    struct options options = { .bind = "127.0.0.1" };
+    struct sim_options options = { .bind = "127.0.0.1" };
     int status = read_options(&options, argc, argv);
     if (status == -1)
         print_help();

@@ -18,7 +18,7 @@ const char sim_control_help[] =
     "  quit            end plantcast-sim\n"
     "  Every line is answered with `ok`, `ok ...` or `error: ...`.\n";
 
-struct command {
+struct sim_command {
     const char *name, *tag, *value; /* "" where it has none */
 };
 
@@ -38,7 +38,7 @@ static void set_tag(struct sim *sim, size_t tag, const char *text, char *reply, 
 }
 
 /* Without a device. */
-static void do_with_published(struct sim *sim, const struct command *command, size_t tag, char *reply, size_t bytes)
+static void do_with_published(struct sim *sim, const struct sim_command *command, size_t tag, char *reply, size_t bytes)
 {
     char *end;
     double value = strtod(command->value, &end);
@@ -61,7 +61,7 @@ static void fail_tag(struct sim *sim, size_t tag, bool failing)
     sim_image_fail(&device->modbus.image, unit, &sim->plant->tags[tag], failing);
 }
 
-static void do_with_tag(struct sim *sim, const struct command *command, char *reply, size_t bytes)
+static void do_with_tag(struct sim *sim, const struct sim_command *command, char *reply, size_t bytes)
 {
     int tag = plant_find_tag(sim->plant, command->tag), unit;
     if (tag >= 0 && sim->mqtt && sim_mqtt_has(sim->plant, (size_t)tag)) {
@@ -106,7 +106,7 @@ static bool takes_tag(const char *name)
     return !strcmp(name, "set") || !strcmp(name, "get") || !strcmp(name, "fail") || !strcmp(name, "release");
 }
 
-static void execute(struct sim *sim, const struct command *command, char *reply, size_t bytes)
+static void execute(struct sim *sim, const struct sim_command *command, char *reply, size_t bytes)
 {
     snprintf(reply, bytes, "ok");
     if (takes_tag(command->name))
@@ -122,9 +122,9 @@ static void execute(struct sim *sim, const struct command *command, char *reply,
 }
 
 /* Command, tag, value: the value is the last word, so that a tag may have blanks in its name. */
-static struct command parse(char *line)
+static struct sim_command parse(char *line)
 {
-    struct command command = { "", "", "" };
+    struct sim_command command = { "", "", "" };
     size_t length = strlen(line);
     while (length && isspace((unsigned char)line[length - 1]))
         line[--length] = 0;
@@ -149,7 +149,7 @@ ssize_t sim_control_take(void *arg, int fd, const uint8_t *bytes, size_t count)
     size_t length = (size_t)(end - bytes);
     memcpy(line, bytes, length);
     line[length] = 0;
-    struct command command = parse(line);
+    struct sim_command command = parse(line);
     execute(arg, &command, reply, sizeof(reply) - 1);
     strcat(reply, "\n");
     if (send(fd, reply, strlen(reply), MSG_NOSIGNAL) < 0)

@@ -52,7 +52,7 @@ static const struct {
     double lag; /* times as slow as others */
 } slow_loops[] = { { "storage", 60 }, { "weather", 60 }, { "steam", 20 } };
 
-struct state {
+struct process_state {
     enum process_kind kind;
     double normal, span;
     double shares[UPSETS], dead_s[UPSETS];
@@ -66,7 +66,7 @@ struct state {
 struct process {
     double now_s;
     size_t count;
-    struct state *states;
+    struct process_state *states;
     int machine_count;
 };
 
@@ -136,14 +136,14 @@ static int machine_of(struct process *process, const struct process_tag *tags, s
     return process->machine_count++;
 }
 
-static bool feels(const struct state *state, const struct effect *effect, const char *loop)
+static bool feels(const struct process_state *state, const struct effect *effect, const char *loop)
 {
     bool there = !strcmp(effect->word, MACHINE) ? state->machine >= 0 : strcasestr(loop, effect->word) != NULL;
     return there && effect->kind == state->kind;
 }
 
 /* The strongest effect of each upset on this loop. */
-static void find_effects(struct state *state, const char *loop)
+static void find_effects(struct process_state *state, const char *loop)
 {
     for (int u = 0; u < UPSETS; u++)
         for (int e = 0; e < MAX_EFFECTS && upsets[u].effects[e].word; e++) {
@@ -169,12 +169,12 @@ static double drift_of_loop(uint32_t loop, double time_s)
     return 0.006 * sin(TAU * (time_s / slow_s + loop % 1000 / 1000.0)) + 0.003 * sin(TAU * (time_s / fast_s + loop % 777 / 777.0));
 }
 
-static bool spared(const struct state *state, int machine_count, double time_s)
+static bool spared(const struct process_state *state, int machine_count, double time_s)
 {
     return state->machine >= 0 && time_s >= 0 && (int)fmod(time_s / CYCLE_S, machine_count) != state->machine;
 }
 
-static double target(const struct state *state, int machine_count, double time_s)
+static double target(const struct process_state *state, int machine_count, double time_s)
 {
     double share = drift_of_loop(state->loop, time_s - state->dead_own_s) + state->drift;
     for (int u = 0; u < UPSETS; u++) {
@@ -185,7 +185,7 @@ static double target(const struct state *state, int machine_count, double time_s
     return state->normal + share * state->span;
 }
 
-static void show(struct state *state)
+static void show(struct process_state *state)
 {
     state->value = state->lagged + state->noise * state->span;
     if (state->value < 0 && state->normal >= 0 && state->kind != PROCESS_TEMPERATURE)
@@ -199,9 +199,10 @@ struct process *process_create(const struct process_tag *tags, size_t count, uin
     process->count = count;
     process->states = mem_array(count, sizeof(*process->states));
     for (size_t i = 0; i < count; i++) {
-        struct state *state = &process->states[i];
-        *state =
-            (struct state){ .kind = tags[i].kind, .normal = tags[i].normal, .span = fabs(tags[i].span), .loop = hash_of(tags[i].loop) };
+        struct process_state *state = &process->states[i];
+        *state = (struct process_state){
+            .kind = tags[i].kind, .normal = tags[i].normal, .span = fabs(tags[i].span), .loop = hash_of(tags[i].loop)
+        };
         state->random = seed ^ (uint64_t)hash_of(tags[i].name) << 20;
         state->machine = machine_of(process, tags, i);
         find_effects(state, tags[i].loop);
@@ -232,7 +233,7 @@ static double wander(double x, double sigma, double time_constant_s, double dt_s
     return x * keep + sigma * sqrt(1 - keep * keep) * normal_deviate(random);
 }
 
-static void step_tag(struct state *state, int machine_count, double time_s, double dt_s)
+static void step_tag(struct process_state *state, int machine_count, double time_s, double dt_s)
 {
     static const double noises[] = {
         [PROCESS_TEMPERATURE] = 0.0012, [PROCESS_PRESSURE] = 0.003, [PROCESS_VIBRATION] = 0.008, [PROCESS_OTHER] = 0.003

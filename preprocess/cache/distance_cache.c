@@ -13,14 +13,14 @@
 #include "preprocess/cache/file_io.h"
 #include "protocol/asset_distance.h"
 
-struct slot { /* the column follows */
+struct distance_slot { /* the column follows */
     double place_m[3];
     uint64_t checksum; /* XXH3-64 of the column, with key and place; torn or foreign slots have another */
 };
 
 static size_t slot_bytes(const struct distance_cache *cache)
 {
-    return sizeof(struct slot) + cache->length * sizeof(uint16_t);
+    return sizeof(struct distance_slot) + cache->length * sizeof(uint16_t);
 }
 
 static off_t slot_at(const struct distance_cache *cache, size_t slot)
@@ -41,7 +41,7 @@ static void deal_slots(struct distance_cache *cache)
     size_t there = fstat(cache->fd, &st) == 0 ? (size_t)st.st_size / slot_bytes(cache) : 0, next = 0;
     char *taken = mem_array(there, 1);
     for (size_t i = 0; i < there; i++) {
-        struct slot slot;
+        struct distance_slot slot;
         if (!file_read(cache->fd, &slot, sizeof(slot), slot_at(cache, i)))
             continue;
         for (size_t p = 0; p < cache->count && !taken[i]; p++)
@@ -87,7 +87,7 @@ void distance_cache_close(struct distance_cache *cache)
 static bool fetch(void *arg, size_t source, float *distances_m)
 {
     struct distance_cache *cache = arg;
-    struct slot slot;
+    struct distance_slot slot;
     off_t at = slot_at(cache, cache->slots[source]);
     uint16_t *codes = mem_try_array(cache->length, sizeof(*codes));
     bool good = codes && file_read(cache->fd, &slot, sizeof(slot), at) &&
@@ -113,7 +113,7 @@ static void keep(void *arg, size_t source, float *distances_m)
     }
     if (!codes)
         return;
-    struct slot slot = { .checksum = checksum_of(cache, source, codes) };
+    struct distance_slot slot = { .checksum = checksum_of(cache, source, codes) };
     off_t at = slot_at(cache, cache->slots[source]);
     memcpy(slot.place_m, cache->places_m[source], sizeof(slot.place_m));
     if (!cache->may_write || !file_write(cache->fd, &slot, sizeof(slot), at) ||

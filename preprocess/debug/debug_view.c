@@ -25,7 +25,7 @@ static const uint8_t plain_color[3] = { 150, 155, 160 }, unreached_color[3] = { 
                      model_color[3] = { 240, 240, 240 }, sample_color[3] = { 120, 120, 120 }, sensor_color[3] = { 255, 0, 0 },
                      other_color[3] = { 60, 60, 60 };
 
-struct drawing {
+struct debug_drawing {
     const struct debug_view *view;
     struct surface_debug_mesh look;
     struct glb_writer *writer;
@@ -56,7 +56,7 @@ static void add_line(struct soup *soup, const double a[3], const double b[3])
     add_vertex(soup, b);
 }
 
-static void give(struct drawing *drawing, struct soup *soup, const char *name, enum glb_mode mode, const uint8_t color[3])
+static void give(struct debug_drawing *drawing, struct soup *soup, const char *name, enum glb_mode mode, const uint8_t color[3])
 {
     struct glb_shape shape = { .mode = mode,
                                .positions = (const float(*)[3])soup->positions,
@@ -98,7 +98,7 @@ static double (*find_normals(const struct surface_debug_mesh *look))[3]
     return normals;
 }
 
-static void color_at(const struct drawing *drawing, uint32_t point, const uint8_t plain[3], const double normal[3], uint16_t out[4])
+static void color_at(const struct debug_drawing *drawing, uint32_t point, const uint8_t plain[3], const double normal[3], uint16_t out[4])
 {
     double length = vec_length(normal), shade = length > 0 ? DARKEST + (1 - DARKEST) * fabs(vec_dot(normal, light)) / length : 1;
     const uint8_t *rgb = plain;
@@ -111,7 +111,7 @@ static void color_at(const struct drawing *drawing, uint32_t point, const uint8_
     out[3] = 65535;
 }
 
-static void add_triangle(struct drawing *drawing, struct soup *soup, size_t t, const uint8_t plain[3], const double (*normals)[3])
+static void add_triangle(struct debug_drawing *drawing, struct soup *soup, size_t t, const uint8_t plain[3], const double (*normals)[3])
 {
     mem_grow(&soup->indices, &soup->index_room, soup->indices_used + 3, sizeof(*soup->indices));
     if (!soup->vertex_of)
@@ -127,7 +127,7 @@ static void add_triangle(struct drawing *drawing, struct soup *soup, size_t t, c
     }
 }
 
-static bool is_reached(const struct drawing *drawing, size_t t)
+static bool is_reached(const struct debug_drawing *drawing, size_t t)
 {
     for (int i = 0; i < 3; i++)
         if (!isfinite(drawing->view->distances_m[drawing->look.tris[t][i]]))
@@ -135,7 +135,7 @@ static bool is_reached(const struct drawing *drawing, size_t t)
     return true;
 }
 
-static void draw_surfaces(struct drawing *drawing)
+static void draw_surfaces(struct debug_drawing *drawing)
 {
     struct soup reached = { 0 }, unreached = { 0 }, hidden = { 0 };
     double(*normals)[3] = find_normals(&drawing->look);
@@ -162,7 +162,7 @@ static void draw_surfaces(struct drawing *drawing)
 /* --- lines on surfaces --------------------------------------------------------------------------------------------------------- */
 
 /* Once on each side, or the surface would hide half of it. */
-static void add_lifted(struct soup *soup, const struct drawing *drawing, size_t t, const double a[3], const double b[3])
+static void add_lifted(struct soup *soup, const struct debug_drawing *drawing, size_t t, const double a[3], const double b[3])
 {
     double n[3], length;
     face_normal(&drawing->look, t, n);
@@ -185,7 +185,7 @@ static double isoline_step(double range_m)
     return least <= power ? power : least <= 2 * power ? 2 * power : least <= 5 * power ? 5 * power : 10 * power;
 }
 
-static void add_isolines(struct soup *soup, const struct drawing *drawing, size_t t, double step_m)
+static void add_isolines(struct soup *soup, const struct debug_drawing *drawing, size_t t, double step_m)
 {
     const uint32_t *v = drawing->look.tris[t];
     double d[3], low = INFINITY, high = -INFINITY;
@@ -207,7 +207,7 @@ static void add_isolines(struct soup *soup, const struct drawing *drawing, size_
     }
 }
 
-static void draw_isolines(struct drawing *drawing)
+static void draw_isolines(struct debug_drawing *drawing)
 {
     struct soup soup = { 0 };
     if (!drawing->view->distances_m || drawing->farthest_m <= 0)
@@ -221,7 +221,7 @@ static void draw_isolines(struct drawing *drawing)
     mem_free(name);
 }
 
-static void draw_open_edges(struct drawing *drawing)
+static void draw_open_edges(struct debug_drawing *drawing)
 {
     const struct surface_debug_mesh *look = &drawing->look;
     struct soup soup = { 0 };
@@ -244,7 +244,7 @@ static void draw_open_edges(struct drawing *drawing)
 
 /* --- points, bridges, sensors ---------------------------------------------------------------------------------------------------- */
 
-static void draw_points(struct drawing *drawing)
+static void draw_points(struct debug_drawing *drawing)
 {
     const struct surface_debug_mesh *look = &drawing->look;
     struct soup model = { 0 }, samples = { 0 };
@@ -263,7 +263,7 @@ static void draw_points(struct drawing *drawing)
     mem_free(kind);
 }
 
-static void draw_bridges(struct drawing *drawing)
+static void draw_bridges(struct debug_drawing *drawing)
 {
     struct soup lines = { 0 }, marks = { 0 };
     for (size_t i = 0; i < drawing->look.bridge_count; i++) {
@@ -295,7 +295,7 @@ static void add_octahedron(struct soup *soup, const double middle[3], double rad
     }
 }
 
-static void draw_sensors(struct drawing *drawing)
+static void draw_sensors(struct debug_drawing *drawing)
 {
     const struct debug_view *view = drawing->view;
     struct soup chosen = { 0 }, others = { 0 }, ways = { 0 };
@@ -313,7 +313,7 @@ static void draw_sensors(struct drawing *drawing)
     mem_free(name);
 }
 
-static void measure(struct drawing *drawing)
+static void measure(struct debug_drawing *drawing)
 {
     struct extent extent = extent_empty();
     for (size_t t = 0; t < drawing->look.tri_count; t++)
@@ -329,7 +329,7 @@ static void measure(struct drawing *drawing)
 
 int debug_view_save(const struct debug_view *view, const char *path)
 {
-    struct drawing drawing = { .view = view, .writer = glb_writer_create(view->name) };
+    struct debug_drawing drawing = { .view = view, .writer = glb_writer_create(view->name) };
     surface_debug_mesh(view->surface, &drawing.look);
     measure(&drawing);
     draw_surfaces(&drawing);

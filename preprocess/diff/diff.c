@@ -18,15 +18,15 @@
 
 const char *const diff_changes[DIFF_CHANGES] = { "same", "added", "removed", "moved", "changed" };
 
-struct half { /* an asset in one of the two */
+struct pair_half { /* an asset in one of the two */
     const struct diff_side_asset *asset;
     struct diff_side_shape shape;
     struct diff_shape *tree;
     double to_plant[16]; /* from the shape's frame */
 };
 
-struct pair {
-    struct half old_half, new_half;
+struct asset_pair {
+    struct pair_half old_half, new_half;
     struct diff_asset found;
     double tolerance_m, limit_m;
 };
@@ -53,7 +53,7 @@ static const struct diff_side_asset *find_asset(const struct diff_side *side, co
 
 /* --- one asset ------------------------------------------------------------------------------------------------------------------- */
 
-static bool half_open(struct half *half, struct diff_side *side, const struct diff_side_asset *asset, char *why)
+static bool half_open(struct pair_half *half, struct diff_side *side, const struct diff_side_asset *asset, char *why)
 {
     half->asset = asset;
     if (!diff_side_shape(side, asset, &half->shape, why))
@@ -66,7 +66,7 @@ static bool half_open(struct half *half, struct diff_side *side, const struct di
     return true;
 }
 
-static void half_close(struct half *half)
+static void half_close(struct pair_half *half)
 {
     diff_shape_destroy(&half->tree);
     diff_side_shape_finish(&half->shape);
@@ -80,7 +80,7 @@ static bool equal_shapes(const struct diff_side_shape *a, const struct diff_side
 }
 
 /* In the plant frame: what takes the old asset to the new one, if new = turn(old) in their own frames. */
-static void plant_motion(const struct pair *pair, const double new_to_old[16], double motion[16])
+static void plant_motion(const struct asset_pair *pair, const double new_to_old[16], double motion[16])
 {
     double plant_to_old[16], old_to_new[16], step[16];
     transform_invert(pair->old_half.to_plant, plant_to_old);
@@ -90,7 +90,7 @@ static void plant_motion(const struct pair *pair, const double new_to_old[16], d
 }
 
 /* How far the old asset's corners go when it is taken to where the new one is. */
-static double moved_by(const struct pair *pair, const double new_to_old[16], double *turned_deg)
+static double moved_by(const struct asset_pair *pair, const double new_to_old[16], double *turned_deg)
 {
     double motion[16], plant_to_old[16], step[16], local[16];
     plant_motion(pair, new_to_old, motion);
@@ -102,7 +102,7 @@ static double moved_by(const struct pair *pair, const double new_to_old[16], dou
 }
 
 /* The same shape, once new_to_old has been undone: it is the same, or moved. False: another shape. */
-static bool same_shape(struct pair *pair, const double new_to_old[16], bool equal)
+static bool same_shape(struct asset_pair *pair, const double new_to_old[16], bool equal)
 {
     if (!equal && diff_shape_apart(pair->old_half.tree, pair->new_half.tree, new_to_old, pair->tolerance_m) > pair->tolerance_m)
         return false;
@@ -111,9 +111,9 @@ static bool same_shape(struct pair *pair, const double new_to_old[16], bool equa
     return true;
 }
 
-static void compare_shapes(struct pair *pair)
+static void compare_shapes(struct asset_pair *pair)
 {
-    const struct half *old_half = &pair->old_half, *new_half = &pair->new_half;
+    const struct pair_half *old_half = &pair->old_half, *new_half = &pair->new_half;
     double in_place[16], plant_to_old[16], turned[16], middle_old[3], middle_new[3];
     bool equal = equal_shapes(&old_half->shape, &new_half->shape);
     transform_invert(old_half->to_plant, plant_to_old);
@@ -136,7 +136,7 @@ static void compare_shapes(struct pair *pair)
 /* --- its sensors ------------------------------------------------------------------------------------------------------------------ */
 
 /* Where a sensor is and the surface next to it, plant frame. */
-static double place_sensor(const struct half *half, size_t column, double place_m[3], double surface_m[3])
+static double place_sensor(const struct pair_half *half, size_t column, double place_m[3], double surface_m[3])
 {
     double nearest_m[3];
     double distance_m = diff_shape_nearest(half->tree, half->shape.places_m[column], nearest_m);
@@ -147,7 +147,7 @@ static double place_sensor(const struct half *half, size_t column, double place_
 
 /* In the middle of a pipe many places of the surface are equally near, and which one is found hangs on the last bit. So where the surface
    is still there, and no farther away than the nearest place, it has not moved. */
-static double surface_moved(const struct pair *pair, const double place_m[3], const double old_m[3], const double new_m[3])
+static double surface_moved(const struct asset_pair *pair, const double place_m[3], const double old_m[3], const double new_m[3])
 {
     double plant_to_new[16], at[3], still_m[3], moved_m = vec_distance(old_m, new_m);
     if (moved_m <= pair->tolerance_m || !transform_invert(pair->new_half.to_plant, plant_to_new))
@@ -159,7 +159,7 @@ static double surface_moved(const struct pair *pair, const double place_m[3], co
     return as_near ? min_of(moved_m, vec_distance(old_m, still_m)) : moved_m;
 }
 
-static void compare_sensor(struct diff *diff, struct pair *pair, const struct diff_side_tag *tag)
+static void compare_sensor(struct diff *diff, struct asset_pair *pair, const struct diff_side_tag *tag)
 {
     const struct diff_side_tag *before = diff_side_find_tag(&diff->old_side, tag->name);
     const struct diff_side_shape *shape = &pair->new_half.shape;
@@ -187,7 +187,7 @@ static void compare_sensor(struct diff *diff, struct pair *pair, const struct di
                           was ? "; it was on it" : ""));
 }
 
-static void compare_sensors(struct diff *diff, struct pair *pair)
+static void compare_sensors(struct diff *diff, struct asset_pair *pair)
 {
     for (size_t i = 0; i < diff->new_side.tag_count; i++) {
         const struct diff_side_tag *tag = &diff->new_side.tags[i];
@@ -197,7 +197,8 @@ static void compare_sensors(struct diff *diff, struct pair *pair)
 }
 
 /* A node of the new model with the old shape in the old place: what was renamed. why says so, in place of a name that is merely like it. */
-static void find_renamed(struct diff *diff, const struct pair *pair, const struct diff_side_asset *asset, double tolerance_m, char *why)
+static void find_renamed(struct diff *diff, const struct asset_pair *pair, const struct diff_side_asset *asset, double tolerance_m,
+                         char *why)
 {
     struct diff_side_box box;
     diff_shape_box(pair->old_half.tree, box.low_m, box.high_m);
@@ -207,7 +208,7 @@ static void find_renamed(struct diff *diff, const struct pair *pair, const struc
     }
     double limit_m = tolerance_m > 0 ? tolerance_m : fmin(TOLERANCE_M, TOLERANCE_OF_SIZE * diff_shape_diagonal(pair->old_half.tree));
     for (uint32_t after = 0;; after++) {
-        struct half half = { 0 };
+        struct pair_half half = { 0 };
         char name[200], cut_why[MODEL_WHY_BYTES], *guess = strstr(why, ": did you mean ");
         if (!diff_side_node_in_box(&diff->new_side, asset, &box, limit_m, &after, name, sizeof(name)))
             return;
@@ -243,7 +244,7 @@ static void lose_sensors(struct diff *diff, const char *id, const char *why)
 
 static void compare_asset(struct diff *diff, const struct diff_side_asset *new_asset, double tolerance_m)
 {
-    struct pair pair = { .found.id = new_asset->id };
+    struct asset_pair pair = { .found.id = new_asset->id };
     const struct diff_side_asset *old_asset = find_asset(&diff->old_side, new_asset->id);
     char why[MODEL_WHY_BYTES], old_why[MODEL_WHY_BYTES];
     bool was = old_asset && half_open(&pair.old_half, &diff->old_side, old_asset, old_why);

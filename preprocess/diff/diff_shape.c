@@ -91,13 +91,13 @@ double diff_shape_nearest(const struct diff_shape *shape, const double point_m[3
 
 /* --- how far apart ---------------------------------------------------------------------------------------------------------------- */
 
-struct search {
+struct shape_distance_search {
     const struct diff_shape *to;
     const double *motion;
     double worst_m, enough_m;
 };
 
-static bool try_place(struct search *search, const double p[3])
+static bool try_place(struct shape_distance_search *search, const double p[3])
 {
     struct bvh_place at;
     double q[3];
@@ -108,7 +108,7 @@ static bool try_place(struct search *search, const double p[3])
 }
 
 /* Places in rows parallel to one side, the rows closer together the longer the triangle. True: enough. */
-static bool try_triangle(struct search *search, const double *a, const double *b, const double *c, double spacing_m)
+static bool try_triangle(struct shape_distance_search *search, const double *a, const double *b, const double *c, double spacing_m)
 {
     double longest_m = max_of(vec_distance(a, b), max_of(vec_distance(b, c), vec_distance(c, a)));
     int n = (int)min_of(ceil(longest_m / spacing_m), PLACES_MAX);
@@ -125,7 +125,7 @@ static bool try_triangle(struct search *search, const double *a, const double *b
 
 static double one_way(const struct diff_shape *from, const struct diff_shape *to, const double motion[16], double enough_m)
 {
-    struct search search = { .to = to, .motion = motion, .enough_m = enough_m };
+    struct shape_distance_search search = { .to = to, .motion = motion, .enough_m = enough_m };
     const struct trimesh *mesh = &from->mesh;
     double spacing_m = max_of(diff_shape_diagonal(from) / SPREAD, 1e-9);
     bool enough = false;

@@ -125,13 +125,13 @@ bool node_primitives_find(struct node_primitives *parts, struct geometry *geomet
 
 /* --- boxes --------------------------------------------------------------------------------------------------------------- */
 
-struct box {
+struct node_box {
     double low[3], high[3];
 };
 
-static const struct box empty_box = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+static const struct node_box empty_box = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
 
-static void box_add_primitive(struct box *box, const struct gltf_primitive *primitive, const double world[16])
+static void box_add_primitive(struct node_box *box, const struct gltf_primitive *primitive, const double world[16])
 {
     for (uint32_t i = 0; i < primitive->vertex_count; i++) { /* there is none that no triangle uses */
         const float *p = primitive->positions[i];
@@ -176,7 +176,7 @@ static void median_of(const struct node_primitives *parts, const struct geometry
 
 static bool find_origin(struct geometry *geometry, const struct node_primitives *parts, const struct geometry_params *params, char *why)
 {
-    struct box box = empty_box;
+    struct node_box box = empty_box;
     for (size_t i = 0; i < parts->count; i++) {
         double world[16];
         primitive_world(params, parts->at[i].node, world);
@@ -197,10 +197,10 @@ static bool find_origin(struct geometry *geometry, const struct node_primitives 
 
 double (*geometry_node_boxes(const struct gltf_model *model, const struct geometry_params *params))[2][3]
 {
-    struct box *boxes = mem_array(model->node_count, sizeof(*boxes));
+    struct node_box *boxes = mem_array(model->node_count, sizeof(*boxes));
     for (uint32_t i = model->node_count; i-- > 0;) {
         const struct gltf_node *node = &model->nodes[i];
-        struct box own = empty_box;
+        struct node_box own = empty_box;
         double world[16];
         primitive_world(params, node, world);
         for (uint32_t p = 0; node->mesh >= 0 && p < model->meshes[node->mesh].primitive_count; p++)
@@ -217,7 +217,7 @@ double (*geometry_node_boxes(const struct gltf_model *model, const struct geomet
 
 static void place_of_node(const struct gltf_model *model, const struct geometry_params *params, uint32_t found, double place_m[3])
 {
-    struct box box = empty_box;
+    struct node_box box = empty_box;
     double world[16];
     for (uint32_t i = found; i < model->nodes[found].end; i++) {
         const struct gltf_node *node = &model->nodes[i];
@@ -257,7 +257,7 @@ static size_t prefer_own(const struct gltf_model *model, const struct geometry_p
 static bool middle_of_asset(const struct gltf_model *model, const struct geometry_params *params, double place_m[3],
                             char why[MODEL_WHY_BYTES])
 {
-    struct box box = empty_box;
+    struct node_box box = empty_box;
     bool *taken = taken_nodes(model, params->nodes, why);
     for (uint32_t i = 0; taken && i < model->node_count; i++) {
         const struct gltf_node *node = &model->nodes[i];
@@ -299,7 +299,7 @@ bool geometry_node_place(const struct gltf_model *model, const struct geometry_p
 
 /* --- putting parts together ------------------------------------------------------------------------------------------------ */
 
-struct room { /* what the arrays of a geometry can hold */
+struct geometry_room { /* what the arrays of a geometry can hold */
     size_t positions, normals, texcoords, second_texcoords, colors, indices, primitives;
     float (*all_texcoords)[2], (*all_second_texcoords)[2];
     uint8_t (*all_colors)[4];
@@ -313,8 +313,8 @@ static uint32_t add_name(struct geometry *geometry, const char *name)
     return at;
 }
 
-static void append(struct geometry *geometry, struct room *room, const struct primitive_mesh *mesh, const struct node_primitive *part,
-                   uint32_t material, uint32_t name)
+static void append(struct geometry *geometry, struct geometry_room *room, const struct primitive_mesh *mesh,
+                   const struct node_primitive *part, uint32_t material, uint32_t name)
 {
     size_t vertices = geometry->vertex_count + mesh->vertex_count;
     mem_grow(&geometry->positions_m, &room->positions, vertices, sizeof(*geometry->positions_m));
@@ -325,7 +325,7 @@ static void append(struct geometry *geometry, struct room *room, const struct pr
     mem_grow(&geometry->indices, &room->indices, geometry->index_count + mesh->index_count, sizeof(*geometry->indices));
     mem_grow(&geometry->primitives, &room->primitives, geometry->primitive_count + 1u, sizeof(*geometry->primitives));
     for (size_t i = 0; i < mesh->vertex_count; i++) {
-        const struct vertex *v = &mesh->vertices[i];
+        const struct geometry_vertex *v = &mesh->vertices[i];
         size_t at = geometry->vertex_count + i;
         memcpy(geometry->positions_m[at], v->position, sizeof(v->position));
         memcpy(geometry->normals[at], v->normal, sizeof(v->normal));
@@ -382,7 +382,7 @@ static void *kept_if(bool wanted, void *array)
 static bool join_parts(struct geometry *geometry, const struct node_primitives *parts, const struct gltf_model *model,
                        const struct geometry_params *params, char *why)
 {
-    struct room room = { 0 };
+    struct geometry_room room = { 0 };
     const struct gltf_node *named = NULL;
     uint32_t name = 0;
     int last = -2;

@@ -21,13 +21,13 @@ bool node_primitives_find(struct node_primitives *parts, struct geometry *geomet
                           const struct geometry_params *params, char *why);
 
 /* A vertex with all its attributes: vertices are welded only where all of them are equal. */
-struct vertex {
+struct geometry_vertex {
     float position[3], normal[3], texcoord[2], second_texcoord[2];
     uint8_t color[4];
 };
 
 struct primitive_mesh {
-    struct vertex *vertices; /* one per corner at first */
+    struct geometry_vertex *vertices; /* one per corner at first */
     unsigned *indices;
     size_t vertex_count, index_count;
 };

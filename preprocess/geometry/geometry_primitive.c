@@ -104,7 +104,7 @@ static void turn_outward(const float outward[3], float normal[3])
 }
 
 static void fill_vertex(const struct gltf_primitive *primitive, uint32_t v, const float (*positions)[3], const double normals[9],
-                        const float *computed, struct vertex *out)
+                        const float *computed, struct geometry_vertex *out)
 {
     memcpy(out->position, positions[v], sizeof(out->position));
     if (!primitive->normals || !turn_normal(normals, primitive->normals[v], out->normal))

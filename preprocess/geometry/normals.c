@@ -95,14 +95,14 @@ static void take_direction(double sum[3], const double own[3], float out[3])
 
 /* Where very many faces meet, not each is compared with each: the normals are halved again and again, and a half that lies within the
    crease angle as a whole, or beyond it, is taken or left as a whole. Nodes are stored as an implicit binary tree. */
-struct half {
+struct normals_half {
     double low[3], high[3], sum[3]; /* of the normals; sum: weighted by angles */
 };
 
 struct halves {
     const struct around *around;
     uint32_t *corners; /* those at the place, reordered */
-    struct half *nodes;
+    struct normals_half *nodes;
 };
 
 static int compare_axis(const void *pa, const void *pb, void *arg)
@@ -115,8 +115,8 @@ static int compare_axis(const void *pa, const void *pb, void *arg)
 
 static void halves_build(struct halves *halves, size_t node, size_t begin, size_t end)
 {
-    struct half *half = &halves->nodes[node];
-    *half = (struct half){ .low = { 2, 2, 2 }, .high = { -2, -2, -2 } };
+    struct normals_half *half = &halves->nodes[node];
+    *half = (struct normals_half){ .low = { 2, 2, 2 }, .high = { -2, -2, -2 } };
     for (size_t i = begin; i < end; i++) {
         const double *face = halves->around->faces[halves->corners[i] / 3];
         for (int axis = 0; axis < 3; axis++) {
@@ -140,7 +140,7 @@ static void halves_build(struct halves *halves, size_t node, size_t begin, size_
 
 static void halves_sum(const struct halves *halves, size_t node, size_t begin, size_t end, const double own[3], double sum[3])
 {
-    const struct half *half = &halves->nodes[node];
+    const struct normals_half *half = &halves->nodes[node];
     double nearest[3], farthest[3];
     for (int axis = 0; axis < 3; axis++) {
         nearest[axis] = own[axis] > 0 ? half->high[axis] : half->low[axis];

@@ -11,25 +11,25 @@
 
 enum { MAX_DEPTH = 1000 };
 
-struct key { /* nodes sorted by parent and name, and once more by name alone */
+struct node_key { /* nodes sorted by parent and name, and once more by name alone */
     const char *name;
     int parent, node;
 };
 
 struct index {
-    struct key *below, *anywhere;
+    struct node_key *below, *anywhere;
     size_t count;
 };
 
 static int by_parent(const void *a, const void *b)
 {
-    const struct key *x = a, *y = b;
+    const struct node_key *x = a, *y = b;
     return x->parent != y->parent ? (x->parent > y->parent) - (x->parent < y->parent) : strcmp(x->name, y->name);
 }
 
 static int by_name(const void *a, const void *b)
 {
-    return strcmp(((const struct key *)a)->name, ((const struct key *)b)->name);
+    return strcmp(((const struct node_key *)a)->name, ((const struct node_key *)b)->name);
 }
 
 static void index_init(struct index *index, const struct cad_model *model)
@@ -38,7 +38,7 @@ static void index_init(struct index *index, const struct cad_model *model)
     index->below = mem_array(index->count + 1, sizeof(*index->below));
     index->anywhere = mem_array(index->count + 1, sizeof(*index->anywhere));
     for (size_t i = 0; i < index->count; i++)
-        index->below[i] = (struct key){ model->nodes[i].name, model->nodes[i].parent, (int)i };
+        index->below[i] = (struct node_key){ model->nodes[i].name, model->nodes[i].parent, (int)i };
     memcpy(index->anywhere, index->below, index->count * sizeof(*index->below));
     qsort(index->below, index->count, sizeof(*index->below), by_parent);
     qsort(index->anywhere, index->count, sizeof(*index->anywhere), by_name);
@@ -46,8 +46,8 @@ static void index_init(struct index *index, const struct cad_model *model)
 
 static int find(const struct index *index, int parent, const char *name)
 {
-    struct key key = { name, parent, -1 };
-    const struct key *found = bsearch(&key, index->below, index->count, sizeof(key), by_parent);
+    struct node_key key = { name, parent, -1 };
+    const struct node_key *found = bsearch(&key, index->below, index->count, sizeof(key), by_parent);
     if (!found)
         found = bsearch(&key, index->anywhere, index->count, sizeof(key), by_name);
     return found ? found->node : -1;

@@ -13,7 +13,7 @@
 
 enum { LINES = 1, TRIANGLES = 4 }; /* as glTF numbers them */
 
-struct writer {
+struct cad_writer {
     const struct cad_model *model;
     json_t *materials, *meshes, *nodes;
     struct glb_file file;
@@ -22,14 +22,14 @@ struct writer {
     int plain, line;      /* materials; -1: not made yet */
 };
 
-static int add_material(struct writer *w, const double rgb[3])
+static int add_material(struct cad_writer *w, const double rgb[3])
 {
     json_array_append_new(w->materials, json_pack("{s:{s:[f,f,f,f],s:f,s:f},s:b}", "pbrMetallicRoughness", "baseColorFactor", rgb[0],
                                                   rgb[1], rgb[2], 1.0, "metallicFactor", 0.1, "roughnessFactor", 0.6, "doubleSided", 1));
     return (int)json_array_size(w->materials) - 1;
 }
 
-static int material_of(struct writer *w, const struct cad_node *node)
+static int material_of(struct cad_writer *w, const struct cad_node *node)
 {
     for (size_t i = 0; i < w->model->color_count; i++)
         if (w->model->colors[i].material == node->material) {
@@ -51,7 +51,7 @@ static void place(const double from[3], const double origin[3], float out[3])
     out[2] = (float)-(from[1] - origin[1]);
 }
 
-static json_t *triangles_of(struct writer *w, const struct cad_node *node, const double origin[3])
+static json_t *triangles_of(struct cad_writer *w, const struct cad_node *node, const double origin[3])
 {
     float(*positions)[3] = mem_array(node->vertex_count, sizeof(*positions)),
     (*normals)[3] = mem_array(node->vertex_count, sizeof(*normals));
@@ -69,7 +69,7 @@ static json_t *triangles_of(struct writer *w, const struct cad_node *node, const
                      TRIANGLES, "material", material_of(w, node));
 }
 
-static json_t *lines_of(struct writer *w, const struct cad_node *node, const double origin[3])
+static json_t *lines_of(struct cad_writer *w, const struct cad_node *node, const double origin[3])
 {
     float(*positions)[3] = mem_array(node->line_count * 2, sizeof(*positions));
     for (size_t i = 0; i < node->line_count * 2; i++)
@@ -82,7 +82,7 @@ static json_t *lines_of(struct writer *w, const struct cad_node *node, const dou
 }
 
 /* The middle of what the node shows, to the millimetre; that of its parent where it shows nothing. */
-static void find_origin(const struct writer *w, const struct cad_node *node, double out[3])
+static void find_origin(const struct cad_writer *w, const struct cad_node *node, double out[3])
 {
     static const double zero[3];
     memcpy(out, node->parent >= 0 ? w->origins[node->parent] : zero, sizeof(zero));
@@ -102,7 +102,7 @@ static void find_origin(const struct writer *w, const struct cad_node *node, dou
     }
 }
 
-static void add_node(struct writer *w, const struct cad_node *node, size_t number)
+static void add_node(struct cad_writer *w, const struct cad_node *node, size_t number)
 {
     static const double zero[3];
     double *origin = w->origins[number];
@@ -135,7 +135,7 @@ static void add_node(struct writer *w, const struct cad_node *node, size_t numbe
     json_array_append_new(children, json_integer((json_int_t)number + 1));
 }
 
-static int save(struct writer *w, const char *path)
+static int save(struct cad_writer *w, const char *path)
 {
     json_t *root = json_pack("{s:{s:s,s:s},s:i,s:[{s:[i]}],s:O}", "asset", "version", "2.0", "generator", "plantcast-import", "scene", 0,
                              "scenes", "nodes", 0, "nodes", w->nodes);
@@ -150,7 +150,7 @@ static int save(struct writer *w, const char *path)
 
 int cad_glb_write(const struct cad_model *model, const char *name, const char *path)
 {
-    struct writer w = { .model = model, .materials = json_array(), .meshes = json_array(), .plain = -1, .line = -1 };
+    struct cad_writer w = { .model = model, .materials = json_array(), .meshes = json_array(), .plain = -1, .line = -1 };
     glb_file_init(&w.file);
     w.nodes = json_pack("[{s:s}]", "name", name);
     w.origins = mem_array(model->node_count + 1, sizeof(*w.origins));

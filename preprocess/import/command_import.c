@@ -23,7 +23,7 @@
 
 enum { RVM_ITEM_LEVEL = 3 }; /* the file, its sites, their zones, and what is in them */
 
-struct import {
+struct import_command {
     const char *folder, *name;
     const char *report; /* file for findings; NULL: none */
     bool undo, force, dry_run;
@@ -91,7 +91,7 @@ static bool read_outline(struct model_outline *outline, const char *glb, char wh
 }
 
 /* Reads one model into the next place of the arrays. */
-static void convert(struct import *import, const char *path)
+static void convert(struct import_command *import, const char *path)
 {
     int number = import->count;
     struct plant_draft_model *model = &import->models[number];
@@ -133,7 +133,7 @@ static void convert(struct import *import, const char *path)
 
 enum found_plant { NO_PLANT, BEGUN_PLANT /* by --serve, without models */, WHOLE_PLANT };
 
-static enum found_plant find_plant(const struct import *import)
+static enum found_plant find_plant(const struct import_command *import)
 {
     char *plant = mem_printf("%s/plant.yaml", import->folder);
     enum found_plant found = plant_draft_is_begun(plant) ? BEGUN_PLANT : access(plant, F_OK) == 0 ? WHOLE_PLANT : NO_PLANT;
@@ -142,7 +142,7 @@ static enum found_plant find_plant(const struct import *import)
 }
 
 /* A model that fails leaves the plant's own copy as it was. With --anew, the plant would lose the model's assets. */
-static int convert_all(struct import *import)
+static int convert_all(struct import_command *import)
 {
     int count = import->count;
     import->count = 0;
@@ -161,7 +161,7 @@ static int convert_all(struct import *import)
 }
 
 /* The report is not needed by the plant: the import goes on without it. */
-static void write_report(const struct import *import)
+static void write_report(const struct import_command *import)
 {
     char *text = json_text(json_pack("{s:O}", "models", import->findings), 0);
     int status = import->report ? atomic_file_put(import->report, text, strlen(text)) : 0;
@@ -170,7 +170,7 @@ static void write_report(const struct import *import)
     mem_free(text);
 }
 
-static int move_all(const struct import *import)
+static int move_all(const struct import_command *import)
 {
     int status = 0;
     for (int i = 0; i < import->count && status == 0; i++) {
@@ -183,7 +183,7 @@ static int move_all(const struct import *import)
     return status;
 }
 
-static int bring_in(const struct import *import)
+static int bring_in(const struct import_command *import)
 {
     const struct plant_draft draft = {
         .name = import->name, .folder = import->folder, .models = import->models, .count = (size_t)import->count, .anew = import->anew
@@ -204,7 +204,7 @@ static int bring_in(const struct import *import)
     return status == 0 && plant_draft_write(&draft) == 0 ? 0 : 1;
 }
 
-static int run(struct import *import)
+static int run(struct import_command *import)
 {
     int status = work_folder_begin(&import->work, import->folder);
     if (status != 0)
@@ -266,7 +266,7 @@ int command_import(int argc, char **argv)
                                              { "folder-lent", required_argument, NULL, 'l' },
                                              OPTIONS_OF_CONVERSION,
                                              { 0 } };
-    struct import import = { .conversion = options_default };
+    struct import_command import = { .conversion = options_default };
     struct serve_params serve = { .port = "8080" };
     bool serves = false;
     for (int option; (option = getopt_long(argc, argv, "o:", options, NULL)) != -1;)

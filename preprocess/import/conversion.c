@@ -126,7 +126,7 @@ static bool convert_rvm(const char *path, const char *attributes, const char *gl
 
 /* --- children ------------------------------------------------------------------------------------------------------------------------- */
 
-struct reading {
+struct model_reading {
     const struct import_format *format;
     const char *path, *attributes; /* attributes: of RVM; NULL: none */
     const char *output;            /* the GLB file that the reader writes */
@@ -138,7 +138,7 @@ struct reading {
 /* In the child. Returns its exit status. */
 static int read_ourselves(void *arg)
 {
-    const struct reading *reading = arg;
+    const struct model_reading *reading = arg;
     struct text said = { 0 };
     char why[CONVERSION_WHY_BYTES] = "";
     bool good = reading->format->reader == FORMAT_GLTF
@@ -173,7 +173,7 @@ static void say_empty_nodes(const struct gltf_model *model)
 /* In a child of its own, because the reader may be in a stranger's hands. plantcast-prep would refuse the same models. */
 static int check(void *arg)
 {
-    const struct reading *reading = arg;
+    const struct model_reading *reading = arg;
     struct model_source source;
     struct gltf_model model;
     char why[MODEL_WHY_BYTES] = "";
@@ -189,7 +189,7 @@ static int check(void *arg)
     return good ? 0 : 1;
 }
 
-static bool run(const struct reading *reading, struct child_params *child, struct child_paths *paths, struct text *said,
+static bool run(const struct model_reading *reading, struct child_params *child, struct child_paths *paths, struct text *said,
                 char why[CONVERSION_WHY_BYTES])
 {
     char reason[CHILD_WHY_BYTES], *name = mem_printf("the %s reader", reading->format->name);
@@ -211,7 +211,7 @@ static bool run(const struct reading *reading, struct child_params *child, struc
 /* In the child: unpacks the model to the path that its reader is given next. */
 static int unpack_model(void *arg)
 {
-    const struct reading *reading = arg;
+    const struct model_reading *reading = arg;
     char why[CONVERSION_WHY_BYTES] = "";
     bool good = unpack(reading->path, reading->output, why, sizeof(why));
     if (!good)
@@ -220,12 +220,12 @@ static int unpack_model(void *arg)
 }
 
 /* Returns the path of the unpacked model in the reading's folder, to be freed with mem_free; NULL with the reason in why. */
-static char *unpacked(const struct reading *packed, char why[CONVERSION_WHY_BYTES])
+static char *unpacked(const struct model_reading *packed, char why[CONVERSION_WHY_BYTES])
 {
     struct child_paths paths = { 0 };
     struct text said = { 0 };
     char *stem = file_name_stem(packed->path), *path = mem_printf("%s/%s%s", packed->folder, stem, unpack_ending(packed->path));
-    struct reading unpacking = *packed;
+    struct model_reading unpacking = *packed;
     unpacking.output = path;
     child_paths_add(&paths, packed->path, CONFINE_READ);
     child_paths_add(&paths, packed->folder, CONFINE_WRITE);
@@ -241,7 +241,7 @@ static char *unpacked(const struct reading *packed, char why[CONVERSION_WHY_BYTE
 /* In the child. For readers that cannot find the encoding themselves. */
 static int find_encoding(void *arg)
 {
-    const struct reading *reading = arg;
+    const struct model_reading *reading = arg;
     struct text said = { 0 };
     size_t length;
     char *text = text_read_file(reading->path, max_bytes, &length);
@@ -258,7 +258,7 @@ static int find_encoding(void *arg)
 }
 
 /* Detects the encoding in a child, and copies its name if it has only letters that such names have. */
-static bool ask_encoding(const struct reading *reading, char encoding[CHARSET_NAME_BYTES], struct text *said,
+static bool ask_encoding(const struct model_reading *reading, char encoding[CHARSET_NAME_BYTES], struct text *said,
                          char why[CONVERSION_WHY_BYTES])
 {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_:.,+";
@@ -266,7 +266,7 @@ static bool ask_encoding(const struct reading *reading, char encoding[CHARSET_NA
     char *shared = mmap(NULL, CHARSET_NAME_BYTES, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (shared == MAP_FAILED)
         return fail(why, "%s", strerror(errno));
-    struct reading asking = *reading;
+    struct model_reading asking = *reading;
     asking.encoding = shared;
     child_paths_add(&paths, reading->path, CONFINE_READ);
     bool good = run(reading, &(struct child_params){ .call = find_encoding, .arg = &asking }, &paths, said, why);
@@ -282,7 +282,7 @@ static bool ask_encoding(const struct reading *reading, char encoding[CHARSET_NA
 
 /* Has Open CASCADE build the solids of an IFC file that web-ifc does not build. ifc.mjs finds them in the folder of its output. Returns
  * false only if the user interrupted it: without these solids the model is still read. */
-static bool build_curved_solids(const struct reading *reading, const char *list, struct text *said, char why[CONVERSION_WHY_BYTES])
+static bool build_curved_solids(const struct model_reading *reading, const char *list, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     char *program = import_format_program(import_format_of("x.step"));
     if (!program) {
@@ -311,8 +311,8 @@ struct reader_program {
     char encoding[CHARSET_NAME_BYTES]; /* "-": none is given */
 };
 
-static bool run_reader(const struct reading *reading, const struct reader_program *reader, struct child_paths *paths, struct text *said,
-                       char why[CONVERSION_WHY_BYTES])
+static bool run_reader(const struct model_reading *reading, const struct reader_program *reader, struct child_paths *paths,
+                       struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     const struct conversion_params *params = reading->params;
     const char *units = params->units ? params->units : reading->format->unitless ? params->mesh_units : NULL;
@@ -336,7 +336,7 @@ static bool run_reader(const struct reading *reading, const struct reader_progra
 
 /* Reads an IFC file by web-ifc. If web-ifc lists elements that it does not build, Open CASCADE builds them, and the file is read once
  * more with these. */
-static bool read_ifc(const struct reading *reading, struct reader_program *reader, struct text *said, char why[CONVERSION_WHY_BYTES])
+static bool read_ifc(const struct model_reading *reading, struct reader_program *reader, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     char *list = mem_printf("%s/asked.txt", reading->folder);
     bool good = ask_encoding(reading, reader->encoding, said, why), again = good;
@@ -359,7 +359,7 @@ static bool read_ifc(const struct reading *reading, struct reader_program *reade
     return good;
 }
 
-static bool run_program(const struct reading *reading, struct child_paths *paths, struct text *said, char why[CONVERSION_WHY_BYTES])
+static bool run_program(const struct model_reading *reading, struct child_paths *paths, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     const struct import_format *format = reading->format;
     struct reader_program reader = { import_format_program(format), import_format_runtime(format), "-" };
@@ -379,7 +379,7 @@ static bool run_program(const struct reading *reading, struct child_paths *paths
 }
 
 /* A reader may leave anything under that name, such as a symlink to a file of the daemon's. */
-static bool take_output(const struct reading *reading, const char *glb, struct text *said, char why[CONVERSION_WHY_BYTES])
+static bool take_output(const struct model_reading *reading, const char *glb, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     struct stat st;
     if (lstat(reading->output, &st) != 0)
@@ -401,7 +401,7 @@ static bool read_model(const struct import_format *format, const char *path, con
     char *own = mem_printf("%s/reading", folder), *output = mem_printf("%s/output.glb", own), *input = realpath(path, NULL);
     bool made = mkdir(own, 0700) == 0;
     char *attributes = input && format->reader == FORMAT_RVM ? attributes_beside(input) : NULL;
-    struct reading reading = {
+    struct model_reading reading = {
         .format = format, .path = input, .attributes = attributes, .output = output, .folder = own, .params = params
     };
     struct child_params ourselves = { .call = read_ourselves, .arg = &reading };

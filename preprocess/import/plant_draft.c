@@ -52,7 +52,7 @@ static bool is_printable(const char *text)
     return is;
 }
 
-struct choice {          /* by node */
+struct draft_choice {    /* by node */
     bool *item, *unique; /* unique: no other node has its name */
     bool typed, classed; /* the model has elements of type ZONE, or classes of IFC */
 };
@@ -118,7 +118,7 @@ static bool is_spatial(const char *class)
 
 /* An element of a zone is a piece of equipment, a pipe, a structure. Where nothing says what is a zone, those of a level are taken; and
  * whatever shows something above it. */
-static void choose(const struct plant_draft_model *from, struct choice *choice)
+static void choose(const struct plant_draft_model *from, struct draft_choice *choice)
 {
     const struct model_outline *outline = &from->outline;
     int level = from->item_level ? from->item_level : branching_level(outline);
@@ -218,8 +218,8 @@ static int write_new(const char *folder, const char *file, const char *text)
 size_t plant_draft_add_assets(const struct plant_draft_model *model, const bool *wanted, json_t *ids, struct text *out)
 {
     const struct model_outline *outline = &model->outline;
-    struct choice choice = { .item = mem_array(outline->header.count + 1, sizeof(bool)),
-                             .unique = mem_array(outline->header.count + 1, sizeof(bool)) };
+    struct draft_choice choice = { .item = mem_array(outline->header.count + 1, sizeof(bool)),
+                                   .unique = mem_array(outline->header.count + 1, sizeof(bool)) };
     size_t added = 0;
     find_unique(outline, choice.unique);
     choose(model, &choice);

@@ -23,7 +23,7 @@ struct primitive {
     size_t first_contour, first_point; /* while the arrays grow */
 };
 
-struct face {
+struct facet_face {
     struct rvm_face flat;
     int axis[3]; /* the direction of its plane, in hundredths */
     double offset_m;
@@ -31,7 +31,7 @@ struct face {
     int number;
 };
 
-struct reader {
+struct rvm_reader {
     const uint8_t *bytes;
     size_t count, at, chunk_end;
     struct cad_model *model;
@@ -39,7 +39,7 @@ struct reader {
     struct primitive *primitives;
     struct rvm_contour *contours;
     double (*points)[3];
-    struct face *faces;
+    struct facet_face *faces;
     struct rvm_losses losses;
     size_t primitive_count, primitive_room, contour_count, contour_room, point_count, point_room, face_count, face_room;
     int stack[MAX_DEPTH], depth;
@@ -48,8 +48,8 @@ struct reader {
     size_t why_bytes;
 };
 
-static bool fail(struct reader *r, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
-static bool fail(struct reader *r, const char *fmt, ...)
+static bool fail(struct rvm_reader *r, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+static bool fail(struct rvm_reader *r, const char *fmt, ...)
 {
     char text[160];
     va_list ap;
@@ -61,7 +61,7 @@ static bool fail(struct reader *r, const char *fmt, ...)
     return false;
 }
 
-static bool need(struct reader *r, size_t bytes)
+static bool need(struct rvm_reader *r, size_t bytes)
 {
     return bytes <= r->chunk_end - r->at ? true : fail(r, "the chunk ends in the middle of what it should hold");
 }
@@ -71,7 +71,7 @@ static uint32_t peek_word(const uint8_t *at)
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
 }
 
-static bool read_word(struct reader *r, uint32_t *word)
+static bool read_word(struct rvm_reader *r, uint32_t *word)
 {
     if (!need(r, 4))
         return false;
@@ -80,7 +80,7 @@ static bool read_word(struct reader *r, uint32_t *word)
     return true;
 }
 
-static bool read_float(struct reader *r, double *out)
+static bool read_float(struct rvm_reader *r, double *out)
 {
     uint32_t word;
     float value;
@@ -93,7 +93,7 @@ static bool read_float(struct reader *r, double *out)
 
 /* Reads a number of words, then that many words of text that ends with the first 0. Returns the text in the file's encoding, control
  * characters as blanks, to be freed with mem_free; NULL on failure. */
-static char *read_text(struct reader *r)
+static char *read_text(struct rvm_reader *r)
 {
     uint32_t words;
     if (!read_word(r, &words))
@@ -115,7 +115,7 @@ static char *read_text(struct reader *r)
 
 /* --- chunks ----------------------------------------------------------------------------------------------------------------------- */
 
-static bool read_head(struct reader *r)
+static bool read_head(struct rvm_reader *r)
 {
     uint32_t version;
     if (!read_word(r, &version))
@@ -133,7 +133,7 @@ static bool read_head(struct reader *r)
     return r->encoding != NULL;
 }
 
-static bool read_color(struct reader *r)
+static bool read_color(struct rvm_reader *r)
 {
     uint32_t kind, index;
     if (!read_word(r, &kind) || !read_word(r, &index) || !need(r, 4))
@@ -142,7 +142,7 @@ static bool read_color(struct reader *r)
     return true;
 }
 
-static bool begin_group(struct reader *r)
+static bool begin_group(struct rvm_reader *r)
 {
     uint32_t version, material;
     double reference_mm; /* a point near by; primitives do not depend on it */
@@ -162,7 +162,7 @@ static bool begin_group(struct reader *r)
     return good;
 }
 
-static bool read_facets(struct reader *r, struct primitive *primitive)
+static bool read_facets(struct rvm_reader *r, struct primitive *primitive)
 {
     uint32_t polygons, contours, points;
     primitive->first_contour = r->contour_count;
@@ -192,7 +192,7 @@ static bool read_facets(struct reader *r, struct primitive *primitive)
     return true;
 }
 
-static bool read_primitive(struct reader *r)
+static bool read_primitive(struct rvm_reader *r)
 {
     uint32_t version, kind;
     double box;
@@ -225,7 +225,7 @@ static bool read_primitive(struct reader *r)
     return true;
 }
 
-static bool read_chunk(struct reader *r, const char *id, bool *ended)
+static bool read_chunk(struct rvm_reader *r, const char *id, bool *ended)
 {
     if (!strcmp(id, "HEAD"))
         return read_head(r);
@@ -268,7 +268,7 @@ static bool is_rvm(const void *bytes, size_t count)
     return count >= HEADER && chunk_id(bytes, id) && !strcmp(id, "HEAD");
 }
 
-static bool read_chunks(struct reader *r)
+static bool read_chunks(struct rvm_reader *r)
 {
     for (bool ended = false; !ended && r->at < r->count;) {
         char id[5];
@@ -294,7 +294,7 @@ static bool read_chunks(struct reader *r)
 }
 
 /* Decodes all names in one encoding: a single short name has too few letters to detect it. */
-static void decode_names(struct reader *r, size_t first, const char *asked)
+static void decode_names(struct rvm_reader *r, size_t first, const char *asked)
 {
     struct text all = { 0 };
     struct charset_choice *choice = &r->counts->encoding;
@@ -316,7 +316,7 @@ static const double near_m = 0.001;
 /* By plane: parallel planes are neighbours in the order of their distance from the origin. */
 static int by_plane(const void *a, const void *b)
 {
-    const struct face *x = a, *y = b;
+    const struct facet_face *x = a, *y = b;
     for (int axis = 0; axis < 3; axis++)
         if (x->axis[axis] != y->axis[axis])
             return x->axis[axis] < y->axis[axis] ? -1 : 1;
@@ -356,7 +356,7 @@ static bool covers(const struct rvm_face *cover, const struct rvm_face *face)
     return true;
 }
 
-static void add_faces(struct reader *r, size_t primitive)
+static void add_faces(struct rvm_reader *r, size_t primitive)
 {
     struct rvm_face found[RVM_MAX_FACES];
     int count = rvm_shape_faces(&r->primitives[primitive].shape, found);
@@ -364,8 +364,9 @@ static void add_faces(struct reader *r, size_t primitive)
         const double *n = found[i].outward;
         double first = fabs(n[0]) > 1e-3 ? n[0] : fabs(n[1]) > 1e-3 ? n[1] : n[2], sign = first < 0 ? -1 : 1;
         mem_grow(&r->faces, &r->face_room, r->face_count + 1, sizeof(*r->faces));
-        struct face *face = &r->faces[r->face_count++];
-        *face = (struct face){ .flat = found[i], .primitive = primitive, .number = i, .offset_m = sign * vec_dot(n, found[i].centre_m) };
+        struct facet_face *face = &r->faces[r->face_count++];
+        *face =
+            (struct facet_face){ .flat = found[i], .primitive = primitive, .number = i, .offset_m = sign * vec_dot(n, found[i].centre_m) };
         for (int axis = 0; axis < 3; axis++)
             face->axis[axis] = (int)lround(sign * n[axis] * 100);
     }
@@ -373,7 +374,7 @@ static void add_faces(struct reader *r, size_t primitive)
 
 /* What lies between two primitives is inside of both: neither light nor heat gets there. A plane whose direction is on the border between
  * two hundredths may be missed; then both faces stay, which is no error. */
-static void leave_out_covered_faces(struct reader *r)
+static void leave_out_covered_faces(struct rvm_reader *r)
 {
     for (size_t p = 0; p < r->primitive_count; p++)
         add_faces(r, p);
@@ -384,7 +385,7 @@ static void leave_out_covered_faces(struct reader *r)
                                r->faces[k].offset_m - r->faces[i].offset_m <= near_m;
              k++)
             for (int way = 0; way < 2; way++) {
-                const struct face *face = &r->faces[way ? k : i], *cover = &r->faces[way ? i : k];
+                const struct facet_face *face = &r->faces[way ? k : i], *cover = &r->faces[way ? i : k];
                 uint32_t bit = 1U << face->number, *open = &r->primitives[face->primitive].shape.open_faces;
                 if (!(*open & bit) && face->primitive != cover->primitive && covers(&cover->flat, &face->flat)) {
                     *open |= bit;
@@ -395,7 +396,7 @@ static void leave_out_covered_faces(struct reader *r)
             }
 }
 
-static void tessellate(struct reader *r, const struct rvm_params *params)
+static void tessellate(struct rvm_reader *r, const struct rvm_params *params)
 {
     size_t *primitives = mem_array(r->model->node_count + 1, sizeof(*primitives)); /* of each node */
     for (size_t i = 0; i < r->losses.count; i++)
@@ -417,9 +418,9 @@ static void tessellate(struct reader *r, const struct rvm_params *params)
 bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const struct rvm_params *params, struct rvm_counts *counts,
               char *why, size_t why_bytes)
 {
-    struct reader *r = mem_new(sizeof(*r));
+    struct rvm_reader *r = mem_new(sizeof(*r));
     size_t first = model->node_count;
-    *r = (struct reader){ .bytes = bytes, .count = count, .model = model, .counts = counts, .why = why, .why_bytes = why_bytes };
+    *r = (struct rvm_reader){ .bytes = bytes, .count = count, .model = model, .counts = counts, .why = why, .why_bytes = why_bytes };
     *counts = (struct rvm_counts){ 0 };
     why[0] = 0;
     bool good = is_rvm(bytes, count) ? read_chunks(r) : fail(r, "not an RVM file: it does not begin with HEAD");

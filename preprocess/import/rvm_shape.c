@@ -16,16 +16,16 @@ const int rvm_numbers[RVM_FACETS + 1] = {
     [RVM_SPHERICAL_DISH] = 2, [RVM_SNOUT] = 9, [RVM_CYLINDER] = 2,          [RVM_SPHERE] = 1,         [RVM_LINE] = 2
 };
 
-struct frame { /* from the primitive's frame to the plant's */
+struct primitive_frame { /* from the primitive's frame to the plant's */
     const double *m;
     double normal_of[9]; /* the inverse transpose of its linear part, up to a factor; columns */
     double scale;        /* of lengths; the largest where the axes differ */
     bool mirrored;
 };
 
-static bool frame_of(const double m[12], struct frame *frame)
+static bool frame_of(const double m[12], struct primitive_frame *frame)
 {
-    *frame = (struct frame){ .m = m };
+    *frame = (struct primitive_frame){ .m = m };
     vec_cross(m + 3, m + 6, frame->normal_of);
     vec_cross(m + 6, m, frame->normal_of + 3);
     vec_cross(m, m + 3, frame->normal_of + 6);
@@ -48,14 +48,14 @@ static void apply(const double columns[9], const double v[3], double out[3])
         out[axis] = columns[axis] * v[0] + columns[3 + axis] * v[1] + columns[6 + axis] * v[2];
 }
 
-static void to_plant(const struct frame *frame, const double local[3], double out[3])
+static void to_plant(const struct primitive_frame *frame, const double local[3], double out[3])
 {
     apply(frame->m, local, out);
     for (int axis = 0; axis < 3; axis++)
         out[axis] += frame->m[9 + axis];
 }
 
-static uint32_t add_vertex(struct cad_node *node, const struct frame *frame, const double local[3], const double normal[3])
+static uint32_t add_vertex(struct cad_node *node, const struct primitive_frame *frame, const double local[3], const double normal[3])
 {
     double position[3], direction[3];
     to_plant(frame, local, position);
@@ -63,7 +63,7 @@ static uint32_t add_vertex(struct cad_node *node, const struct frame *frame, con
     return cad_node_add_vertex(node, position, direction);
 }
 
-static void add_triangle(struct cad_node *node, const struct frame *frame, uint32_t a, uint32_t b, uint32_t c)
+static void add_triangle(struct cad_node *node, const struct primitive_frame *frame, uint32_t a, uint32_t b, uint32_t c)
 {
     if (frame->mirrored)
         cad_node_add_triangle(node, a, c, b);
@@ -71,7 +71,7 @@ static void add_triangle(struct cad_node *node, const struct frame *frame, uint3
         cad_node_add_triangle(node, a, b, c);
 }
 
-static void add_quad(struct cad_node *node, const struct frame *frame, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
+static void add_quad(struct cad_node *node, const struct primitive_frame *frame, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
 {
     add_triangle(node, frame, a, b, c);
     add_triangle(node, frame, a, c, d);
@@ -86,7 +86,7 @@ static int corners_of(double radius_m, double chord_m)
 }
 
 /* The angle of the first corner of a section with axis `axis`, measured from its `x` towards its `y` (local directions). */
-static double phase_of(const struct frame *frame, const double x[3], const double y[3])
+static double phase_of(const struct primitive_frame *frame, const double x[3], const double y[3])
 {
     double u[3], v[3], n[3];
     apply(frame->m, x, u);
@@ -103,11 +103,11 @@ static double phase_of(const struct frame *frame, const double x[3], const doubl
 
 /* --- rings ------------------------------------------------------------------------------------------------------------------------ */
 
-struct ring { /* corners around a centre: centre + cos x + sin y, all local */
+struct corner_ring { /* corners around a centre: centre + cos x + sin y, all local */
     double centre[3], x[3], y[3], phase;
 };
 
-static void corner_of(const struct ring *ring, int corner, int corners, double out[3], double spoke[3])
+static void corner_of(const struct corner_ring *ring, int corner, int corners, double out[3], double spoke[3])
 {
     double angle = ring->phase + 2 * M_PI * corner / corners, c = cos(angle), s = sin(angle);
     for (int axis = 0; axis < 3; axis++) {
@@ -118,7 +118,8 @@ static void corner_of(const struct ring *ring, int corner, int corners, double o
     }
 }
 
-static void add_cap(struct cad_node *node, const struct frame *frame, const struct ring *ring, int corners, bool towards_axis)
+static void add_cap(struct cad_node *node, const struct primitive_frame *frame, const struct corner_ring *ring, int corners,
+                    bool towards_axis)
 {
     double n[3], at[3];
     vec_cross(ring->x, ring->y, n);
@@ -137,7 +138,7 @@ static void add_cap(struct cad_node *node, const struct frame *frame, const stru
 }
 
 /* Joins two rows of `corners` vertices that go round a closed section, the second further along the axis. */
-static void join_rows(struct cad_node *node, const struct frame *frame, uint32_t low, uint32_t high, uint32_t corners)
+static void join_rows(struct cad_node *node, const struct primitive_frame *frame, uint32_t low, uint32_t high, uint32_t corners)
 {
     for (uint32_t i = 0; i < corners; i++) {
         uint32_t next = (i + 1) % corners;
@@ -148,7 +149,7 @@ static void join_rows(struct cad_node *node, const struct frame *frame, uint32_t
 /* --- the primitives --------------------------------------------------------------------------------------------------------------- */
 
 /* Six faces over two rectangles, one above the other. */
-static void add_prism(struct cad_node *node, const struct frame *frame, const double corners[8][3], uint32_t open_faces)
+static void add_prism(struct cad_node *node, const struct primitive_frame *frame, const double corners[8][3], uint32_t open_faces)
 {
     static const int faces[RVM_MAX_FACES][4] = { { 0, 3, 2, 1 }, { 4, 5, 6, 7 }, { 0, 1, 5, 4 },
                                                  { 1, 2, 6, 5 }, { 2, 3, 7, 6 }, { 3, 0, 4, 7 } };
@@ -169,7 +170,7 @@ static void add_prism(struct cad_node *node, const struct frame *frame, const do
     }
 }
 
-static void add_pyramid(struct cad_node *node, const struct frame *frame, const double *n, uint32_t open_faces)
+static void add_pyramid(struct cad_node *node, const struct primitive_frame *frame, const double *n, uint32_t open_faces)
 {
     double corners[8][3];
     for (int i = 0; i < 8; i++) {
@@ -182,7 +183,7 @@ static void add_pyramid(struct cad_node *node, const struct frame *frame, const 
     add_prism(node, frame, corners, open_faces);
 }
 
-static void add_box(struct cad_node *node, const struct frame *frame, const double *n, uint32_t open_faces)
+static void add_box(struct cad_node *node, const struct primitive_frame *frame, const double *n, uint32_t open_faces)
 {
     add_pyramid(node, frame, (double[7]){ n[0], n[1], n[0], n[1], 0, 0, n[2] }, open_faces);
 }
@@ -192,7 +193,8 @@ static int steps_of(double angle, double radius_m, double chord_m)
     return (int)fmax(1, ceil(corners_of(radius_m, chord_m) * fabs(angle) / (2 * M_PI) - 1e-6));
 }
 
-static void add_rectangular_torus(struct cad_node *node, const struct frame *frame, const double *n, double chord_m, uint32_t open_faces)
+static void add_rectangular_torus(struct cad_node *node, const struct primitive_frame *frame, const double *n, double chord_m,
+                                  uint32_t open_faces)
 {
     double inner = n[0], outer = n[1], half = n[2] / 2, angle = n[3];
     int steps = steps_of(angle, outer * frame->scale, chord_m);
@@ -228,25 +230,26 @@ static void add_rectangular_torus(struct cad_node *node, const struct frame *fra
     }
 }
 
-static struct ring torus_ring(double offset, double radius, double angle)
+static struct corner_ring torus_ring(double offset, double radius, double angle)
 {
     double c = cos(angle), s = sin(angle);
-    return (struct ring){ .centre = { offset * c, offset * s, 0 }, .x = { radius * c, radius * s, 0 }, .y = { 0, 0, radius } };
+    return (struct corner_ring){ .centre = { offset * c, offset * s, 0 }, .x = { radius * c, radius * s, 0 }, .y = { 0, 0, radius } };
 }
 
 /* The corners turn a little along the way, by less than half of one, where the two ends ask for different first corners. */
-static void add_circular_torus(struct cad_node *node, const struct frame *frame, const double *n, double chord_m, uint32_t open_faces)
+static void add_circular_torus(struct cad_node *node, const struct primitive_frame *frame, const double *n, double chord_m,
+                               uint32_t open_faces)
 {
     double offset = n[0], radius = n[1], angle = n[2];
     int corners = corners_of(radius * frame->scale, chord_m), steps = steps_of(angle, (offset + radius) * frame->scale, chord_m);
-    struct ring ends[2] = { torus_ring(offset, radius, 0), torus_ring(offset, radius, angle) };
+    struct corner_ring ends[2] = { torus_ring(offset, radius, 0), torus_ring(offset, radius, angle) };
     double each = 2 * M_PI / corners;
     for (int end = 0; end < 2; end++)
         ends[end].phase = phase_of(frame, ends[end].x, ends[end].y);
     double turn = remainder(ends[1].phase - ends[0].phase, each);
     uint32_t before = 0;
     for (int i = 0; i <= steps; i++) {
-        struct ring ring = torus_ring(offset, radius, angle * i / steps);
+        struct corner_ring ring = torus_ring(offset, radius, angle * i / steps);
         ring.phase = ends[0].phase + turn * i / steps;
         uint32_t row = (uint32_t)node->vertex_count;
         for (int k = 0; k < corners; k++) {
@@ -270,8 +273,8 @@ static void add_circular_torus(struct cad_node *node, const struct frame *frame,
 }
 
 /* Part of an ellipsoid of revolution over z = 0: `across` from the axis, from `low` (an angle above the equator) to the pole. */
-static void add_dome(struct cad_node *node, const struct frame *frame, double across, double up, double centre_z, double low, int corners,
-                     double phase)
+static void add_dome(struct cad_node *node, const struct primitive_frame *frame, double across, double up, double centre_z, double low,
+                     int corners, double phase)
 {
     int rows = (int)fmax(2, ceil(corners * (M_PI / 2 - low) / (2 * M_PI)));
     uint32_t before = 0;
@@ -292,13 +295,14 @@ static void add_dome(struct cad_node *node, const struct frame *frame, double ac
         add_triangle(node, frame, before + k, before + (k + 1) % (uint32_t)corners, pole);
 }
 
-static struct ring level_ring(double radius, double z)
+static struct corner_ring level_ring(double radius, double z)
 {
-    return (struct ring){ .centre = { 0, 0, z }, .x = { radius, 0, 0 }, .y = { 0, radius, 0 } };
+    return (struct corner_ring){ .centre = { 0, 0, z }, .x = { radius, 0, 0 }, .y = { 0, radius, 0 } };
 }
 
 /* A cap of a sphere of radius (r^2 + h^2) / 2h, or half an ellipsoid. */
-static void add_dish(struct cad_node *node, const struct frame *frame, const double *n, bool spherical, double chord_m, uint32_t open_faces)
+static void add_dish(struct cad_node *node, const struct primitive_frame *frame, const double *n, bool spherical, double chord_m,
+                     uint32_t open_faces)
 {
     double radius = n[0], height = n[1], across = radius, up = height, centre = 0, low = 0;
     if (spherical) {
@@ -306,7 +310,7 @@ static void add_dish(struct cad_node *node, const struct frame *frame, const dou
         centre = height - up;
         low = asin(fmax(-1, fmin(1, -centre / up)));
     }
-    struct ring base = level_ring(radius, 0);
+    struct corner_ring base = level_ring(radius, 0);
     base.phase = phase_of(frame, base.x, base.y);
     int corners = corners_of(radius * frame->scale, chord_m);
     add_dome(node, frame, across, up, centre, low, corners, base.phase);
@@ -314,7 +318,7 @@ static void add_dish(struct cad_node *node, const struct frame *frame, const dou
         add_cap(node, frame, &base, corners, true);
 }
 
-static void add_sphere(struct cad_node *node, const struct frame *frame, const double *n, double chord_m)
+static void add_sphere(struct cad_node *node, const struct primitive_frame *frame, const double *n, double chord_m)
 {
     double radius = n[0] / 2;
     int corners = corners_of(radius * frame->scale, chord_m), rows = corners / 2;
@@ -338,7 +342,7 @@ static void add_sphere(struct cad_node *node, const struct frame *frame, const d
 
 /* Joins two rings that may have different numbers of corners: the next triangle takes the corner that comes first round the axis. A ring
  * without radius has no edges. */
-static void join_rings(struct cad_node *node, const struct frame *frame, const uint32_t rows[2], const int corners[2],
+static void join_rings(struct cad_node *node, const struct primitive_frame *frame, const uint32_t rows[2], const int corners[2],
                        const double radii[2])
 {
     for (int low = 0, high = 0; low < corners[0] || high < corners[1];) {
@@ -357,7 +361,7 @@ static void join_rings(struct cad_node *node, const struct frame *frame, const u
 
 /* A cone's side between two circles that may be offset and whose planes may be inclined. A circle without radius is as many corners as the
  * other has, all in one point. */
-static void add_snout(struct cad_node *node, const struct frame *frame, const double *n, double chord_m, uint32_t open_faces)
+static void add_snout(struct cad_node *node, const struct primitive_frame *frame, const double *n, double chord_m, uint32_t open_faces)
 {
     double height = n[2], radii[2] = { n[0], n[1] };
     double phase = phase_of(frame, (double[3]){ 1, 0, 0 }, (double[3]){ 0, 1, 0 });
@@ -377,7 +381,7 @@ static void add_snout(struct cad_node *node, const struct frame *frame, const do
     join_rings(node, frame, rows, corners, radii);
     for (int end = 0; end < 2; end++) {
         double side = end ? 0.5 : -0.5, r = radii[end];
-        struct ring ring = { .centre = { side * n[3], side * n[4], side * height },
+        struct corner_ring ring = { .centre = { side * n[3], side * n[4], side * height },
                              .x = { r, 0, r * tan(n[end ? 7 : 5]) },
                              .y = { 0, r, r * tan(n[end ? 8 : 6]) },
                              .phase = phase };
@@ -386,7 +390,7 @@ static void add_snout(struct cad_node *node, const struct frame *frame, const do
     }
 }
 
-static void add_line(struct cad_node *node, const struct frame *frame, const double *n)
+static void add_line(struct cad_node *node, const struct primitive_frame *frame, const double *n)
 {
     double from[3], to[3];
     to_plant(frame, (double[3]){ n[0], 0, 0 }, from);
@@ -396,9 +400,9 @@ static void add_line(struct cad_node *node, const struct frame *frame, const dou
 
 /* --- polygons --------------------------------------------------------------------------------------------------------------------- */
 
-struct polygon { /* what GLU's callbacks need */
+struct tessellated_polygon { /* what GLU's callbacks need */
     struct cad_node *node;
-    const struct frame *frame;
+    const struct primitive_frame *frame;
     double normal[3];
     const double (*corner)[3];
     uint32_t three[3];
@@ -409,7 +413,7 @@ struct polygon { /* what GLU's callbacks need */
 
 static void on_vertex(void *vertex, void *user)
 {
-    struct polygon *polygon = user;
+    struct tessellated_polygon *polygon = user;
     polygon->three[polygon->count++] = add_vertex(polygon->node, polygon->frame, vertex, polygon->normal);
     if (polygon->count == 3) {
         add_triangle(polygon->node, polygon->frame, polygon->three[0], polygon->three[1], polygon->three[2]);
@@ -429,7 +433,7 @@ static void on_combine(GLdouble at[3], void *of[4], GLfloat weight[4], void **ou
 {
     (void)of;
     (void)weight;
-    struct polygon *polygon = user;
+    struct tessellated_polygon *polygon = user;
     if (polygon->made_count == MAX_CROSSINGS) { /* GLU keeps pointers: the array must not move */
         *out = polygon->made[MAX_CROSSINGS - 1];
         return;
@@ -451,13 +455,13 @@ static void contour_normal(const double (*points)[3], const struct rvm_contour *
     }
 }
 
-static const char *add_facets(struct cad_node *node, const struct frame *frame, const struct rvm_shape *shape)
+static const char *add_facets(struct cad_node *node, const struct primitive_frame *frame, const struct rvm_shape *shape)
 {
     size_t before = node->triangle_count;
     GLUtesselator *tess = gluNewTess();
     if (!tess)
         return "is too large";
-    struct polygon polygon = { .node = node, .frame = frame, .made = mem_array(MAX_CROSSINGS, sizeof(*polygon.made)) };
+    struct tessellated_polygon polygon = { .node = node, .frame = frame, .made = mem_array(MAX_CROSSINGS, sizeof(*polygon.made)) };
     gluTessCallback(tess, GLU_TESS_VERTEX_DATA, (_GLUfuncptr)on_vertex);
     gluTessCallback(tess, GLU_TESS_EDGE_FLAG, (_GLUfuncptr)on_edge_flag);
     gluTessCallback(tess, GLU_TESS_COMBINE_DATA, (_GLUfuncptr)on_combine);
@@ -528,7 +532,7 @@ static bool is_finite(const struct rvm_shape *shape)
 
 const char *rvm_shape_tessellate(const struct rvm_shape *shape, double chord_m, struct cad_node *node)
 {
-    struct frame frame;
+    struct primitive_frame frame;
     const double *n = shape->numbers;
     if (!is_finite(shape))
         return "has numbers that are not finite";
@@ -552,7 +556,8 @@ const char *rvm_shape_tessellate(const struct rvm_shape *shape, double chord_m, 
     return NULL;
 }
 
-static void circle_of(const struct frame *frame, const double centre[3], const double outward[3], double radius, struct rvm_face *face)
+static void circle_of(const struct primitive_frame *frame, const double centre[3], const double outward[3], double radius,
+                      struct rvm_face *face)
 {
     *face = (struct rvm_face){ .radius_m = radius * frame->scale };
     to_plant(frame, centre, face->centre_m);
@@ -561,8 +566,8 @@ static void circle_of(const struct frame *frame, const double centre[3], const d
 }
 
 /* u, v: half the sides, as vectors. */
-static void rectangle_of(const struct frame *frame, const double centre[3], const double outward[3], const double u[3], const double v[3],
-                         struct rvm_face *face)
+static void rectangle_of(const struct primitive_frame *frame, const double centre[3], const double outward[3], const double u[3],
+                         const double v[3], struct rvm_face *face)
 {
     circle_of(frame, centre, outward, 0, face);
     const double *sides[2] = { u, v };
@@ -572,7 +577,7 @@ static void rectangle_of(const struct frame *frame, const double centre[3], cons
     }
 }
 
-static int prism_faces(const struct frame *frame, const struct rvm_shape *shape, struct rvm_face *faces)
+static int prism_faces(const struct primitive_frame *frame, const struct rvm_shape *shape, struct rvm_face *faces)
 {
     const double *n = shape->numbers;
     bool box = shape->kind == RVM_BOX;
@@ -589,7 +594,7 @@ static int prism_faces(const struct frame *frame, const struct rvm_shape *shape,
     return box ? RVM_MAX_FACES : 2;
 }
 
-static int bend_faces(const struct frame *frame, const struct rvm_shape *shape, struct rvm_face *faces)
+static int bend_faces(const struct primitive_frame *frame, const struct rvm_shape *shape, struct rvm_face *faces)
 {
     const double *n = shape->numbers;
     bool round = shape->kind == RVM_CIRCULAR_TORUS;
@@ -608,7 +613,7 @@ static int bend_faces(const struct frame *frame, const struct rvm_shape *shape, 
 int rvm_shape_faces(const struct rvm_shape *shape, struct rvm_face faces[RVM_MAX_FACES])
 {
     static const double down[3] = { 0, 0, -1 }, up[3] = { 0, 0, 1 };
-    struct frame frame;
+    struct primitive_frame frame;
     const double *n = shape->numbers;
     if (!frame_of(shape->to_plant, &frame) || !is_finite(shape) || !has_extent(shape))
         return 0;

@@ -31,17 +31,17 @@ const char *unpack_ending(const char *path)
     return NULL;
 }
 
-struct reading {
+struct archive_reading {
     unzFile zip; /* or */
     gzFile gzip;
 };
 
-static int read_block(const struct reading *from, char *block)
+static int read_block(const struct archive_reading *from, char *block)
 {
     return from->zip ? unzReadCurrentFile(from->zip, block, BLOCK_BYTES) : gzread(from->gzip, block, BLOCK_BYTES);
 }
 
-static const char *copy(const struct reading *from, FILE *to, size_t most)
+static const char *copy(const struct archive_reading *from, FILE *to, size_t most)
 {
     static char block[BLOCK_BYTES];
     size_t total = 0;
@@ -57,7 +57,7 @@ static const char *copy(const struct reading *from, FILE *to, size_t most)
 }
 
 /* Closes an archive. Returns whether all that was read has the checksum of the archive and is not cut off. */
-static bool finish(const struct reading *from)
+static bool finish(const struct archive_reading *from)
 {
     bool good = true;
     if (from->zip) {
@@ -83,7 +83,7 @@ bool unpack(const char *path, const char *output, char *why, size_t why_bytes)
 {
     struct stat st;
     size_t most = free_bytes + (stat(path, &st) == 0 ? (size_t)st.st_size * MOST_RATIO : 0);
-    struct reading from = { .zip = unzOpen64(path) };
+    struct archive_reading from = { .zip = unzOpen64(path) };
     const char *reason = NULL;
     if (!from.zip)
         from.gzip = gzopen(path, "rb");

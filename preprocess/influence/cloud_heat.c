@@ -18,7 +18,7 @@
 #define REGULARISATION 1e-9 /* of a row's own entry */
 enum { PITCHES = 3, PLACES = 4 }; /* candidates along a spacing; points that a place lies between */
 
-struct link {
+struct heat_link {
     uint32_t from, to; /* from < to */
     double weight;
 };
@@ -29,7 +29,7 @@ struct cloud_heat {
     size_t count, capacity;
     double (*points)[3], (*across)[2][3]; /* axes of its tangent plane */
     uint32_t *piece;                      /* points that hang together */
-    struct link *links;
+    struct heat_link *links;
     size_t link_count, link_capacity;
     uint32_t *first, *order; /* links by point */
     int k;
@@ -109,7 +109,7 @@ static void take_pair(void *arg, size_t point, size_t other, double distance_m)
     mem_grow(&cloud->links, &cloud->link_capacity, cloud->link_count + 1, sizeof(*cloud->links));
     double tau = cloud->spacing_m * cloud->spacing_m / 2;
     cloud->links[cloud->link_count++] =
-        (struct link){ (uint32_t)point, (uint32_t)other, exp(-distance_m * distance_m / (4 * tau)) / (4 * M_PI * tau * tau) };
+        (struct heat_link){ (uint32_t)point, (uint32_t)other, exp(-distance_m * distance_m / (4 * tau)) / (4 * M_PI * tau * tau) };
 }
 
 static void sort_links(struct cloud_heat *cloud)
@@ -129,7 +129,7 @@ static void sort_links(struct cloud_heat *cloud)
     }
 }
 
-static uint32_t other_end(const struct link *link, size_t point)
+static uint32_t other_end(const struct heat_link *link, size_t point)
 {
     return link->from == point ? link->to : link->from;
 }
@@ -182,7 +182,7 @@ static void find_plane(struct cloud_heat *cloud, size_t point)
 {
     double c[3][3] = { { 0 } }, normal[3] = { 0, 0, 1 }, trace = 0;
     for (uint32_t i = cloud->first[point]; i < cloud->first[point + 1]; i++) {
-        const struct link *link = &cloud->links[cloud->order[i]];
+        const struct heat_link *link = &cloud->links[cloud->order[i]];
         double e[3];
         vec_sub(cloud->points[other_end(link, point)], cloud->points[point], e);
         for (int j = 0; j < 9; j++)
@@ -234,7 +234,7 @@ static cholmod_sparse *assemble(struct cloud_heat *cloud, const double *diagonal
     }
     t->nnz = cloud->count;
     for (size_t i = 0; i < cloud->link_count; i++) {
-        const struct link *link = &cloud->links[i];
+        const struct heat_link *link = &cloud->links[i];
         x[link->from] += scale * link->weight;
         x[link->to] += scale * link->weight;
         row[t->nnz] = (int)link->to;
@@ -253,7 +253,7 @@ static bool factor(struct cloud_heat *cloud)
     for (size_t i = 0; i < cloud->count; i++)
         area_m2[i] = M_PI * reach_m * reach_m / (cloud->first[i + 1] - cloud->first[i] + 1);
     for (size_t i = 0; i < cloud->link_count; i++) {
-        struct link *link = &cloud->links[i];
+        struct heat_link *link = &cloud->links[i];
         link->weight *= area_m2[link->from] * area_m2[link->to];
         little[link->from] += REGULARISATION * link->weight;
         little[link->to] += REGULARISATION * link->weight;
@@ -350,7 +350,7 @@ static void slope_at(const struct cloud_heat *cloud, size_t point, const double 
 {
     double xx = 0, xy = 0, yy = 0, bx = 0, by = 0;
     for (uint32_t i = cloud->first[point]; i < cloud->first[point + 1]; i++) {
-        const struct link *link = &cloud->links[cloud->order[i]];
+        const struct heat_link *link = &cloud->links[cloud->order[i]];
         uint32_t to = other_end(link, point);
         double e[3], rise = values[to] - values[point];
         vec_sub(cloud->points[to], cloud->points[point], e);
@@ -438,7 +438,7 @@ static void flow(const struct cloud_heat *cloud, double *u, double (*slopes)[3],
     }
     memset(b, 0, cloud->count * sizeof(*b));
     for (size_t i = 0; i < cloud->link_count; i++) {
-        const struct link *link = &cloud->links[i];
+        const struct heat_link *link = &cloud->links[i];
         double e[3];
         vec_sub(cloud->points[link->to], cloud->points[link->from], e);
         double rise = link->weight * (vec_dot(slopes[link->from], e) + vec_dot(slopes[link->to], e)) / 2;

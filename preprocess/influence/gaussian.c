@@ -336,14 +336,14 @@ static void take_readings(const struct solving *solving, const double *u, struct
     }
 }
 
-struct samples { /* a block of them; a thread's */
+struct gaussian_samples { /* a block of them; a thread's */
     float *missed;   /* [point][sample] */
     float *readings; /* [sample][sensor] */
     double *levels;  /* by component */
     struct solver solver;
 };
 
-static bool take_samples(const struct solving *solving, struct samples *samples, size_t block)
+static bool take_samples(const struct solving *solving, struct gaussian_samples *samples, size_t block)
 {
     const size_t rows = solving->laplacian.row_count, n = solving->influence->count, points = solving->mesh->mesh.point_count;
     struct signs signs[BLOCK];
@@ -385,9 +385,9 @@ static void sample_blocks(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
     const size_t n = solving->influence->count, points = solving->mesh->mesh.point_count;
-    struct samples samples = { .missed = mem_try_array(BLOCK * points, sizeof(*samples.missed)),
-                               .readings = mem_array(BLOCK * n, sizeof(*samples.readings)),
-                               .levels = mem_array(points, sizeof(*samples.levels)) };
+    struct gaussian_samples samples = { .missed = mem_try_array(BLOCK * points, sizeof(*samples.missed)),
+                                        .readings = mem_array(BLOCK * n, sizeof(*samples.readings)),
+                                        .levels = mem_array(points, sizeof(*samples.levels)) };
     solver_init(&samples.solver);
     bool good = samples.missed;
     for (size_t block = begin; good && block < end; block++) {

@@ -95,7 +95,7 @@ void readings_table_finish(struct readings_table *table)
 
 /* --- the likelihood ---------------------------------------------------------------------------------------------------------- */
 
-struct fit {
+struct gaussian_fit {
     const struct gaussian_params *stated;
     const struct readings_table *table;
     struct log *log;
@@ -107,7 +107,7 @@ struct fit {
     double best_likelihood;
 };
 
-static void find_scatter(struct fit *fit)
+static void find_scatter(struct gaussian_fit *fit)
 {
     const struct readings_table *table = fit->table;
     const size_t n = table->count;
@@ -137,7 +137,7 @@ static size_t count_bodies(const uint32_t *body, size_t count)
 }
 
 /* With covariance s^2 (K + share^2 1); s: as stated, or the best. */
-static void try_share(struct fit *fit, double range_m, double share, double deviation)
+static void try_share(struct gaussian_fit *fit, double range_m, double share, double deviation)
 {
     const size_t n = fit->table->count;
     const uint32_t *body = fit->covariance.bodies.of_sensor;
@@ -159,7 +159,7 @@ static void try_share(struct fit *fit, double range_m, double share, double devi
 }
 
 /* What is stated is kept: with a stated noise its share follows from the deviation, which is then sought in its place. */
-static void try_range(struct fit *fit, double range_m)
+static void try_range(struct gaussian_fit *fit, double range_m)
 {
     const struct gaussian_params *stated = fit->stated;
     double step = log(MOST_SHARE / GAUSSIAN_LEAST_NOISE) / (SHARES - 1), centre = NAN;
@@ -181,12 +181,12 @@ static double logarithm(double x) /* where `log` is the one that is written to *
     return log(x);
 }
 
-struct trial { /* the best for a range */
+struct range_trial { /* the best for a range */
     double log_range, likelihood;
 };
 
 /* False: out of memory, logged. */
-static bool try_one(struct fit *fit, double log_range, struct trial *trial)
+static bool try_one(struct gaussian_fit *fit, double log_range, struct range_trial *trial)
 {
     const struct gaussian_params best = fit->best;
     const double best_likelihood = fit->best_likelihood;
@@ -194,7 +194,7 @@ static bool try_one(struct fit *fit, double log_range, struct trial *trial)
         return false;
     fit->best_likelihood = -INFINITY;
     try_range(fit, exp(log_range));
-    *trial = (struct trial){ log_range, fit->best_likelihood };
+    *trial = (struct range_trial){ log_range, fit->best_likelihood };
     if (!(fit->best_likelihood > best_likelihood)) {
         fit->best = best;
         fit->best_likelihood = best_likelihood;
@@ -203,11 +203,11 @@ static bool try_one(struct fit *fit, double log_range, struct trial *trial)
 }
 
 /* False: out of memory, logged; finish_fit() even so. */
-static bool begin_fit(struct fit *fit, const struct gaussian_params *stated, struct log *log, struct workers *workers,
+static bool begin_fit(struct gaussian_fit *fit, const struct gaussian_params *stated, struct log *log, struct workers *workers,
                       const struct influence_mesh *mesh, const struct readings_table *table)
 {
     const size_t n = table->count;
-    *fit = (struct fit){ .stated = stated, .table = table, .log = log, .workers = workers, .best_likelihood = -INFINITY };
+    *fit = (struct gaussian_fit){ .stated = stated, .table = table, .log = log, .workers = workers, .best_likelihood = -INFINITY };
     fit->scatter = mem_array(n * n, sizeof(*fit->scatter));
     fit->room[0] = mem_array(n * n, sizeof(double));
     fit->room[1] = mem_array(n * n, sizeof(double));
@@ -216,7 +216,7 @@ static bool begin_fit(struct fit *fit, const struct gaussian_params *stated, str
     return gaussian_covariance_init(&fit->covariance, log, mesh);
 }
 
-static void finish_fit(struct fit *fit)
+static void finish_fit(struct gaussian_fit *fit)
 {
     gaussian_covariance_finish(&fit->covariance);
     mem_free(fit->scatter);
@@ -249,8 +249,8 @@ static bool look_around(const struct gaussian_params *stated, struct log *log, s
 {
     struct influence_mesh few_of_mesh;
     struct readings_table few_of_table;
-    struct fit fit;
-    struct trial trial;
+    struct gaussian_fit fit;
+    struct range_trial trial;
     pick_few(mesh, table, &few_of_mesh, &few_of_table);
     bool good = begin_fit(&fit, stated, log, workers, &few_of_mesh, &few_of_table);
     for (int i = 0; good && i < RANGES; i++)
@@ -263,7 +263,7 @@ static bool look_around(const struct gaussian_params *stated, struct log *log, s
 }
 
 /* Where the parabola through three of them is highest; NAN: nowhere between. */
-static double summit(const struct trial at[3])
+static double summit(const struct range_trial at[3])
 {
     double a = at[1].log_range - at[0].log_range, b = at[1].log_range - at[2].log_range;
     double fa = at[1].likelihood - at[0].likelihood, fb = at[1].likelihood - at[2].likelihood;
@@ -272,9 +272,9 @@ static double summit(const struct trial at[3])
 }
 
 /* Three of them around the best, a step apart, then closer. */
-static bool close_in(struct fit *fit, double start, double step, double first, double last)
+static bool close_in(struct gaussian_fit *fit, double start, double step, double first, double last)
 {
-    struct trial at[3];
+    struct range_trial at[3];
     start = min_of(max_of(start, first + step), last - step);
     for (int i = 0; i < 3; i++)
         if (!try_one(fit, start + step * (i - 1), &at[i]))
@@ -291,7 +291,7 @@ static bool close_in(struct fit *fit, double start, double step, double first, d
     }
     for (int i = 0; i < CLOSER; i++) {
         double log_range = summit(at);
-        struct trial found;
+        struct range_trial found;
         if (!(log_range > at[0].log_range && log_range < at[2].log_range) || fabs(log_range - at[1].log_range) < SAME)
             break;
         if (!try_one(fit, log_range, &found))
@@ -310,7 +310,7 @@ bool gaussian_fit(struct gaussian_params *params, struct log *log, struct worker
                   const struct readings_table *table, double least_m, double most_m, char why[300])
 {
     const size_t n = table->count;
-    struct fit fit;
+    struct gaussian_fit fit;
     if (n < LEAST_SENSORS) {
         snprintf(why, 300, "%zu sensors on one asset: nothing can be fitted to fewer than %d; state range_m, noise and deviation", n,
                  LEAST_SENSORS);
@@ -321,7 +321,7 @@ bool gaussian_fit(struct gaussian_params *params, struct log *log, struct worker
         double first = logarithm(least_m), last = logarithm(most_m), step = (last - first) / (RANGES - 1), start;
         good = look_around(params, log, workers, mesh, table, first, step, &start) && close_in(&fit, start, step / 2, first, last);
     } else if (good) {
-        struct trial trial;
+        struct range_trial trial;
         good = try_one(&fit, logarithm(params->range_m), &trial);
     }
     if (!good)

@@ -25,7 +25,7 @@
 #define FIT_MOST 3.0
 enum { BEND_PLACES = 8000000 }; /* where the bend between corners is looked for: more would take too long */
 
-struct making {
+struct influence_making {
     struct log *log;
     struct workers *workers;
     const struct influence_input *input;
@@ -76,7 +76,7 @@ static const char **names_of(const struct influence_input *input, int group)
 }
 
 /* Takes what the plant file states, and fits the rest to the readings that it names. */
-static bool find_params(struct making *making, int group, const double (*places_m)[3], size_t count, struct gaussian_params *gp)
+static bool find_params(struct influence_making *making, int group, const double (*places_m)[3], size_t count, struct gaussian_params *gp)
 {
     const struct influence_input *input = making->input;
     const struct plant_group *of = &input->plant->groups[group];
@@ -113,7 +113,8 @@ static bool find_params(struct making *making, int group, const double (*places_
 }
 
 /* A range that the triangles cannot show is refused. */
-static bool range_good(const struct making *making, int group, const struct influence_mesh *mesh, const struct gaussian_params *gp)
+static bool range_good(const struct influence_making *making, int group, const struct influence_mesh *mesh,
+                       const struct gaussian_params *gp)
 {
     if (mesh->longest_m * EDGES_LEAST <= gp->range_m)
         return true;
@@ -125,7 +126,7 @@ static bool range_good(const struct making *making, int group, const struct infl
     return false;
 }
 
-static bool solve(struct making *making, struct influence *found, enum interpolation interpolation, double decay_m,
+static bool solve(struct influence_making *making, struct influence *found, enum interpolation interpolation, double decay_m,
                   const struct influence_mesh *mesh, const struct gaussian_params *gp, const struct influence_anchor *anchors,
                   struct influence_bend *bend)
 {
@@ -138,7 +139,7 @@ static bool solve(struct making *making, struct influence *found, enum interpola
 }
 
 /* Errors that were not measured may be of any size. Returns false if out of memory. */
-static bool bound_errors(const struct making *making, const struct plant_group *group, enum interpolation interpolation,
+static bool bound_errors(const struct influence_making *making, const struct plant_group *group, enum interpolation interpolation,
                          struct influence_bend *bend, struct influence *found)
 {
     double around = interpolation == INTERPOLATION_FIN ? (group->ambient - group->min) / (group->max - group->min) : 0;
@@ -155,7 +156,7 @@ static bool bound_errors(const struct making *making, const struct plant_group *
 }
 
 /* bend: NULL if there are too many places. */
-static bool add_entry(struct making *making, int group, enum interpolation interpolation, const struct influence_mesh *mesh,
+static bool add_entry(struct influence_making *making, int group, enum interpolation interpolation, const struct influence_mesh *mesh,
                       const struct gaussian_params *gp, const struct influence_anchor *anchors, struct influence_bend *bend)
 {
     const struct influence_input *input = making->input;
@@ -178,7 +179,8 @@ static bool add_entry(struct making *making, int group, enum interpolation inter
            bound_errors(making, &input->plant->groups[group], interpolation, bend, &making->found[at]);
 }
 
-static bool add_transport(struct making *making, int group, const struct influence_mesh *mesh, const struct influence_anchor *anchors)
+static bool add_transport(struct influence_making *making, int group, const struct influence_mesh *mesh,
+                          const struct influence_anchor *anchors)
 {
     uint32_t at = making->header.entry_count++;
     mem_grow(&making->entries, &making->capacity, at + 1, sizeof(*making->entries));
@@ -197,7 +199,7 @@ struct cloud_sum {
     size_t vertices;
 };
 
-static bool compare(struct making *making, const double place_m[3], const float *by_heat_m, float *ours_m, struct cloud_sum *sum)
+static bool compare(struct influence_making *making, const double place_m[3], const float *by_heat_m, float *ours_m, struct cloud_sum *sum)
 {
     struct cloud_report *report = making->input->cloud;
     if (!vertex_embedding_distances(making->embedding, place_m, ours_m))
@@ -216,7 +218,7 @@ static bool compare(struct making *making, const double place_m[3], const float 
 }
 
 struct heat_work {
-    struct making *making;
+    struct influence_making *making;
     const double (*places_m)[3];
     float *out;
     atomic_bool failed;
@@ -233,7 +235,7 @@ static void find_by_heat(void *arg, size_t begin, size_t end)
 }
 
 /* What the first sensors' distances differ by is for the report. */
-static bool add_heat(struct making *making, int group, const double (*places_m)[3], size_t count)
+static bool add_heat(struct influence_making *making, int group, const double (*places_m)[3], size_t count)
 {
     const struct influence_input *input = making->input;
     struct cloud_sum sum = { 0 };
@@ -272,7 +274,7 @@ static bool add_heat(struct making *making, int group, const double (*places_m)[
 
 /* --- groups and the file ---------------------------------------------------------------------------------------------------- */
 
-static bool add_group(struct making *making, int group)
+static bool add_group(struct influence_making *making, int group)
 {
     const struct influence_input *input = making->input;
     const struct plant_group *of = &input->plant->groups[group];
@@ -319,7 +321,7 @@ static uint64_t padded(uint64_t bytes)
 }
 
 /* One array after the other, each padded. Returns 0 or -errno. */
-static int write_file(struct making *making)
+static int write_file(struct influence_making *making)
 {
     static const char zeros[8];
     const struct influence_input *input = making->input;
@@ -357,7 +359,7 @@ static int write_file(struct making *making)
 
 bool influence_file_make(struct log *log, struct workers *workers, const struct influence_input *input, char why[200])
 {
-    struct making making = { .log = log, .workers = workers, .input = input };
+    struct influence_making making = { .log = log, .workers = workers, .input = input };
     making.header.vertex_count = (uint32_t)input->vertex_count;
     making.embedding = vertex_embedding_create(input->surface, input->positions_m, input->normals, input->vertex_count, input->triangles,
                                                input->levels[0].triangle_count);

@@ -14,7 +14,7 @@
 #define LONGEST 400.0 /* nor below this share of the longest way along it, which on what is folded is many times its size */
 #define LEAST 1e-280  /* below it, what arrives has lost its direction */
 
-struct transport {
+struct vector_heat {
     struct influence *influence;
     const struct influence_mesh *mesh;
     const struct influence_anchor *anchors;
@@ -28,7 +28,7 @@ struct transport {
 /* --- the surface ------------------------------------------------------------------------------------------------------------ */
 
 /* Of the triangles around it, by their areas; of the largest one where they cancel out, as on a sheet with two sides. */
-static void find_normals(struct transport *transport)
+static void find_normals(struct vector_heat *transport)
 {
     const struct trimesh *mesh = &transport->mesh->mesh;
     double *largest = mem_array(mesh->point_count, sizeof(*largest)), (*spare)[3] = mem_array(mesh->point_count, sizeof(*spare));
@@ -58,10 +58,10 @@ static void find_normals(struct transport *transport)
 /* Edges of triangles around each point: which other end, how long. */
 struct ways {
     size_t *first; /* by point, and one more */
-    struct way {
+    struct transport_edge {
         uint32_t to;
         double length_m;
-    } *at;
+    } * at;
     uint32_t *queue;
     double *gone_m; /* by point; < 0: not come to yet */
 };
@@ -81,8 +81,8 @@ static void find_ways(const struct intrinsic *in, size_t point_count, struct way
     for (size_t t = 0; t < in->tri_count; t++)
         for (int i = 0; i < 3; i++) {
             uint32_t a = in->points[t][i], b = in->points[t][(i + 1) % 3];
-            ways->at[next[a]++] = (struct way){ b, in->lengths[t][i] };
-            ways->at[next[b]++] = (struct way){ a, in->lengths[t][i] };
+            ways->at[next[a]++] = (struct transport_edge){ b, in->lengths[t][i] };
+            ways->at[next[b]++] = (struct transport_edge){ a, in->lengths[t][i] };
         }
     for (size_t p = 0; p < point_count; p++)
         ways->gone_m[p] = -1;
@@ -132,7 +132,7 @@ static double longest_way_m(const struct intrinsic *in, size_t point_count)
     return longest_m;
 }
 
-static double diffusion_time_m2(const struct transport *transport)
+static double diffusion_time_m2(const struct vector_heat *transport)
 {
     const struct intrinsic *in = &transport->mesh->intrinsic;
     const struct trimesh *mesh = &transport->mesh->mesh;
@@ -160,7 +160,7 @@ static void put(struct triplets *triplets, uint32_t row, uint32_t column, double
 }
 
 /* Two points: weight times the rotation from b's plane to a's, which has the higher row. */
-static void put_pair(const struct transport *transport, struct triplets *triplets, uint32_t a, uint32_t b, double weight)
+static void put_pair(const struct vector_heat *transport, struct triplets *triplets, uint32_t a, uint32_t b, double weight)
 {
     const uint32_t *row_of = transport->laplacian.row_of;
     if (row_of[a] < row_of[b]) {
@@ -177,7 +177,7 @@ static void put_pair(const struct transport *transport, struct triplets *triplet
     }
 }
 
-static void put_edges(const struct transport *transport, const cholmod_sparse *scalar, uint32_t *points, double *diagonal,
+static void put_edges(const struct vector_heat *transport, const cholmod_sparse *scalar, uint32_t *points, double *diagonal,
                       struct triplets *triplets)
 {
     const struct laplacian *laplacian = &transport->laplacian;
@@ -200,7 +200,7 @@ static void put_edges(const struct transport *transport, const cholmod_sparse *s
 
 /* The scalar matrix with a rotation at each of its edges. An edge of negative weight, as may be at a rim opposite an obtuse angle, is left
    out: rotations that do not add up round a triangle are definite only where all weights are positive. */
-static cholmod_sparse *assemble(const struct transport *transport, double time_m2, cholmod_common *common)
+static cholmod_sparse *assemble(const struct vector_heat *transport, double time_m2, cholmod_common *common)
 {
     const struct laplacian *laplacian = &transport->laplacian;
     cholmod_sparse *scalar = laplacian_assemble(laplacian, laplacian->mass_m2, time_m2, common);
@@ -223,7 +223,7 @@ static cholmod_sparse *assemble(const struct transport *transport, double time_m
     return matrix;
 }
 
-static bool factorize(struct transport *transport, cholmod_common *common)
+static bool factorize(struct vector_heat *transport, cholmod_common *common)
 {
     cholmod_sparse *matrix = assemble(transport, diffusion_time_m2(transport), common);
     transport->factor = matrix ? cholmod_analyze(matrix, common) : NULL;
@@ -235,7 +235,7 @@ static bool factorize(struct transport *transport, cholmod_common *common)
 /* --- one sensor ------------------------------------------------------------------------------------------------------------- */
 
 /* A vector at the point nearest to it, at all points that it touches. */
-static void start_from(const struct transport *transport, size_t sensor, double *b)
+static void start_from(const struct vector_heat *transport, size_t sensor, double *b)
 {
     const struct influence_disc *disc = &transport->mesh->discs[sensor];
     const double *normal = transport->normals[disc->points[0]];
@@ -251,7 +251,7 @@ static void start_from(const struct transport *transport, size_t sensor, double 
     }
 }
 
-static float angle_at(const struct transport *transport, size_t vertex, const double *u)
+static float angle_at(const struct vector_heat *transport, size_t vertex, const double *u)
 {
     const struct influence_anchor *anchor = &transport->anchors[vertex];
     double normal[3], frame[2][3], x = 0, y = 0;
@@ -276,7 +276,7 @@ static float angle_at(const struct transport *transport, size_t vertex, const do
 
 static void solve_some(void *arg, size_t begin, size_t end)
 {
-    struct transport *transport = arg;
+    struct vector_heat *transport = arg;
     struct solver solver;
     solver_init(&solver);
     for (size_t sensor = begin; sensor < end && !transport->failed; sensor++) {
@@ -295,7 +295,7 @@ static void solve_some(void *arg, size_t begin, size_t end)
 bool transport_angles(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
                       const struct influence_anchor *anchors, const float (*normals)[3], size_t vertex_count)
 {
-    struct transport transport = { .influence = influence, .mesh = mesh, .anchors = anchors, .vertex_normals = normals };
+    struct vector_heat transport = { .influence = influence, .mesh = mesh, .anchors = anchors, .vertex_normals = normals };
     cholmod_common common;
     laplacian_start(&common);
     *influence = (struct influence){ .count = mesh->source_count, .vertex_count = vertex_count };

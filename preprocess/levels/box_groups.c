@@ -13,11 +13,11 @@
 #define FEW 24        /* boxes that are compared each with each */
 #define MOST_DEPTH 96 /* halvings: 24 bits of each axis, and some */
 
-struct cell {
+struct box_cell {
     float low_m[3], high_m[3];
 };
 
-static bool meet(const struct box *a, const struct box *b)
+static bool meet(const struct part_box *a, const struct part_box *b)
 {
     for (int axis = 0; axis < 3; axis++)
         if (a->high_m[axis] < b->low_m[axis] || b->high_m[axis] < a->low_m[axis])
@@ -25,7 +25,7 @@ static bool meet(const struct box *a, const struct box *b)
     return true;
 }
 
-static void join_each(const struct box *boxes, const uint32_t *list, size_t count, uint32_t *parent)
+static void join_each(const struct part_box *boxes, const uint32_t *list, size_t count, uint32_t *parent)
 {
     for (size_t i = 0; i < count; i++)
         for (size_t j = i + 1; j < count; j++)
@@ -33,7 +33,7 @@ static void join_each(const struct box *boxes, const uint32_t *list, size_t coun
                 trimesh_join(parent, boxes[list[i]].part, boxes[list[j]].part);
 }
 
-static bool are_one_group(const struct box *boxes, const uint32_t *list, size_t count, uint32_t *parent)
+static bool are_one_group(const struct part_box *boxes, const uint32_t *list, size_t count, uint32_t *parent)
 {
     uint32_t root = trimesh_root(parent, boxes[list[0]].part);
     for (size_t i = 1; i < count; i++)
@@ -43,7 +43,7 @@ static bool are_one_group(const struct box *boxes, const uint32_t *list, size_t 
 }
 
 /* The cell is no larger than what lies in it. */
-static void tighten(const struct box *boxes, const uint32_t *list, size_t count, struct cell *cell)
+static void tighten(const struct part_box *boxes, const uint32_t *list, size_t count, struct box_cell *cell)
 {
     for (int axis = 0; axis < 3; axis++) {
         float low = INFINITY, high = -INFINITY;
@@ -56,7 +56,7 @@ static void tighten(const struct box *boxes, const uint32_t *list, size_t count,
     }
 }
 
-static bool holds(const struct box *box, const float low_m[3], const float high_m[3])
+static bool holds(const struct part_box *box, const float low_m[3], const float high_m[3])
 {
     for (int axis = 0; axis < 3; axis++)
         if (box->low_m[axis] > low_m[axis] || box->high_m[axis] < high_m[axis])
@@ -65,7 +65,7 @@ static bool holds(const struct box *box, const float low_m[3], const float high_
 }
 
 /* What one box that fills the cell meets: all in it. Else those that have its middle in common. True: all. */
-static bool join_some(const struct box *boxes, const uint32_t *list, size_t count, const struct cell *cell, uint32_t *parent)
+static bool join_some(const struct part_box *boxes, const uint32_t *list, size_t count, const struct box_cell *cell, uint32_t *parent)
 {
     float middle_m[3];
     size_t filler = 0, first = count;
@@ -83,7 +83,7 @@ static bool join_some(const struct box *boxes, const uint32_t *list, size_t coun
 }
 
 /* The axis across which halving leaves fewest boxes in both halves; -1: none is a gain. */
-static int best_axis(const struct box *boxes, const uint32_t *list, size_t count, const struct cell *cell)
+static int best_axis(const struct part_box *boxes, const uint32_t *list, size_t count, const struct box_cell *cell)
 {
     int best = -1;
     size_t least = 2 * count;
@@ -102,9 +102,9 @@ static int best_axis(const struct box *boxes, const uint32_t *list, size_t count
     return best;
 }
 
-static void join_in(const struct box *boxes, uint32_t *list, size_t count, struct cell cell, int depth, uint32_t *parent);
+static void join_in(const struct part_box *boxes, uint32_t *list, size_t count, struct box_cell cell, int depth, uint32_t *parent);
 
-static void join_half(const struct box *boxes, const uint32_t *list, size_t count, const struct cell *half, int axis, int depth,
+static void join_half(const struct part_box *boxes, const uint32_t *list, size_t count, const struct box_cell *half, int axis, int depth,
                       uint32_t *parent)
 {
     uint32_t *inside = mem_array(count, sizeof(*inside));
@@ -117,7 +117,7 @@ static void join_half(const struct box *boxes, const uint32_t *list, size_t coun
 }
 
 /* Two boxes that meet have a place in common, and so both reach into the half that it lies in. */
-static void join_in(const struct box *boxes, uint32_t *list, size_t count, struct cell cell, int depth, uint32_t *parent)
+static void join_in(const struct part_box *boxes, uint32_t *list, size_t count, struct box_cell cell, int depth, uint32_t *parent)
 {
     if (count < 2 || are_one_group(boxes, list, count, parent))
         return;
@@ -129,15 +129,15 @@ static void join_in(const struct box *boxes, uint32_t *list, size_t count, struc
         join_each(boxes, list, count, parent);
         return;
     }
-    struct cell lower = cell, upper = cell;
+    struct box_cell lower = cell, upper = cell;
     lower.high_m[axis] = upper.low_m[axis] = 0.5f * (cell.low_m[axis] + cell.high_m[axis]);
     join_half(boxes, list, count, &lower, axis, depth, parent);
     join_half(boxes, list, count, &upper, axis, depth, parent);
 }
 
-void box_groups_join(const struct box *boxes, size_t count, uint32_t *parent)
+void box_groups_join(const struct part_box *boxes, size_t count, uint32_t *parent)
 {
-    struct cell all = { { -INFINITY, -INFINITY, -INFINITY }, { INFINITY, INFINITY, INFINITY } };
+    struct box_cell all = { { -INFINITY, -INFINITY, -INFINITY }, { INFINITY, INFINITY, INFINITY } };
     uint32_t *list = mem_array(count, sizeof(*list));
     for (size_t i = 0; i < count; i++)
         list[i] = (uint32_t)i;

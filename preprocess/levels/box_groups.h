@@ -5,13 +5,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct box {
+struct part_box {
     float low_m[3], high_m[3]; /* boxes that only touch meet, too */
     uint32_t part;
 };
 
 /* Joins, in the union-find forest `parent` (trimesh_join()), the parts of all boxes that overlap or touch. Takes time that grows little
    faster than the number of boxes, however they lie. */
-void box_groups_join(const struct box *boxes, size_t count, uint32_t *parent);
+void box_groups_join(const struct part_box *boxes, size_t count, uint32_t *parent);
 
 #endif

@@ -175,7 +175,7 @@ struct near { /* a thread's */
     double known_m;              /* of the part, from before or since */
 };
 
-struct probe { /* a point, and what it is measured against */
+struct deviation_probe {   /* a point, and what it is measured against */
     const struct bvh *bvh; /* NULL: there is nothing of its part */
     const struct trimesh *mesh;
     double point[3];
@@ -208,7 +208,7 @@ static void keep_first(struct near *near, int place, uint32_t tri)
 }
 
 /* What is near to a point is often near to the next one. */
-static bool is_known(const struct probe *probe)
+static bool is_known(const struct deviation_probe *probe)
 {
     struct near *near = probe->near;
     uint32_t found = TRIMESH_NONE;
@@ -232,7 +232,7 @@ static void forget(struct near *near)
 }
 
 /* 0: no more than is known. Looks near by first: most points are where they should be. */
-static double distance_of(const struct probe *probe, double expected_m)
+static double distance_of(const struct deviation_probe *probe, double expected_m)
 {
     struct bvh_place place;
     if (!probe->bvh)
@@ -246,7 +246,7 @@ static double distance_of(const struct probe *probe, double expected_m)
     return place.distance_m;
 }
 
-static struct probe probe_of(const struct probing *probing, uint32_t part, struct near *near)
+static struct deviation_probe probe_of(const struct probing *probing, uint32_t part, struct near *near)
 {
     const struct deviation *to = probing->to;
     if (near->part != part) {
@@ -255,9 +255,9 @@ static struct probe probe_of(const struct probing *probing, uint32_t part, struc
         if (!probing->anywhere)
             forget(near);
     }
-    return (struct probe){ .bvh = probing->anywhere ? to->whole : to->parts[part].bvh,
-                           .mesh = probing->anywhere ? &to->mesh : &to->parts[part].mesh,
-                           .near = near };
+    return (struct deviation_probe){ .bvh = probing->anywhere ? to->whole : to->parts[part].bvh,
+                                     .mesh = probing->anywhere ? &to->mesh : &to->parts[part].mesh,
+                                     .near = near };
 }
 
 static void probe_point(const struct probing *probing, size_t i, struct near *near)
@@ -266,7 +266,7 @@ static void probe_point(const struct probing *probing, size_t i, struct near *ne
     uint32_t part = from->part[from->index[i]];
     if ((probing->only && !probing->only[part]) || shares_point(probing->to, from->index[i]))
         return;
-    struct probe probe = probe_of(probing, part, near);
+    struct deviation_probe probe = probe_of(probing, part, near);
     memcpy(probe.point, from->mesh.points[i], sizeof(probe.point));
     probing->found_m[i] = (float)distance_of(&probe, probing->expected_m);
 }
@@ -281,7 +281,7 @@ static double probe_at(const struct probing *probing, size_t t, const double w[3
 {
     const struct trimesh *mesh = &probing->from->mesh;
     const uint32_t *v = mesh->tris[t];
-    struct probe probe = probe_of(probing, part_of(probing->from, (uint32_t)t), near);
+    struct deviation_probe probe = probe_of(probing, part_of(probing->from, (uint32_t)t), near);
     for (int axis = 0; axis < 3; axis++)
         probe.point[axis] = w[0] * mesh->points[v[0]][axis] + w[1] * mesh->points[v[1]][axis] + w[2] * mesh->points[v[2]][axis];
     return distance_of(&probe, probing->expected_m);
@@ -293,7 +293,7 @@ static bool is_covered(const struct probing *probing, size_t t, struct near *nea
 {
     const struct trimesh *mesh = &probing->from->mesh;
     const uint32_t *v = mesh->tris[t];
-    struct probe probe = probe_of(probing, part_of(probing->from, (uint32_t)t), near);
+    struct deviation_probe probe = probe_of(probing, part_of(probing->from, (uint32_t)t), near);
     for (int axis = 0; axis < 3; axis++)
         probe.point[axis] = (mesh->points[v[0]][axis] + mesh->points[v[1]][axis] + mesh->points[v[2]][axis]) / 3;
     if (!probe.bvh || isinf(near->known_m) || !is_known(&probe))

@@ -20,7 +20,7 @@
 #define MISSED 1.05f        /* times the error: what is left out may be missed by so much */
 #define MOST_TRIES 2        /* of moving faces: of all parts, then of those that do not err by more because of it */
 
-struct making {
+struct levels_making {
     struct workers *workers;
     struct welds welds;
     struct versions versions;
@@ -50,7 +50,7 @@ static int smallest_first(const void *a, const void *b)
     return p->part != q->part ? (p->part < q->part ? -1 : 1) : p->version < q->version ? -1 : p->version > q->version;
 }
 
-static size_t list_events(const struct making *making, struct event *events)
+static size_t list_events(const struct levels_making *making, struct event *events)
 {
     double most_m = LEVELS_FARTHEST * making->welds.whole_m;
     size_t count = 0;
@@ -65,12 +65,12 @@ static size_t list_events(const struct making *making, struct event *events)
     return count;
 }
 
-static size_t tris_of(const struct making *making, uint32_t part)
+static size_t tris_of(const struct levels_making *making, uint32_t part)
 {
     return making->version[part] == ABSENT ? 0 : making->versions.at[making->version[part]].tris[part];
 }
 
-static void let_happen(struct making *making, const struct event *event)
+static void let_happen(struct levels_making *making, const struct event *event)
 {
     if (making->version[event->part] >= event->version)
         return;
@@ -80,7 +80,7 @@ static void let_happen(struct making *making, const struct event *event)
 }
 
 /* All from events[i] on that this error allows. Returns the index of the next one. */
-static size_t let_all_happen(struct making *making, const struct event *events, size_t i, size_t count, float error_m)
+static size_t let_all_happen(struct levels_making *making, const struct event *events, size_t i, size_t count, float error_m)
 {
     for (; i < count && events[i].error_m <= error_m; i++)
         let_happen(making, &events[i]);
@@ -90,7 +90,7 @@ static size_t let_all_happen(struct making *making, const struct event *events, 
 /* --- one level ------------------------------------------------------------------------------------------------------------ */
 
 /* From welds to vertices, primitive by primitive in the geometry's order. */
-static void write_level(struct making *making, struct level *level, const uint32_t *welds, size_t count)
+static void write_level(struct levels_making *making, struct level *level, const uint32_t *welds, size_t count)
 {
     const struct geometry *g = making->welds.geometry;
     uint32_t *fill = mem_array(g->primitive_count + 1u, sizeof(*fill));
@@ -124,7 +124,7 @@ static void write_level(struct making *making, struct level *level, const uint32
 }
 
 /* What of a part that is left out lay on others is seen in their place. Raises apart_m of these parts to how far that is. */
-static void measure_lost(const struct making *making, const uint32_t *welds, size_t count, double expected_m, float *apart_m)
+static void measure_lost(const struct levels_making *making, const uint32_t *welds, size_t count, double expected_m, float *apart_m)
 {
     const struct welds *of = &making->welds;
     struct deviation level;
@@ -146,7 +146,7 @@ static void measure_lost(const struct making *making, const uint32_t *welds, siz
 }
 
 /* But for what is left out and lay on others. */
-static float error_of_parts(const struct making *making)
+static float error_of_parts(const struct levels_making *making)
 {
     float most_m = 0;
     for (uint32_t p = 0; p < making->welds.part_count; p++)
@@ -159,7 +159,7 @@ static float error_of_parts(const struct making *making)
 
 /* Moves faces that have no vertex on their side, and sets most_m to 0 for parts that this makes err by more than the limit. Returns
    whether there is any of these. */
-static bool try_facing(const struct making *making, uint32_t *welds, size_t count, float limit_m, float *most_m)
+static bool try_facing(const struct levels_making *making, uint32_t *welds, size_t count, float limit_m, float *most_m)
 {
     const struct welds *of = &making->welds;
     float *apart_m = mem_array(of->part_count, sizeof(*apart_m));
@@ -183,7 +183,7 @@ static bool try_facing(const struct making *making, uint32_t *welds, size_t coun
 }
 
 /* Of parts that do not err by more than the level does already because of it. */
-static void face_parts(const struct making *making, uint32_t *welds, size_t count, float limit_m)
+static void face_parts(const struct levels_making *making, uint32_t *welds, size_t count, float limit_m)
 {
     float *most_m = mem_array(making->welds.part_count, sizeof(*most_m));
     uint32_t *before = mem_array(count, sizeof(*before));
@@ -197,7 +197,7 @@ static void face_parts(const struct making *making, uint32_t *welds, size_t coun
 }
 
 /* The triangles of all parts, in the version of each. */
-static uint32_t *list_welds(const struct making *making, size_t *count)
+static uint32_t *list_welds(const struct levels_making *making, size_t *count)
 {
     uint32_t *welds = mem_array(3 * making->tri_count, sizeof(*welds));
     *count = 0;
@@ -213,7 +213,7 @@ static uint32_t *list_welds(const struct making *making, size_t *count)
 }
 
 /* The coarsest version of a part that errs by no more; it only gets coarser from level to level. */
-static uint32_t version_within(const struct making *making, uint32_t part, float error_m)
+static uint32_t version_within(const struct levels_making *making, uint32_t part, float error_m)
 {
     uint32_t best = making->shown[part];
     for (uint32_t v = best + 1; v < making->versions.count; v++)
@@ -224,7 +224,7 @@ static uint32_t version_within(const struct making *making, uint32_t part, float
 
 /* Brings parts back, of this level, that would be missed by more than the others err: what they lie on may have moved away from them.
    Returns whether there are any. */
-static bool bring_back(struct making *making, const float *apart_m, float error_m, char *back)
+static bool bring_back(struct levels_making *making, const float *apart_m, float error_m, char *back)
 {
     bool any = false;
     for (uint32_t p = 0; p < making->welds.part_count; p++)
@@ -238,26 +238,26 @@ static bool bring_back(struct making *making, const float *apart_m, float error_
 }
 
 /* What the level after the last one errs by at least. */
-static double step_m(const struct making *making, const struct level *last)
+static double step_m(const struct levels_making *making, const struct level *last)
 {
     double last_m = (double)last->error_m;
     return last_m * (last_m > LEVELS_SMALL * making->welds.whole_m ? STEP_SMALL : STEP);
 }
 
-static bool is_far(const struct making *making, const struct level *last, float error_m)
+static bool is_far(const struct levels_making *making, const struct level *last, float error_m)
 {
     return making->tri_count <= FAR_TRIANGLES && fmax((double)error_m, step_m(making, last)) >= FAR * making->welds.whole_m;
 }
 
 /* Whether what there is so far is a level that is worth its room after the last one. */
-static bool is_worth(const struct making *making, const struct level *last, float error_m)
+static bool is_worth(const struct levels_making *making, const struct level *last, float error_m)
 {
     double before = (double)(last->index_count / 3), now = (double)making->tri_count;
     return now <= (is_far(making, last, error_m) ? FAR_WORTH : NEAR_WORTH) * before;
 }
 
 /* Returns false if it is no longer worth it with the parts that come back. Writes what it errs by. */
-static bool add_level(struct making *making, struct levels *levels, float *error_out_m)
+static bool add_level(struct levels_making *making, struct levels *levels, float *error_out_m)
 {
     size_t count, parts = making->welds.part_count;
     float *apart_m = mem_array(parts, sizeof(*apart_m)), error_m = error_of_parts(making);
@@ -301,7 +301,7 @@ static void copy_finest(struct level *level, const struct geometry *g)
     memcpy(level->primitives, g->primitives, g->primitive_count * sizeof(*level->primitives));
 }
 
-static void make_coarse(struct making *making, struct levels *levels)
+static void make_coarse(struct levels_making *making, struct levels *levels)
 {
     struct event *events = mem_array(making->welds.part_count * (making->versions.count + 1), sizeof(*events));
     size_t count = list_events(making, events);
@@ -330,7 +330,7 @@ static void make_coarse(struct making *making, struct levels *levels)
 
 bool levels_make(struct levels *levels, const struct geometry *geometry, struct workers *workers)
 {
-    struct making making = { .workers = workers, .tri_count = geometry->index_count / 3 };
+    struct levels_making making = { .workers = workers, .tri_count = geometry->index_count / 3 };
     *levels = (struct levels){ .count = 1 };
     bool good = welds_init(&making.welds, geometry);
     if (good) {

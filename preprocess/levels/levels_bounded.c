@@ -15,7 +15,7 @@
 #define STRETCH 0.05 /* of how much longer edges get: counts as an error, since the field would have to cut them */
 #define NONE UINT32_MAX
 
-struct face {
+struct bounded_face {
     uint32_t point[3], weld[3]; /* NONE, NONE, NONE: it is gone */
     uint32_t first;             /* of its places */
     uint32_t near;              /* a triangle of the first surface, to look at first */
@@ -23,7 +23,7 @@ struct face {
     double longest_m;           /* of its edges */
 };
 
-struct turn {      /* a point whose removal is in the heap */
+struct removal_candidate { /* a point whose removal is in the heap */
     float error_m; /* what it will be at least */
     uint32_t point, stamp, target;
     bool is_known; /* found out, and not only bounded */
@@ -37,22 +37,22 @@ struct bounded {
     uint32_t *corner; /* of each point: one of its corners (3 to a face), then the next of each corner */
     uint32_t *next;
     uint32_t *stamp; /* of each point: changes with the triangles around it */
-    struct face *faces;
+    struct bounded_face *faces;
     size_t point_count, face_count, left;
     double (*places)[3];
     uint32_t *next_place;
-    struct turn *heap;
+    struct removal_candidate *heap;
     size_t heap_count, heap_capacity;
 };
 
 /* --- heap ---------------------------------------------------------------------------------------------------------------------- */
 
-static bool is_before(const struct turn *a, const struct turn *b)
+static bool is_before(const struct removal_candidate *a, const struct removal_candidate *b)
 {
     return a->error_m != b->error_m ? a->error_m < b->error_m : a->point < b->point;
 }
 
-static void push(struct bounded *b, struct turn turn)
+static void push(struct bounded *b, struct removal_candidate turn)
 {
     size_t i = b->heap_count++;
     mem_grow(&b->heap, &b->heap_capacity, b->heap_count, sizeof(*b->heap));
@@ -61,9 +61,9 @@ static void push(struct bounded *b, struct turn turn)
     b->heap[i] = turn;
 }
 
-static struct turn pop(struct bounded *b)
+static struct removal_candidate pop(struct bounded *b)
 {
-    struct turn top = b->heap[0], last = b->heap[--b->heap_count];
+    struct removal_candidate top = b->heap[0], last = b->heap[--b->heap_count];
     size_t i = 0;
     for (size_t child; (child = 2 * i + 1) < b->heap_count; i = child) {
         child += child + 1 < b->heap_count && is_before(&b->heap[child + 1], &b->heap[child]);
@@ -77,15 +77,15 @@ static struct turn pop(struct bounded *b)
 
 /* --- the triangles around a point ------------------------------------------------------------------------------------------------ */
 
-struct wedge { /* a triangle around a point */
+struct ring_wedge {    /* a triangle around a point */
     uint32_t face, at; /* which of its corners is there */
     uint32_t weld;     /* of it, */
     uint32_t points[2], welds[2]; /* of the others, as they follow */
 };
 
-struct ring {
+struct point_ring {
     uint32_t point;
-    struct wedge wedges[RING];
+    struct ring_wedge wedges[RING];
     int count; /* RING + 1: too many */
     uint32_t ends[2 * RING], weld_here[2 * RING], weld_there[2 * RING]; /* of an edge to an end: in one of its triangles */
     bool is_feature[2 * RING]; /* the edge to that end is a border or a seam */
@@ -93,16 +93,16 @@ struct ring {
     double longest_m; /* of all edges */
 };
 
-static struct wedge wedge_of(const struct bounded *b, uint32_t corner)
+static struct ring_wedge wedge_of(const struct bounded *b, uint32_t corner)
 {
-    const struct face *face = &b->faces[corner / 3];
+    const struct bounded_face *face = &b->faces[corner / 3];
     uint32_t at = corner % 3, next = (at + 1) % 3, last = (at + 2) % 3;
-    return (struct wedge){
+    return (struct ring_wedge){
         corner / 3, at, face->weld[at], { face->point[next], face->point[last] }, { face->weld[next], face->weld[last] }
     };
 }
 
-static void list_ring(struct bounded *b, uint32_t point, struct ring *ring)
+static void list_ring(struct bounded *b, uint32_t point, struct point_ring *ring)
 {
     uint32_t *link = &b->corner[point];
     ring->point = point;
@@ -110,7 +110,7 @@ static void list_ring(struct bounded *b, uint32_t point, struct ring *ring)
     ring->longest_m = 0;
     while (*link != NONE && ring->count <= RING) {
         uint32_t corner = *link;
-        const struct face *face = &b->faces[corner / 3];
+        const struct bounded_face *face = &b->faces[corner / 3];
         if (face->point[corner % 3] != point) { /* gone since */
             *link = b->next[corner];
             continue;
@@ -123,13 +123,13 @@ static void list_ring(struct bounded *b, uint32_t point, struct ring *ring)
     }
 }
 
-static void list_ends(struct ring *ring)
+static void list_ends(struct point_ring *ring)
 {
     int times[2 * RING];
     ring->end_count = ring->feature_count = 0;
     for (int c = 0; c < ring->count; c++)
         for (int i = 0; i < 2; i++) {
-            const struct wedge *wedge = &ring->wedges[c];
+            const struct ring_wedge *wedge = &ring->wedges[c];
             int e = 0;
             while (e < ring->end_count && ring->ends[e] != wedge->points[i])
                 e++;
@@ -168,13 +168,13 @@ static double distance_to_line(const double p[3], const double a[3], const doubl
     return vec_distance(p, at);
 }
 
-static bool has_end(const struct wedge *wedge, uint32_t end)
+static bool has_end(const struct ring_wedge *wedge, uint32_t end)
 {
     return wedge->points[0] == end || wedge->points[1] == end;
 }
 
 /* What a corner's weld becomes where the point goes to the target: as in the triangles between them. NONE: nothing says. */
-static uint32_t weld_after(const struct ring *ring, int target, uint32_t weld)
+static uint32_t weld_after(const struct point_ring *ring, int target, uint32_t weld)
 {
     uint32_t found = NONE;
     if (!ring->is_feature[target] && ring->weld_here[target] == weld)
@@ -190,7 +190,7 @@ static uint32_t weld_after(const struct ring *ring, int target, uint32_t weld)
 }
 
 /* The corners of a triangle of the ring once the point is at the target, in their order. */
-static void moved_face(const struct bounded *b, const struct wedge *wedge, uint32_t target, const double *at[3])
+static void moved_face(const struct bounded *b, const struct ring_wedge *wedge, uint32_t target, const double *at[3])
 {
     at[wedge->at] = b->points[target];
     at[(wedge->at + 1) % 3] = b->points[wedge->points[0]];
@@ -198,7 +198,7 @@ static void moved_face(const struct bounded *b, const struct wedge *wedge, uint3
 }
 
 /* How far it moves borders and seams; INFINITY: they would not stay. */
-static double border_of(const struct bounded *b, const struct ring *ring, int target)
+static double border_of(const struct bounded *b, const struct point_ring *ring, int target)
 {
     int other = -1;
     if (ring->feature_count == 0)
@@ -218,13 +218,13 @@ static double longest_edge(const double *const at[3])
 }
 
 /* At least so far does the collapse move the surface; INFINITY: it may not be, or it is no less than most_m. */
-static double bound_of(const struct bounded *b, const struct ring *ring, int target, double most_m)
+static double bound_of(const struct bounded *b, const struct point_ring *ring, int target, double most_m)
 {
     uint32_t to = ring->ends[target];
     double nearest_m = INFINITY, border_m = border_of(b, ring, target) / BORDER, longer_m = 0;
     for (int c = 0; c < ring->count; c++) {
-        const struct wedge *wedge = &ring->wedges[c];
-        const struct face *face = &b->faces[wedge->face];
+        const struct ring_wedge *wedge = &ring->wedges[c];
+        const struct bounded_face *face = &b->faces[wedge->face];
         const double *at[3];
         double normal[3], from[3];
         if (border_m + STRETCH * longer_m >= most_m)
@@ -255,7 +255,7 @@ static double raise(const struct bounded *b, const double point[3], double error
 
 struct moved { /* a triangle as it will be */
     const double *at[3];
-    const struct wedge *wedge;
+    const struct ring_wedge *wedge;
 };
 
 /* From a place to the nearest of these; no nearer than is enough. Looks at the one first that was the place's own. */
@@ -272,7 +272,7 @@ static double distance_to_any(const double place[3], const struct moved *moved, 
 }
 
 /* How far the places around are from the triangles as they will be, and these from the first surface; no farther than is enough. */
-static double error_of(struct bounded *b, const struct ring *ring, uint32_t to, double error_m, double enough_m)
+static double error_of(struct bounded *b, const struct point_ring *ring, uint32_t to, double error_m, double enough_m)
 {
     struct moved moved[RING];
     int count = 0, own[RING];
@@ -305,8 +305,8 @@ static double error_of(struct bounded *b, const struct ring *ring, uint32_t to, 
 /* The cheapest collapse of a point, by what is certain of it. */
 static void offer(struct bounded *b, uint32_t point)
 {
-    struct ring ring;
-    struct turn turn = { INFINITY, point, ++b->stamp[point], NONE, false };
+    struct point_ring ring;
+    struct removal_candidate turn = { INFINITY, point, ++b->stamp[point], NONE, false };
     list_ring(b, point, &ring);
     if (ring.count == 0 || ring.count > RING)
         return;
@@ -328,7 +328,7 @@ static void add_place(struct bounded *b, uint32_t face, uint32_t place)
     b->faces[face].first = place;
 }
 
-static void measure_face(const struct bounded *b, struct face *face)
+static void measure_face(const struct bounded *b, struct bounded_face *face)
 {
     const double *const at[3] = { b->points[face->point[0]], b->points[face->point[1]], b->points[face->point[2]] };
     vec_normal(at[0], at[1], at[2], face->normal);
@@ -357,7 +357,7 @@ static int rehome(struct bounded *b, const uint32_t *faces, int count, int last,
     return best;
 }
 
-static void collapse(struct bounded *b, const struct ring *ring, int target)
+static void collapse(struct bounded *b, const struct point_ring *ring, int target)
 {
     uint32_t to = ring->ends[target], places = NONE, kept[RING], after[RING];
     int count = 0, last = 0;
@@ -365,8 +365,8 @@ static void collapse(struct bounded *b, const struct ring *ring, int target)
     for (int c = 0; c < ring->count; c++)
         after[c] = weld_after(ring, target, ring->wedges[c].weld);
     for (int c = 0; c < ring->count; c++) {
-        const struct wedge *wedge = &ring->wedges[c];
-        struct face *face = &b->faces[wedge->face];
+        const struct ring_wedge *wedge = &ring->wedges[c];
+        struct bounded_face *face = &b->faces[wedge->face];
         uint32_t corner = 3 * wedge->face + wedge->at;
         while (face->first != NONE) {
             uint32_t place = face->first;
@@ -399,7 +399,7 @@ static void collapse(struct bounded *b, const struct ring *ring, int target)
         offer(b, ring->ends[e]);
 }
 
-static int index_of(const struct ring *ring, uint32_t end)
+static int index_of(const struct point_ring *ring, uint32_t end)
 {
     for (int e = 0; e < ring->end_count; e++)
         if (ring->ends[e] == end)
@@ -409,9 +409,9 @@ static int index_of(const struct ring *ring, uint32_t end)
 
 /* Whether the surface would touch itself along an edge: the ends have a neighbour in common that is in no triangle with both (the link
    condition; Dey et al., Topology preserving edge contraction, Publ. Inst. Math. 1999). */
-static bool would_touch(struct bounded *b, const struct ring *ring, int target)
+static bool would_touch(struct bounded *b, const struct point_ring *ring, int target)
 {
-    struct ring there;
+    struct point_ring there;
     int common = 0, shared = 0;
     for (int c = 0; c < ring->count; c++)
         shared += has_end(&ring->wedges[c], ring->ends[target]);
@@ -427,8 +427,8 @@ static bool would_touch(struct bounded *b, const struct ring *ring, int target)
 /* The cheapest in the heap: done if it is known to err no more, else found out about. */
 static void take_turn(struct bounded *b, double error_m)
 {
-    struct turn turn = pop(b);
-    struct ring ring;
+    struct removal_candidate turn = pop(b);
+    struct point_ring ring;
     if (turn.stamp != b->stamp[turn.point])
         return;
     list_ring(b, turn.point, &ring);
@@ -461,14 +461,14 @@ static void place_of(const struct welds *welds, uint32_t weld, double place[3])
 }
 
 /* Of each weld at a place of its own, the number of its point + 1, or 0. */
-struct numbers {
+struct point_numbers {
     uint32_t *of, low, high; /* from the lowest weld to the highest */
 };
 
-static struct numbers number_points(struct bounded *b, const uint32_t *corners, size_t count)
+static struct point_numbers number_points(struct bounded *b, const uint32_t *corners, size_t count)
 {
     const struct welds *welds = b->welds;
-    struct numbers numbers = { NULL, NONE, 0 };
+    struct point_numbers numbers = { NULL, NONE, 0 };
     for (size_t i = 0; i < count; i++) {
         uint32_t there = welds->first_there[corners[i]];
         numbers.low = there < numbers.low ? there : numbers.low;
@@ -537,7 +537,7 @@ static void take_far_places(struct bounded *b, const uint32_t *places, size_t co
     mem_free(mesh.tris);
 }
 
-static void take_places(struct bounded *b, const struct numbers *numbers, const uint32_t *places, size_t count)
+static void take_places(struct bounded *b, const struct point_numbers *numbers, const uint32_t *places, size_t count)
 {
     uint32_t *far = mem_array(count, sizeof(*far));
     size_t far_count = 0;
@@ -566,7 +566,7 @@ struct bounded *bounded_create(const struct welds *welds, const uint32_t *corner
     b->points = mem_array(count, sizeof(*b->points));
     b->faces = mem_array(count / 3, sizeof(*b->faces));
     b->next = mem_array(count, sizeof(*b->next));
-    struct numbers numbers = number_points(b, corners, count);
+    struct point_numbers numbers = number_points(b, corners, count);
     drop_empty(b);
     b->moved_m = mem_array(b->point_count, sizeof(*b->moved_m));
     b->corner = mem_array(b->point_count, sizeof(*b->corner));

@@ -13,7 +13,7 @@
 #define BESIDE 1.25f /* times the error: a slanting sheet errs by less than a thickness */
 #define NONE UINT32_MAX
 
-struct need { /* of a corner */
+struct corner_need { /* of a corner */
     size_t corner;
     float normal[3]; /* of its face */
     float score;     /* of the best so far */
@@ -21,11 +21,11 @@ struct need { /* of a corner */
     size_t next;     /* need of the same weld; SIZE_MAX: none */
 };
 
-struct facing {
+struct facing_pass {
     const struct welds *welds;
     const char *used;
     const float *most_m;
-    struct need *needs;
+    struct corner_need *needs;
     size_t count, capacity;
     size_t *first; /* need of each weld */
 };
@@ -64,7 +64,7 @@ uint32_t levels_vertex(const struct welds *welds, const char *used, uint32_t wel
 }
 
 /* The cosine of the vertex that suits a face best; -1: none is used. */
-static float look(const struct facing *facing, uint32_t weld, const float n[3], bool one_side)
+static float look(const struct facing_pass *facing, uint32_t weld, const float n[3], bool one_side)
 {
     uint32_t vertex = levels_vertex(facing->welds, facing->used, weld, n, one_side);
     return vertex == UINT32_MAX ? -1 : cosine_of(facing->welds, vertex, n);
@@ -88,7 +88,7 @@ void levels_find_contrary(const struct welds *welds, char *contrary)
     }
 }
 
-static void find_needs(struct facing *facing, const uint32_t *corners, size_t count, const char *contrary)
+static void find_needs(struct facing_pass *facing, const uint32_t *corners, size_t count, const char *contrary)
 {
     float n[3];
     for (size_t i = 0; i < count; i++) {
@@ -98,19 +98,19 @@ static void find_needs(struct facing *facing, const uint32_t *corners, size_t co
         if (contrary[facing->welds->part[weld]] || look(facing, weld, n, false) > AWAY)
             continue;
         mem_grow(&facing->needs, &facing->capacity, facing->count + 1, sizeof(*facing->needs));
-        facing->needs[facing->count] = (struct need){ i, { n[0], n[1], n[2] }, ALONG, NONE, facing->first[weld] };
+        facing->needs[facing->count] = (struct corner_need){ i, { n[0], n[1], n[2] }, ALONG, NONE, facing->first[weld] };
         facing->first[weld] = facing->count++;
     }
 }
 
 /* Along an edge of the model from one weld to another: of those that look its way, the nearest. */
-static void offer(struct facing *facing, uint32_t from, uint32_t to)
+static void offer(struct facing_pass *facing, uint32_t from, uint32_t to)
 {
     if (facing->first[from] == SIZE_MAX || facing->welds->primitive[from] != facing->welds->primitive[to])
         return;
     float far_m = distance_m(facing->welds, from, to), most_m = BESIDE * facing->most_m[facing->welds->part[from]];
     for (size_t i = facing->first[from]; i != SIZE_MAX && far_m <= most_m; i = facing->needs[i].next) {
-        struct need *need = &facing->needs[i];
+        struct corner_need *need = &facing->needs[i];
         float score = 2 - far_m / most_m;
         if (score > need->score && look(facing, to, need->normal, true) >= ALONG) {
             need->score = score;
@@ -120,7 +120,7 @@ static void offer(struct facing *facing, uint32_t from, uint32_t to)
 }
 
 /* Not where it would turn, or shrink to a line. */
-static void move_faces(const struct facing *facing, uint32_t *corners)
+static void move_faces(const struct facing_pass *facing, uint32_t *corners)
 {
     for (size_t i = 0; i < facing->count;) {
         size_t at = facing->needs[i].corner / 3 * 3, end = i;
@@ -139,7 +139,7 @@ static void move_faces(const struct facing *facing, uint32_t *corners)
 }
 
 /* Coarser levels stand on welds of this one: those that no corner has any more get all of theirs back. */
-static void keep_knots(const struct facing *facing, const uint32_t *before, uint32_t *corners, size_t count)
+static void keep_knots(const struct facing_pass *facing, const uint32_t *before, uint32_t *corners, size_t count)
 {
     char *kept = mem_array(facing->welds->count, 1);
     for (size_t i = 0; i < count; i++)
@@ -154,7 +154,7 @@ bool levels_face(const struct welds *welds, const char *used, const char *contra
                  char *moved)
 {
     const struct geometry *g = welds->geometry;
-    struct facing facing = { .welds = welds, .used = used, .most_m = most_m };
+    struct facing_pass facing = { .welds = welds, .used = used, .most_m = most_m };
     bool any = false;
     facing.first = mem_array(welds->count, sizeof(*facing.first));
     memset(facing.first, 0xff, welds->count * sizeof(*facing.first));

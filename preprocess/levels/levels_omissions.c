@@ -27,7 +27,7 @@ struct size_class {
     struct bvh *bvh;
 };
 
-struct search {
+struct omission_search {
     const struct welds *welds;
     struct trimesh mesh;
     struct size_class classes[CLASSES_MAX]; /* smallest parts first */
@@ -37,7 +37,7 @@ struct search {
     struct omission *omissions;
 };
 
-static void list_tris(struct search *search)
+static void list_tris(struct omission_search *search)
 {
     const struct geometry *g = search->welds->geometry;
     size_t tris = g->index_count / 3, parts = search->welds->part_count;
@@ -67,7 +67,7 @@ static bool may_lie_on_others(const struct welds *welds, size_t part)
     return (double)welds->size_m[part] <= SMALL * welds->whole_m;
 }
 
-static size_t count_larger(const struct search *search, float than_m)
+static size_t count_larger(const struct omission_search *search, float than_m)
 {
     size_t count = 0;
     for (size_t t = 0; t < search->mesh.tri_count; t++)
@@ -75,7 +75,7 @@ static size_t count_larger(const struct search *search, float than_m)
     return count;
 }
 
-static void add_class(struct search *search, float than_m, size_t count)
+static void add_class(struct omission_search *search, float than_m, size_t count)
 {
     struct size_class *class = &search->classes[search->class_count++];
     const struct trimesh *all = &search->mesh;
@@ -91,7 +91,7 @@ static void add_class(struct search *search, float than_m, size_t count)
 }
 
 /* Each part's limit is at or above that of one class; of those the last is taken. */
-static void make_classes(struct search *search)
+static void make_classes(struct omission_search *search)
 {
     const struct welds *welds = search->welds;
     float least_m = INFINITY, most_m = (float)(MUCH_LARGER * SMALL * welds->whole_m);
@@ -110,7 +110,7 @@ static void make_classes(struct search *search)
     }
 }
 
-static void finish_classes(struct search *search)
+static void finish_classes(struct omission_search *search)
 {
     for (size_t c = 0; c < search->class_count; c++) {
         bvh_destroy(&search->classes[c].bvh);
@@ -120,7 +120,7 @@ static void finish_classes(struct search *search)
 }
 
 struct larger {
-    const struct search *search;
+    const struct omission_search *search;
     const struct size_class *class;
     float than_m;
     uint32_t near; /* a triangle of the class that was near to the probe before, or TRIMESH_NONE */
@@ -153,7 +153,7 @@ static float look_from(struct larger *larger, uint32_t tri, double limit_m, floa
 
 static void look_for_larger(void *arg, size_t begin, size_t end)
 {
-    const struct search *search = arg;
+    const struct omission_search *search = arg;
     for (size_t p = begin; p < end; p++) {
         float size_m = search->welds->size_m[p], apart_m = 0;
         struct larger larger = { search, search->classes, MUCH_LARGER * size_m, TRIMESH_NONE };
@@ -171,12 +171,12 @@ static void look_for_larger(void *arg, size_t begin, size_t end)
 /* --- alone ---------------------------------------------------------------------------------------------------------------- */
 
 /* The small parts that no larger one hides, each with room around it. */
-static size_t list_boxes(const struct search *search, struct box *boxes)
+static size_t list_boxes(const struct omission_search *search, struct part_box *boxes)
 {
     const struct welds *welds = search->welds;
     size_t count = 0;
     for (uint32_t p = 0; p < welds->part_count; p++) {
-        struct box *box = &boxes[count];
+        struct part_box *box = &boxes[count];
         if (!isinf(search->omissions[p].from_m) || !may_lie_on_others(welds, p))
             continue;
         box->part = p;
@@ -190,10 +190,10 @@ static size_t list_boxes(const struct search *search, struct box *boxes)
 }
 
 /* Crowds of small parts: their size together says when they are no more than a pixel. */
-static void look_for_lonely(const struct search *search)
+static void look_for_lonely(const struct omission_search *search)
 {
     const struct welds *welds = search->welds;
-    struct box *boxes = mem_array(welds->part_count, sizeof(*boxes)), *crowds = mem_array(welds->part_count, sizeof(*crowds));
+    struct part_box *boxes = mem_array(welds->part_count, sizeof(*boxes)), *crowds = mem_array(welds->part_count, sizeof(*crowds));
     uint32_t *parent = mem_array(welds->part_count, sizeof(*parent));
     size_t count = list_boxes(search, boxes);
     for (uint32_t p = 0; p < welds->part_count; p++) {
@@ -205,14 +205,14 @@ static void look_for_lonely(const struct search *search)
     }
     box_groups_join(boxes, count, parent);
     for (size_t i = 0; i < count; i++) {
-        struct box *crowd = &crowds[trimesh_root(parent, boxes[i].part)];
+        struct part_box *crowd = &crowds[trimesh_root(parent, boxes[i].part)];
         for (int axis = 0; axis < 3; axis++) {
             crowd->low_m[axis] = fminf(crowd->low_m[axis], welds->low_m[boxes[i].part][axis]);
             crowd->high_m[axis] = fmaxf(crowd->high_m[axis], welds->high_m[boxes[i].part][axis]);
         }
     }
     for (size_t i = 0; i < count; i++) {
-        const struct box *crowd = &crowds[trimesh_root(parent, boxes[i].part)];
+        const struct part_box *crowd = &crowds[trimesh_root(parent, boxes[i].part)];
         float size_m =
             hypotf(crowd->high_m[0] - crowd->low_m[0], hypotf(crowd->high_m[1] - crowd->low_m[1], crowd->high_m[2] - crowd->low_m[2]));
         search->omissions[boxes[i].part] = (struct omission){ .from_m = size_m, .alone = true };
@@ -224,7 +224,7 @@ static void look_for_lonely(const struct search *search)
 
 void omissions_find(struct omission *omissions, const struct welds *welds, struct workers *workers)
 {
-    struct search search = { .welds = welds, .omissions = omissions };
+    struct omission_search search = { .welds = welds, .omissions = omissions };
     for (size_t p = 0; p < welds->part_count; p++)
         omissions[p] = (struct omission){ .from_m = INFINITY };
     if (welds->part_count < 2)

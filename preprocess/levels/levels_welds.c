@@ -10,13 +10,13 @@
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/trimesh.h"
 
-struct key { /* what keeps vertices apart for the simplifier: a border of material or texture is then a seam, which it keeps */
+struct weld_key { /* what keeps vertices apart for the simplifier: a border of material or texture is then a seam, which it keeps */
     float position[3], texcoord[2], second_texcoord[2];
     uint32_t primitive;
     uint8_t color[4];
 };
 
-static void fill_keys(const struct geometry *g, struct key *keys)
+static void fill_keys(const struct geometry *g, struct weld_key *keys)
 {
     for (uint32_t p = 0; p < g->primitive_count; p++) {
         const struct asset_primitive *primitive = &g->primitives[p];
@@ -26,7 +26,7 @@ static void fill_keys(const struct geometry *g, struct key *keys)
                         m->emissive_texture != ASSET_NO_TEXTURE;
         for (uint32_t i = primitive->first_index; i < primitive->first_index + primitive->index_count; i++) {
             uint32_t v = g->indices[i];
-            struct key *key = &keys[v];
+            struct weld_key *key = &keys[v];
             memcpy(key->position, g->positions_m[v], sizeof(key->position));
             key->primitive = p;
             if (textured && g->texcoords)
@@ -39,7 +39,7 @@ static void fill_keys(const struct geometry *g, struct key *keys)
     }
 }
 
-static void list_vertices(struct welds *welds, const struct key *keys)
+static void list_vertices(struct welds *welds, const struct weld_key *keys)
 {
     for (uint32_t v = 0; v < welds->geometry->vertex_count; v++) {
         uint32_t k = welds->of_vertex[v];
@@ -56,7 +56,7 @@ static void list_vertices(struct welds *welds, const struct key *keys)
 static bool weld(struct welds *welds)
 {
     size_t count = welds->geometry->vertex_count;
-    struct key *keys = mem_try_array(count, sizeof(*keys));
+    struct weld_key *keys = mem_try_array(count, sizeof(*keys));
     welds->of_vertex = mem_try_array(count, sizeof(*welds->of_vertex));
     welds->positions_m = mem_try_array(count, sizeof(*welds->positions_m));
     welds->primitive = mem_try_array(count, sizeof(*welds->primitive));

@@ -141,7 +141,7 @@ static void sort(struct decisions *decisions)
 bool decisions_read(struct decisions *decisions, const char *path, char why[MATCH_WHY_BYTES])
 {
     struct charset_text text;
-    struct table table = { 0 };
+    struct cell_table table = { 0 };
     size_t count;
     int columns[COLUMNS];
     if (access(path, F_OK) != 0 && errno == ENOENT)
@@ -202,7 +202,7 @@ static const char *line_at(const char *at, int from, int line)
 
 char *decisions_without(const char *text, const char *const *tags, size_t count)
 {
-    struct table table = { 0 };
+    struct cell_table table = { 0 };
     struct text out = { 0 };
     char why[MATCH_WHY_BYTES];
     int columns[COLUMNS], line = 1;

@@ -7,7 +7,7 @@
 #include "base/text/text.h"
 #include "preprocess/match/matcher_impl.h"
 
-void candidates_add(struct candidates *list, int asset, int node)
+void candidates_add(struct match_candidates *list, int asset, int node)
 {
     for (int i = 0; i < list->count; i++)
         if (list->assets[i] == asset) {
@@ -23,7 +23,7 @@ void candidates_add(struct candidates *list, int asset, int node)
     list->nodes[list->count++] = node;
 }
 
-bool candidates_find(struct candidates *list, const struct key_map *map, const char *key)
+bool candidates_find(struct match_candidates *list, const struct key_map *map, const char *key)
 {
     int thing = key_map_find(map, key);
     for (int i = thing; i >= 0; i = key_map_next(map, i))
@@ -31,7 +31,7 @@ bool candidates_find(struct candidates *list, const struct key_map *map, const c
     return thing >= 0;
 }
 
-bool candidates_have(const struct candidates *list, int asset)
+bool candidates_have(const struct match_candidates *list, int asset)
 {
     for (int i = 0; i < list->count; i++)
         if (list->assets[i] == asset)
@@ -39,7 +39,7 @@ bool candidates_have(const struct candidates *list, int asset)
     return list->more;
 }
 
-void candidates_name(const struct candidates *list, const struct model_index *site, char *text, size_t bytes)
+void candidates_name(const struct match_candidates *list, const struct model_index *site, char *text, size_t bytes)
 {
     size_t length = 0;
     text[0] = 0;
@@ -53,12 +53,12 @@ void candidates_name(const struct candidates *list, const struct model_index *si
         snprintf(text + length, bytes - length, ", ...");
 }
 
-static const char *id_of(const struct matcher *matcher, const struct candidates *list)
+static const char *id_of(const struct matcher *matcher, const struct match_candidates *list)
 {
     return matcher->site->plant->assets[list->assets[0]].id;
 }
 
-static const char *node_name(const struct matcher *matcher, const struct candidates *list)
+static const char *node_name(const struct matcher *matcher, const struct match_candidates *list)
 {
     const struct indexed_asset *asset = &matcher->site->assets[list->assets[0]];
     return matcher->site->models[asset->model].nodes[list->nodes[0]].name;

@@ -95,12 +95,13 @@ static bool fits_class(const struct matcher *matcher, const struct match_subject
     return false;
 }
 
-enum filter { PREFIX_FITS, SAME_SUFFIX, NO_SUFFIX, FITS_CLASS };
+enum number_filter { PREFIX_FITS, SAME_SUFFIX, NO_SUFFIX, FITS_CLASS };
 
 /* Keeps those that pass, if there are any. */
-static void keep(const struct matcher *matcher, const struct match_subject *subject, struct candidates *list, enum filter filter)
+static void keep(const struct matcher *matcher, const struct match_subject *subject, struct match_candidates *list,
+                 enum number_filter filter)
 {
-    struct candidates kept = { .more = list->more };
+    struct match_candidates kept = { .more = list->more };
     for (int i = 0; i < list->count; i++) {
         const char *suffix = suffix_of(&matcher->site->assets[list->assets[i]]);
         bool good = filter == PREFIX_FITS   ? rate_prefix(matcher, subject, list->assets[i]) == 2
@@ -115,9 +116,9 @@ static void keep(const struct matcher *matcher, const struct match_subject *subj
 }
 
 /* Drops equipment with another letter behind its number. */
-static void drop_other_suffix(const struct matcher *matcher, const struct match_subject *subject, struct candidates *list)
+static void drop_other_suffix(const struct matcher *matcher, const struct match_subject *subject, struct match_candidates *list)
 {
-    struct candidates kept = { .more = list->more };
+    struct match_candidates kept = { .more = list->more };
     for (int i = 0; i < list->count; i++) {
         const char *suffix = suffix_of(&matcher->site->assets[list->assets[i]]);
         if (!*suffix || !*subject->name.suffix || !strcmp(suffix, subject->name.suffix))
@@ -139,7 +140,7 @@ bool way_number(const struct matcher *matcher, const struct match_subject *subje
     }
     if (digits && letters)
         return false;
-    struct candidates *list = &out->candidates;
+    struct match_candidates *list = &out->candidates;
     char text[sizeof(number->text)];
     int length = (int)strlen(number->text), cut = 0;
     memcpy(text, number->text, sizeof(text));

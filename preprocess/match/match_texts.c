@@ -20,7 +20,7 @@ bool way_attributes(const struct matcher *matcher, const struct match_subject *s
 }
 
 /* Equipment numbers with a word of the equipment's name beside them. */
-static void find_numbers(const struct matcher *matcher, const struct name_tokens *tokens, struct candidates *out)
+static void find_numbers(const struct matcher *matcher, const struct name_tokens *tokens, struct match_candidates *out)
 {
     const struct key_map *map = &matcher->site->numbers;
     for (int i = 0; i < tokens->count; i++) {
@@ -165,7 +165,7 @@ bool way_alias(const struct matcher *matcher, const struct match_subject *subjec
               is_within(&alias->tokens, &subject->area)))
             continue;
         if (alias->tokens.count > longest)
-            out->candidates = (struct candidates){ 0 };
+            out->candidates = (struct match_candidates){ 0 };
         longest = alias->tokens.count;
         candidates_add(&out->candidates, alias->asset, -1);
         out->confidence = 0.95;

@@ -51,7 +51,7 @@ static bool contradicts(const struct matcher *matcher, const struct proposal *ch
            (other->candidates.count == 1 && are_near(id_of(matcher, asset), id_of(matcher, other->candidates.assets[0])));
 }
 
-static void add_candidates(const struct candidates *list, struct match *out)
+static void add_candidates(const struct match_candidates *list, struct match *out)
 {
     for (int i = 0; i < list->count; i++) {
         bool there = false;
@@ -183,7 +183,7 @@ void matches_free(struct match *matches, size_t count)
 int matcher_find_asset(const struct matcher *matcher, const char *name)
 {
     struct name_tokens tokens;
-    struct candidates list = { 0 };
+    struct match_candidates list = { 0 };
     char key[NAME_KEY_BYTES];
     int asset = plant_find_asset(matcher->site->plant, name);
     if (asset >= 0)
@@ -194,7 +194,7 @@ int matcher_find_asset(const struct matcher *matcher, const char *name)
     return list.count == 1 && !list.more ? list.assets[0] : -1;
 }
 
-static bool read_table(struct table *table, const char *path, const char *first, const char *second, char why[MATCH_WHY_BYTES])
+static bool read_table(struct cell_table *table, const char *path, const char *first, const char *second, char why[MATCH_WHY_BYTES])
 {
     size_t count;
     char *bytes = text_read_file(path, max_table_bytes, &count), reason[200];
@@ -220,7 +220,7 @@ static bool read_table(struct table *table, const char *path, const char *first,
 
 bool matcher_read_rules(struct matcher *matcher, const char *path, char why[MATCH_WHY_BYTES])
 {
-    struct table table = { 0 };
+    struct cell_table table = { 0 };
     bool good = read_table(&table, path, "Tag", "Equipment", why);
     for (size_t i = 1; i < table.count && good; i++) {
         mem_grow(&matcher->rules, &matcher->rule_room, matcher->rule_count + 1, sizeof(*matcher->rules));
@@ -243,7 +243,7 @@ bool matcher_read_rules(struct matcher *matcher, const char *path, char why[MATC
 
 bool matcher_read_aliases(struct matcher *matcher, const char *path, char why[MATCH_WHY_BYTES])
 {
-    struct table table = { 0 };
+    struct cell_table table = { 0 };
     bool good = read_table(&table, path, "Alias", "Equipment", why);
     for (size_t i = 1; i < table.count && good; i++) {
         const char *text = table_cell(&table.rows[i], 0), *equipment = table_cell(&table.rows[i], 1);

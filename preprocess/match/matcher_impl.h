@@ -8,7 +8,7 @@
 
 enum { CANDIDATES = 8, WAY_REASON_BYTES = 240 };
 
-struct candidates { /* assets, each once */
+struct match_candidates { /* assets, each once */
     int assets[CANDIDATES];
     int nodes[CANDIDATES]; /* of the first thing that was found of the asset; -1: the asset itself, or several nodes */
     int count;
@@ -16,7 +16,7 @@ struct candidates { /* assets, each once */
 };
 
 struct proposal {
-    struct candidates candidates; /* one: proposed; several: one of these */
+    struct match_candidates candidates; /* one: proposed; several: one of these */
     double confidence;
     char reason[WAY_REASON_BYTES];
 };
@@ -27,12 +27,12 @@ struct match_subject { /* a tag, taken apart */
     struct name_tokens area, description;
 };
 
-void candidates_add(struct candidates *list, int asset, int node);
+void candidates_add(struct match_candidates *list, int asset, int node);
 /* Adds all things of the map that have the key. Returns whether there are any. */
-bool candidates_find(struct candidates *list, const struct key_map *map, const char *key);
-bool candidates_have(const struct candidates *list, int asset);
+bool candidates_find(struct match_candidates *list, const struct key_map *map, const char *key);
+bool candidates_have(const struct match_candidates *list, int asset);
 /* Writes "E-101, P-101 or V-101". */
-void candidates_name(const struct candidates *list, const struct model_index *site, char *text, size_t bytes);
+void candidates_name(const struct match_candidates *list, const struct model_index *site, char *text, size_t bytes);
 
 /* Each returns whether it has a proposal. */
 bool way_own_node(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);

@@ -25,7 +25,7 @@
 
 static const size_t max_plant_bytes = (size_t)64 << 20, max_list_bytes = (size_t)256 << 20;
 
-struct run {
+struct matching_run {
     const struct matching_params *params;
     struct plant *plant;
     struct model_index site;
@@ -50,14 +50,14 @@ static bool fail_at(const char *path, const char *why)
     return false;
 }
 
-static char *beside(const struct run *run, const char *name)
+static char *beside(const struct matching_run *run, const char *name)
 {
     return mem_printf("%s/%s", run->plant->folder, name);
 }
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
 
-static void print_list(const struct run *run)
+static void print_list(const struct matching_run *run)
 {
     const struct tag_export *list = &run->list;
     const char *path = run->params->tags, separator = list->separator;
@@ -93,7 +93,7 @@ static void print_list(const struct run *run)
 }
 
 /* Assets are chosen anew, unless the tag list names some: what people placed would lose its equipment. */
-static bool choose_equipment(struct run *run)
+static bool choose_equipment(struct matching_run *run)
 {
     char why[MODEL_INDEX_WHY_BYTES];
     struct text lines = { 0 };
@@ -121,7 +121,7 @@ static bool choose_equipment(struct run *run)
 }
 
 /* The file that is stated, or the one in the plant's folder if it is there. Returns false if it cannot be read. */
-static bool read_optional(struct run *run, const char *name,
+static bool read_optional(struct matching_run *run, const char *name,
                           bool (*read)(struct matcher *matcher, const char *path, char why[MATCH_WHY_BYTES]))
 {
     char why[MATCH_WHY_BYTES], *path = beside(run, name);
@@ -131,7 +131,7 @@ static bool read_optional(struct run *run, const char *name,
 }
 
 /* The plant itself: files that the daemon reads, too. */
-static bool read_plant(struct run *run)
+static bool read_plant(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
     char why[MODEL_INDEX_WHY_BYTES];
@@ -155,7 +155,7 @@ static bool read_plant(struct run *run)
 }
 
 /* In the child. */
-static bool read_lists(struct run *run)
+static bool read_lists(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
     char why[MODEL_INDEX_WHY_BYTES];
@@ -175,7 +175,7 @@ static bool read_lists(struct run *run)
 /* --- deciding --------------------------------------------------------------------------------------------------------------- */
 
 /* What people decided counts for more than what was found. */
-static bool obey(struct run *run)
+static bool obey(struct matching_run *run)
 {
     char *path = beside(run, "matches.csv"), why[200];
     bool good = true;
@@ -204,7 +204,7 @@ static bool obey(struct run *run)
 }
 
 /* The source of these tags: the one that is stated, made or the only one. */
-static bool find_source(struct run *run)
+static bool find_source(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
     const struct plant_source *found = NULL;
@@ -224,7 +224,7 @@ static bool find_source(struct run *run)
     return true;
 }
 
-static void put_rows(struct run *run)
+static void put_rows(struct matching_run *run)
 {
     decisions_add_header(&run->matches_text);
     for (size_t i = 0; i < run->list.count; i++) {
@@ -272,7 +272,7 @@ static int by_folded_name(const void *a, const void *b)
 }
 
 /* Whether a tag of before may be one of this list's system, as far as the plant says where it is read. */
-static bool is_of_source(const struct run *run, const char *tag)
+static bool is_of_source(const struct matching_run *run, const char *tag)
 {
     for (size_t i = 0; i < run->plant->tag_count; i++)
         if (!strcasecmp(run->plant->tags[i].name, tag) && run->plant->tags[i].source >= 0)
@@ -281,7 +281,7 @@ static bool is_of_source(const struct run *run, const char *tag)
 }
 
 /* What was decided about them stays: they may be another system's, or come back. */
-static void keep_left(struct run *run)
+static void keep_left(struct matching_run *run)
 {
     const char **names = mem_array(run->list.count + 1, sizeof(*names));
     for (size_t i = 0; i < run->list.count; i++)
@@ -320,7 +320,7 @@ static void add_group(const struct quantity *quantity, struct text *lines)
     text_add(lines, "\n");
 }
 
-static bool take_text(struct run *run, char *text)
+static bool take_text(struct matching_run *run, char *text)
 {
     if (!text)
         return fail_at(run->params->plant, "its lists of groups and sources have to be one item a line");
@@ -329,7 +329,7 @@ static bool take_text(struct run *run, char *text)
     return true;
 }
 
-static char *source_line(const struct run *run)
+static char *source_line(const struct matching_run *run)
 {
     const struct matching_params *params = run->params;
     const char *colon = strchr(params->modbus, ':');
@@ -348,7 +348,7 @@ static char *source_line(const struct run *run)
 }
 
 /* The source has another line, if it still is one that source_line() wrote. */
-static bool change_source(struct run *run)
+static bool change_source(struct matching_run *run)
 {
     regex_t regex;
     regmatch_t found;
@@ -366,7 +366,7 @@ static bool change_source(struct run *run)
     return good || fail_at(run->params->plant, "somebody wrote its source otherwise than --modbus does: change it there");
 }
 
-static bool add_source(struct run *run)
+static bool add_source(struct matching_run *run)
 {
     for (size_t i = 0; i < run->plant->source_count; i++)
         if (!strcmp(run->plant->sources[i].id, run->source.id))
@@ -376,7 +376,7 @@ static bool add_source(struct run *run)
     return take_text(run, text);
 }
 
-static bool compose_plant(struct run *run, bool placeholder)
+static bool compose_plant(struct matching_run *run, bool placeholder)
 {
     struct text lines = { 0 };
     size_t used = 0;
@@ -418,7 +418,7 @@ static void say_written(const char *path, const char *before, const char *text)
 
 /* The plant file first: with the old tag list it is a plant, too, since it only gains groups and a source. matches.csv last: what the tag
  * list has and it has not is not taken for a person's change. A run that was killed in between is finished by the next one. */
-static bool write_files(struct run *run, const char *matches_path)
+static bool write_files(struct matching_run *run, const char *matches_path)
 {
     const char *plant = run->params->plant, *tags = run->plant->tags_path;
     struct file_set set = { 0 };
@@ -438,7 +438,7 @@ static bool write_files(struct run *run, const char *matches_path)
     return good;
 }
 
-static void print_result(const struct run *run, FILE *out)
+static void print_result(const struct matching_run *run, FILE *out)
 {
     size_t counts[3] = { 0 };
     for (size_t i = 0; i < run->list.count; i++)
@@ -462,7 +462,7 @@ static void print_result(const struct run *run, FILE *out)
                    run->quantities.at[i].tags == 1 ? "" : "s");
 }
 
-static bool write_all(struct run *run)
+static bool write_all(struct matching_run *run)
 {
     char *matches_path = beside(run, "matches.csv");
     struct plant *loaded = plant_trial_load(run->plant, run->new_text, run->tags_text.at, "plantcast match");
@@ -476,7 +476,7 @@ static bool write_all(struct run *run)
     return good;
 }
 
-static void finish(struct run *run)
+static void finish(struct matching_run *run)
 {
     matches_free(run->matches, run->list.count);
     quantities_finish(&run->quantities);
@@ -512,8 +512,8 @@ static int lock_folder(const struct matching_params *params)
 
 /* --- the child ---------------------------------------------------------------------------------------------------------------- */
 
-struct answer {
-    struct run *run;
+struct matching_answer {
+    struct matching_run *run;
     int file; /* in memory, shared with the child: for each text its length, 8 bytes, and its bytes */
 };
 
@@ -549,8 +549,8 @@ static char *get_text(int file)
 /* Reads and matches the stranger's list, and composes all files. Returns its exit status. */
 static int match_in_child(void *arg)
 {
-    const struct answer *answer = arg;
-    struct run *run = answer->run;
+    const struct matching_answer *answer = arg;
+    struct matching_run *run = answer->run;
     if (!read_lists(run) || !find_source(run))
         return 1;
     run->matches = matcher_run(&run->matcher, &run->list);
@@ -578,7 +578,7 @@ static int match_in_child(void *arg)
                : 1;
 }
 
-static bool take_answer(struct run *run, int file)
+static bool take_answer(struct matching_run *run, int file)
 {
     char *texts[4];
     bool good = lseek(file, 0, SEEK_SET) == 0;
@@ -597,7 +597,7 @@ static bool take_answer(struct run *run, int file)
     return good || fail_at(run->params->tags, "the tag list reader left no answer");
 }
 
-static void add_paths(const struct run *run, struct child_paths *paths)
+static void add_paths(const struct matching_run *run, struct child_paths *paths)
 {
     const struct matching_params *params = run->params;
     const char *const stated[] = { params->tags, params->decisions, run->plant->tags_path };
@@ -612,12 +612,12 @@ static void add_paths(const struct run *run, struct child_paths *paths)
 }
 
 /* The child can write nothing but its answer. */
-static bool match(struct run *run)
+static bool match(struct matching_run *run)
 {
     char why[CHILD_WHY_BYTES], folder[PATH_MAX];
     struct text said = { 0 }, errors = { 0 };
     struct child_paths paths = { 0 };
-    struct answer answer = { run, memfd_create("matches", MFD_CLOEXEC) };
+    struct matching_answer answer = { run, memfd_create("matches", MFD_CLOEXEC) };
     if (answer.file < 0 || !getcwd(folder, sizeof(folder))) {
         fail_at(run->params->tags, strerror(errno));
         if (answer.file >= 0)
@@ -654,7 +654,7 @@ static bool match(struct run *run)
 
 int matching_run(const struct matching_params *params)
 {
-    struct run run = { .params = params };
+    struct matching_run run = { .params = params };
     int lock = lock_folder(params);
     bool good = lock >= 0 && read_plant(&run) && match(&run) && write_all(&run);
     finish(&run);

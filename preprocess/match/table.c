@@ -10,7 +10,7 @@
 
 enum { SAMPLE_LINES = 50 };
 
-void table_add_cell(struct table *table, struct table_row *row, const char *text, size_t length)
+void table_add_cell(struct cell_table *table, struct table_row *row, const char *text, size_t length)
 {
     char *cell = mem_array(length + 1, 1);
     size_t from = 0, to = length;
@@ -38,7 +38,7 @@ void table_row_finish(struct table_row *row)
     *row = (struct table_row){ 0 };
 }
 
-void table_add_row(struct table *table, struct table_row *row)
+void table_add_row(struct cell_table *table, struct table_row *row)
 {
     bool blank = true;
     for (size_t i = 0; i < row->count; i++)
@@ -57,12 +57,12 @@ const char *table_cell(const struct table_row *row, int column)
     return column >= 0 && (size_t)column < row->count ? row->cells[column] : "";
 }
 
-void table_finish(struct table *table)
+void table_finish(struct cell_table *table)
 {
     for (size_t i = 0; i < table->count; i++)
         table_row_finish(&table->rows[i]);
     mem_free(table->rows);
-    *table = (struct table){ 0 };
+    *table = (struct cell_table){ 0 };
 }
 
 /* Counts a separator in each line, outside quotes. Returns for how many lines the commonest count above 0 holds, times that count where
@@ -114,7 +114,7 @@ char table_separator(const char *text)
 }
 
 /* Reads one cell, from `at` on. Returns where it ends, or NULL if its quote does not end. */
-static const char *read_cell(struct table *table, struct table_row *row, const char *at, char separator, int *line)
+static const char *read_cell(struct cell_table *table, struct table_row *row, const char *at, char separator, int *line)
 {
     struct text cell = { 0 };
     while (*at == ' ' || (*at == '\t' && separator != '\t'))
@@ -141,7 +141,7 @@ static const char *read_cell(struct table *table, struct table_row *row, const c
     return at;
 }
 
-bool table_read_csv(struct table *table, const char *text, char separator, char *why, size_t why_bytes)
+bool table_read_csv(struct cell_table *table, const char *text, char separator, char *why, size_t why_bytes)
 {
     struct table_row row = { 0 };
     int line = 1;

@@ -14,8 +14,8 @@
 enum { MAX_SHEETS = 1024, MAX_BYTES = 1 << 28 /* of all cells; a shared string counts in each */ };
 static const size_t max_part_bytes = (size_t)512 << 20;
 
-struct sheet {
-    struct table *table;
+struct xlsx_sheet {
+    struct cell_table *table;
     char **strings; /* the workbook's shared strings */
     size_t string_count, string_room;
     struct table_row row;
@@ -44,7 +44,7 @@ static const char *attribute(const char **attributes, const char *name)
 
 static void on_text(void *data, const char *text, int length)
 {
-    struct sheet *sheet = data;
+    struct xlsx_sheet *sheet = data;
     if (sheet->in_value && !sheet->in_phonetic)
         text_add_bytes(&sheet->text, text, (size_t)length);
 }
@@ -53,7 +53,7 @@ static void on_text(void *data, const char *text, int length)
 
 static void string_begins(void *data, const char *name, const char **attributes)
 {
-    struct sheet *sheet = data;
+    struct xlsx_sheet *sheet = data;
     name = local(name);
     (void)attributes;
     if (!strcmp(name, "si"))
@@ -64,7 +64,7 @@ static void string_begins(void *data, const char *name, const char **attributes)
 
 static void string_ends(void *data, const char *name)
 {
-    struct sheet *sheet = data;
+    struct xlsx_sheet *sheet = data;
     name = local(name);
     if (!strcmp(name, "t"))
         sheet->in_value = false;
@@ -89,7 +89,7 @@ static int column_of(const char *reference)
 
 static void cell_begins(void *data, const char *name, const char **attributes)
 {
-    struct sheet *sheet = data;
+    struct xlsx_sheet *sheet = data;
     name = local(name);
     if (!strcmp(name, "row")) {
         int row = atoi(attribute(attributes, "r"));
@@ -105,7 +105,7 @@ static void cell_begins(void *data, const char *name, const char **attributes)
     sheet->in_phonetic |= !strcmp(name, "rPh");
 }
 
-static void finish_cell(struct sheet *sheet)
+static void finish_cell(struct xlsx_sheet *sheet)
 {
     text_add_bytes(&sheet->text, "", 0);
     const char *value = sheet->text.at;
@@ -127,7 +127,7 @@ static void finish_cell(struct sheet *sheet)
 
 static void cell_ends(void *data, const char *name)
 {
-    struct sheet *sheet = data;
+    struct xlsx_sheet *sheet = data;
     name = local(name);
     if (!strcmp(name, "v") || !strcmp(name, "t"))
         sheet->in_value = false;
@@ -144,7 +144,7 @@ static void cell_ends(void *data, const char *name)
 static void refuse_entity(void *data, const char *name, int parameter, const char *value, int length, const char *base,
                           const char *system_id, const char *public_id, const char *notation)
 {
-    struct sheet *sheet = data;
+    struct xlsx_sheet *sheet = data;
     (void)name, (void)parameter, (void)value, (void)length, (void)base, (void)system_id, (void)public_id, (void)notation;
     XML_StopParser(sheet->parser, XML_FALSE);
 }
@@ -159,7 +159,7 @@ static unsigned long current_line(XML_Parser parser)
 }
 
 /* Returns 1: read, 0: there is no such part, -1: broken, with the reason. */
-static int read_part(struct sheet *sheet, unzFile zip, const char *part, XML_StartElementHandler begins, XML_EndElementHandler ends,
+static int read_part(struct xlsx_sheet *sheet, unzFile zip, const char *part, XML_StartElementHandler begins, XML_EndElementHandler ends,
                      char *why, size_t why_bytes)
 {
     char buffer[65536];
@@ -202,7 +202,7 @@ struct book_sheet {
 };
 
 struct book {
-    struct sheet sheet; /* first: handlers of any part are given it */
+    struct xlsx_sheet sheet; /* first: handlers of any part are given it */
     struct book_sheet sheets[MAX_SHEETS];
     int count;
     bool too_many;
@@ -265,12 +265,12 @@ bool table_read_xlsx(const char *path, table_take_sheet *take, void *data, char 
         return false;
     }
     struct book *book = mem_new(sizeof(*book));
-    struct sheet *sheet = &book->sheet;
+    struct xlsx_sheet *sheet = &book->sheet;
     int good = find_sheets(book, zip, why, why_bytes) ? 1 : -1, sheets = 0;
     if (good > 0)
         good = read_part(sheet, zip, "xl/sharedStrings.xml", string_begins, string_ends, why, why_bytes);
     for (int i = 0; good >= 0 && i < book->count; i++) {
-        struct table table = { 0 };
+        struct cell_table table = { 0 };
         sheet->table = &table;
         sheet->in_value = sheet->in_phonetic = false;
         sheet->last_row = 0;

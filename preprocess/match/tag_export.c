@@ -151,7 +151,7 @@ static void describe(struct tag_export *list, const char *element, const char *t
     }
 }
 
-static void read_studio(struct tag_export *list, const struct table *table, size_t first, const struct tag_header *header)
+static void read_studio(struct tag_export *list, const struct cell_table *table, size_t first, const struct tag_header *header)
 {
     size_t comments = 0;
     for (size_t i = first; i < table->count; i++) {
@@ -181,7 +181,7 @@ static void read_studio(struct tag_export *list, const struct table *table, size
 /* --- lists with a header -------------------------------------------------------------------------------------------------------- */
 
 /* Finds the row that most columns are known in. Returns how many, 0: none names tags. */
-static int find_header(const struct table *table, struct tag_header *header, size_t *row)
+static int find_header(const struct cell_table *table, struct tag_header *header, size_t *row)
 {
     bool one_column = table->count > 0;
     int most = 0;
@@ -214,7 +214,7 @@ static bool read_second(const struct table_row *row, struct tag_header *header)
     return any;
 }
 
-static bool read_rows(struct tag_export *list, const struct table *table, char *why, size_t why_bytes)
+static bool read_rows(struct tag_export *list, const struct cell_table *table, char *why, size_t why_bytes)
 {
     struct tag_header header = { 0 };
     size_t first = 0;
@@ -248,7 +248,7 @@ static bool read_rows(struct tag_export *list, const struct table *table, char *
 
 /* --- AVEVA's dumps: each section has a header that begins with a colon ------------------------------------------------------- */
 
-static bool is_dump(const struct table *table)
+static bool is_dump(const struct cell_table *table)
 {
     for (size_t i = 0; i < table->count && i < HEADER_ROWS; i++) {
         const char *cell = table->rows[i].cells[0];
@@ -288,7 +288,7 @@ static bool begin_section(struct tag_export *list, const struct table_row *row, 
     return false;
 }
 
-static void read_dump(struct tag_export *list, const struct table *table)
+static void read_dump(struct tag_export *list, const struct cell_table *table)
 {
     struct tag_header header = { 0 };
     bool within = false;
@@ -312,7 +312,7 @@ static const char *first_sign(const char *text)
 static bool read_text(struct tag_export *list, const char *bytes, size_t count, const char *encoding, char *why, size_t why_bytes)
 {
     struct charset_text text;
-    struct table table = { 0 };
+    struct cell_table table = { 0 };
     charset_decode(bytes, count, encoding, &text);
     list->encoding = text.encoding;
     list->damaged = text.damaged;
@@ -334,19 +334,19 @@ static bool read_text(struct tag_export *list, const char *bytes, size_t count, 
 }
 
 struct workbook {
-    struct table best; /* the sheet whose header has most known columns; of equal ones the one with most rows */
+    struct cell_table best; /* the sheet whose header has most known columns; of equal ones the one with most rows */
     struct text others; /* names of other sheets with a header */
     char *name;
     int known;
     size_t sheets;
 };
 
-static bool is_better(const struct workbook *book, int known, const struct table *sheet)
+static bool is_better(const struct workbook *book, int known, const struct cell_table *sheet)
 {
     return known > book->known || (known == book->known && sheet->count > book->best.count);
 }
 
-static void take_sheet(void *data, struct table *sheet, const char *name)
+static void take_sheet(void *data, struct cell_table *sheet, const char *name)
 {
     struct workbook *book = data;
     struct tag_header header;
@@ -358,7 +358,7 @@ static void take_sheet(void *data, struct table *sheet, const char *name)
         text_add(&book->others, "%s'%.60s'", book->others.length > 0 ? ", " : "", other);
     book->sheets++;
     if (better) {
-        struct table before = book->best;
+        struct cell_table before = book->best;
         book->best = *sheet;
         *sheet = before;
         mem_free(book->name);

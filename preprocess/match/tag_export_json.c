@@ -37,7 +37,7 @@ struct complaint {
     struct text paths;
 };
 
-struct reader {
+struct tag_json_reader {
     struct tag_export *list;
     json_t *types; /* by path below the folder of types; borrowed nodes */
     struct complaint unknown, circular, unresolved;
@@ -46,21 +46,21 @@ struct reader {
 };
 
 /* A node as its levels have it: the instance's own first, then types. */
-struct node {
+struct layered_node {
     json_t *layers[MAX_LAYERS];
     int count;
 };
 
-struct frame { /* a UDT instance around a tag */
-    const struct frame *outer;
-    const struct node *node;
+struct instance_frame { /* a UDT instance around a tag */
+    const struct instance_frame *outer;
+    const struct layered_node *node;
     int own; /* layers that are the instance's, not its type's: their parameters refer to those of the frame outside */
     const char *name;
 };
 
 struct scope { /* where a reference to a parameter stands */
-    struct reader *reader;
-    const struct frame *frame;
+    struct tag_json_reader *reader;
+    const struct instance_frame *frame;
     const char *folder, *name; /* path around the tag, and the tag's name */
 };
 
@@ -70,7 +70,7 @@ static const char *text_of(json_t *object, const char *key)
     return text ? text : "";
 }
 
-static json_t *property_of(const struct node *node, const char *key)
+static json_t *property_of(const struct layered_node *node, const char *key)
 {
     json_t *found = NULL;
     for (int i = 0; i < node->count && (!found || json_is_null(found)); i++)
@@ -78,7 +78,7 @@ static json_t *property_of(const struct node *node, const char *key)
     return found;
 }
 
-static const char *string_of(const struct node *node, const char *key)
+static const char *string_of(const struct layered_node *node, const char *key)
 {
     const char *text = json_string_value(property_of(node, key));
     return text ? text : "";
@@ -96,7 +96,7 @@ static void complain(struct complaint *complaint, const char *folder, const char
 static const char types_folder[] = "_types_";
 
 /* Finds types wherever they are. `path` is below the folder of types. */
-static void index_types(struct reader *reader, json_t *node, const char *path, int depth)
+static void index_types(struct tag_json_reader *reader, json_t *node, const char *path, int depth)
 {
     json_t *inner = json_is_array(node) ? node : json_object_get(node, "tags"), *item;
     const char *name = text_of(node, "name");
@@ -111,7 +111,7 @@ static void index_types(struct reader *reader, json_t *node, const char *path, i
 }
 
 /* By path; else the only type of that name, wherever it is. */
-static json_t *find_type(const struct reader *reader, const char *id)
+static json_t *find_type(const struct tag_json_reader *reader, const char *id)
 {
     const char *wanted = !strncmp(id, "_types_/", 8) ? id + 8 : id, *slash = strrchr(wanted, '/'), *name = slash ? slash + 1 : wanted, *key;
     json_t *type = json_object_get(reader->types, wanted), *other = NULL;
@@ -129,7 +129,7 @@ static json_t *find_type(const struct reader *reader, const char *id)
     return same == 1 ? other : NULL;
 }
 
-static bool is_around(const struct frame *frame, const json_t *type)
+static bool is_around(const struct instance_frame *frame, const json_t *type)
 {
     for (; frame; frame = frame->outer)
         for (int i = frame->own; i < frame->node->count; i++)
@@ -139,7 +139,8 @@ static bool is_around(const struct frame *frame, const json_t *type)
 }
 
 /* Appends the layers of a type and of its parents to an instance. */
-static void add_types(struct reader *reader, struct node *node, const struct frame *outer, const char *folder, const char *name)
+static void add_types(struct tag_json_reader *reader, struct layered_node *node, const struct instance_frame *outer, const char *folder,
+                      const char *name)
 {
     const char *id = string_of(node, "typeId");
     for (int own = node->count; *id && node->count < MAX_LAYERS; id = text_of(node->layers[node->count - 1], "typeId")) {
@@ -161,7 +162,7 @@ static bool expand(const struct scope *scope, const char *text, struct text *out
 
 static const char *builtin(const struct scope *scope, const char *name, char **made)
 {
-    const struct frame *frame = scope->frame, *root = frame;
+    const struct instance_frame *frame = scope->frame, *root = frame;
     while (root && root->outer)
         root = root->outer;
     if (!strcmp(name, "TagName"))
@@ -206,7 +207,7 @@ static bool add_parameter(const struct scope *scope, const char *name, struct te
     size_t before = out->length;
     if (scope->reader->references++ > MOST_REFERENCES)
         return false;
-    for (const struct frame *frame = scope->frame; frame; frame = frame->outer)
+    for (const struct instance_frame *frame = scope->frame; frame; frame = frame->outer)
         for (int i = 0; i < frame->node->count; i++) {
             json_t *value = value_of(json_object_get(json_object_get(frame->node->layers[i], "parameters"), name));
             struct scope inner = *scope;
@@ -313,7 +314,7 @@ static void set_field(const struct scope *scope, struct export_tag *tag, enum ex
 }
 
 /* Members of instances are called by their whole path: a member's own name says nothing of which instance it is in. */
-static void add_tag(const struct scope *scope, const struct node *node)
+static void add_tag(const struct scope *scope, const struct layered_node *node)
 {
     struct tag_export *list = scope->reader->list;
     list->rows++;
@@ -337,7 +338,8 @@ static void add_tag(const struct scope *scope, const struct node *node)
     scope->reader->too_many |= list->count > TABLE_MAX_ROWS;
 }
 
-static void add_node(struct reader *reader, struct node *node, const struct frame *frame, const char *folder, int depth);
+static void add_node(struct tag_json_reader *reader, struct layered_node *node, const struct instance_frame *frame, const char *folder,
+                     int depth);
 
 static json_t *child_of(json_t *layer, const char *name)
 {
@@ -348,7 +350,8 @@ static json_t *child_of(json_t *layer, const char *name)
 }
 
 /* Adds what a folder or an instance holds: each child once, as all layers together have it. */
-static void add_children(struct reader *reader, const struct node *node, const struct frame *frame, const char *folder, int depth)
+static void add_children(struct tag_json_reader *reader, const struct layered_node *node, const struct instance_frame *frame,
+                         const char *folder, int depth)
 {
     json_t *item;
     size_t index;
@@ -356,7 +359,7 @@ static void add_children(struct reader *reader, const struct node *node, const s
         json_array_foreach(json_object_get(node->layers[i], "tags"), index, item)
         {
             const char *name = text_of(item, "name");
-            struct node child = { { item }, 1 };
+            struct layered_node child = { { item }, 1 };
             bool before = false;
             for (int k = 0; k < i && *name && !before; k++)
                 before = child_of(node->layers[k], name) != NULL;
@@ -370,12 +373,13 @@ static void add_children(struct reader *reader, const struct node *node, const s
         }
 }
 
-static bool has_children(const struct node *node)
+static bool has_children(const struct layered_node *node)
 {
     return json_is_array(property_of(node, "tags"));
 }
 
-static void add_node(struct reader *reader, struct node *node, const struct frame *frame, const char *folder, int depth)
+static void add_node(struct tag_json_reader *reader, struct layered_node *node, const struct instance_frame *frame, const char *folder,
+                     int depth)
 {
     const char *name = string_of(node, "name"), *type = string_of(node, "tagType");
     if (depth >= MAX_DEPTH) {
@@ -393,7 +397,7 @@ static void add_node(struct reader *reader, struct node *node, const struct fram
         return;
     }
     char *below = *name ? mem_printf("%s%s%s", folder, *folder ? "/" : "", name) : mem_strdup(folder);
-    const struct frame inner = { frame, node, own, name };
+    const struct instance_frame inner = { frame, node, own, name };
     add_children(reader, node, instance ? &inner : frame, below, depth);
     mem_free(below);
 }
@@ -409,7 +413,7 @@ bool tag_export_read_json(struct tag_export *list, const char *text, size_t leng
 {
     json_error_t error;
     json_t *root = json_loadb(text, length, 0, &error), *item;
-    struct reader reader = { .list = list };
+    struct tag_json_reader reader = { .list = list };
     size_t index;
     list->format = "Ignition (JSON)";
     if (!root) {
@@ -419,9 +423,9 @@ bool tag_export_read_json(struct tag_export *list, const char *text, size_t leng
     reader.types = json_object();
     index_types(&reader, root, "", 0);
     if (json_is_array(root))
-        json_array_foreach(root, index, item) add_node(&reader, &(struct node){ { item }, 1 }, NULL, "", 1);
+        json_array_foreach(root, index, item) add_node(&reader, &(struct layered_node){ { item }, 1 }, NULL, "", 1);
     else
-        add_node(&reader, &(struct node){ { root }, 1 }, NULL, "", 0);
+        add_node(&reader, &(struct layered_node){ { root }, 1 }, NULL, "", 0);
     say(list, &reader.unknown, "instances are of a type that the export does not have; export the folder of types, too");
     say(list, &reader.circular, "instances are of a type that contains itself: left out below there");
     say(list, &reader.unresolved, "addresses refer to parameters that have no value");

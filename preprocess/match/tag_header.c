@@ -127,14 +127,14 @@ static bool each_key(const char *cell, bool (*each)(const char *key, void *data)
     return taken;
 }
 
-struct reading {
+struct header_reading {
     struct tag_header *header;
     int ranks[EXPORT_FIELDS], column;
 };
 
 static bool take_key(const char *key, void *data)
 {
-    struct reading *reading = data;
+    struct header_reading *reading = data;
     struct tag_header *header = reading->header;
     bool known = true;
     if (!strcmp(key, "tagtype"))
@@ -161,7 +161,7 @@ static bool take_key(const char *key, void *data)
 
 int tag_header_read(const struct table_row *row, struct tag_header *header)
 {
-    struct reading reading = { .header = header };
+    struct header_reading reading = { .header = header };
     int known = 0;
     *header = (struct tag_header){ .tag_type = -1, .span = -1, .kind = -1, .specifier = -1 };
     for (int f = 0; f < EXPORT_FIELDS; f++)

@@ -84,7 +84,7 @@ static int by_name(const void *pa, const void *pb, void *rows_ptr)
 static bool read_file(struct tag_rows *rows, const char *path, char why[MATCH_WHY_BYTES])
 {
     struct charset_text text;
-    struct table table = { 0 };
+    struct cell_table table = { 0 };
     size_t count;
     char *bytes = text_read_file(path, max_bytes, &count);
     if (!bytes) {

@@ -51,7 +51,8 @@ uint32_t integer(const unsigned char *at, int type)
 
 /* count elements of `element` bytes at `offset` in a buffer view, strided as the view says or packed. The views lie inside their buffers
    (model_document.h). */
-span view_span(const work &w, int number, uint64_t offset, uint64_t element, uint64_t count, bool strided, const std::string &what)
+byte_span view_span(const gltf_work &w, int number, uint64_t offset, uint64_t element, uint64_t count, bool strided,
+                    const std::string &what)
 {
     if (number < 0 || static_cast<size_t>(number) >= w.parsed.bufferViews.size())
         refuse("%s: there is no bufferView %d", what.c_str(), number);
@@ -72,7 +73,7 @@ span view_span(const work &w, int number, uint64_t offset, uint64_t element, uin
 
 } // namespace
 
-accessor::accessor(const work &w, int number, int width, const std::string &about) : what(about), values{ nullptr, 0, 0 }
+accessor::accessor(const gltf_work &w, int number, int width, const std::string &about) : what(about), values{ nullptr, 0, 0 }
 {
     const tinygltf::Accessor &a = w.parsed.accessors.at(static_cast<size_t>(number));
     int has = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(a.type));
@@ -92,7 +93,7 @@ accessor::accessor(const work &w, int number, int width, const std::string &abou
     if (count > a.count || index_bytes == 0 || index_type == TINYGLTF_COMPONENT_TYPE_FLOAT || index_type == TINYGLTF_COMPONENT_TYPE_BYTE ||
         index_type == TINYGLTF_COMPONENT_TYPE_SHORT)
         refuse("%s: sparse: %zu of %zu elements, by indices of component type %d", what.c_str(), count, a.count, index_type);
-    span places =
+    byte_span places =
         view_span(w, a.sparse.indices.bufferView, static_cast<uint64_t>(a.sparse.indices.byteOffset), index_bytes, count, false, what);
     values = view_span(w, a.sparse.values.bufferView, static_cast<uint64_t>(a.sparse.values.byteOffset), element, count, false, what);
     for (size_t i = 0; i < count; i++) {
@@ -116,7 +117,7 @@ void accessor::get(size_t element, double *out) const
     }
 }
 
-void take_elements(work *w, uint64_t count, const std::string &what)
+void take_elements(gltf_work *w, uint64_t count, const std::string &what)
 {
     if (count > w->elements_left)
         refuse("%s: %llu elements are more than a file of %zu bytes can mean", what.c_str(), static_cast<unsigned long long>(count),

@@ -18,7 +18,7 @@ extern "C" {
 namespace gltf
 {
 
-struct refusal : std::runtime_error {
+struct gltf_refusal : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
@@ -32,7 +32,7 @@ template <typename T> T *new_array(size_t count)
     return array;
 }
 
-struct work { /* a model in the making */
+struct gltf_work { /* a model in the making */
     const model_document *document;
     tinygltf::Model parsed;
     gltf_model *model;
@@ -40,7 +40,7 @@ struct work { /* a model in the making */
 };
 
 /* Where numbers lie that were checked to be there. */
-struct span {
+struct byte_span {
     const unsigned char *bytes;
     size_t stride, count;
 };
@@ -49,7 +49,7 @@ struct span {
 class accessor
 {
   public:
-    accessor(const work &w, int number, int width, const std::string &what); /* width 0: all that it has */
+    accessor(const gltf_work &w, int number, int width, const std::string &what); /* width 0: all that it has */
     size_t count() const
     {
         return base.count;
@@ -72,11 +72,11 @@ class accessor
     std::string what;
     int type, wanted;
     bool normalized;
-    span base, values;
+    byte_span base, values;
     std::vector<std::pair<size_t, size_t>> replaced; /* element, where in values; sorted */
 };
 
-void take_elements(work *w, uint64_t count, const std::string &what);
+void take_elements(gltf_work *w, uint64_t count, const std::string &what);
 double number_in(const tinygltf::Value &value, const char *key, size_t index, double otherwise);
 
 /* How a material's textures lie on the surface (KHR_texture_transform). */
@@ -96,11 +96,11 @@ struct uv_lays {
 uv_lays lays_of(const tinygltf::Model &m, int material);
 
 /* Notes what is not shown. read_materials() makes room. */
-void leave_out(work *w, const std::string &text);
-void read_materials(work *w);
+void leave_out(gltf_work *w, const std::string &text);
+void read_materials(gltf_work *w);
 /* Takes those textures out of a material that lie in this way and cannot be drawn beyond 0..1, and says so. */
-void leave_out_bounded(work *w, int material, size_t lay);
-void read_nodes(work *w);
-void read_meshes(work *w);
+void leave_out_bounded(gltf_work *w, int material, size_t lay);
+void read_nodes(gltf_work *w);
+void read_meshes(gltf_work *w);
 
 } // namespace gltf

@@ -76,7 +76,7 @@ bool is_readable(const document_bytes &image)
 }
 
 /* Returns ASSET_NO_TEXTURE with the reason in *why where there is no image that can be read. */
-uint32_t texture_of(work *w, int texture, bool srgb, std::string *why)
+uint32_t texture_of(gltf_work *w, int texture, bool srgb, std::string *why)
 {
     gltf_model *model = w->model;
     const tinygltf::Texture &t = w->parsed.textures.at(static_cast<size_t>(texture));
@@ -108,7 +108,7 @@ float finite(double value, double otherwise)
     return std::isfinite(out) ? out : static_cast<float>(otherwise);
 }
 
-std::string material_what(const work &w, int number)
+std::string material_what(const gltf_work &w, int number)
 {
     return "material " + std::to_string(number) + " '" + w.parsed.materials.at(static_cast<size_t>(number)).name.substr(0, 80) + "'";
 }
@@ -121,7 +121,7 @@ std::array<uint32_t *, USE_COUNT> places_of(asset_material *m)
     return { &m->base_color_texture, &m->metallic_roughness_texture, &m->normal_texture, &m->occlusion_texture, &m->emissive_texture };
 }
 
-void read_textures(work *w, const tinygltf::Material &from, asset_material *to, int number, const std::string &what)
+void read_textures(gltf_work *w, const tinygltf::Material &from, asset_material *to, int number, const std::string &what)
 {
     std::array<uint32_t *, USE_COUNT> places = places_of(to);
     std::vector<use> uses = uses_of(from);
@@ -142,7 +142,7 @@ void read_textures(work *w, const tinygltf::Material &from, asset_material *to, 
     }
 }
 
-void read_material(work *w, const tinygltf::Material &from, asset_material *to, int number, const std::string &what)
+void read_material(gltf_work *w, const tinygltf::Material &from, asset_material *to, int number, const std::string &what)
 {
     const tinygltf::PbrMetallicRoughness &pbr = from.pbrMetallicRoughness;
     for (size_t i = 0; i < 4; i++)
@@ -163,7 +163,7 @@ void read_material(work *w, const tinygltf::Material &from, asset_material *to, 
 
 } // namespace
 
-void leave_out(work *w, const std::string &text)
+void leave_out(gltf_work *w, const std::string &text)
 {
     w->model->left_out[w->model->left_out_textures++] = mem_strdup(text.c_str());
 }
@@ -190,7 +190,7 @@ uv_lays lays_of(const tinygltf::Model &m, int material)
     return lays;
 }
 
-void leave_out_bounded(work *w, int material, size_t lay)
+void leave_out_bounded(gltf_work *w, int material, size_t lay)
 {
     std::vector<use> uses = uses_of(w->parsed.materials.at(static_cast<size_t>(material)));
     uv_lays lays = lays_of(w->parsed, material);
@@ -203,7 +203,7 @@ void leave_out_bounded(work *w, int material, size_t lay)
         }
 }
 
-void read_materials(work *w)
+void read_materials(gltf_work *w)
 {
     gltf_model *model = w->model;
     const model_document *d = w->document;

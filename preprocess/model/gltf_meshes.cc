@@ -11,7 +11,7 @@ namespace
 {
 
 /* Places in the vertex accessors, three per triangle. */
-std::vector<uint32_t> read_indices(work *w, const tinygltf::Primitive &p, size_t vertex_count, const std::string &what)
+std::vector<uint32_t> read_indices(gltf_work *w, const tinygltf::Primitive &p, size_t vertex_count, const std::string &what)
 {
     std::vector<uint32_t> out;
     if (p.indices < 0) {
@@ -90,7 +90,7 @@ std::vector<uint32_t> compact(std::vector<uint32_t> *indices)
 }
 
 struct attribute_reader {
-    const work &w;
+    const gltf_work &w;
     const tinygltf::Primitive &primitive;
     const std::vector<uint32_t> &used;
     size_t vertex_count; /* of POSITION */
@@ -170,7 +170,7 @@ void read_colors(const attribute_reader &reader, gltf_primitive *out)
     }
 }
 
-void read_vertices(work *w, const attribute_reader &reader, gltf_primitive *out, int material)
+void read_vertices(gltf_work *w, const attribute_reader &reader, gltf_primitive *out, int material)
 {
     uv_lays lays = lays_of(reader.w.parsed, material);
     out->positions = read_vectors(reader, "POSITION");
@@ -192,7 +192,7 @@ void check_morphing(const std::vector<double> &weights, const std::string &what)
 }
 
 /* False: nothing to draw here (lines, points, no triangle). */
-bool read_primitive(work *w, const tinygltf::Primitive &p, gltf_primitive *out, gltf_mesh *mesh, const std::string &what)
+bool read_primitive(gltf_work *w, const tinygltf::Primitive &p, gltf_primitive *out, gltf_mesh *mesh, const std::string &what)
 {
     int mode = p.mode;
     if (mode == TINYGLTF_MODE_POINTS || mode == TINYGLTF_MODE_LINE || mode == TINYGLTF_MODE_LINE_LOOP || mode == TINYGLTF_MODE_LINE_STRIP) {
@@ -221,7 +221,7 @@ bool read_primitive(work *w, const tinygltf::Primitive &p, gltf_primitive *out, 
 
 } // namespace
 
-void read_meshes(work *w)
+void read_meshes(gltf_work *w)
 {
     gltf_model *model = w->model;
     size_t primitives = 0;

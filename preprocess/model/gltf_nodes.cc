@@ -17,7 +17,7 @@ constexpr uint32_t MAX_NODES = 4'000'000, MAX_DEPTH = 512, ELEMENTS_PER_INSTANCE
 constexpr double ROTATION_SLACK = 0.01, LEAST_ROTATION = 1e-6; /* in bytes, of instances, a rotation is off by 0.008 */
 
 /* A unit quaternion, says glTF. One of another length turns as it would with length 1, as elsewhere, and is counted; rounding is not. */
-void check_rotation(work *w, const double q[4], const std::string &what)
+void check_rotation(gltf_work *w, const double q[4], const std::string &what)
 {
     double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(length >= LEAST_ROTATION))
@@ -43,7 +43,7 @@ void take(const std::vector<double> &from, size_t count, double *to)
         to[i] = from[i];
 }
 
-void local_of(work *w, const tinygltf::Node &node, double out[16], const std::string &what)
+void local_of(gltf_work *w, const tinygltf::Node &node, double out[16], const std::string &what)
 {
     double t[3] = { 0, 0, 0 }, q[4] = { 0, 0, 0, 1 }, s[3] = { 1, 1, 1 };
     take(node.translation, 3, t);
@@ -55,8 +55,8 @@ void local_of(work *w, const tinygltf::Node &node, double out[16], const std::st
     check_affine(out, what);
 }
 
-struct tree { /* nodes as they are put in order */
-    work *w;
+struct node_order { /* nodes as they are put in order */
+    gltf_work *w;
     std::vector<gltf_node> out;
     std::vector<char> seen;
 };
@@ -67,7 +67,7 @@ std::string node_what(const tinygltf::Model &m, int number)
     return "node " + std::to_string(number) + (name.empty() ? "" : " '" + name.substr(0, 80) + "'");
 }
 
-void add(tree *tree, int number, int parent, int mesh, const double world[16])
+void add(node_order *tree, int number, int parent, int mesh, const double world[16])
 {
     const std::string &name = tree->w->parsed.nodes[static_cast<size_t>(number)].name;
     if (tree->out.size() >= MAX_NODES)
@@ -83,7 +83,7 @@ void add(tree *tree, int number, int parent, int mesh, const double world[16])
 }
 
 /* EXT_mesh_gpu_instancing: the node's mesh once for each instance, as nodes of the same name below it. */
-void add_instances(tree *tree, int number, int parent, const tinygltf::Value &extension)
+void add_instances(node_order *tree, int number, int parent, const tinygltf::Value &extension)
 {
     const tinygltf::Node &node = tree->w->parsed.nodes[static_cast<size_t>(number)];
     std::string what = node_what(tree->w->parsed, number) + ": EXT_mesh_gpu_instancing";
@@ -118,7 +118,7 @@ void add_instances(tree *tree, int number, int parent, const tinygltf::Value &ex
     }
 }
 
-void walk(tree *tree, int number, int parent, const double parent_world[16], uint32_t depth)
+void walk(node_order *tree, int number, int parent, const double parent_world[16], uint32_t depth)
 {
     std::string what = node_what(tree->w->parsed, number);
     if (tree->seen[static_cast<size_t>(number)])
@@ -165,7 +165,7 @@ std::vector<int> roots_of(const tinygltf::Model &m)
 }
 
 /* Nodes with a mesh that the scene does not reach. */
-void note_unreached(const tree &tree)
+void note_unreached(const node_order &tree)
 {
     size_t count = 0;
     std::string first;
@@ -179,10 +179,10 @@ void note_unreached(const tree &tree)
 
 } // namespace
 
-void read_nodes(work *w)
+void read_nodes(gltf_work *w)
 {
     static const double identity[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
-    tree tree = { w, {}, std::vector<char>(w->parsed.nodes.size(), 0) };
+    node_order tree = { w, {}, std::vector<char>(w->parsed.nodes.size(), 0) };
     try {
         for (int root : roots_of(w->parsed))
             walk(&tree, root, -1, identity, 0);

@@ -15,7 +15,7 @@ void refuse(const char *fmt, ...)
     va_start(ap, fmt);
     vsnprintf(text, sizeof(text), fmt, ap);
     va_end(ap);
-    throw refusal(text);
+    throw gltf_refusal(text);
 }
 
 } // namespace gltf

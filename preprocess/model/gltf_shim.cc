@@ -61,7 +61,7 @@ tinygltf::FsCallbacks no_files()
     return files;
 }
 
-void parse(gltf::work *w)
+void parse(gltf::gltf_work *w)
 {
     tinygltf::TinyGLTF loader;
     std::string error, warning;
@@ -86,7 +86,7 @@ extern "C" bool gltf_load(struct gltf_model *model, const struct model_source *s
     if (!model_document_open(&document, source, why))
         return false;
     try {
-        gltf::work w = { &document, {}, model, FREE_ELEMENTS + ELEMENTS_PER_BYTE * document.total_bytes };
+        gltf::gltf_work w = { &document, {}, model, FREE_ELEMENTS + ELEMENTS_PER_BYTE * document.total_bytes };
         parse(&w);
         gltf::read_materials(&w);
         gltf::read_nodes(&w);

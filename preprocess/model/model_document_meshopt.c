@@ -9,13 +9,13 @@
 #include "preprocess/model/model_document_impl.h"
 
 enum mode { ATTRIBUTES, TRIANGLES, INDICES };
-enum filter { NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL };
+enum meshopt_filter { NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL };
 static const char *const modes[] = { "ATTRIBUTES", "TRIANGLES", "INDICES" };
 static const char *const filters[] = { "NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL" };
 
 #define BYTES_PER_BYTE 128u /* a vertex block takes at least 1 byte for 64, an index at least a third of one */
 
-struct packed {
+struct meshopt_view {
     uint64_t count, stride;
     int mode, filter; /* -1: not of this extension */
     struct model_bytes from;
@@ -29,7 +29,7 @@ static int number_in(const char *const *names, int count, const char *name)
     return -1;
 }
 
-static bool shape_good(const struct packed *p, const char *what, char *why)
+static bool shape_good(const struct meshopt_view *p, const char *what, char *why)
 {
     bool index = p->mode == TRIANGLES || p->mode == INDICES;
     if (p->mode < 0 || p->filter < 0)
@@ -46,7 +46,7 @@ static bool shape_good(const struct packed *p, const char *what, char *why)
     return true;
 }
 
-static bool decode(const struct packed *p, unsigned char *out)
+static bool decode(const struct meshopt_view *p, unsigned char *out)
 {
     int status = p->mode == ATTRIBUTES  ? meshopt_decodeVertexBuffer(out, p->count, p->stride, p->from.at, p->from.size)
                  : p->mode == TRIANGLES ? meshopt_decodeIndexBuffer(out, p->count, p->stride, p->from.at, p->from.size)
@@ -65,10 +65,10 @@ static bool decode(const struct packed *p, unsigned char *out)
 static bool expand(struct document_work *work, const char *what, json_t *view, const json_t *extension)
 {
     const char *filter = json_string_value(json_object_get(extension, "filter"));
-    struct packed p = { .count = (uint64_t)json_integer_value(json_object_get(extension, "count")),
-                        .stride = (uint64_t)json_integer_value(json_object_get(extension, "byteStride")),
-                        .mode = number_in(modes, 3, json_string_value(json_object_get(extension, "mode"))),
-                        .filter = filter ? number_in(filters, 4, filter) : NONE };
+    struct meshopt_view p = { .count = (uint64_t)json_integer_value(json_object_get(extension, "count")),
+                              .stride = (uint64_t)json_integer_value(json_object_get(extension, "byteStride")),
+                              .mode = number_in(modes, 3, json_string_value(json_object_get(extension, "mode"))),
+                              .filter = filter ? number_in(filters, 4, filter) : NONE };
     size_t buffer = (size_t)json_integer_value(json_object_get(extension, "buffer"));
     uint64_t offset = (uint64_t)json_integer_value(json_object_get(extension, "byteOffset"));
     uint64_t length = (uint64_t)json_integer_value(json_object_get(extension, "byteLength"));

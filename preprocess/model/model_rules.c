@@ -8,13 +8,13 @@
 #include <stdio.h>
 #include <string.h>
 
-enum kind { OBJECT, LIST, TEXT, FLAG, NUMBER, NUMBERS, SIZE, COUNT, INDEX, INDICES, ATTRIBUTES };
-enum need { MAY, MUST }; /* MUST: if the object that holds it is there */
+enum rule_kind { OBJECT, LIST, TEXT, FLAG, NUMBER, NUMBERS, SIZE, COUNT, INDEX, INDICES, ATTRIBUTES };
+enum rule_need { MAY, MUST }; /* MUST: if the object that holds it is there */
 
-struct rule {
+struct model_rule {
     const char *list, *path; /* path: dots lead into objects, which a rule before names */
-    enum kind kind;
-    enum need need;
+    enum rule_kind kind;
+    enum rule_need need;
     const char *target; /* INDEX, INDICES, ATTRIBUTES: the list that it points into; NULL for ATTRIBUTES: any number */
     size_t length;      /* NUMBERS */
 };
@@ -34,7 +34,7 @@ struct rule {
 #define INSTANCING "extensions.EXT_mesh_gpu_instancing"
 
 /* clang-format off */
-static const struct rule rules[] = { /* whether an accessor's views are there is checked when it is read: some are left over */
+static const struct model_rule rules[] = { /* whether an accessor's views are there is checked when it is read: some are left over */
     { "buffers", "byteLength", SIZE, MUST, NULL, 0 }, { "buffers", "uri", TEXT, MAY, NULL, 0 },
     { "bufferViews", "buffer", INDEX, MUST, "buffers", 0 }, { "bufferViews", "byteOffset", SIZE, MAY, NULL, 0 },
     { "bufferViews", "byteLength", SIZE, MUST, NULL, 0 }, { "bufferViews", "byteStride", SIZE, MAY, NULL, 0 },
@@ -99,7 +99,7 @@ static const char *const look_extensions[] = {
     "AGI_",           "MAXAR_image_ortho",  "CESIUM_primitive_outline", "GODOT_single_root",
 };
 
-struct check { /* one object in hand */
+struct rule_check { /* one object in hand */
     json_t *root;
     const char *list; /* NULL: the document itself */
     size_t number;
@@ -129,8 +129,8 @@ void model_rules_name(const json_t *root, const char *list, size_t number, int p
         snprintf(out + length, bytes - (size_t)length, ", primitive %d", primitive);
 }
 
-static bool object_wrong(const struct check *c, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
-static bool object_wrong(const struct check *c, const char *fmt, ...)
+static bool object_wrong(const struct rule_check *c, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+static bool object_wrong(const struct rule_check *c, const char *fmt, ...)
 {
     char what[160] = "file", text[MODEL_WHY_BYTES - 160];
     va_list ap;
@@ -162,7 +162,7 @@ static bool numbers_good(const json_t *value, size_t length)
     return json_is_array(value) && json_array_size(value) == length;
 }
 
-static bool index_good(const struct check *c, const char *path, const json_t *value, const char *target)
+static bool index_good(const struct rule_check *c, const char *path, const json_t *value, const char *target)
 {
     json_int_t index;
     if (!whole(value, &index))
@@ -172,7 +172,7 @@ static bool index_good(const struct check *c, const char *path, const json_t *va
     return true;
 }
 
-static bool indices_good(const struct check *c, const char *path, json_t *value, const char *target)
+static bool indices_good(const struct rule_check *c, const char *path, json_t *value, const char *target)
 {
     if (!json_is_array(value))
         return object_wrong(c, "%s is not a list", path);
@@ -186,7 +186,7 @@ static bool indices_good(const struct check *c, const char *path, json_t *value,
     return true;
 }
 
-static bool attributes_good(const struct check *c, const char *path, json_t *value, const char *target)
+static bool attributes_good(const struct rule_check *c, const char *path, json_t *value, const char *target)
 {
     const char *key;
     json_t *one;
@@ -204,7 +204,7 @@ static bool attributes_good(const struct check *c, const char *path, json_t *val
     return true;
 }
 
-static bool whole_good(const struct check *c, const struct rule *rule, json_t *parent, const char *key, const json_t *value)
+static bool whole_good(const struct rule_check *c, const struct model_rule *rule, json_t *parent, const char *key, const json_t *value)
 {
     json_int_t number;
     json_int_t most = rule->kind == COUNT ? INT32_MAX : INT64_MAX;
@@ -217,7 +217,7 @@ static bool whole_good(const struct check *c, const struct rule *rule, json_t *p
     return true;
 }
 
-static bool value_good(const struct check *c, const struct rule *rule, json_t *parent, const char *key, json_t *value)
+static bool value_good(const struct rule_check *c, const struct model_rule *rule, json_t *parent, const char *key, json_t *value)
 {
     const char *expected = NULL;
     switch (rule->kind) {
@@ -239,7 +239,7 @@ static bool value_good(const struct check *c, const struct rule *rule, json_t *p
     return !expected || object_wrong(c, "%s is not %s", rule->path, expected);
 }
 
-static bool rule_good(const struct check *c, const struct rule *rule, json_t *item)
+static bool rule_good(const struct rule_check *c, const struct model_rule *rule, json_t *item)
 {
     char key[64];
     json_t *parent = item;
@@ -260,7 +260,7 @@ static bool rule_good(const struct check *c, const struct rule *rule, json_t *it
     return value_good(c, rule, parent, at, value);
 }
 
-static bool item_good(const struct check *c, const char *list, json_t *item)
+static bool item_good(const struct rule_check *c, const char *list, json_t *item)
 {
     if (!json_is_object(item))
         return object_wrong(c, "is not an object");
@@ -270,9 +270,9 @@ static bool item_good(const struct check *c, const char *list, json_t *item)
     return true;
 }
 
-static bool primitives_good(const struct check *mesh, const json_t *primitives)
+static bool primitives_good(const struct rule_check *mesh, const json_t *primitives)
 {
-    struct check c = *mesh;
+    struct rule_check c = *mesh;
     for (size_t i = 0; i < json_array_size(primitives); i++) {
         c.primitive = (int)i;
         if (!item_good(&c, "primitives", json_array_get(primitives, i)))
@@ -289,7 +289,7 @@ static bool list_good(json_t *root, const char *list, char *why)
     else if (items && !json_is_array(items))
         return wrong(why, "%s is not a list", list);
     for (size_t i = 0; i < json_array_size(items); i++) {
-        struct check c = { root, list, i, -1, why };
+        struct rule_check c = { root, list, i, -1, why };
         json_t *item = json_array_get(items, i);
         if (!item_good(&c, list, item))
             return false;
@@ -329,8 +329,8 @@ static bool head_good(json_t *root, char *why)
         if (!name || (!model_rules_known(name) && !model_rules_look(name)))
             return wrong(why, "requires the extension %.100s, which is not supported", name ? name : "without a name");
     }
-    static const struct rule scene = { "", "scene", INDEX, MAY, "scenes", 0 };
-    return rule_good(&(struct check){ root, NULL, 0, -1, why }, &scene, root);
+    static const struct model_rule scene = { "", "scene", INDEX, MAY, "scenes", 0 };
+    return rule_good(&(struct rule_check){ root, NULL, 0, -1, why }, &scene, root);
 }
 
 bool model_rules_check(json_t *root, char why[MODEL_WHY_BYTES])

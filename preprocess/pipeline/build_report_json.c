@@ -5,12 +5,12 @@
 #include <math.h>
 #include <stdio.h>
 
-enum kind { COUNT32, COUNT, WHOLE, METRES /* double; not a number: null */, SHARE /* float */ };
+enum report_value_kind { COUNT32, COUNT, WHOLE, METRES /* double; not a number: null */, SHARE /* float */ };
 
 struct number {
     const char *name;
     size_t at;
-    enum kind kind;
+    enum report_value_kind kind;
 };
 
 #define OF_BUILD(name, field, kind)                                                                                                        \

@@ -29,7 +29,7 @@
 #define ALONE_TRIANGLES 1e6 /* an asset as large has all cores for itself: two at once would take twice the memory */
 #define SENSORS_WORK 6e4    /* what an asset's first sensor costs, in triangles, for the progress: measured */
 
-struct run {
+struct prepare_run {
     struct prepare *prepare;
     struct log *log;
     struct workers *workers;
@@ -55,8 +55,8 @@ double prepare_far_m(double diagonal_m)
     return fmin(FAR_M, FAR_OF_SIZE * diagonal_m);
 }
 
-static void fail(struct run *run, const char *file, int line, const char *fmt, ...) __attribute__((format(printf, 4, 5)));
-static void fail(struct run *run, const char *file, int line, const char *fmt, ...)
+static void fail(struct prepare_run *run, const char *file, int line, const char *fmt, ...) __attribute__((format(printf, 4, 5)));
+static void fail(struct prepare_run *run, const char *file, int line, const char *fmt, ...)
 {
     va_list ap;
     char text[MODEL_WHY_BYTES + 200];
@@ -67,7 +67,7 @@ static void fail(struct run *run, const char *file, int line, const char *fmt, .
     run->failed = true;
 }
 
-static void fail_asset(struct run *run, const struct prepare_asset *asset, const char *why)
+static void fail_asset(struct prepare_run *run, const struct prepare_asset *asset, const char *why)
 {
     fail(run, run->prepare->plant->path, asset->plant->line, "asset %s: %s: %s", asset->plant->id, asset->plant->model, why);
 }
@@ -79,19 +79,19 @@ static void lose(struct prepare_asset *asset, const char *why)
     asset->missing = mem_strdup(why);
 }
 
-static bool is_stopped(const struct run *run)
+static bool is_stopped(const struct prepare_run *run)
 {
     return run->params->stop && atomic_load(run->params->stop);
 }
 
 /* --- keys ------------------------------------------------------------------------------------------------------------------- */
 
-static bool is_possible(const struct run *run, const struct prepare_asset *asset)
+static bool is_possible(const struct prepare_run *run, const struct prepare_asset *asset)
 {
     return asset->wanted && asset->state != PREPARE_FAILED && asset->model < run->prepare->models.count;
 }
 
-static size_t first_with_key(const struct run *run, size_t i)
+static size_t first_with_key(const struct prepare_run *run, size_t i)
 {
     const struct prepare_asset *assets = run->prepare->assets;
     for (size_t j = 0; j < i; j++)
@@ -101,7 +101,7 @@ static size_t first_with_key(const struct run *run, size_t i)
 }
 
 /* Of an asset whose model was read before, with the nodes that its sensors stand on. False: it is to be read. */
-static bool recall_cut(struct run *run, struct prepare_asset *asset, uint64_t *geometry)
+static bool recall_cut(struct prepare_run *run, struct prepare_asset *asset, uint64_t *geometry)
 {
     bool known = model_cache_find(&run->known, asset->recipe, geometry);
     for (size_t s = 0; s < asset->sensor_count && known; s++)
@@ -119,7 +119,7 @@ static double all_triangles(const struct gltf_model *model)
 }
 
 /* False: the model cannot be parsed, which is said once. */
-static bool have_parsed(struct run *run, struct model_file *model)
+static bool have_parsed(struct prepare_run *run, struct model_file *model)
 {
     if (model->is_parsed || !model->good)
         return model->good;
@@ -130,7 +130,7 @@ static bool have_parsed(struct run *run, struct model_file *model)
     return model->good;
 }
 
-static bool look_up_cut(struct run *run, struct prepare_asset *asset, uint64_t *geometry)
+static bool look_up_cut(struct prepare_run *run, struct prepare_asset *asset, uint64_t *geometry)
 {
     struct model_file *model = &run->prepare->models.at[asset->model];
     struct geometry_params params = prepare_geometry(asset->plant);
@@ -156,7 +156,7 @@ static bool look_up_cut(struct run *run, struct prepare_asset *asset, uint64_t *
     return asset->state != PREPARE_FAILED;
 }
 
-static void take_cut(struct run *run, struct prepare_asset *asset, uint64_t geometry)
+static void take_cut(struct prepare_run *run, struct prepare_asset *asset, uint64_t geometry)
 {
     struct geometry_params params = prepare_geometry(asset->plant);
     asset->geometry_key = build_geometry_key(geometry, &params);
@@ -169,7 +169,7 @@ static void take_cut(struct run *run, struct prepare_asset *asset, uint64_t geom
 }
 
 /* Of the wanted assets of one model. What it takes to parse it is not spent twice unless its triangles take too much room. */
-static void find_keys_of_model(struct run *run, size_t number)
+static void find_keys_of_model(struct prepare_run *run, size_t number)
 {
     struct model_file *model = &run->prepare->models.at[number];
     for (size_t i = 0; i < run->prepare->asset_count && !is_stopped(run); i++) {
@@ -191,7 +191,7 @@ static void find_keys_of_model(struct run *run, size_t number)
         run->parsed_triangles += triangles;
 }
 
-static void find_keys(struct run *run)
+static void find_keys(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
     for (size_t i = 0; i < prepare->asset_count && !is_stopped(run); i++) {
@@ -250,7 +250,7 @@ static void take_report(struct prepare_asset *asset, const char *folder)
 
 static void look_at_some(void *arg, size_t begin, size_t end)
 {
-    struct run *run = arg;
+    struct prepare_run *run = arg;
     for (size_t i = begin; i < end && !is_stopped(run); i++) {
         struct prepare_asset *asset = &run->prepare->assets[i];
         struct folder_file file;
@@ -276,7 +276,7 @@ static void look_at_some(void *arg, size_t begin, size_t end)
 }
 
 /* What is there already, and what is to be built: the assets of one model one after another. */
-static void sort_out(struct run *run)
+static void sort_out(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
     size_t own = 0;
@@ -295,7 +295,7 @@ static void sort_out(struct run *run)
 
 /* --- building --------------------------------------------------------------------------------------------------------------- */
 
-static int write_file(const struct run *run, const struct prepare_asset *asset, struct build_output *output)
+static int write_file(const struct prepare_run *run, const struct prepare_asset *asset, struct build_output *output)
 {
     json_t *numbers = build_report_to_json(&output->report);
     char *report = numbers ? json_dumps(numbers, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
@@ -306,7 +306,7 @@ static int write_file(const struct run *run, const struct prepare_asset *asset, 
 }
 
 /* False: failed, and said so. Under lock. */
-static bool is_built(struct run *run, const struct prepare_asset *asset, bool good, int status, const char *why)
+static bool is_built(struct prepare_run *run, const struct prepare_asset *asset, bool good, int status, const char *why)
 {
     if (!good)
         fail_asset(run, asset, why);
@@ -317,7 +317,7 @@ static bool is_built(struct run *run, const struct prepare_asset *asset, bool go
 }
 
 /* Under lock. */
-static void say_status(struct run *run)
+static void say_status(struct prepare_run *run)
 {
     const struct progress *progress = &run->progress;
     char *text = mem_printf("preparing the plant: %zu of %zu assets", progress->there + progress->done, progress->total);
@@ -325,7 +325,7 @@ static void say_status(struct run *run)
     mem_free(text);
 }
 
-static void build_one(struct run *run, struct prepare_asset *asset)
+static void build_one(struct prepare_run *run, struct prepare_asset *asset)
 {
     struct build_input input = { .model = &run->prepare->models.at[asset->model].parsed,
                                  .geometry = prepare_geometry(asset->plant),
@@ -361,7 +361,7 @@ static void build_one(struct run *run, struct prepare_asset *asset)
 
 static void build_some(void *arg, size_t begin, size_t end)
 {
-    struct run *run = arg;
+    struct prepare_run *run = arg;
     for (size_t i = begin; i < end; i++) {
         if (!is_stopped(run))
             build_one(run, &run->prepare->assets[run->todo[run->batch_begin + i]]);
@@ -370,14 +370,14 @@ static void build_some(void *arg, size_t begin, size_t end)
 
 static int heavier_first(const void *a, const void *b, void *arg)
 {
-    const struct run *run = arg;
+    const struct prepare_run *run = arg;
     size_t i = *(const size_t *)a, j = *(const size_t *)b;
     double p = run->prepare->assets[i].work, q = run->prepare->assets[j].work;
     return p == q ? (i < j ? -1 : 1) : p > q ? -1 : 1;
 }
 
 /* False: its model has to be read. */
-static bool find_stock(const struct run *run, struct prepare_asset *asset)
+static bool find_stock(const struct prepare_run *run, struct prepare_asset *asset)
 {
     return asset->sensor_count > 0 && geometry_cache_open(&asset->cache, run->params->folder, asset->geometry_key);
 }
@@ -390,7 +390,7 @@ static double own_triangles(const struct prepare_asset *asset, const struct mode
 
 /* Parses the models of todo from batch_begin on, and weighs their assets, until there is enough to do. What cannot be parsed is left:
    its assets fail. */
-static void parse_batch(struct run *run)
+static void parse_batch(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
     double triangles = 0;
@@ -416,7 +416,7 @@ static void parse_batch(struct run *run)
 }
 
 /* Leaves those out whose model is no good; those that are heavy are built one after the other, the rest side by side. */
-static void build_batch(struct run *run)
+static void build_batch(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
     size_t *todo = run->todo + run->batch_begin, count = 0;
@@ -436,7 +436,7 @@ static void build_batch(struct run *run)
         model_file_release(&prepare->models.at[prepare->assets[todo[i]].model]);
 }
 
-static void build_all(struct run *run)
+static void build_all(struct prepare_run *run)
 {
     for (run->batch_begin = 0; run->batch_begin < run->todo_count; run->batch_begin = run->batch_end) {
         parse_batch(run);
@@ -449,7 +449,7 @@ static void build_all(struct run *run)
 
 /* --- the end ---------------------------------------------------------------------------------------------------------------- */
 
-static void share(struct run *run)
+static void share(struct prepare_run *run)
 {
     const struct prepare *prepare = run->prepare;
     for (size_t i = 0; i < prepare->asset_count; i++) {
@@ -474,7 +474,7 @@ static void share(struct run *run)
     }
 }
 
-static void warn(struct run *run, const struct prepare_asset *asset)
+static void warn(struct prepare_run *run, const struct prepare_asset *asset)
 {
     const struct plant *plant = run->prepare->plant;
     if (asset->rebuilt_because)
@@ -490,7 +490,7 @@ static void warn(struct run *run, const struct prepare_asset *asset)
 }
 
 /* Those of other assets are kept where these were not asked for. If it cannot be written, the next time takes longer; that is all. */
-static void write_cuts(struct run *run)
+static void write_cuts(struct prepare_run *run)
 {
     bool all = !run->params->only && !run->prepare->interrupted;
     for (size_t i = 0; i < run->known.count && !all; i++)
@@ -509,7 +509,7 @@ static bool any_good(const struct prepare *prepare)
     return false;
 }
 
-static void write_manifest(struct run *run)
+static void write_manifest(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
     struct folder_entry *entries = mem_array(prepare->asset_count, sizeof(*entries));
@@ -539,7 +539,7 @@ static void write_manifest(struct run *run)
 bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant,
                  const struct prepare_params *params, struct diag *diag)
 {
-    struct run run = { .prepare = prepare, .log = log, .workers = workers, .params = params, .diag = diag };
+    struct prepare_run run = { .prepare = prepare, .log = log, .workers = workers, .params = params, .diag = diag };
     int64_t start_ns = clock_mono_ns();
     *prepare = (struct prepare){ .plant = plant, .asset_count = plant->asset_count };
     prepare->assets = mem_array(plant->asset_count, sizeof(*prepare->assets));

@@ -32,7 +32,7 @@ void distance_rows_renumber(struct distance_rows *rows, const uint32_t *new_of, 
     rows->vertex_count = kept;
 }
 
-struct turn {
+struct rows_block {
     const struct distance_rows *rows;
     int fd;
     off_t at;
@@ -73,7 +73,7 @@ static void turn_block(const struct distance_rows *rows, size_t first, size_t co
 
 static void turn_blocks(void *arg, size_t begin, size_t end)
 {
-    struct turn *turn = arg;
+    struct rows_block *turn = arg;
     const struct distance_rows *rows = turn->rows;
     const size_t bytes = rows->sensor_count * ASSET_DISTANCE_BLOCK * sizeof(uint16_t);
     uint16_t *codes = mem_array(rows->sensor_count, ASSET_DISTANCE_BLOCK * sizeof(*codes));
@@ -88,7 +88,7 @@ static void turn_blocks(void *arg, size_t begin, size_t end)
 
 int distance_rows_write(const struct distance_rows *rows, struct workers *workers, int fd, off_t at)
 {
-    struct turn turn = { .rows = rows, .fd = fd, .at = at };
+    struct rows_block turn = { .rows = rows, .fd = fd, .at = at };
     size_t blocks = (rows->vertex_count + ASSET_DISTANCE_BLOCK - 1) / ASSET_DISTANCE_BLOCK;
     if (workers)
         workers_for(workers, blocks, 16, turn_blocks, &turn);

@@ -95,17 +95,17 @@ void linear_error_set_radius(struct linear_error *linear, const float *const lar
 
 /* Room for distances, on the caller's stack if there are few sensors. */
 #define FEW 1024
-struct room {
+struct corner_room {
     float few[FEW], *at;
 };
 
-static float *room_for(struct room *room, size_t count)
+static float *room_for(struct corner_room *room, size_t count)
 {
     room->at = count <= FEW ? room->few : mem_array(count, sizeof(*room->at));
     return room->at;
 }
 
-static void room_finish(struct room *room)
+static void room_finish(struct corner_room *room)
 {
     if (room->at != room->few)
         mem_free(room->at);
@@ -114,7 +114,7 @@ static void room_finish(struct room *room)
 /* From a point to every sensor, by both modes. */
 struct distances {
     const float *of[2]; /* by enum distance_mode */
-    struct room straight_m, picked_m;
+    struct corner_room straight_m, picked_m;
 };
 
 static void distances_init(struct distances *distances, const struct linear_error *linear, const float point_m[3], const float *geodesic_m)
@@ -209,7 +209,7 @@ static bool has_value(const float *interp, size_t count)
     return i < count;
 }
 
-struct question {
+struct error_question {
     enum linear_error_modes modes;
     const float *const *corners, *weights;
     size_t corner_count;
@@ -217,7 +217,7 @@ struct question {
 };
 
 /* The largest of the errors, group by group. Where a group has no value at a corner, because no way leads there, there is no error. */
-static double worst_of(const struct linear_error *linear, const struct question *question, const float *sample)
+static double worst_of(const struct linear_error *linear, const struct error_question *question, const float *sample)
 {
     double most = 0;
     bool reached = true;
@@ -247,14 +247,14 @@ double linear_error_on_edge(const struct linear_error *linear, enum linear_error
                             const float *between, double wide_m, double slack_m)
 {
     const float *const corners[2] = { a, b }, weights[2] = { 1 - (float)t, (float)t };
-    return worst_of(linear, &(struct question){ modes, corners, weights, 2, wide_m, slack_m }, between);
+    return worst_of(linear, &(struct error_question){ modes, corners, weights, 2, wide_m, slack_m }, between);
 }
 
 double linear_error_in_triangle(const struct linear_error *linear, enum linear_error_modes modes, const float *const corners[3],
                                 const double weights[3], const float *inside, double wide_m, double slack_m)
 {
     const float interp[3] = { (float)weights[0], (float)weights[1], (float)weights[2] };
-    return worst_of(linear, &(struct question){ modes, corners, interp, 3, wide_m, slack_m }, inside);
+    return worst_of(linear, &(struct error_question){ modes, corners, interp, 3, wide_m, slack_m }, inside);
 }
 
 double linear_error_rim_of(const struct linear_error *linear, const struct interp_norm *norms)
@@ -278,7 +278,7 @@ double linear_error_nearest_of(const struct linear_error *linear, const struct i
 
 double linear_error_nearest(const struct linear_error *linear, const float point_m[3])
 {
-    struct room room;
+    struct corner_room room;
     size_t all = interp_padded(linear->sensor_count);
     float *straight_m = room_for(&room, all), nearest_m;
     interp_euclidean(point_m, (const float *const *)linear->axes_m, all, straight_m);

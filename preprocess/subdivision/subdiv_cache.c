@@ -29,7 +29,7 @@ struct sensor { /* all that its shares depend on */
     uint32_t group;
 };
 
-struct head {
+struct subdiv_head {
     uint64_t sensors, findings, rest; /* how many follow */
     uint64_t given_up, changes_since; /* subdiv_cache.h */
 };
@@ -144,7 +144,7 @@ static size_t index_rest(struct subdiv_cache *cache, size_t count)
 
 static void read_file(struct subdiv_cache *cache, const struct linear_error *linear)
 {
-    struct head head = { 0 };
+    struct subdiv_head head = { 0 };
     if (cache->file.count < sizeof(head))
         return;
     memcpy(&head, cache->file.bytes, sizeof(head));
@@ -192,7 +192,7 @@ void subdiv_cache_close(struct subdiv_cache *cache)
 }
 
 /* Findings as they are written. */
-struct packed {
+struct packed_findings {
     uint64_t *keys;
     float *errors, *rest;
     unsigned char *kinds;
@@ -216,15 +216,15 @@ static unsigned char pack_finding(const struct subdiv_cache_entry *found, float 
     return (unsigned char)kind;
 }
 
-static void pack_findings(const struct subdiv_cache *cache, struct packed *packed)
+static void pack_findings(const struct subdiv_cache *cache, struct packed_findings *packed)
 {
     const struct subdiv_cache_entry *found = (const struct subdiv_cache_entry *)(const void *)cache->found.at;
     size_t count = cache->found.length / sizeof(*found);
-    *packed = (struct packed){ .keys = mem_array(count, sizeof(*packed->keys)),
-                               .errors = mem_array(count, sizeof(*packed->errors)),
-                               .rest = mem_array(4 * count + 4, sizeof(*packed->rest)),
-                               .kinds = mem_array(count, 1),
-                               .count = count };
+    *packed = (struct packed_findings){ .keys = mem_array(count, sizeof(*packed->keys)),
+                                        .errors = mem_array(count, sizeof(*packed->errors)),
+                                        .rest = mem_array(4 * count + 4, sizeof(*packed->rest)),
+                                        .kinds = mem_array(count, 1),
+                                        .count = count };
     for (size_t i = 0; i < count; i++) {
         packed->keys[i] = found[i].key;
         packed->errors[i] = found[i].error;
@@ -235,12 +235,12 @@ static void pack_findings(const struct subdiv_cache *cache, struct packed *packe
 
 void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, uint64_t key)
 {
-    struct packed packed;
+    struct packed_findings packed;
     if (!cache->applies)
         return;
     pack_findings(cache, &packed);
-    const struct head head = { cache->sensors.length / sizeof(struct sensor), packed.count, packed.rest_count, cache->given_up,
-                               cache->changes_since };
+    const struct subdiv_head head = { cache->sensors.length / sizeof(struct sensor), packed.count, packed.rest_count, cache->given_up,
+                                      cache->changes_since };
     const struct atomic_file_part parts[] = { { &head, sizeof(head) },
                                               { cache->sensors.at, cache->sensors.length },
                                               { packed.keys, packed.count * sizeof(*packed.keys) },

@@ -14,7 +14,7 @@
 
 #define GRAIN 1024 /* turns: a few tenths of a millisecond */
 
-struct turn {
+struct edge_flip {
     uint32_t edge, tris[2], across;
     bool may; /* the edges cross, and the surface stays about in place */
 };
@@ -71,7 +71,7 @@ static bool cross(const double a[3], const double b[3], const double c[3], const
 
 struct turns {
     const struct subdiv *subdiv;
-    struct turn *at;
+    struct edge_flip *at;
 };
 
 static void try_turns(void *arg, size_t begin, size_t end)
@@ -89,12 +89,12 @@ static void try_turns(void *arg, size_t begin, size_t end)
     }
 }
 
-static size_t list_turns(struct subdiv *subdiv, const struct subdiv_list *edges, struct turn *turns)
+static size_t list_turns(struct subdiv *subdiv, const struct subdiv_list *edges, struct edge_flip *turns)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
     size_t count = 0, kept = 0;
     for (size_t i = 0; i < edges->count; i++) {
-        struct turn turn = { .edge = edges->at[i] };
+        struct edge_flip turn = { .edge = edges->at[i] };
         if (!find_tris(mesh, turn.edge, turn.tris) || mesh->tris[turn.tris[0]].primitive != mesh->tris[turn.tris[1]].primitive)
             continue;
         turn.across = subdiv_mesh_opposite_edge(mesh, turn.tris, turn.edge);
@@ -108,7 +108,7 @@ static size_t list_turns(struct subdiv *subdiv, const struct subdiv_list *edges,
     return kept;
 }
 
-static void measure_across(struct subdiv *subdiv, const struct turn *turns, size_t count)
+static void measure_across(struct subdiv *subdiv, const struct edge_flip *turns, size_t count)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
     struct subdiv_finding *findings = mem_array(count, sizeof(*findings));
@@ -129,7 +129,7 @@ static float error_of(const struct subdiv_edge *edge)
 }
 
 /* Each triangle once. */
-static size_t turn_better(struct subdiv *subdiv, const struct turn *turns, size_t count)
+static size_t turn_better(struct subdiv *subdiv, const struct edge_flip *turns, size_t count)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
     char *turned = mem_array(mesh->tri_count, 1);
@@ -154,7 +154,7 @@ void subdiv_flip_edges(struct subdiv *subdiv, double limit)
     for (int i = 0; i < MOST_TURNS && done > 0; i++) {
         list_edges(subdiv, limit, listed, &edges);
         listed = subdiv->mesh.made.count;
-        struct turn *turns = mem_array(edges.count, sizeof(*turns));
+        struct edge_flip *turns = mem_array(edges.count, sizeof(*turns));
         size_t count = list_turns(subdiv, &edges, turns);
         measure_across(subdiv, turns, count);
         done = turn_better(subdiv, turns, count);

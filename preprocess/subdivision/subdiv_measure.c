@@ -59,7 +59,7 @@ bool subdiv_find_parts(struct subdiv *subdiv)
     return list_faces(subdiv);
 }
 
-struct sight { /* which triangles of the model a point may lie on */
+struct origin_sight { /* which triangles of the model a point may lie on */
     const struct subdiv *subdiv;
     uint32_t origin[2]; /* in the finest level, these */
     uint32_t part;      /* in a coarser one, those of that part which look the same way */
@@ -69,23 +69,23 @@ struct sight { /* which triangles of the model a point may lie on */
 
 static bool is_in_sight(const void *arg, uint32_t triangle)
 {
-    const struct sight *sight = arg;
+    const struct origin_sight *sight = arg;
     const struct subdiv_face *face = &sight->subdiv->faces[triangle];
     return face->part == sight->part && vec_dot(face->normal, sight->normal) > 0;
 }
 
-static struct sight sight_of_edge(const struct subdiv *subdiv, const struct subdiv_edge *edge, struct sample_cache_notes *notes)
+static struct origin_sight sight_of_edge(const struct subdiv *subdiv, const struct subdiv_edge *edge, struct sample_cache_notes *notes)
 {
-    struct sight sight = {
+    struct origin_sight sight = {
         subdiv, { edge->origin[0], edge->origin[edge->origin[1] != TRIMESH_NONE] }, subdiv->part[place_of(subdiv, edge->a)], { 0 }, notes
     };
     subdiv_mesh_normal(&subdiv->mesh, edge, sight.normal);
     return sight;
 }
 
-static struct sight sight_of_tri(const struct subdiv *subdiv, const struct subdiv_tri *tri, struct sample_cache_notes *notes)
+static struct origin_sight sight_of_tri(const struct subdiv *subdiv, const struct subdiv_tri *tri, struct sample_cache_notes *notes)
 {
-    struct sight sight = { subdiv, { tri->origin, tri->origin }, subdiv->part[place_of(subdiv, tri->v[0])], { 0 }, notes };
+    struct origin_sight sight = { subdiv, { tri->origin, tri->origin }, subdiv->part[place_of(subdiv, tri->v[0])], { 0 }, notes };
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < 3; i++)
             sight.normal[i] += (double)subdiv->mesh.geometry->normals[tri->v[c]][i];
@@ -99,7 +99,7 @@ static void to_doubles(const float point[3], double at[3])
 }
 
 /* Where a coarser level's point is: on its own part, or else on another one that hides that, out of which it may stand. */
-static bool search(const struct sight *sight, const double at[3], struct surface_point *hit)
+static bool search(const struct origin_sight *sight, const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
     if (subdiv->finest)
@@ -110,7 +110,7 @@ static bool search(const struct sight *sight, const double at[3], struct surface
 }
 
 /* All that the place of a point depends on, but for the surface. */
-static uint64_t key_of(const struct sight *sight, const float point[3])
+static uint64_t key_of(const struct origin_sight *sight, const float point[3])
 {
     struct {
         float point[3];
@@ -127,7 +127,7 @@ static uint64_t key_of(const struct sight *sight, const float point[3])
 }
 
 /* Where it was found the last time, if it is known. */
-static bool project(const struct sight *sight, const float point[3], const double at[3], struct surface_point *hit)
+static bool project(const struct origin_sight *sight, const float point[3], const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
     struct sample_cache *sample_cache = subdiv->in->sample_cache;
@@ -145,7 +145,7 @@ static bool project(const struct sight *sight, const float point[3], const doubl
 
 /* Where a triangle is seen, nearest to a place in it that is not: large ones stand out of other parts. *hit: what was found from another
    place, or none; what is found from this one, though it be too far to count; none: nothing of the triangle is seen. */
-static bool find_seen(const struct sight *sight, const double corners[3][3], const double from[3], double weights[3],
+static bool find_seen(const struct origin_sight *sight, const double corners[3][3], const double from[3], double weights[3],
                       struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
@@ -170,7 +170,7 @@ static bool find_seen(const struct sight *sight, const double corners[3][3], con
 
 /* Distances along the surface, where it is nearest to a coarser level's point. False: the point is hidden deep inside another part, and
    nobody sees an error. */
-static bool measure(const struct sight *sight, const float point[3], float *geodesic_m)
+static bool measure(const struct origin_sight *sight, const float point[3], float *geodesic_m)
 {
     const struct subdiv *subdiv = sight->subdiv;
     struct surface_point hit;
@@ -183,7 +183,7 @@ static bool measure(const struct sight *sight, const float point[3], float *geod
 }
 
 /* The same; at a hidden point, those of the nearest one that is seen. */
-static void measure_always(const struct sight *sight, const float point[3], float *geodesic_m)
+static void measure_always(const struct origin_sight *sight, const float point[3], float *geodesic_m)
 {
     struct surface_point hit;
     double at[3];
@@ -200,7 +200,7 @@ struct line { /* points along an edge, from one end to the other */
     const struct subdiv *subdiv;
     const float *a, *b; /* positions of the ends */
     double length_m;
-    struct sight sight;
+    struct origin_sight sight;
     double t[POINTS];
     const float *interp[POINTS], *geodesic_m[POINTS];
     int count;
@@ -302,7 +302,7 @@ static void find_cut(struct line *line, double length_m, double enough, struct s
 
 /* --- jobs ------------------------------------------------------------------------------------------------------------------- */
 
-struct job {
+struct measure_job {
     struct subdiv *subdiv;
     struct subdiv_finding *findings;
     const uint32_t *edges;
@@ -311,7 +311,7 @@ struct job {
 };
 
 /* A thread's room: for points, and for the shares at corners last looked at, since the next edge likely has some of them too. */
-struct room {
+struct measure_room {
     float *points, *corners;
     struct interp_norm *norms; /* of the point last looked at */
     uint32_t of[CORNERS + 3];  /* which place's, by the place's number; then those for which that is taken */
@@ -319,7 +319,7 @@ struct room {
     struct sample_cache_notes notes;
 };
 
-static void room_init(struct room *room, const struct subdiv *subdiv, size_t points)
+static void room_init(struct measure_room *room, const struct subdiv *subdiv, size_t points)
 {
     room->notes.count = room->notes.missed = 0;
     room->points = mem_array(points * (subdiv->samples + subdiv->sensors), sizeof(float));
@@ -328,7 +328,7 @@ static void room_init(struct room *room, const struct subdiv *subdiv, size_t poi
     memset(room->of, 0xff, sizeof(room->of));
 }
 
-static void room_finish(struct room *room, const struct subdiv *subdiv)
+static void room_finish(struct measure_room *room, const struct subdiv *subdiv)
 {
     if (subdiv->in->sample_cache)
         sample_cache_hand_over(subdiv->in->sample_cache, &room->notes);
@@ -338,7 +338,7 @@ static void room_finish(struct room *room, const struct subdiv *subdiv)
 }
 
 /* Of a corner of the edge or triangle in hand. Kept by place while they are few. */
-static const float *shares_at(const struct subdiv *subdiv, uint32_t vertex, uint32_t corner, struct room *room)
+static const float *shares_at(const struct subdiv *subdiv, uint32_t vertex, uint32_t corner, struct measure_room *room)
 {
     uint32_t place = place_of(subdiv, vertex), number = place % CORNERS;
     if (subdiv->interp)
@@ -384,7 +384,7 @@ static double nearest_to_middle(const struct line *line, uint32_t end)
                   linear_error_rim_of(linear, line->subdiv->norms + place_of(line->subdiv, end) * line->subdiv->norm_count));
 }
 
-static void try_edge(const struct job *job, struct subdiv_finding *finding, struct room *room)
+static void try_edge(const struct measure_job *job, struct subdiv_finding *finding, struct measure_room *room)
 {
     const struct subdiv *subdiv = job->subdiv;
     const struct subdiv_edge *edge = &subdiv->mesh.cuts[finding->number];
@@ -430,9 +430,9 @@ static void try_edge(const struct job *job, struct subdiv_finding *finding, stru
 
 static void try_edges(void *arg, size_t begin, size_t end)
 {
-    const struct job *job = arg;
+    const struct measure_job *job = arg;
     const struct subdiv *subdiv = job->subdiv;
-    struct room room;
+    struct measure_room room;
     uint32_t next = 0;
     room_init(&room, subdiv, POINTS);
     for (size_t i = begin; i < end; i++) {
@@ -462,7 +462,7 @@ static bool jumps_inside(const struct subdiv *subdiv, const struct subdiv_tri *t
 }
 
 struct inside { /* a triangle, looked at inside */
-    struct sight sight;
+    struct origin_sight sight;
     const struct subdiv_tri *tri;
     const float *interp[3]; /* at its corners */
     double corners[3][3];
@@ -495,7 +495,7 @@ static double error_inside(const struct inside *inside, const double weights[3],
 }
 
 /* At the middle; where that is not seen, at what is seen nearest to it and to places beside the corners. */
-static void try_inside(const struct subdiv *subdiv, struct subdiv_finding *finding, struct room *room)
+static void try_inside(const struct subdiv *subdiv, struct subdiv_finding *finding, struct measure_room *room)
 {
     static const double places[4][3] = {
         { 1 / 3.0, 1 / 3.0, 1 / 3.0 }, { 2 / 3.0, 1 / 6.0, 1 / 6.0 }, { 1 / 6.0, 2 / 3.0, 1 / 6.0 }, { 1 / 6.0, 1 / 6.0, 2 / 3.0 }
@@ -523,9 +523,9 @@ static void try_inside(const struct subdiv *subdiv, struct subdiv_finding *findi
 
 static void try_insides(void *arg, size_t begin, size_t end)
 {
-    const struct job *job = arg;
+    const struct measure_job *job = arg;
     const struct subdiv *subdiv = job->subdiv;
-    struct room room;
+    struct measure_room room;
     uint32_t next = 0;
     room_init(&room, subdiv, 1);
     for (size_t i = begin; i < end; i++) {
@@ -553,7 +553,7 @@ static void round_beyond_reach(const struct linear_error *linear, float *geodesi
 
 static void measure_places(void *arg, size_t begin, size_t end)
 {
-    const struct job *job = arg;
+    const struct measure_job *job = arg;
     const struct subdiv *subdiv = job->subdiv;
     struct sample_cache_notes notes;
     notes.count = notes.missed = 0;
@@ -562,7 +562,7 @@ static void measure_places(void *arg, size_t begin, size_t end)
         const float *point = subdiv->mesh.welded.positions_m[place];
         float *geodesic_m = subdiv->geodesic_m + place * subdiv->sensors;
         if (job->edges) {
-            struct sight sight = sight_of_edge(subdiv, &subdiv->mesh.cuts[job->edges[i]], &notes);
+            struct origin_sight sight = sight_of_edge(subdiv, &subdiv->mesh.cuts[job->edges[i]], &notes);
             measure_always(&sight, point, geodesic_m);
         }
         round_beyond_reach(subdiv->in->linear, geodesic_m);
@@ -587,7 +587,7 @@ void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, vo
 /* Measures the interpolation error along `count` edges. Errors below `enough` need not be exact, and then no cut position is found. */
 static void measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count, double enough)
 {
-    subdiv_parallel(subdiv, count, GRAIN, try_edges, &(struct job){ .subdiv = subdiv, .findings = findings, .enough = enough });
+    subdiv_parallel(subdiv, count, GRAIN, try_edges, &(struct measure_job){ .subdiv = subdiv, .findings = findings, .enough = enough });
     for (size_t i = 0; i < count; i++)
         subdiv_cache_add(subdiv, &findings[i]);
 }
@@ -609,14 +609,14 @@ void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *find
 
 void subdiv_measure_insides(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count)
 {
-    subdiv_parallel(subdiv, count, GRAIN, try_insides, &(struct job){ .subdiv = subdiv, .findings = findings });
+    subdiv_parallel(subdiv, count, GRAIN, try_insides, &(struct measure_job){ .subdiv = subdiv, .findings = findings });
     for (size_t i = 0; i < count; i++)
         subdiv_cache_add(subdiv, &findings[i]);
 }
 
 void subdiv_measure_places(struct subdiv *subdiv, uint32_t first, const uint32_t *edges, size_t count)
 {
-    subdiv_parallel(subdiv, count, GRAIN, measure_places, &(struct job){ .subdiv = subdiv, .edges = edges, .first = first });
+    subdiv_parallel(subdiv, count, GRAIN, measure_places, &(struct measure_job){ .subdiv = subdiv, .edges = edges, .first = first });
 }
 
 void subdiv_add_place(struct subdiv *subdiv, uint32_t place, uint32_t part)

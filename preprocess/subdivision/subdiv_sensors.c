@@ -12,7 +12,7 @@
 #define MOST_CUTS 30    /* of edges that the other levels cut elsewhere */
 #define FEW 32          /* sensors, for which a search tree of the level is not worth making */
 
-struct hit { /* where a sensor meets a level */
+struct sensor_hit { /* where a sensor meets a level */
     size_t tri;
     double weights[3], point[3];
 };
@@ -30,7 +30,7 @@ static void place_of(const struct subdiv *subdiv, size_t sensor, double point[3]
         point[axis] = (double)subdiv->in->sensors[sensor].surface_m[axis];
 }
 
-static double try_piece(const struct subdiv *subdiv, size_t t, const double point[3], double best_m, struct hit *hit)
+static double try_piece(const struct subdiv *subdiv, size_t t, const double point[3], double best_m, struct sensor_hit *hit)
 {
     double corners[3][3], weights[3], at[3];
     corners_of(subdiv, &subdiv->mesh.tris[t], corners);
@@ -47,7 +47,7 @@ static double try_piece(const struct subdiv *subdiv, size_t t, const double poin
 }
 
 /* Among the pieces of a triangle that the level had at first: in its own place, and behind the first ones. */
-static double find_piece(const struct subdiv *subdiv, uint32_t tri, const double point[3], struct hit *hit)
+static double find_piece(const struct subdiv *subdiv, uint32_t tri, const double point[3], struct sensor_hit *hit)
 {
     double best_m = try_piece(subdiv, tri, point, INFINITY, hit);
     for (size_t t = subdiv->first_count; t < subdiv->mesh.tri_count; t++)
@@ -69,7 +69,7 @@ static void know_place(struct subdiv *subdiv, uint32_t place, uint32_t part, con
 }
 
 /* Cuts the edge of the triangle that runs through the point, if one does. */
-static bool cut_edge_at(struct subdiv *subdiv, const struct hit *hit, const float point[3])
+static bool cut_edge_at(struct subdiv *subdiv, const struct sensor_hit *hit, const float point[3])
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
     struct subdiv_tri tri = mesh->tris[hit->tri];
@@ -91,7 +91,7 @@ static bool cut_edge_at(struct subdiv *subdiv, const struct hit *hit, const floa
     return false;
 }
 
-static uint32_t put_into_triangle(struct subdiv *subdiv, const struct hit *hit, const float point[3])
+static uint32_t put_into_triangle(struct subdiv *subdiv, const struct sensor_hit *hit, const float point[3])
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
     uint32_t vertex = subdiv_mesh_insert(mesh, hit->tri, hit->weights, point), place = mesh->welded.of_vertex[vertex];
@@ -103,7 +103,7 @@ static uint32_t put_into_triangle(struct subdiv *subdiv, const struct hit *hit, 
    part that the sensor stands on is not in this level. */
 static bool find_vertex(struct subdiv *subdiv, uint32_t tri, const double point[3], double error_m, uint32_t *vertex)
 {
-    struct hit hit = { 0 };
+    struct sensor_hit hit = { 0 };
     for (int tries = 0; tries < MOST_CUTS; tries++) {
         float at[3];
         if (find_piece(subdiv, tri, point, &hit) > 2 * error_m + ON_OF_SIZE * subdiv->size_m)

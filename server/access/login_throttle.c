@@ -10,23 +10,23 @@
 static const int64_t WINDOW_NS = 60 * NS_PER_S, WAIT_NS = LOGIN_WAIT_S * NS_PER_S, NEWS_NS = 600 * NS_PER_S;
 enum { KNOWN = 8 };
 
-struct known { /* a token that was let in from there */
+struct known_token { /* a token that was let in from there */
     uint8_t hash[TOKEN_HASH_BYTES];
     int64_t said_ns;
 };
 
-struct entry {
+struct throttle_entry {
     uint8_t address[16];
     int64_t heard_ns;
     int64_t failed_ns[LOGIN_FAILURES]; /* a ring */
     int64_t failures;                  /* ever: the ring's place */
     int64_t slowed_until_ns, next_try_ns;
-    struct known known[KNOWN]; /* the last ones, a ring too */
+    struct known_token known[KNOWN]; /* the last ones, a ring too */
     int known_count;
 };
 
 struct login_throttle {
-    struct entry *entries;
+    struct throttle_entry *entries;
     size_t count, capacity;
 };
 
@@ -45,7 +45,7 @@ void login_throttle_destroy(struct login_throttle **logins_ptr)
     *logins_ptr = NULL;
 }
 
-static struct entry *find(const struct login_throttle *throttle, const uint8_t address[16])
+static struct throttle_entry *find(const struct login_throttle *throttle, const uint8_t address[16])
 {
     for (size_t i = 0; i < throttle->count; i++)
         if (!memcmp(throttle->entries[i].address, address, sizeof(throttle->entries[i].address)))
@@ -53,9 +53,9 @@ static struct entry *find(const struct login_throttle *throttle, const uint8_t a
     return NULL;
 }
 
-static struct entry *find_or_make(struct login_throttle *throttle, const uint8_t address[16])
+static struct throttle_entry *find_or_make(struct login_throttle *throttle, const uint8_t address[16])
 {
-    struct entry *entry = find(throttle, address);
+    struct throttle_entry *entry = find(throttle, address);
     if (entry)
         return entry;
     if (throttle->count < LOGIN_ADDRESSES) {
@@ -67,12 +67,12 @@ static struct entry *find_or_make(struct login_throttle *throttle, const uint8_t
             if (throttle->entries[i].heard_ns < entry->heard_ns)
                 entry = &throttle->entries[i];
     }
-    *entry = (struct entry){ .failures = 0 };
+    *entry = (struct throttle_entry){ .failures = 0 };
     memcpy(entry->address, address, sizeof(entry->address));
     return entry;
 }
 
-static struct known *find_known(struct entry *entry, const uint8_t *hash)
+static struct known_token *find_known(struct throttle_entry *entry, const uint8_t *hash)
 {
     int count = entry->known_count < KNOWN ? entry->known_count : KNOWN;
     for (int i = 0; i < count; i++)
@@ -81,9 +81,9 @@ static struct known *find_known(struct entry *entry, const uint8_t *hash)
     return NULL;
 }
 
-static enum login let_in(struct entry *entry, const uint8_t *hash, int64_t now_ns)
+static enum login let_in(struct throttle_entry *entry, const uint8_t *hash, int64_t now_ns)
 {
-    struct known *known = find_known(entry, hash);
+    struct known_token *known = find_known(entry, hash);
     if (known && now_ns - known->said_ns < NEWS_NS)
         return LOGIN_GOOD;
     if (!known) {
@@ -94,7 +94,7 @@ static enum login let_in(struct entry *entry, const uint8_t *hash, int64_t now_n
     return LOGIN_GOOD_NEW;
 }
 
-static int failures(const struct entry *entry, int64_t now_ns)
+static int failures(const struct throttle_entry *entry, int64_t now_ns)
 {
     int count = 0;
     for (int i = 0; i < LOGIN_FAILURES && i < entry->failures; i++)
@@ -102,7 +102,7 @@ static int failures(const struct entry *entry, int64_t now_ns)
     return count;
 }
 
-static enum login fail(struct entry *entry, int64_t now_ns)
+static enum login fail(struct throttle_entry *entry, int64_t now_ns)
 {
     bool was_slowed = now_ns < entry->slowed_until_ns;
     entry->failed_ns[entry->failures++ % LOGIN_FAILURES] = now_ns;
@@ -115,7 +115,7 @@ static enum login fail(struct entry *entry, int64_t now_ns)
 }
 
 /* Whether this try is one too many. */
-static bool holds(struct entry *entry, int64_t now_ns)
+static bool holds(struct throttle_entry *entry, int64_t now_ns)
 {
     bool slowed = now_ns < entry->slowed_until_ns, too_soon = now_ns < entry->next_try_ns;
     if (slowed && !too_soon)
@@ -125,7 +125,7 @@ static bool holds(struct entry *entry, int64_t now_ns)
 
 enum login login_throttle_judge(struct login_throttle *throttle, const uint8_t address[16], const uint8_t *hash, int64_t now_ns)
 {
-    struct entry *entry = find_or_make(throttle, address);
+    struct throttle_entry *entry = find_or_make(throttle, address);
     entry->heard_ns = now_ns;
     if (!(hash && find_known(entry, hash)) && holds(entry, now_ns))
         return LOGIN_HELD;
@@ -134,20 +134,20 @@ enum login login_throttle_judge(struct login_throttle *throttle, const uint8_t a
 
 enum login login_throttle_begin(struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns)
 {
-    struct entry *entry = find(throttle, address);
+    struct throttle_entry *entry = find(throttle, address);
     return entry && holds(entry, now_ns) ? LOGIN_HELD : LOGIN_NONE;
 }
 
 enum login login_throttle_fail(struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns)
 {
-    struct entry *entry = find_or_make(throttle, address);
+    struct throttle_entry *entry = find_or_make(throttle, address);
     entry->heard_ns = now_ns;
     return fail(entry, now_ns);
 }
 
 int login_throttle_failures(const struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns)
 {
-    const struct entry *entry = find(throttle, address);
+    const struct throttle_entry *entry = find(throttle, address);
     return entry ? failures(entry, now_ns) : 0;
 }
 

@@ -16,7 +16,7 @@
 enum { HASH_CHARS = 2 * TOKEN_HASH_BYTES, SECRET_CHARS = 3 + 64 };
 static const int64_t WRONG_NS = 60 * NS_PER_S;
 
-struct waiting {
+struct pending_pairing {
     uint8_t hash[TOKEN_HASH_BYTES], address[16];
     char digits[PAIRING_DIGITS + 1], from[64];
     struct wall_place place;
@@ -25,7 +25,7 @@ struct waiting {
 
 struct pairings {
     struct kept_list kept; /* { id, hash, wall, display, from, by, time_us } */
-    struct waiting waiting[PAIRINGS];
+    struct pending_pairing waiting[PAIRINGS];
     size_t count;
     uint64_t number;  /* of changes of those that wait */
     int64_t wrong_ns; /* when the first of the wrong digits of this minute came */
@@ -148,7 +148,7 @@ static void forget_old(struct pairings *pairings, int64_t now_ns)
             forget(pairings, i);
 }
 
-static struct waiting *find_digits(struct pairings *pairings, const char *digits)
+static struct pending_pairing *find_digits(struct pairings *pairings, const char *digits)
 {
     for (size_t i = 0; i < pairings->count; i++)
         if (!strcmp(pairings->waiting[i].digits, digits))
@@ -161,7 +161,7 @@ static size_t find_waiting(const struct pairings *pairings, const uint8_t hash[T
 {
     size_t i = 0;
     for (; i < pairings->count; i++) {
-        const struct waiting *waiting = &pairings->waiting[i];
+        const struct pending_pairing *waiting = &pairings->waiting[i];
         if (CRYPTO_memcmp(waiting->hash, hash, TOKEN_HASH_BYTES) == 0 && waiting->place.display == place->display &&
             !strcmp(waiting->place.wall, place->wall))
             break;
@@ -211,13 +211,13 @@ static bool make_room(struct pairings *pairings, size_t from)
 }
 
 /* NULL: too many wait. */
-static struct waiting *begin(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
+static struct pending_pairing *begin(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
                              int64_t now_ns)
 {
     size_t from = count_from(pairings, request->address);
     if (from >= PAIRINGS_FROM || (pairings->count == PAIRINGS && !make_room(pairings, from)))
         return NULL;
-    struct waiting waiting = { .place = request->place, .begun_ns = now_ns };
+    struct pending_pairing waiting = { .place = request->place, .begun_ns = now_ns };
     if (!draw_digits(pairings, waiting.digits))
         return NULL;
     memcpy(waiting.hash, hash, TOKEN_HASH_BYTES);
@@ -238,7 +238,7 @@ static enum pairing find_paired(const struct pairings *pairings, const uint8_t h
     return paired.display == place->display && !strcmp(paired.wall, place->wall) ? PAIRING_DONE : PAIRING_OTHER;
 }
 
-static void tell_digits(const struct waiting *waiting, int64_t now_ns, char digits[PAIRING_DIGITS + 1], int *left_s)
+static void tell_digits(const struct pending_pairing *waiting, int64_t now_ns, char digits[PAIRING_DIGITS + 1], int *left_s)
 {
     strcpy(digits, waiting->digits);
     *left_s = (int)((waiting->begun_ns + PAIRING_S * NS_PER_S - now_ns) / NS_PER_S);
@@ -253,7 +253,7 @@ static enum pairing ask(struct pairings *pairings, const uint8_t hash[TOKEN_HASH
         return paired;
     forget_old(pairings, now_ns);
     size_t at = find_waiting(pairings, hash, &request->place);
-    struct waiting *waiting = at < pairings->count ? &pairings->waiting[at] : begin(pairings, hash, request, now_ns);
+    struct pending_pairing *waiting = at < pairings->count ? &pairings->waiting[at] : begin(pairings, hash, request, now_ns);
     if (!waiting)
         return PAIRING_FULL;
     waiting->asked_ns = now_ns;
@@ -269,7 +269,8 @@ enum pairing pairings_ask(struct pairings *pairings, const struct pairing_reques
     return ask(pairings, hash, request, now_ns, digits, left_s);
 }
 
-static enum refusal_code keep(struct pairings *pairings, const struct waiting *waiting, const char *id, const char *who, int64_t now_us)
+static enum refusal_code keep(struct pairings *pairings, const struct pending_pairing *waiting, const char *id, const char *who,
+                              int64_t now_us)
 {
     char hash[HASH_CHARS + 1];
     hex_print(waiting->hash, TOKEN_HASH_BYTES, hash);
@@ -299,7 +300,7 @@ enum refusal_code pairings_approve(struct pairings *pairings, const char *digits
     if (!may_try(pairings, now_ns))
         return REFUSAL_GUESSES;
     forget_old(pairings, now_ns);
-    struct waiting *waiting = find_digits(pairings, digits);
+    struct pending_pairing *waiting = find_digits(pairings, digits);
     if (!waiting) {
         if (pairings->wrong++ == 0)
             pairings->wrong_ns = now_ns;
@@ -345,7 +346,7 @@ json_t *pairings_told(const struct pairings *pairings, int64_t now_ns)
 {
     json_t *waiting = json_array();
     for (size_t i = 0; i < pairings->count; i++) {
-        const struct waiting *one = &pairings->waiting[i];
+        const struct pending_pairing *one = &pairings->waiting[i];
         char hash[HASH_CHARS + 1], digits[PAIRING_DIGITS + 1];
         int left_s;
         hex_print(one->hash, TOKEN_HASH_BYTES, hash);
@@ -368,10 +369,10 @@ bool pairings_mirror(struct pairings *pairings, const json_t *told, int64_t now_
     pairings->count = 0;
     json_array_foreach(waiting, i, one)
     {
-        struct waiting *at = &pairings->waiting[pairings->count];
+        struct pending_pairing *at = &pairings->waiting[pairings->count];
         const char *digits = json_string_value(json_object_get(one, "digits"));
         int64_t left_s = json_integer_value(json_object_get(one, "left_s"));
-        *at = (struct waiting){ .begun_ns = now_ns - (PAIRING_S - left_s) * NS_PER_S, .asked_ns = now_ns };
+        *at = (struct pending_pairing){ .begun_ns = now_ns - (PAIRING_S - left_s) * NS_PER_S, .asked_ns = now_ns };
         if (!digits || strlen(digits) != PAIRING_DIGITS || left_s < 0 || left_s > PAIRING_S || !read_place(one, &at->place) ||
             !read_bytes(json_object_get(one, "hash"), at->hash, sizeof(at->hash)))
             return false;
@@ -387,7 +388,7 @@ enum pairing pairings_look(const struct pairings *pairings, const struct pairing
     uint8_t hash[TOKEN_HASH_BYTES];
     tokens_hash(request->secret, hash);
     size_t at = find_waiting(pairings, hash, &request->place);
-    const struct waiting *waiting = at < pairings->count ? &pairings->waiting[at] : NULL;
+    const struct pending_pairing *waiting = at < pairings->count ? &pairings->waiting[at] : NULL;
     digits[0] = 0;
     *left_s = 0;
     if (waiting && now_ns - waiting->begun_ns < PAIRING_S * NS_PER_S)

@@ -16,7 +16,7 @@ enum { ROWS = 2048 /* changes that are remembered for a standby */ };
 enum { QUEUE_MAX = 1000000 /* samples that a tenth of a second may bring */, RATE_SLOTS = 60 };
 static const int64_t TICK_NS = NS_PER_S / 10, RATE_NS = 600 * NS_PER_S;
 
-struct event_queue {
+struct alarm_event_queue {
     struct sample_event *at;
     size_t count, capacity, lost;
 };
@@ -29,14 +29,14 @@ struct alarm_service {
     } counters;
     _Atomic uint64_t number;
     /* --- below: of the thread */
-    struct event_queue taken;
+    struct alarm_event_queue taken;
     struct snapshot *snapshot;
     int64_t counted_ns;
     int raised[RATE_SLOTS]; /* a ring of stretches of RATE_NS / RATE_SLOTS */
     int64_t slot;
     pthread_mutex_t queue_lock; /* taken under the store's */
     /* --- below: under queue_lock */
-    struct event_queue queue;
+    struct alarm_event_queue queue;
     struct thread thread; /* the store's lock is taken under its lock */
     /* --- below: under thread.lock */
     struct alarms *alarms;
@@ -54,7 +54,7 @@ static void on_sample(void *arg, const struct sample_event *event)
 {
     struct alarm_service *service = arg;
     pthread_mutex_lock(&service->queue_lock);
-    struct event_queue *queue = &service->queue;
+    struct alarm_event_queue *queue = &service->queue;
     if (queue->count < QUEUE_MAX) {
         mem_grow(&queue->at, &queue->capacity, queue->count + 1, sizeof(*queue->at));
         queue->at[queue->count++] = *event;
@@ -85,7 +85,7 @@ static void on_tag(void *arg, int tag, enum alarm_kind kind, enum alarm_status s
 static void take_events(struct alarm_service *service)
 {
     pthread_mutex_lock(&service->queue_lock);
-    struct event_queue taken = service->queue;
+    struct alarm_event_queue taken = service->queue;
     service->queue = service->taken;
     pthread_mutex_unlock(&service->queue_lock);
     service->taken = taken;

@@ -60,7 +60,7 @@ static void add_bad(struct alarms *alarms, int tag)
 }
 
 /* Adds or adjusts the LINK alarm of a device: it has the shortest delay of its tags, and one level below their highest priority. */
-static void add_link(struct alarms *alarms, struct device *device, int tag, int64_t least_on_ns)
+static void add_link(struct alarms *alarms, struct alarm_device *device, int tag, int64_t least_on_ns)
 {
     const struct plant_alarm_settings *settings = &alarms->plant->tags[tag].alarm_settings;
     int priority = (settings->priority ? settings->priority : ALARM_PRIORITY_DEFAULT) + 1;
@@ -101,14 +101,14 @@ static void add_links(struct alarms *alarms)
     const struct plant *plant = alarms->plant;
     size_t count = alarms->count, tag_count = plant->tag_count;
     alarms->devices = devices_create(plant);
-    struct device *list = alarms->devices->list;
+    struct alarm_device *list = alarms->devices->list;
     const int *of_tag = alarms->devices->of_tag;
     for (size_t i = 0; i < count; i++)
         if (alarms->list[i].kind == ALARM_BAD && of_tag[alarms->list[i].tag] >= 0)
             add_link(alarms, &list[of_tag[alarms->list[i].tag]], alarms->list[i].tag, 0);
     size_t with_bad = alarms->count;
     for (size_t i = 0; i < tag_count; i++) {
-        struct device *device = of_tag[i] < 0 ? NULL : &list[of_tag[i]];
+        struct alarm_device *device = of_tag[i] < 0 ? NULL : &list[of_tag[i]];
         const char *kind = device ? plant->sources[device->source].kind : NULL;
         if (device && (device->alarm < 0 || device->alarm >= (int)with_bad) && !(kind && !strcmp(kind, "replay")))
             add_link(alarms, device, (int)i, LINK_DELAY_NS);
@@ -375,17 +375,17 @@ static void follow_acknowledgement(struct alarms *alarms, int index, struct inst
 }
 
 /* Of a tag whose device is lost as a whole: that is said once, of the device. */
-static const struct device *carrier_of(const struct alarms *alarms, const struct alarm *alarm)
+static const struct alarm_device *carrier_of(const struct alarms *alarms, const struct alarm *alarm)
 {
     int of = alarm->kind == ALARM_BAD ? alarms->devices->of_tag[alarm->tag] : -1;
-    const struct device *device = of < 0 ? NULL : &alarms->devices->list[of];
+    const struct alarm_device *device = of < 0 ? NULL : &alarms->devices->list[of];
     return device && device_is_lost(device) && alarms->devices->statuses[alarm->tag] == DEVICE_GONE ? device : NULL;
 }
 
 static void turned(struct alarms *alarms, int index, double value, struct instant at)
 {
     struct alarm *alarm = &alarms->list[index];
-    const struct device *carrier = alarm->condition.active ? carrier_of(alarms, alarm) : NULL;
+    const struct alarm_device *carrier = alarm->condition.active ? carrier_of(alarms, alarm) : NULL;
     alarm->rule.carried = carrier != NULL;
     step(alarms, index,
          &(struct alarm_change){ .event = alarm->condition.active ? ALARM_RAISE : ALARM_CLEAR,
@@ -474,7 +474,7 @@ static void put_sample(struct alarms *alarms, const struct feed *feed, const str
 /* --- devices ---------------------------------------------------------------------------------------------------------------- */
 
 /* Bad measurements that nobody has acknowledged yet, which came before it was clear that all are gone. */
-static void carry_all(struct alarms *alarms, const struct device *device, struct instant now)
+static void carry_all(struct alarms *alarms, const struct alarm_device *device, struct instant now)
 {
     for (size_t i = 0; i < alarms->count; i++) {
         const struct alarm *alarm = &alarms->list[i];
@@ -489,7 +489,7 @@ static void carry_all(struct alarms *alarms, const struct device *device, struct
 static void look_at_devices(struct alarms *alarms, struct instant now)
 {
     for (size_t i = 0; i < alarms->devices->count; i++) {
-        struct device *device = &alarms->devices->list[i];
+        struct alarm_device *device = &alarms->devices->list[i];
         if (!device->changed || device->alarm < 0)
             continue;
         device->changed = false;
@@ -502,7 +502,7 @@ static void look_at_devices(struct alarms *alarms, struct instant now)
 /* Its device gives readings again, and this tag none, for as long as would make it stale: that is its own. */
 static bool calls_by_itself(const struct alarms *alarms, const struct alarm *alarm, int64_t mono_ns)
 {
-    const struct device *device = &alarms->devices->list[alarms->devices->of_tag[alarm->tag]];
+    const struct alarm_device *device = &alarms->devices->list[alarms->devices->of_tag[alarm->tag]];
     double stale_s = fmin(alarms->plant->tags[alarm->tag].stale_s, LONGEST_RETURN_S);
     return device->usable > 0 && (double)(mono_ns - device->back_ns) >= stale_s * 1e9;
 }
@@ -533,7 +533,7 @@ void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t 
         look_at_devices(alarms, (struct instant){ event[count - 1].mono_ns, event[count - 1].utc_ns });
     for (size_t i = 0; i < count; i++) {
         int tag = event[i].tag;
-        struct seen *seen = &alarms->seen[tag];
+        struct last_sample *seen = &alarms->seen[tag];
         if (event[i].quality == QUALITY_BAD_WAITING)
             continue;
         seen->sampled = true;
@@ -557,7 +557,7 @@ static bool is_waiting_too_long(struct alarms *alarms, int tag, int64_t mono_ns)
 /* Nobody hears it, or it is as it was. */
 static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32_t quality)
 {
-    const struct seen *seen = &alarms->seen[tag];
+    const struct last_sample *seen = &alarms->seen[tag];
     int of = alarms->devices->of_tag[tag];
     bool counts = of >= 0 && alarms->devices->list[of].alarm >= 0;
     if (alarms->first_feed[tag] == alarms->first_feed[tag + 1] && !counts)

@@ -11,7 +11,7 @@ struct feed { /* a tag whose samples an alarm depends on, and their meaning for 
     enum feed_role role;
 };
 
-struct seen { /* the last sample of a tag */
+struct last_sample { /* the last sample of a tag */
     double value;
     bool sampled, bad;
 };
@@ -29,7 +29,7 @@ struct alarms {
     size_t feed_count, feed_capacity;
     int *by_tag;        /* indices of alarms, by tag */
     int *first_feed, *first_alarm; /* by tag, and one more: in feeds, by_tag */
-    struct seen *seen;
+    struct last_sample *seen;
     struct devices *devices;
     struct sample_event *noticed; /* room for what alarms_tick finds out; by tag */
     struct gravest *gravest;

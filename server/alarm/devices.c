@@ -27,7 +27,7 @@ static int find_or_add(struct devices *devices, int source, int unit)
     if (at >= 0)
         return at;
     mem_grow(&devices->list, &devices->capacity, devices->count + 1, sizeof(*devices->list));
-    devices->list[devices->count] = (struct device){ .source = source, .unit = unit, .alarm = -1 };
+    devices->list[devices->count] = (struct alarm_device){ .source = source, .unit = unit, .alarm = -1 };
     return (int)devices->count++;
 }
 
@@ -37,7 +37,7 @@ static void name_all(struct devices *devices, const struct plant *plant)
     for (size_t i = 0; i < devices->count; i++)
         units[devices->list[i].source]++;
     for (size_t i = 0; i < devices->count; i++) {
-        struct device *device = &devices->list[i];
+        struct alarm_device *device = &devices->list[i];
         const char *id = plant->sources[device->source].id;
         device->name = units[device->source] > 1 ? mem_printf("%s/%d", id, device->unit) : mem_strdup(id);
     }
@@ -96,7 +96,7 @@ void devices_put(struct devices *devices, int tag, enum device_status status, in
     int of = devices->of_tag[tag];
     if (of < 0 || devices->statuses[tag] == status)
         return;
-    struct device *device = &devices->list[of];
+    struct alarm_device *device = &devices->list[of];
     device->usable += (status == DEVICE_USABLE) - (devices->statuses[tag] == DEVICE_USABLE);
     device->gone += (status == DEVICE_GONE) - (devices->statuses[tag] == DEVICE_GONE);
     devices->statuses[tag] = (uint8_t)status;
@@ -107,7 +107,7 @@ void devices_put(struct devices *devices, int tag, enum device_status status, in
         device->back_ns = mono_ns;
 }
 
-bool device_is_lost(const struct device *device)
+bool device_is_lost(const struct alarm_device *device)
 {
     return device->usable == 0 && device->gone > 0;
 }

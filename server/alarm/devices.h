@@ -7,7 +7,7 @@
 
 enum device_status { DEVICE_UNKNOWN, DEVICE_USABLE, DEVICE_GONE /* nothing comes, or the controller has stopped */, DEVICE_OTHER };
 
-struct device {
+struct alarm_device {
     char *name;          /* of its source, and its unit where that has several: "plc1", "gateway/7" */
     int source, unit;
     int usable, gone;    /* the number of its tags that are DEVICE_USABLE, and DEVICE_GONE */
@@ -17,7 +17,7 @@ struct device {
 };
 
 struct devices {
-    struct device *list;
+    struct alarm_device *list;
     size_t count, capacity;
     int *of_tag;         /* -1: from no device */
     uint8_t *statuses;      /* by tag, enum device_status */
@@ -30,6 +30,6 @@ int devices_find(const struct devices *devices, const char *name); /* returns th
 enum device_status device_status_of(uint32_t quality); /* returns what a quality says about the device */
 /* Records the status that a tag has from mono_ns on. */
 void devices_put(struct devices *devices, int tag, enum device_status status, int64_t mono_ns);
-bool device_is_lost(const struct device *device); /* returns whether it has failed: no tag is usable, at least one is gone */
+bool device_is_lost(const struct alarm_device *device); /* returns whether it has failed: no tag is usable, at least one is gone */
 
 #endif

@@ -16,11 +16,11 @@
 enum { MOST_WAITING = 10000, FILE_BYTES = 64 << 20 };
 static const int64_t RETRY_NS = NS_PER_S;
 
-struct waiting {
+struct queued_entry {
     struct audit_entry entry; /* its texts lie behind it */
     int64_t utc_us;
     bool said; /* in the log, since it could not be written */
-    struct waiting *next;
+    struct queued_entry *next;
 };
 
 struct audit {
@@ -32,7 +32,7 @@ struct audit {
     counter *good, *lines, *lost;
     struct thread thread;
     /* --- below: under thread.lock */
-    struct waiting *first, **last;
+    struct queued_entry *first, **last;
     size_t count;
     int64_t lost_count; /* since entries were last written */
     struct settling settling;
@@ -41,7 +41,7 @@ struct audit {
 
 /* --- entries that wait ---------------------------------------------------------------------------------------------------- */
 
-static struct waiting *copy_entry(const struct audit_entry *entry)
+static struct queued_entry *copy_entry(const struct audit_entry *entry)
 {
     const char *const texts[] = { entry->event, entry->result,  entry->who,  entry->role, entry->from,
                                   entry->how,   entry->through, entry->what, entry->why };
@@ -49,7 +49,7 @@ static struct waiting *copy_entry(const struct audit_entry *entry)
     size_t bytes = 0, lengths[COUNT];
     for (size_t i = 0; i < COUNT; i++)
         bytes += lengths[i] = texts[i] ? strlen(texts[i]) + 1 : 0;
-    struct waiting *waiting = mem_new(sizeof(*waiting) + bytes);
+    struct queued_entry *waiting = mem_new(sizeof(*waiting) + bytes);
     const char **members[COUNT] = { &waiting->entry.event, &waiting->entry.result,  &waiting->entry.who,  &waiting->entry.role,
                                     &waiting->entry.from,  &waiting->entry.how,     &waiting->entry.through, &waiting->entry.what,
                                     &waiting->entry.why };
@@ -71,7 +71,7 @@ void audit_say(struct audit *audit, const struct audit_entry *entry)
         audit->lost_count++;
         settling_drop(&audit->settling);
     } else {
-        struct waiting *waiting = copy_entry(entry);
+        struct queued_entry *waiting = copy_entry(entry);
         *audit->last = waiting;
         audit->last = &waiting->next;
         audit->count++;
@@ -177,7 +177,7 @@ static int write_entry(struct audit *audit, const struct audit_entry *entry, int
 /* Under the lock. */
 static void free_first(struct audit *audit)
 {
-    struct waiting *first = audit->first;
+    struct queued_entry *first = audit->first;
     audit->first = first->next;
     if (!audit->first)
         audit->last = &audit->first;
@@ -188,7 +188,7 @@ static void free_first(struct audit *audit)
 /* Those that came while the file cannot be written. Under the lock; only this thread takes entries out. */
 static void log_waiting(struct audit *audit)
 {
-    for (struct waiting *waiting = audit->first; waiting; waiting = waiting->next) {
+    for (struct queued_entry *waiting = audit->first; waiting; waiting = waiting->next) {
         if (!waiting->said)
             log_entry(audit, &waiting->entry, "audit, not written", "");
         waiting->said = true;
@@ -216,7 +216,7 @@ static void *run(void *arg)
     for (;;) {
         while (!audit->first && !audit->thread.stopping)
             pthread_cond_wait(&audit->thread.wake, &audit->thread.lock);
-        struct waiting *first = audit->first;
+        struct queued_entry *first = audit->first;
         if (!first)
             break;
         pthread_mutex_unlock(&audit->thread.lock);

@@ -11,7 +11,7 @@
 #include "audit/audit_head.h"
 #include "base/mem.h"
 
-struct walk {
+struct audit_walk {
     struct audit_report *report;
     const struct audit_chain *known;
     struct audit_chain head; /* seq 0: none */
@@ -27,14 +27,14 @@ static void set_fault(struct audit_report *report, char *text)
 }
 
 /* A line whose number is known from elsewhere must be the same one. */
-static void compare(struct walk *walk, const struct audit_chain *with, const char *path, const char *whose)
+static void compare(struct audit_walk *walk, const struct audit_chain *with, const char *path, const char *whose)
 {
     const struct audit_chain *end = &walk->report->end;
     if (with->seq == end->seq && strcmp(with->hash, end->hash) != 0)
         set_fault(walk->report, mem_printf("%s: line %" PRIu64 " is not the one that %s has", path, end->seq, whose));
 }
 
-static void verify_file(struct walk *walk, const char *path)
+static void verify_file(struct audit_walk *walk, const char *path)
 {
     struct audit_report *report = walk->report;
     FILE *file = fopen(path, "re");
@@ -72,7 +72,7 @@ static int by_number(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void verify_full(struct walk *walk, const char *path)
+static void verify_full(struct audit_walk *walk, const char *path)
 {
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
     char *folder = slash ? mem_printf("%.*s", slash > path ? (int)(slash - path) : 1, path) : mem_strdup("."), **names = NULL;
@@ -98,7 +98,7 @@ static void verify_full(struct walk *walk, const char *path)
 
 void audit_file_verify(const char *path, const struct audit_chain *known, struct audit_report *report)
 {
-    struct walk walk = { .report = report, .known = known };
+    struct audit_walk walk = { .report = report, .known = known };
     char *head_path = mem_printf("%s.head", path);
     *report = (struct audit_report){ .good = true };
     audit_chain_init(&report->end);

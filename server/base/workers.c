@@ -8,10 +8,10 @@
 
 #include "base/mem.h"
 
-struct job {
+struct worker_job {
     void (*run)(void *arg);
     void *arg;
-    struct job *next;
+    struct worker_job *next;
 };
 
 struct workers {
@@ -20,7 +20,7 @@ struct workers {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: under lock */
-    struct job *first, **last;
+    struct worker_job *first, **last;
     bool stopping;
 };
 
@@ -31,7 +31,7 @@ static void *worker_main(void *arg)
     for (;;) {
         while (!workers->first && !workers->stopping)
             pthread_cond_wait(&workers->wake, &workers->lock);
-        struct job *job = workers->first;
+        struct worker_job *job = workers->first;
         if (!job)
             break;
         workers->first = job->next;
@@ -92,8 +92,8 @@ void workers_submit(struct workers *workers, void (*run)(void *arg), void *arg)
         run(arg);
         return;
     }
-    struct job *job = mem_new(sizeof(*job));
-    *job = (struct job){ .run = run, .arg = arg };
+    struct worker_job *job = mem_new(sizeof(*job));
+    *job = (struct worker_job){ .run = run, .arg = arg };
     pthread_mutex_lock(&workers->lock);
     *workers->last = job;
     workers->last = &job->next;

@@ -31,7 +31,7 @@ static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* that
 static const int64_t STEP_NS = 500 * NS_PER_MS; /* what differs less is left: a clock that pages reckon with does not step for it */
 static const int64_t QUICK_NS = 100 * NS_PER_MS; /* only who comes as quickly tells the time */
 
-struct waiting {
+struct pending_request {
     uint64_t id, client; /* id 0: free */
 };
 
@@ -61,7 +61,7 @@ struct core_link {
     int up_index;           /* of the URL that readings come from */
     struct text *out;       /* messages that wait to be sent */
     size_t out_count, out_capacity;
-    struct waiting waiting[CORE_ACTS];
+    struct pending_request waiting[CORE_ACTS];
     uint64_t last_id;
     struct core_arrival *arrivals, **last_arrival;
 };
@@ -140,7 +140,7 @@ bool core_link_act(struct core_link *link, const struct core_act *act)
         free_at++;
     char *text = link->is_up && free_at < CORE_ACTS ? pack_act(act, link->last_id + 1) : NULL;
     if (text) {
-        link->waiting[free_at] = (struct waiting){ ++link->last_id, act->client };
+        link->waiting[free_at] = (struct pending_request){ ++link->last_id, act->client };
         queue(link, text);
         lws_cancel_service(link->context);
     }
@@ -486,7 +486,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 
 static const struct lws_protocols protocols[] = { { .name = CORE_SUBPROTOCOL, .callback = on_event, .rx_buffer_size = 65536 }, { 0 } };
 
-struct look {
+struct link_wakeup {
     lws_sorted_usec_list_t sul;
     struct core_link *link;
 };
@@ -494,7 +494,7 @@ struct look {
 /* So that lws_service() returns now and then. */
 static void on_look(lws_sorted_usec_list_t *sul)
 {
-    struct look *look = lws_container_of(sul, struct look, sul);
+    struct link_wakeup *look = lws_container_of(sul, struct link_wakeup, sul);
     lws_sul_schedule(look->link->context, 0, sul, on_look, LOOK_US);
 }
 
@@ -624,7 +624,7 @@ static void watch_silence(struct core_link *link)
 static void run_connection(struct core_link *link)
 {
     struct core_url url;
-    struct look look = { .link = link };
+    struct link_wakeup look = { .link = link };
     link->ended = link->taken = link->votes = link->introduced = link->at_fault = false;
     link->why[0] = 0;
     link->begun_ns = clock_mono_ns();

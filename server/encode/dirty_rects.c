@@ -69,13 +69,13 @@ static long growth(const struct dirty_rect *a, const struct dirty_rect *b)
     return overlap(a, b) ? -1 : area(&all) - area(a) - area(b) - PART_COST_PX;
 }
 
-struct list {
+struct rect_list {
     struct dirty_rect *at;
     size_t count, capacity;
 };
 
 /* Runs of tiles in a row; one that stands below an equal run makes it longer. */
-static void add_run(struct list *list, const struct dirty_rect *run)
+static void add_run(struct rect_list *list, const struct dirty_rect *run)
 {
     for (size_t i = 0; i < list->count; i++) {
         struct dirty_rect *above = &list->at[i];
@@ -88,7 +88,7 @@ static void add_run(struct list *list, const struct dirty_rect *run)
     list->at[list->count++] = *run;
 }
 
-static void find_runs(const struct frame *before, const struct frame *now, struct list *list)
+static void find_runs(const struct frame *before, const struct frame *now, struct rect_list *list)
 {
     for (int y = 0; y < now->height_px; y += DIRTY_RECTS_TILE_PX) {
         struct dirty_rect run = { .y_px = y, .height_px = least(DIRTY_RECTS_TILE_PX, now->height_px - y) };
@@ -108,7 +108,7 @@ static void find_runs(const struct frame *before, const struct frame *now, struc
 }
 
 /* The pair whose common rectangle costs least. */
-static long cheapest(const struct list *list, size_t *a, size_t *b)
+static long cheapest(const struct rect_list *list, size_t *a, size_t *b)
 {
     long best = 0;
     *a = *b = 0;
@@ -124,14 +124,14 @@ static long cheapest(const struct list *list, size_t *a, size_t *b)
     return best;
 }
 
-static void merge(struct list *list, size_t a, size_t b)
+static void merge(struct rect_list *list, size_t a, size_t b)
 {
     list->at[a] = around(&list->at[a], &list->at[b]);
     list->at[b] = list->at[--list->count];
 }
 
 /* Many runs first meet their neighbours, so that looking for the best pair stays cheap. */
-static void thin(struct list *list, size_t enough)
+static void thin(struct rect_list *list, size_t enough)
 {
     for (size_t i = 0; i + 1 < list->count && list->count > enough;)
         if (growth(&list->at[i], &list->at[i + 1]) < (long)DIRTY_RECTS_TILE_PX * DIRTY_RECTS_TILE_PX * 16)
@@ -144,7 +144,7 @@ static void thin(struct list *list, size_t enough)
 
 int dirty_rects_find(const struct frame *before, const struct frame *now, struct dirty_rect out[DIRTY_RECTS_MAX])
 {
-    struct list list = { 0 };
+    struct rect_list list = { 0 };
     size_t a, b;
     find_runs(before, now, &list);
     thin(&list, 64);

@@ -54,12 +54,12 @@ static void convert_bands(void *arg, size_t begin, size_t end)
 
 static void convert(const struct frame *frame, struct workers *workers, const struct h264_planes *to)
 {
-    struct planes planes = { frame->bgrx,
-                             frame->stride_bytes,
-                             frame->width_px,
-                             frame->height_px,
-                             { to->at[0], to->at[1], to->at[2] },
-                             { to->pitches[0], to->pitches[1], to->pitches[2] } };
+    struct yuv_planes planes = { frame->bgrx,
+                                 frame->stride_bytes,
+                                 frame->width_px,
+                                 frame->height_px,
+                                 { to->at[0], to->at[1], to->at[2] },
+                                 { to->pitches[0], to->pitches[1], to->pitches[2] } };
     size_t bands = planes_bands(frame->height_px);
     if (workers)
         workers_for(workers, bands, GRAIN_ROWS / PLANES_BAND_PX, convert_bands, &planes);

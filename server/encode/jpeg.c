@@ -63,7 +63,7 @@ static size_t most_bytes(const struct dirty_rect *part)
 }
 
 /* Beyond the right edge lies what stands at it. */
-static void extend(const struct planes *planes)
+static void extend(const struct yuv_planes *planes)
 {
     for (int c = 0; c < 3; c++) {
         int width = c ? (planes->width_px + 1) / 2 : planes->width_px, height = c ? (planes->height_px + 1) / 2 : planes->height_px;
@@ -80,7 +80,7 @@ static size_t compress_halved(struct jpeg_encoder *jpeg, const uint8_t *from, in
 {
     int width = padded(part->width_px), height = padded(part->height_px);
     size_t luma = (size_t)width * (size_t)height;
-    struct planes planes = { from, stride_bytes, part->width_px, part->height_px, { 0 }, { width, width / 2, width / 2 } };
+    struct yuv_planes planes = { from, stride_bytes, part->width_px, part->height_px, { 0 }, { width, width / 2, width / 2 } };
     if (!reserve(&jpeg->planes, &jpeg->planes_capacity, luma * 3 / 2)) {
         *why = "no memory for it";
         return 0;

@@ -99,7 +99,7 @@ static void begin(struct jpeg_compress_struct *codec, int width_px, int height_p
     jpeg_start_compress(codec, TRUE);
 }
 
-static void write_halved(struct jpeg_compress_struct *codec, const struct planes *planes, int quality)
+static void write_halved(struct jpeg_compress_struct *codec, const struct yuv_planes *planes, int quality)
 {
     JSAMPROW rows[3][ROWS];
     JSAMPARRAY all[3] = { rows[0], rows[1], rows[2] };
@@ -144,7 +144,7 @@ size_t jpeg_write_whole(struct jpeg_writer *writer, const uint8_t *bgrx, int str
     return capacity - writer->to.free_in_buffer;
 }
 
-size_t jpeg_write_halved(struct jpeg_writer *writer, const struct planes *planes, int quality, unsigned char *to, size_t capacity)
+size_t jpeg_write_halved(struct jpeg_writer *writer, const struct yuv_planes *planes, int quality, unsigned char *to, size_t capacity)
 {
     set_room(writer, to, capacity);
     if (setjmp(writer->failed)) {

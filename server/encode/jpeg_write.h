@@ -24,7 +24,7 @@ size_t jpeg_write_whole(struct jpeg_writer *writer, const uint8_t *bgrx, int str
                         unsigned char *to, size_t capacity);
 /* Encodes planes with subsampled chroma. Their rows are padded to JPEG_PAD_PX (chroma: half of that) with the pixels of the edge. */
 enum { JPEG_PAD_PX = 16 };
-size_t jpeg_write_halved(struct jpeg_writer *writer, const struct planes *planes, int quality, unsigned char *to, size_t capacity);
+size_t jpeg_write_halved(struct jpeg_writer *writer, const struct yuv_planes *planes, int quality, unsigned char *to, size_t capacity);
 const char *jpeg_writer_why(const struct jpeg_writer *writer);
 
 #endif

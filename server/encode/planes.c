@@ -81,7 +81,7 @@ SIMD_AVX2 static void weigh_wide(const uint32_t *pixels, uint8_t out[2][TILE_W])
 }
 
 /* What lies beyond the picture is what stands at its edge. */
-static void gather(const struct planes *planes, int x, int y, uint32_t pixels[2][2 * TILE_W])
+static void gather(const struct yuv_planes *planes, int x, int y, uint32_t pixels[2][2 * TILE_W])
 {
     int width = least(2 * TILE_W, planes->width_px - x);
     for (int j = 0; j < 2; j++) {
@@ -92,7 +92,7 @@ static void gather(const struct planes *planes, int x, int y, uint32_t pixels[2]
     }
 }
 
-static void mend_tile(const struct planes *planes, int x, int y)
+static void mend_tile(const struct yuv_planes *planes, int x, int y)
 {
     int width = least(TILE_W, (planes->width_px + 1) / 2 - x), height = least(TILE_H, (planes->height_px + 1) / 2 - y);
     const int pitch[2] = { planes->pitch[1], planes->pitch[2] };
@@ -110,7 +110,7 @@ static void mend_tile(const struct planes *planes, int x, int y)
     }
 }
 
-void planes_convert(const struct planes *planes, size_t begin, size_t end)
+void planes_convert(const struct yuv_planes *planes, size_t begin, size_t end)
 {
     ptrdiff_t y = (ptrdiff_t)begin * PLANES_BAND_PX;
     int rows = least((int)end * PLANES_BAND_PX, planes->height_px) - (int)y;

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct planes {
+struct yuv_planes {
     const uint8_t *bgrx;
     int stride_bytes, width_px, height_px;
     uint8_t *plane[3]; /* the two of chroma have half the width and height, rounded up */
@@ -16,6 +16,6 @@ struct planes {
 
 enum { PLANES_BAND_PX = 16 }; /* rows of one band */
 size_t planes_bands(int height_px); /* returns the number of bands */
-void planes_convert(const struct planes *planes, size_t begin, size_t end); /* converts the bands [begin, end) */
+void planes_convert(const struct yuv_planes *planes, size_t begin, size_t end); /* converts the bands [begin, end) */
 
 #endif

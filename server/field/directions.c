@@ -12,7 +12,7 @@
 #define AT_ONE_PLACE 1e-6 /* metres */
 #define UPRIGHT 0.1       /* of a vector's length: less than this along the surface is no direction */
 
-static const float *angles_of(const struct layout *layout)
+static const float *angles_of(const struct field_layout *layout)
 {
     const struct influence_view *view = &layout->file->influence;
     const struct influence_entry *entry = layout->assumed ? NULL : influence_find(view, layout->number, INFLUENCE_TRANSPORT);
@@ -59,7 +59,7 @@ static struct sensor_direction read_one(const struct scene *scene, int asset, co
 size_t directions_read(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct sensor_direction **out)
 {
     *out = NULL;
-    struct layout *layout = scene->plant->groups[group].directed ? layout_create(scene, asset, group, NULL) : NULL;
+    struct field_layout *layout = scene->plant->groups[group].directed ? layout_create(scene, asset, group, NULL) : NULL;
     size_t count = 0;
     if (layout && angles_of(layout)) {
         count = layout->sensor_count;
@@ -81,7 +81,7 @@ struct spread {
     bool configured, known, uncertain;
 };
 
-static struct spread spread_of(const struct layout *layout, const float *angles, size_t sensor, const struct sensor_direction *said)
+static struct spread spread_of(const struct field_layout *layout, const float *angles, size_t sensor, const struct sensor_direction *said)
 {
     const uint32_t vertex = layout->sensors[sensor].vertex;
     const float *normal_f = layout->file->view.normals[vertex], start = angles[sensor * layout->vertex_count + vertex];
@@ -100,7 +100,7 @@ static struct spread spread_of(const struct layout *layout, const float *angles,
                             .uncertain = said->uncertain };
 }
 
-static double mean_m(const struct layout *layout, enum distance_mode mode, size_t sensor, const struct direction_place *place)
+static double mean_m(const struct field_layout *layout, enum distance_mode mode, size_t sensor, const struct direction_place *place)
 {
     double sum_m = 0;
     for (int i = 0; i < 3; i++) {
@@ -112,7 +112,7 @@ static double mean_m(const struct layout *layout, enum distance_mode mode, size_
 }
 
 /* The unit vector that arrives at the place. False: no way leads there. */
-static bool carry(const struct layout *layout, const float *angles, double turn, const struct direction_place *place, double out[3])
+static bool carry(const struct field_layout *layout, const float *angles, double turn, const struct direction_place *place, double out[3])
 {
     double normal[3];
     for (int c = 0; c < 3; c++) {
@@ -135,13 +135,13 @@ static bool carry(const struct layout *layout, const float *angles, double turn,
     return vec_normalize(out) > 0;
 }
 
-static double strength_of(const struct layout *layout, const struct field_params *params, size_t sensor)
+static double strength_of(const struct field_layout *layout, const struct field_params *params, size_t sensor)
 {
     const struct field_override *override = field_params_override_of(params, layout->sensors[sensor].tag);
     return (double)(override && override->strength >= 0 ? override->strength : layout->sensors[sensor].strength);
 }
 
-static struct direction find_one(const struct layout *layout, const float *angles, const struct field_params *params,
+static struct direction find_one(const struct field_layout *layout, const float *angles, const struct field_params *params,
                                  const struct spread *spreads, const struct direction_place *place)
 {
     struct direction out = { 0 };
@@ -174,7 +174,7 @@ static struct direction find_one(const struct layout *layout, const float *angle
 void directions_find(const struct scene *scene, int asset, const struct field_params *params, const struct sensor_direction *sensors,
                      size_t sensor_count, const struct direction_place *places, size_t place_count, struct direction *out)
 {
-    struct layout *layout = layout_create(scene, asset, params->group, NULL);
+    struct field_layout *layout = layout_create(scene, asset, params->group, NULL);
     const float *angles = layout ? angles_of(layout) : NULL;
     bool good = angles && layout->sensor_count == sensor_count;
     struct spread *spreads = mem_array(sensor_count, sizeof(*spreads));

@@ -19,7 +19,7 @@ enum { GROUP = 64, GRAIN = 1024, PIECES_MOST = 96 };
 #define RIM 4       /* steps of `lacking`: so far the rim of the data may be drawn elsewhere */
 #define LEAST 1e-4f /* smaller errors are 0 */
 
-struct piece {           /* part of a triangle; its sample is the middle of its longest side */
+struct triangle_piece {  /* part of a triangle; its sample is the middle of its longest side */
     uint32_t tri;        /* in the group */
     float corners[3][3]; /* barycentric */
 };
@@ -27,7 +27,7 @@ struct piece {           /* part of a triangle; its sample is the middle of its 
 struct sampler { /* of one thread */
     const struct weights *of;
     const struct asset_view *file;
-    struct layout layout;
+    struct field_layout layout;
     struct layout_points points;
     struct weights *weights; /* of the points */
     struct weights_terms terms;
@@ -37,11 +37,11 @@ struct sampler { /* of one thread */
     float *errors[GROUP];  /* where to */
     int pieces[GROUP];
     size_t tri_count;
-    struct piece *queue;
+    struct triangle_piece *queue;
     size_t queued, capacity;
 };
 
-struct job {
+struct drawn_error_job {
     const struct weights *weights;
     const struct field_params *params;
     const uint8_t *usable, *members_marked;
@@ -54,7 +54,7 @@ struct job {
 
 /* --- weights at points ------------------------------------------------------------------------------------------------------ */
 
-static bool sampler_init(struct sampler *sampler, const struct job *job)
+static bool sampler_init(struct sampler *sampler, const struct drawn_error_job *job)
 {
     size_t members = job->weights->member_count;
     *sampler = (struct sampler){ .of = job->weights, .file = &job->weights->layout->file->view, .layout = *job->weights->layout };
@@ -111,7 +111,7 @@ static void evaluate_corners(struct sampler *sampler)
     }
 }
 
-static void enqueue(struct sampler *sampler, const struct piece *piece)
+static void enqueue(struct sampler *sampler, const struct triangle_piece *piece)
 {
     if (sampler->pieces[piece->tri]++ >= PIECES_MOST)
         return;
@@ -120,7 +120,7 @@ static void enqueue(struct sampler *sampler, const struct piece *piece)
 }
 
 /* Returns the length of the longest side and the corner where it begins. */
-static float longest_side(const struct sampler *sampler, const struct piece *piece, int *begin)
+static float longest_side(const struct sampler *sampler, const struct triangle_piece *piece, int *begin)
 {
     float at[3][3], longest = -1;
     const uint32_t *corners = sampler->tris[piece->tri];
@@ -140,9 +140,9 @@ static float longest_side(const struct sampler *sampler, const struct piece *pie
     return longest;
 }
 
-static void split(struct sampler *sampler, const struct piece *piece, int begin, const float middle[3])
+static void split(struct sampler *sampler, const struct triangle_piece *piece, int begin, const float middle[3])
 {
-    struct piece half = *piece;
+    struct triangle_piece half = *piece;
     memcpy(half.corners[begin], middle, sizeof(half.corners[begin]));
     enqueue(sampler, &half);
     half = *piece;
@@ -151,7 +151,7 @@ static void split(struct sampler *sampler, const struct piece *piece, int begin,
 }
 
 /* Returns whether the data end at this point although the corners draw data there. */
-static bool hides_rim(const struct sampler *sampler, size_t point, const struct piece *piece, const float parts[3], bool *shown)
+static bool hides_rim(const struct sampler *sampler, size_t point, const struct triangle_piece *piece, const float parts[3], bool *shown)
 {
     const uint32_t *corners = sampler->tris[piece->tri];
     float drawn = 0, here = weights_lacking_at(sampler->weights, point, false);
@@ -161,7 +161,7 @@ static bool hides_rim(const struct sampler *sampler, size_t point, const struct 
     return here > 127 + RIM && drawn <= 127;
 }
 
-static void add_errors(struct sampler *sampler, const struct piece *pieces, size_t count)
+static void add_errors(struct sampler *sampler, const struct triangle_piece *pieces, size_t count)
 {
     float more[KERNEL_BLOCK] = { 0 }, less[KERNEL_BLOCK] = { 0 };
     for (uint32_t m = 0; m < sampler->weights->member_count; m++) {
@@ -185,13 +185,13 @@ static void add_errors(struct sampler *sampler, const struct piece *pieces, size
 
 static void sample_group(struct sampler *sampler, float step)
 {
-    struct piece taken[KERNEL_BLOCK];
+    struct triangle_piece taken[KERNEL_BLOCK];
     int begins[KERNEL_BLOCK];
     float lengths_m[KERNEL_BLOCK];
     evaluate_corners(sampler);
     for (uint32_t t = 0; t < sampler->tri_count; t++) {
         sampler->pieces[t] = 0;
-        enqueue(sampler, &(struct piece){ t, { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } });
+        enqueue(sampler, &(struct triangle_piece){ t, { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } });
     }
     for (size_t next = 0; next < sampler->queued;) {
         size_t count = sampler->queued - next < KERNEL_BLOCK ? sampler->queued - next : KERNEL_BLOCK;
@@ -217,7 +217,7 @@ static void sample_group(struct sampler *sampler, float step)
 
 /* Returns whether a triangle needs no samples: it is small compared with the distance to the nearest sensor, or, in a coarse level,
    smaller than the pixels of that level. */
-static bool is_straight(const struct job *job, const uint32_t corners[3])
+static bool is_straight(const struct drawn_error_job *job, const uint32_t corners[3])
 {
     const struct weights *weights = job->weights;
     const float(*at)[3] = weights->layout->file->view.positions_m;
@@ -235,7 +235,7 @@ static bool is_straight(const struct job *job, const uint32_t corners[3])
 
 static void measure_some(void *arg, size_t begin, size_t end)
 {
-    const struct job *job = arg;
+    const struct drawn_error_job *job = arg;
     struct sampler *sampler = mem_new(sizeof(*sampler));
     uint32_t *indices = (uint32_t *)job->weights->layout->file->view.indices;
     bool good = sampler_init(sampler, job);
@@ -305,7 +305,7 @@ static void spread(struct weights *weights, const float *errors, const struct as
         }
 }
 
-static void measure_level(struct job *job, struct weights *weights, const struct asset_level *level, struct workers *workers)
+static void measure_level(struct drawn_error_job *job, struct weights *weights, const struct asset_level *level, struct workers *workers)
 {
     const struct asset_view *file = &weights->layout->file->view;
     size_t members = weights->member_count;
@@ -334,7 +334,7 @@ static void measure_level(struct job *job, struct weights *weights, const struct
    may: where the field turns from one sensor to the next is then elsewhere, maybe in larger triangles. */
 static bool is_as_prepared(const struct weights *weights, const struct field_params *params)
 {
-    const struct layout *layout = weights->layout;
+    const struct field_layout *layout = weights->layout;
     const struct plant_group *group = layout->group;
     if (layout->trial || params->override_count > 0 || params->distance == DISTANCE_HEAT || params->reach_m != group->reach_m)
         return false;
@@ -350,7 +350,7 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
 void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices,
                          bool in_range, struct workers *workers)
 {
-    const struct layout *layout = weights->layout;
+    const struct field_layout *layout = weights->layout;
     const struct asset_view *file = &layout->file->view;
     uint32_t number = 0;
     while (number + 1 < file->header->level_count && file->levels[number + 1].vertex_count >= vertices)
@@ -362,13 +362,13 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     if (layout->file->resolved_levels & bit && in_range && is_as_prepared(weights, params))
         return;
     weights->measured_levels |= bit;
-    struct job job = { .weights = weights,
-                       .params = params,
-                       .usable = usable,
-                       .radius_m = weights->radius_m,
-                       .accepted = accepted_of(weights),
-                       .error_m = file->levels[number].error_m,
-                       .errors = mem_try_array(file->header->index_count / 3, sizeof(float)) };
+    struct drawn_error_job job = { .weights = weights,
+                                   .params = params,
+                                   .usable = usable,
+                                   .radius_m = weights->radius_m,
+                                   .accepted = accepted_of(weights),
+                                   .error_m = file->levels[number].error_m,
+                                   .errors = mem_try_array(file->header->index_count / 3, sizeof(float)) };
     weights->errors = weights->errors ? weights->errors : mem_try_array(layout->vertex_count, sizeof(float));
     weights->errors_version++;
     if (job.errors && weights->errors)

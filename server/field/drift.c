@@ -26,7 +26,7 @@ struct week { /* of one sensor, by hour */
     double noise, root[DRIFT_HOURS]; /* root: of what an hour counts */
 };
 
-struct rows { /* where there are values of all; hour by hour, each times its root */
+struct drift_rows { /* where there are values of all; hour by hour, each times its root */
     double at[COLUMNS][DRIFT_HOURS], time[DRIFT_HOURS], value[DRIFT_HOURS];
     double counted; /* the sum of what hours count */
     int hour[DRIFT_HOURS], count, columns;
@@ -56,7 +56,7 @@ static bool is_whole(const struct week *week, int hour)
     return whole;
 }
 
-static void collect(const struct week *week, struct rows *rows)
+static void collect(const struct week *week, struct drift_rows *rows)
 {
     double lagging = NAN;
     rows->count = 0;
@@ -82,7 +82,7 @@ static void collect(const struct week *week, struct rows *rows)
 }
 
 /* The columns become orthonormal; what they explain goes out of time and value. largest: of the values. Returns how many are left. */
-static int reduce(struct rows *rows, double largest)
+static int reduce(struct drift_rows *rows, double largest)
 {
     int kept = 0, n = rows->count;
     for (int c = 0; c < rows->columns; c++) {
@@ -123,7 +123,7 @@ static double median(const double *of, int n)
 }
 
 /* Finds the row before which reduced values jump most. Returns 0 if they do not. */
-static int find_jump(const struct rows *rows, double noise)
+static int find_jump(const struct drift_rows *rows, double noise)
 {
     double change[DRIFT_HOURS];
     const int first = BESIDE + WITHIN, count = rows->count - first - BESIDE + 1;
@@ -167,7 +167,7 @@ static void weigh(struct week *week)
 }
 
 /* Collects and reduces, with a column for each jump: from there on the level is another one. Returns how many columns are left. */
-static int reduce_with_jumps(const struct week *week, struct rows *rows)
+static int reduce_with_jumps(const struct week *week, struct drift_rows *rows)
 {
     double largest = 0;
     for (int h = 0; h < week->hours; h++)
@@ -185,7 +185,7 @@ static int reduce_with_jumps(const struct week *week, struct rows *rows)
 }
 
 /* Of the slope, by Newey & West's estimate: pulls of the residuals on it, and how they hang together over `reach` hours. */
-static double slope_variance(const struct rows *rows, double time_square, int hours)
+static double slope_variance(const struct drift_rows *rows, double time_square, int hours)
 {
     double pull[DRIFT_HOURS] = { 0 };
     int reach = (int)(DEPENDENT_PART * hours);
@@ -201,7 +201,7 @@ void drift_fit(const double *values, const double *predicted, const double *near
                struct drift *out)
 {
     struct week week = { values, predicted, nearest, nearest_count, hours, noise, { 0 } };
-    struct rows rows;
+    struct drift_rows rows;
     *out = (struct drift){ DRIFT_UNKNOWN, NAN, NAN, NAN, 0 };
     weigh(&week);
     collect(&week, &rows);
@@ -256,7 +256,7 @@ static void find_own(const double *values, int hours, size_t count, double *own)
     mem_free(known);
 }
 
-struct search {
+struct drift_search {
     const struct neighbours *neighbours;
     const double *values; /* [hour][sensor] */
     int hours;
@@ -266,7 +266,7 @@ struct search {
 };
 
 /* Without those that were found, but of these too. */
-static void predict(const struct search *search, const struct drift *drifts)
+static void predict(const struct drift_search *search, const struct drift *drifts)
 {
     const double level = neighbours_level(search->neighbours);
     double *used = mem_array(search->count, sizeof(*used));
@@ -284,7 +284,7 @@ static void predict(const struct search *search, const struct drift *drifts)
 }
 
 /* What a sensor read; where it read nothing what the others say, by as much higher or lower as they are otherwise. */
-static void read_filled(const struct search *search, size_t sensor, double *out)
+static void read_filled(const struct drift_search *search, size_t sensor, double *out)
 {
     const double *said = search->said + sensor * (size_t)search->hours;
     double off = 0;
@@ -301,7 +301,7 @@ static void read_filled(const struct search *search, size_t sensor, double *out)
 }
 
 /* Neither found nor silent for half of the time: it can be held against others. */
-static bool is_of_use(const struct search *search, size_t sensor, const struct drift *drift)
+static bool is_of_use(const struct drift_search *search, size_t sensor, const struct drift *drift)
 {
     int known = 0;
     for (int h = 0; h < search->hours; h++)
@@ -310,7 +310,7 @@ static bool is_of_use(const struct search *search, size_t sensor, const struct d
 }
 
 /* Judges all that were not found yet. Returns the one that drifts most clearly; count: none. */
-static size_t judge(const struct search *search, const double *noise, struct drift *out)
+static size_t judge(const struct drift_search *search, const double *noise, struct drift *out)
 {
     double own[DRIFT_HOURS], nearest[DRIFT_NEAREST * DRIFT_HOURS];
     bool *apart = mem_array(search->count, sizeof(*apart));
@@ -341,8 +341,9 @@ void drift_find(const struct neighbours *neighbours, const double *values, int h
                 double *predicted)
 {
     const size_t count = neighbours_count(neighbours);
-    struct search search = { neighbours, values, hours, count, mem_array(count, sizeof(double)),
-                             mem_array(count * (size_t)hours, sizeof(double)) };
+    struct drift_search search = {
+        neighbours, values, hours, count, mem_array(count, sizeof(double)), mem_array(count * (size_t)hours, sizeof(double))
+    };
     size_t clearest = 0;
     find_own(values, hours, count, search.own);
     for (size_t i = 0; i < count; i++)

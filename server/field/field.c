@@ -16,7 +16,7 @@ struct field *field_create(struct workers *workers, const struct scene *scene)
     field->workers = workers;
     field->scene = scene;
     field->bound = FIELD_DEFAULT_BYTES;
-    field->layouts = mem_array(scene->asset_count * scene->plant->group_count, sizeof(struct layout *));
+    field->layouts = mem_array(scene->asset_count * scene->plant->group_count, sizeof(struct field_layout *));
     field->states = mem_array(scene->asset_count, sizeof(*field->states));
     return field;
 }
@@ -68,9 +68,9 @@ size_t field_bytes(const struct field *field)
 
 /* --- finding what is there, making what is not -------------------------------------------------------------------------- */
 
-struct layout *field_layout(struct field *field, int asset, const struct field_params *params)
+struct field_layout *field_layout(struct field *field, int asset, const struct field_params *params)
 {
-    struct layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)params->group];
+    struct field_layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)params->group];
     if (params->trial && interpolation_is_prepared(params->interpolation) && params->show != SHOW_DISTANCE)
         return NULL; /* nothing is prepared for places that are tried out: nothing is shown, rather than what was */
     if (params->trial)
@@ -80,14 +80,14 @@ struct layout *field_layout(struct field *field, int asset, const struct field_p
     return *at;
 }
 
-static float radius_of(const struct field *field, struct layout *layout, const struct field_params *params)
+static float radius_of(const struct field *field, struct field_layout *layout, const struct field_params *params)
 {
     if (params->interpolation != INTERPOLATION_PAPER)
         return 1;
     return params->radius_m > 0 ? (float)params->radius_m : layout_largest(layout, params->distance, field->workers);
 }
 
-static bool weights_take(struct field *field, struct state *state)
+static bool weights_take(struct field *field, struct field_state *state)
 {
     float radius_m = radius_of(field, state->layout, &state->params);
     struct weights_key key;
@@ -115,14 +115,14 @@ static bool weights_take(struct field *field, struct state *state)
     return weights;
 }
 
-struct state *field_state(struct field *field, int asset, const struct field_params *params)
+struct field_state *field_state(struct field *field, int asset, const struct field_params *params)
 {
-    struct state *state = field->states[asset];
+    struct field_state *state = field->states[asset];
     while (state && !field_params_equal(&state->params, params))
         state = state->next;
     if (state)
         return state;
-    struct layout *layout = field_layout(field, asset, params);
+    struct field_layout *layout = field_layout(field, asset, params);
     if (!layout)
         return NULL;
     state = state_create(asset, layout, params);
@@ -133,16 +133,16 @@ struct state *field_state(struct field *field, int asset, const struct field_par
     return state;
 }
 
-static void forget_state(struct field *field, struct state *state)
+static void forget_state(struct field *field, struct field_state *state)
 {
-    struct state **link = &field->states[state->scalars.asset];
+    struct field_state **link = &field->states[state->scalars.asset];
     while (*link != state)
         link = &(*link)->next;
     field_cache_remove_state(field, link);
 }
 
 /* False: out of memory, the state is gone. */
-static bool grow_state(struct field *field, struct state *state, size_t count)
+static bool grow_state(struct field *field, struct field_state *state, size_t count)
 {
     size_t more = state_more_bytes(state, count);
     if (more == 0)
@@ -157,7 +157,7 @@ static bool grow_state(struct field *field, struct state *state, size_t count)
 }
 
 /* -1: it does not stand on the asset, or nobody knows where. */
-static int find_sensor(const struct layout *layout, int tag)
+static int find_sensor(const struct field_layout *layout, int tag)
 {
     for (size_t i = 0; layout && !layout->assumed && i < layout->sensor_count; i++)
         if (layout->sensors[i].tag == tag)
@@ -169,7 +169,7 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
                                               const struct snapshot *snapshot)
 {
     int sensor = find_sensor(field_layout(field, asset, params), params->sensor);
-    struct state *state = sensor < 0 ? NULL : field_state(field, asset, params);
+    struct field_state *state = sensor < 0 ? NULL : field_state(field, asset, params);
     if (!state)
         return NULL;
     state->used = field->tick;
@@ -184,7 +184,7 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
 
 bool field_covers(struct field *field, int asset, const struct field_params *params)
 {
-    const struct layout *layout = field_layout(field, asset, params);
+    const struct field_layout *layout = field_layout(field, asset, params);
     if (field_params_cover(params) && layout && layout->assumed) /* nobody knows where its sensors are */
         return false;
     return params->show == SHOW_DISTANCE ? find_sensor(layout, params->sensor) >= 0 : layout != NULL;
@@ -193,11 +193,11 @@ bool field_covers(struct field *field, int asset, const struct field_params *par
 bool field_is_assumed(struct field *field, int asset, const struct field_params *params)
 {
     struct field_params room;
-    const struct layout *layout = field_layout(field, asset, field_params_of(field, asset, params, &room));
+    const struct field_layout *layout = field_layout(field, asset, field_params_of(field, asset, params, &room));
     return layout && layout->assumed;
 }
 
-static void read_inputs(const struct field *field, struct state *state, const struct snapshot *snapshot)
+static void read_inputs(const struct field *field, struct field_state *state, const struct snapshot *snapshot)
 {
     bool difference = state->params.show == SHOW_DIFFERENCE && field->baselines;
     const struct snapshot *baseline = difference ? baselines_take(field->baselines, state->params.baseline) : NULL;
@@ -206,7 +206,7 @@ static void read_inputs(const struct field *field, struct state *state, const st
         baselines_give(field->baselines, &baseline);
 }
 
-bool field_begin_update(struct field *field, struct state *state, const struct snapshot *snapshot, size_t count)
+bool field_begin_update(struct field *field, struct field_state *state, const struct snapshot *snapshot, size_t count)
 {
     read_inputs(field, state, snapshot);
     if (state_needs_weights(state) && !weights_take(field, state)) {
@@ -240,7 +240,7 @@ static const struct scalars *advance(struct field *field, int asset, const struc
         return distance_scalars(field, asset, params, snapshot);
     if (!field_covers(field, asset, params))
         return NULL;
-    struct state *state = field_state(field, asset, params);
+    struct field_state *state = field_state(field, asset, params);
     if (!state)
         return NULL;
     state->used = field->tick;

@@ -5,7 +5,7 @@
 #include "field/update.h"
 
 struct together {
-    struct state **states;
+    struct field_state **states;
     size_t count;
 };
 
@@ -26,7 +26,7 @@ void field_update_all(struct field *field, const int *assets, const size_t *coun
     size_t begun = 0;
     for (size_t i = 0; i < asset_count; i++) {
         field->tick++;
-        struct state *state = field_state(field, assets[i], params);
+        struct field_state *state = field_state(field, assets[i], params);
         if (!state || state->update)
             continue;
         state->used = field->tick;

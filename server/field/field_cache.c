@@ -26,16 +26,16 @@ static void weights_remove(struct field *field, struct weights **link)
     weights_destroy(&weights);
 }
 
-void field_cache_release_weights(struct state *state)
+void field_cache_release_weights(struct field_state *state)
 {
     if (state->weights)
         state->weights->users--;
     state->weights = NULL;
 }
 
-void field_cache_remove_state(struct field *field, struct state **link)
+void field_cache_remove_state(struct field *field, struct field_state **link)
 {
-    struct state *state = *link;
+    struct field_state *state = *link;
     *link = state->next;
     field_cache_release_weights(state);
     field->bytes -= state_bytes(state);
@@ -63,7 +63,7 @@ static uint64_t oldest_use(const struct field *field, const struct field_params 
 {
     uint64_t oldest = UINT64_MAX;
     for (size_t i = 0; i < field->scene->asset_count; i++)
-        for (const struct state *state = field->states[i]; state; state = state->next)
+        for (const struct field_state *state = field->states[i]; state; state = state->next)
             if (state->used < oldest && !field_params_equal(&state->params, keep))
                 oldest = state->used;
     for (size_t i = 0; i < FIELD_BUCKETS; i++)
@@ -76,7 +76,7 @@ static uint64_t oldest_use(const struct field *field, const struct field_params 
 static void drop_used_before(struct field *field, const struct field_params *keep, uint64_t before)
 {
     for (size_t i = 0; i < field->scene->asset_count; i++)
-        for (struct state **link = &field->states[i]; *link;) {
+        for (struct field_state **link = &field->states[i]; *link;) {
             if ((*link)->used < before && !field_params_equal(&(*link)->params, keep))
                 field_cache_remove_state(field, link);
             else
@@ -129,7 +129,7 @@ void field_cache_keep_columns(struct field *field, struct weights *weights, cons
 
 void field_forget_trial_layout(struct field *field, const struct trial_layout *tried)
 {
-    for (struct state **link = &field->states[tried->asset]; *link;)
+    for (struct field_state **link = &field->states[tried->asset]; *link;)
         if ((*link)->layout == tried->layout)
             field_cache_remove_state(field, link);
         else

@@ -24,7 +24,7 @@ static void point_drawn(const struct scalars *scalars, const struct field_place 
 }
 
 /* Returns the largest error of the triangles around the corners: any level of detail may be drawn there. */
-static double error_near(const struct state *state, const struct field_place *place)
+static double error_near(const struct field_state *state, const struct field_place *place)
 {
     double most = 0;
     for (int k = 0; k < 3 && state->weights && state->weights->errors; k++)
@@ -36,10 +36,10 @@ struct one { /* a layout of one point */
     float position_m[1][3], parts[1][3], away_m[1][3];
     uint32_t corners[1][3];
     struct layout_points points;
-    struct layout layout;
+    struct field_layout layout;
 };
 
-static void one_init(struct one *one, const struct layout *layout, const struct field_place *place)
+static void one_init(struct one *one, const struct field_layout *layout, const struct field_place *place)
 {
     *one = (struct one){ .points = { one->position_m, one->corners, one->parts, one->away_m }, .layout = *layout };
     one->layout.points = &one->points;
@@ -48,7 +48,7 @@ static void one_init(struct one *one, const struct layout *layout, const struct 
     layout_set_point(&layout->file->view, &one->points, 0, place->corners, parts);
 }
 
-static void point_distance(const struct state *state, const struct one *one, struct field_point *out)
+static void point_distance(const struct field_state *state, const struct one *one, struct field_point *out)
 {
     float room;
     size_t i = 0;
@@ -62,7 +62,7 @@ static void point_distance(const struct state *state, const struct one *one, str
 }
 
 /* Sums the sensors' weights at the point, with the arithmetic of the vertices and the readings that are shown. */
-static void point_sum(const struct state *state, const struct one *one, struct field_point *out)
+static void point_sum(const struct field_state *state, const struct one *one, struct field_point *out)
 {
     const size_t sensors = one->layout.sensor_count;
     uint8_t *usable = mem_array(sensors, 1), *marked = mem_array(sensors, 1);
@@ -105,7 +105,7 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
     if (!scalars)
         return false;
     params = field_params_of(field, asset, params, &room);
-    const struct state *state = field_state(field, asset, params);
+    const struct field_state *state = field_state(field, asset, params);
     point_drawn(scalars, place, out);
     struct one one;
     one_init(&one, state->layout, place);

@@ -9,10 +9,10 @@ size_t field_sensors(struct field *field, int asset, const struct field_params *
 {
     struct field_params room;
     params = field_params_of(field, asset, params, &room);
-    const struct state *state = field_layout(field, asset, params) ? field_state(field, asset, params) : NULL;
+    const struct field_state *state = field_layout(field, asset, params) ? field_state(field, asset, params) : NULL;
     if (!state || (!state->weights && params->show != SHOW_DISTANCE))
         return 0;
-    const struct layout *layout = state->layout;
+    const struct field_layout *layout = state->layout;
     const struct weights *weights = state->weights;
     struct field_sensor *sensors = mem_array(layout->sensor_count, sizeof(*sensors));
     for (size_t i = 0; i < layout->sensor_count; i++) {

@@ -60,7 +60,7 @@ static struct trial_layout *find(const struct field *field, int asset, const str
 /* One value for all of the asset, whatever the group says: no place is known that it could depend on. */
 static const struct field_params *even_params(struct field *field, int asset, const struct field_params *params, struct field_params *room)
 {
-    const struct layout *layout = field_layout(field, asset, params);
+    const struct field_layout *layout = field_layout(field, asset, params);
     if (!layout || !layout->assumed || params->show == SHOW_DISTANCE || field_params_cover(params))
         return params;
     if (room != params)
@@ -113,7 +113,7 @@ const struct field_params *field_params_of(struct field *field, int asset, const
     return blind_params(even_params(field, asset, trial_params(field, asset, params, room), room), room);
 }
 
-struct layout *field_trial_layout(struct field *field, int asset, const struct field_params *params)
+struct field_layout *field_trial_layout(struct field *field, int asset, const struct field_params *params)
 {
     return find(field, asset, params)->layout;
 }

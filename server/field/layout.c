@@ -48,7 +48,7 @@ bool layout_is_touched(const struct scene *scene, int asset, int group, const st
     return false;
 }
 
-static void add(struct layout *layout, struct layout_sensor sensor)
+static void add(struct field_layout *layout, struct layout_sensor sensor)
 {
     const struct plant_tag *tag = &layout->tags[sensor.tag];
     sensor.strength = layout->assumed ? 1 : not_negative(tag->strength);
@@ -57,7 +57,7 @@ static void add(struct layout *layout, struct layout_sensor sensor)
 }
 
 /* number: among those of the group whose place is known. */
-static void add_prepared(struct layout *layout, const struct scene_sensor *sensor, size_t number)
+static void add_prepared(struct field_layout *layout, const struct scene_sensor *sensor, size_t number)
 {
     const struct asset_view *view = &layout->file->view;
     const struct asset_sensor *in_file = &view->sensors[sensor->column];
@@ -69,7 +69,7 @@ static void add_prepared(struct layout *layout, const struct scene_sensor *senso
     add(layout, made);
 }
 
-static void add_trial(struct layout *layout, const struct trial_sensor *sensor)
+static void add_trial(struct field_layout *layout, const struct trial_sensor *sensor)
 {
     struct layout_sensor made = { .tag = sensor->tag,
                                   .column = layout->file->view.header->sensor_count + sensor->number,
@@ -80,10 +80,10 @@ static void add_trial(struct layout *layout, const struct trial_sensor *sensor)
     add(layout, made);
 }
 
-struct layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial)
+struct field_layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial)
 {
     const struct scene_asset *from = &scene->assets[asset];
-    struct layout *layout = mem_new(sizeof(*layout));
+    struct field_layout *layout = mem_new(sizeof(*layout));
     layout->file = from->file;
     layout->group = &scene->plant->groups[group];
     layout->number = (uint32_t)group;
@@ -108,9 +108,9 @@ struct layout *layout_create(const struct scene *scene, int asset, int group, co
     return layout;
 }
 
-void layout_destroy(struct layout **layout_ptr)
+void layout_destroy(struct field_layout **layout_ptr)
 {
-    struct layout *layout = *layout_ptr;
+    struct field_layout *layout = *layout_ptr;
     if (!layout)
         return;
     mem_free(layout->sensors);
@@ -128,7 +128,7 @@ bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mo
     return mode != DISTANCE_EUCLIDEAN && !sensor->tried && !layout_along(sensor, mode);
 }
 
-static float corner_distance(const struct layout *layout, const struct layout_sensor *sensor, const float *along_m, uint32_t corner)
+static float corner_distance(const struct field_layout *layout, const struct layout_sensor *sensor, const float *along_m, uint32_t corner)
 {
     return along_m ? along_m[corner] : asset_distance_m(&layout->file->view, sensor->column, corner);
 }
@@ -150,7 +150,7 @@ void layout_set_point(const struct asset_view *file, const struct layout_points 
 
 /* The distance from a source in the triangle's plane, unfolded: |p - s|^2 = sum_k part_k (|corner_k - s|^2 - |corner_k - p|^2). Where two
    ways round meet in the triangle no such source exists: then the triangle inequality bounds the distance. */
-static float along_at(const struct layout *layout, const struct layout_sensor *sensor, const float *along_m, size_t point)
+static float along_at(const struct field_layout *layout, const struct layout_sensor *sensor, const float *along_m, size_t point)
 {
     const float *part = layout->points->parts[point], *away_m = layout->points->away_m[point];
     float square_m2 = 0, least_m = 0, most_m = FLT_MAX;
@@ -169,8 +169,8 @@ static float along_at(const struct layout *layout, const struct layout_sensor *s
     return distance_m < most_m ? distance_m : most_m;
 }
 
-static const float *point_distances(const struct layout *layout, enum distance_mode mode, const struct layout_sensor *sensor, size_t begin,
-                                    size_t count, float *scratch)
+static const float *point_distances(const struct field_layout *layout, enum distance_mode mode, const struct layout_sensor *sensor,
+                                    size_t begin, size_t count, float *scratch)
 {
     const float *along_m = layout_along(sensor, mode);
     bool along = along_m || layout_is_in_file(sensor, mode);
@@ -181,7 +181,7 @@ static const float *point_distances(const struct layout *layout, enum distance_m
     return scratch;
 }
 
-const float *layout_distances(const struct layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
+const float *layout_distances(const struct field_layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
                               float *scratch)
 {
     const struct layout_sensor *from = &layout->sensors[sensor];
@@ -198,8 +198,8 @@ const float *layout_distances(const struct layout *layout, enum distance_mode mo
     return scratch;
 }
 
-struct search {
-    const struct layout *layout;
+struct lost_vertex_search {
+    const struct field_layout *layout;
     enum distance_mode mode;
     pthread_mutex_t lock;
     /* --- below: under lock */
@@ -208,8 +208,8 @@ struct search {
 
 static void search_blocks(void *arg, size_t begin, size_t end)
 {
-    struct search *search = arg;
-    const struct layout *layout = search->layout;
+    struct lost_vertex_search *search = arg;
+    const struct field_layout *layout = search->layout;
     float scratch[KERNEL_BLOCK], most_m = 0;
     for (size_t at = begin * KERNEL_BLOCK; at < end * KERNEL_BLOCK && at < layout->vertex_count; at += KERNEL_BLOCK) {
         size_t left = layout->vertex_count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
@@ -221,10 +221,10 @@ static void search_blocks(void *arg, size_t begin, size_t end)
     pthread_mutex_unlock(&search->lock);
 }
 
-float layout_largest(struct layout *layout, enum distance_mode mode, struct workers *workers)
+float layout_largest(struct field_layout *layout, enum distance_mode mode, struct workers *workers)
 {
     if (layout->largest_m[mode] == 0) {
-        struct search search = { .layout = layout, .mode = mode };
+        struct lost_vertex_search search = { .layout = layout, .mode = mode };
         pthread_mutex_init(&search.lock, NULL);
         workers_for(workers, (layout->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK, 16, search_blocks, &search);
         pthread_mutex_destroy(&search.lock);

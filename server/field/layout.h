@@ -30,7 +30,7 @@ struct layout_points {
 void layout_set_point(const struct asset_view *file, const struct layout_points *points, size_t point, const uint32_t corners[3],
                       const float parts[3]);
 
-struct layout {
+struct field_layout {
     const struct asset *file;
     const struct plant_group *group;
     uint32_t number;              /* of the group in the plant */
@@ -45,11 +45,11 @@ struct layout {
 
 /* Builds the layout of a group's sensors on an asset; trial: sensors that are tried out elsewhere (NULL: none). Both scene and trial must
    outlive it. Returns NULL if no sensor of the group is there. */
-struct layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial);
+struct field_layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial);
 /* Returns whether the trial adds, removes or moves sensors of the group on the asset. */
 bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial);
 /* Frees the layout. &NULL is fine; leaves NULL. */
-void layout_destroy(struct layout **layout);
+void layout_destroy(struct field_layout **layout);
 /* Returns a sensor's distances along the surface by this way of finding them, of each vertex, those of the asset file where they were not
    prepared (sensors that are tried out). NULL: straight ones, or not known yet, or in the asset file. */
 const float *layout_along(const struct layout_sensor *sensor, enum distance_mode mode);
@@ -60,9 +60,9 @@ bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mo
    in a flat triangle that is reached from one side.
    Straight-line ones start at the sensor's point on the surface, so that both kinds are 0 there; they stand in for geodesic ones that are
    not known yet. */
-const float *layout_distances(const struct layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
+const float *layout_distances(const struct field_layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
                               float *scratch);
 /* Returns the largest finite distance of any vertex from any of the sensors, computed once; 1 where all are 0 or infinite. */
-float layout_largest(struct layout *layout, enum distance_mode mode, struct workers *workers);
+float layout_largest(struct field_layout *layout, enum distance_mode mode, struct workers *workers);
 
 #endif

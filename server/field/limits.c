@@ -7,11 +7,11 @@
 #define ALONE_MOST 1.999 /* H without HH: beyond H, but no further limit is passed */
 
 /* One side, turned so that values rise towards trouble. */
-struct side {
+struct limit_side {
     double inner, outer; /* NaN: none */
 };
 
-static double middle_of(const struct plant_group *group, const struct side *low, const struct side *high)
+static double middle_of(const struct plant_group *group, const struct limit_side *low, const struct limit_side *high)
 {
     double l = isfinite(low->inner) ? low->inner : low->outer, h = isfinite(high->inner) ? high->inner : high->outer;
     double range = group->max - group->min;
@@ -39,7 +39,7 @@ static double side_place(double value, double inner, double outer)
 double limit_place(const struct plant_group *group, const struct plant_tag *tag, double value)
 {
     const double *limits = tag->limits;
-    struct side low = { limits[LIMIT_L], limits[LIMIT_LL] }, high = { limits[LIMIT_H], limits[LIMIT_HH] };
+    struct limit_side low = { limits[LIMIT_L], limits[LIMIT_LL] }, high = { limits[LIMIT_H], limits[LIMIT_HH] };
     if (!isfinite(low.inner) && !isfinite(low.outer) && !isfinite(high.inner) && !isfinite(high.outer))
         return NAN;
     double middle = middle_of(group, &low, &high);

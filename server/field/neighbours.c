@@ -14,12 +14,12 @@
 #define AT_ONE_PLACE 1e-6 /* metres */
 
 struct neighbours {
-    struct layout *layout;
+    struct field_layout *layout;
     const struct influence_entry *entry; /* NULL: from distances */
     float *along_m;                      /* [to][from]; INFINITY: no way leads, or it is not known. NULL: too many sensors */
 };
 
-static const struct influence_entry *entry_of(const struct layout *layout)
+static const struct influence_entry *entry_of(const struct field_layout *layout)
 {
     static const enum interpolation order[] = { INTERPOLATION_GP, INTERPOLATION_HARMONIC, INTERPOLATION_FIN };
     for (size_t i = 0; i < sizeof(order) / sizeof(*order); i++) {
@@ -32,7 +32,7 @@ static const struct influence_entry *entry_of(const struct layout *layout)
 }
 
 /* Looked up once: each is in a column of all vertices. The caller frees it (mem_free). */
-static float *distances_between(const struct layout *layout)
+static float *distances_between(const struct field_layout *layout)
 {
     const size_t n = layout->sensor_count;
     float *along_m = mem_array(n * n, sizeof(*along_m));
@@ -58,14 +58,14 @@ static bool is_told(const struct neighbours *neighbours, const uint8_t *used, si
     return false;
 }
 
-static double level_of(const struct layout *layout, const struct influence_entry *entry)
+static double level_of(const struct field_layout *layout, const struct influence_entry *entry)
 {
     return entry && entry->interpolation == INTERPOLATION_FIN ? layout->group->ambient : 0;
 }
 
 static void predict_prepared(const struct neighbours *neighbours, const uint8_t *used, struct neighbour *out)
 {
-    const struct layout *layout = neighbours->layout;
+    const struct field_layout *layout = neighbours->layout;
     const struct influence_entry *entry = neighbours->entry;
     const size_t n = layout->sensor_count;
     const double *precision = influence_array(&layout->file->influence, entry->precision);
@@ -94,7 +94,7 @@ static void predict_prepared(const struct neighbours *neighbours, const uint8_t 
 
 static void predict_by_distance(const struct neighbours *neighbours, const uint8_t *used, struct neighbour *out)
 {
-    const struct layout *layout = neighbours->layout;
+    const struct field_layout *layout = neighbours->layout;
     for (size_t i = 0; i < layout->sensor_count; i++) {
         const float *along_m = neighbours->along_m + i * layout->sensor_count;
         double sum = 0, whole = 0, least_m = INFINITY;
@@ -124,7 +124,7 @@ static void predict_by_distance(const struct neighbours *neighbours, const uint8
 
 struct neighbours *neighbours_create(const struct scene *scene, int asset, int group)
 {
-    struct layout *layout = layout_create(scene, asset, group, NULL);
+    struct field_layout *layout = layout_create(scene, asset, group, NULL);
     if (!layout || layout->assumed) {
         layout_destroy(&layout);
         return NULL;
@@ -163,7 +163,7 @@ double neighbours_level(const struct neighbours *neighbours)
 
 void neighbours_predict(const struct neighbours *neighbours, const double *values, struct neighbour *out)
 {
-    const struct layout *layout = neighbours->layout;
+    const struct field_layout *layout = neighbours->layout;
     const size_t count = layout->sensor_count;
     uint8_t *used = mem_array(count, 1);
     for (size_t i = 0; i < count; i++) {
@@ -179,7 +179,7 @@ void neighbours_predict(const struct neighbours *neighbours, const double *value
 
 size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, const bool *apart, size_t most, size_t *out)
 {
-    const struct layout *layout = neighbours->layout;
+    const struct field_layout *layout = neighbours->layout;
     double *away_m = mem_array(most, sizeof(*away_m));
     size_t count = 0;
     for (size_t j = 0; j < layout->sensor_count && neighbours->along_m; j++) {

@@ -14,9 +14,9 @@
 #define FILLED_DOUBT 0.1   /* such a share of a lost sensor's value may rest on uncertain ones */
 #define READING_LIMIT 1e30 /* beyond it sums of floats would overflow */
 
-struct state *state_create(int asset, struct layout *layout, const struct field_params *params)
+struct field_state *state_create(int asset, struct field_layout *layout, const struct field_params *params)
 {
-    struct state *state = mem_new(sizeof(*state));
+    struct field_state *state = mem_new(sizeof(*state));
     state->params = *params;
     state->layout = layout;
     state->scalars = (struct scalars){ .asset = asset, .count = layout->vertex_count };
@@ -31,9 +31,9 @@ struct state *state_create(int asset, struct layout *layout, const struct field_
     return state;
 }
 
-void state_destroy(struct state **state_ptr)
+void state_destroy(struct field_state **state_ptr)
 {
-    struct state *state = *state_ptr;
+    struct field_state *state = *state_ptr;
     if (!state)
         return;
     mem_free(state->at);
@@ -51,36 +51,36 @@ void state_destroy(struct state **state_ptr)
 }
 
 /* To add up few columns anew takes no longer than to read and write sums. */
-static bool keeps_sums(const struct state *state)
+static bool keeps_sums(const struct field_state *state)
 {
     return state->layout->sensor_count > KERNEL_COLUMNS;
 }
 
-static size_t each_vertex(const struct state *state)
+static size_t each_vertex(const struct field_state *state)
 {
     return sizeof(*state->at) + (keeps_sums(state) ? sizeof(*state->sums) : 0);
 }
 
-size_t state_bytes(const struct state *state)
+size_t state_bytes(const struct field_state *state)
 {
     size_t each_sensor = 2 * sizeof(struct state_input) + 1 + 2 * (sizeof(uint32_t) + sizeof(double) + 1);
-    return sizeof(struct state) + state->room * each_vertex(state) + state->layout->sensor_count * each_sensor;
+    return sizeof(struct field_state) + state->room * each_vertex(state) + state->layout->sensor_count * each_sensor;
 }
 
 /* Whole blocks. */
-static size_t room_for(const struct state *state, size_t count)
+static size_t room_for(const struct field_state *state, size_t count)
 {
     size_t whole = (count + KERNEL_BLOCK - 1) / KERNEL_BLOCK * KERNEL_BLOCK;
     return whole < state->layout->vertex_count ? whole : state->layout->vertex_count;
 }
 
-size_t state_more_bytes(const struct state *state, size_t count)
+size_t state_more_bytes(const struct field_state *state, size_t count)
 {
     size_t room = room_for(state, count);
     return room > state->room ? (room - state->room) * each_vertex(state) : 0;
 }
 
-bool state_grow(struct state *state, size_t count)
+bool state_grow(struct field_state *state, size_t count)
 {
     size_t room = room_for(state, count);
     if (room <= state->room)
@@ -110,7 +110,7 @@ static double limited(double x, double low, double high)
     return x < low ? low : x > high ? high : x;
 }
 
-static double value_of(const struct state *state, const struct plant_tag *tag, double reading)
+static double value_of(const struct field_state *state, const struct plant_tag *tag, double reading)
 {
     const struct plant_group *group = state->layout->group;
     if (state->params.show == SHOW_OPERATOR)
@@ -122,7 +122,7 @@ static double value_of(const struct state *state, const struct plant_tag *tag, d
     return (float)limited(reading, -READING_LIMIT, READING_LIMIT);
 }
 
-static struct state_input input_of(const struct state *state, const struct plant_tag *tag, const struct reading *reading)
+static struct state_input input_of(const struct field_state *state, const struct plant_tag *tag, const struct reading *reading)
 {
     bool good = !quality_is_bad(reading->quality) && isfinite(reading->value);
     if (field_params_cover(&state->params)) /* nothing depends on what it says */
@@ -156,9 +156,9 @@ static double severity_of(const struct plant_group *group, const struct plant_ta
 }
 
 /* Of several sensors whose place is assumed the one that is nearest to trouble stands for the asset; of equal ones the first. */
-static void choose_one(struct state *state, const struct snapshot *snapshot)
+static void choose_one(struct field_state *state, const struct snapshot *snapshot)
 {
-    const struct layout *layout = state->layout;
+    const struct field_layout *layout = state->layout;
     double most = -1;
     size_t chosen = layout->sensor_count;
     for (size_t i = 0; i < layout->sensor_count; i++) {
@@ -175,7 +175,7 @@ static void choose_one(struct state *state, const struct snapshot *snapshot)
             state->now[i] = (struct state_input){ .usable = SENSOR_ASIDE };
 }
 
-void state_read(struct state *state, const struct snapshot *snapshot, const struct snapshot *baseline)
+void state_read(struct field_state *state, const struct snapshot *snapshot, const struct snapshot *baseline)
 {
     int64_t oldest_ns = -1;
     for (size_t i = 0; i < state->layout->sensor_count; i++) {
@@ -198,7 +198,7 @@ void state_read(struct state *state, const struct snapshot *snapshot, const stru
     state->scalars.oldest_age_ns = oldest_ns >= 0 ? oldest_ns : INT64_MAX;
 }
 
-void state_fill(struct state *state)
+void state_fill(struct field_state *state)
 {
     const struct weights *weights = state->weights;
     if (!weights->fill || field_params_cover(&state->params))
@@ -220,7 +220,7 @@ void state_fill(struct state *state)
     mem_free(doubts);
 }
 
-bool state_needs_weights(const struct state *state)
+bool state_needs_weights(const struct field_state *state)
 {
     for (size_t i = 0; i < state->layout->sensor_count; i++)
         if (state->now[i].usable != state->shown[i].usable)
@@ -228,7 +228,7 @@ bool state_needs_weights(const struct state *state)
     return !state->weights;
 }
 
-bool state_is_behind(const struct state *state)
+bool state_is_behind(const struct field_state *state)
 {
     if (state->scalars.version == 0 || state->errors_version != state->weights->errors_version)
         return true;
@@ -240,7 +240,7 @@ bool state_is_behind(const struct state *state)
     return false;
 }
 
-void state_measure(struct state *state, size_t sensor, uint64_t *versions)
+void state_measure(struct field_state *state, size_t sensor, uint64_t *versions)
 {
     struct scalars *scalars = &state->scalars;
     float scratch[KERNEL_BLOCK], most_m = 0;

@@ -14,9 +14,9 @@ struct state_input {           /* what one sensor says, as the sums take it */
     uint8_t usable, uncertain; /* usable: enum sensor_use */
 };
 
-struct state {
+struct field_state {
     struct field_params params;
-    struct layout *layout;
+    struct field_layout *layout;
     struct weights *weights; /* counted in weights->users */
     struct scalars scalars;  /* scalars.version 0: nothing computed yet */
     struct scalar *at;
@@ -36,30 +36,30 @@ struct state {
     struct update *update; /* under way; NULL: none */
     size_t wanted;         /* the most vertices asked for since the last update */
     uint64_t used;
-    struct state *next;
+    struct field_state *next;
 };
 
 /* Creates the state, never NULL, without room for vertices yet (state_grow). Copies params; the layout must outlive it. The caller
    destroys it. */
-struct state *state_create(int asset, struct layout *layout, const struct field_params *params);
+struct field_state *state_create(int asset, struct field_layout *layout, const struct field_params *params);
 /* Frees the state. &NULL is fine; leaves NULL. */
-void state_destroy(struct state **state);
+void state_destroy(struct field_state **state);
 /* Returns the bytes that the state takes. */
-size_t state_bytes(const struct state *state);
+size_t state_bytes(const struct field_state *state);
 /* Returns by how much state_bytes() would grow with room for the first `count` vertices. */
-size_t state_more_bytes(const struct state *state, size_t count);
+size_t state_more_bytes(const struct field_state *state, size_t count);
 /* Makes room for the first `count` vertices; a far asset needs few of them. Returns false if out of memory, with nothing changed. */
-bool state_grow(struct state *state, size_t count);
+bool state_grow(struct field_state *state, size_t count);
 
 /* Reads the snapshot into state->now, state->usable and the ages. baseline: what a difference is from; NULL: not known. */
-void state_read(struct state *state, const struct snapshot *snapshot, const struct snapshot *baseline);
+void state_read(struct field_state *state, const struct snapshot *snapshot, const struct snapshot *baseline);
 /* By a prepared interpolation: gives lost sensors of state->now the values that follow from the others. The weights must be of now. */
-void state_fill(struct state *state);
+void state_fill(struct field_state *state);
 /* Returns whether the state's weights were made for other usable sensors than those of now. */
-bool state_needs_weights(const struct state *state);
+bool state_needs_weights(const struct field_state *state);
 /* Returns whether the scalars show something else than state->now. */
-bool state_is_behind(const struct state *state);
+bool state_is_behind(const struct field_state *state);
 /* For SHOW_DISTANCE, in place of all the above: fills the scalars with the distances from one sensor of the layout, once. */
-void state_measure(struct state *state, size_t sensor, uint64_t *versions);
+void state_measure(struct field_state *state, size_t sensor, uint64_t *versions);
 
 #endif

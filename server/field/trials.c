@@ -13,17 +13,17 @@ struct trial_reach {
     float *distance_m;
 };
 
-struct kept {
+struct kept_trial {
     struct trial trial; /* first: who has it has this */
     int users;
     bool dropped;
-    struct kept *next;
+    struct kept_trial *next;
 };
 
 struct trials {
     pthread_mutex_t lock;
     /* --- below: under lock */
-    struct kept *kept;               /* newest first */
+    struct kept_trial *kept; /* newest first */
     uint32_t newest, newest_sensor;
 };
 
@@ -72,7 +72,7 @@ struct trials *trials_create(void)
     return trials;
 }
 
-static void kept_destroy(struct kept *kept)
+static void kept_destroy(struct kept_trial *kept)
 {
     for (size_t i = 0; i < kept->trial.count; i++)
         trial_reach_unref(&kept->trial.sensors[i].reach);
@@ -84,7 +84,7 @@ void trials_destroy(struct trials **pointer)
     struct trials *trials = *pointer;
     if (!trials)
         return;
-    for (struct kept *kept = trials->kept, *next; kept; kept = next) {
+    for (struct kept_trial *kept = trials->kept, *next; kept; kept = next) {
         next = kept->next;
         kept_destroy(kept);
     }
@@ -97,8 +97,8 @@ void trials_destroy(struct trials **pointer)
 static void sweep(struct trials *trials)
 {
     int dropped = 0;
-    for (struct kept **at = &trials->kept; *at;) {
-        struct kept *kept = *at;
+    for (struct kept_trial **at = &trials->kept; *at;) {
+        struct kept_trial *kept = *at;
         dropped += kept->dropped;
         if (kept->dropped && dropped > TRIALS_KEPT && kept->users == 0) {
             *at = kept->next;
@@ -111,7 +111,7 @@ static void sweep(struct trials *trials)
 
 uint32_t trials_put(struct trials *trials, const struct trial_sensor *sensors, size_t count)
 {
-    struct kept *kept = mem_new(sizeof(*kept));
+    struct kept_trial *kept = mem_new(sizeof(*kept));
     kept->trial.count = count < TRIAL_SENSORS ? count : TRIAL_SENSORS;
     memcpy(kept->trial.sensors, sensors, kept->trial.count * sizeof(*sensors));
     pthread_mutex_lock(&trials->lock);
@@ -128,9 +128,9 @@ uint32_t trials_put(struct trials *trials, const struct trial_sensor *sensors, s
 }
 
 /* Under lock. */
-static struct kept *find(const struct trials *trials, uint32_t id)
+static struct kept_trial *find(const struct trials *trials, uint32_t id)
 {
-    struct kept *kept = trials->kept;
+    struct kept_trial *kept = trials->kept;
     while (kept && kept->trial.id != id)
         kept = kept->next;
     return kept;
@@ -139,7 +139,7 @@ static struct kept *find(const struct trials *trials, uint32_t id)
 void trials_drop(struct trials *trials, uint32_t id)
 {
     pthread_mutex_lock(&trials->lock);
-    struct kept *kept = find(trials, id);
+    struct kept_trial *kept = find(trials, id);
     if (kept)
         kept->dropped = true;
     sweep(trials);
@@ -149,7 +149,7 @@ void trials_drop(struct trials *trials, uint32_t id)
 bool trials_live(struct trials *trials, uint32_t id)
 {
     pthread_mutex_lock(&trials->lock);
-    const struct kept *kept = find(trials, id);
+    const struct kept_trial *kept = find(trials, id);
     bool live = kept && !kept->dropped;
     pthread_mutex_unlock(&trials->lock);
     return live;
@@ -158,7 +158,7 @@ bool trials_live(struct trials *trials, uint32_t id)
 const struct trial *trials_take(struct trials *trials, uint32_t id)
 {
     pthread_mutex_lock(&trials->lock);
-    struct kept *kept = find(trials, id);
+    struct kept_trial *kept = find(trials, id);
     if (kept)
         kept->users++;
     pthread_mutex_unlock(&trials->lock);
@@ -170,7 +170,7 @@ void trials_give(struct trials *trials, const struct trial **trial)
     if (!*trial)
         return;
     pthread_mutex_lock(&trials->lock);
-    struct kept *kept = find(trials, (*trial)->id);
+    struct kept_trial *kept = find(trials, (*trial)->id);
     kept->users--;
     sweep(trials);
     pthread_mutex_unlock(&trials->lock);

@@ -25,7 +25,7 @@
 #define ADD_WORK 0.15     /* only added */
 
 struct update {
-    struct state *state;
+    struct field_state *state;
     struct weights_terms all, changed;
     struct kernel_value rule;
     size_t next, old, end; /* blocks: to do next, shown before, to be shown */
@@ -46,7 +46,7 @@ static size_t blocks_of(size_t vertex_count)
 /* --- what there is to do ---------------------------------------------------------------------------------------------------- */
 
 /* Members to add: all, or those that changed. */
-static struct weights_terms choose_terms(struct state *state, bool all)
+static struct weights_terms choose_terms(struct field_state *state, bool all)
 {
     const struct weights *weights = state->weights;
     struct state_list *list = &state->lists[all];
@@ -66,7 +66,7 @@ static struct weights_terms choose_terms(struct state *state, bool all)
 /* Adding is cheaper for few changes; a step far beyond the range would leave its rounding behind. */
 static bool steps_are_small(const struct update *update)
 {
-    const struct state *state = update->state;
+    const struct field_state *state = update->state;
     double limit =
         state->params.interpolation == INTERPOLATION_PAPER ? 2 : STEP_LIMIT * (state->layout->group->max - state->layout->group->min);
     for (size_t i = 0; i < update->changed.count; i++)
@@ -75,7 +75,7 @@ static bool steps_are_small(const struct update *update)
     return update->changed.count * 2 <= state->weights->member_count;
 }
 
-void update_rule(const struct state *state, const struct state_input *inputs, struct kernel_value *rule)
+void update_rule(const struct field_state *state, const struct state_input *inputs, struct kernel_value *rule)
 {
     const struct plant_group *group = state->layout->group;
     bool difference = state->params.show == SHOW_DIFFERENCE, places = state->params.show == SHOW_OPERATOR;
@@ -103,7 +103,7 @@ void update_rule(const struct state *state, const struct state_input *inputs, st
 
 /* The largest value that a sum of error weights can be multiplied by. Most add up to 0, so only the spread of the readings counts; for fin,
    what is around counts as one of them. */
-static double error_scale(const struct state *state)
+static double error_scale(const struct field_state *state)
 {
     double low = INFINITY, high = -INFINITY;
     for (size_t m = 0; m < state->weights->member_count; m++) {
@@ -123,7 +123,7 @@ static double error_scale(const struct state *state)
 }
 
 /* The range of which a step of colour is a part. */
-static double error_range(const struct state *state)
+static double error_range(const struct field_state *state)
 {
     const struct plant_group *group = state->layout->group;
     return state->params.show == SHOW_OPERATOR     ? 2 * LIMIT_PLACE_MOST
@@ -131,14 +131,14 @@ static double error_range(const struct state *state)
                                                    : group->max - group->min;
 }
 
-bool update_is_in_range(const struct state *state)
+bool update_is_in_range(const struct field_state *state)
 {
     return error_scale(state) <= error_range(state);
 }
 
 /* Chooses the weights error above which vertices are marked. It stays as it is while that is safe and not much too strict, so that readings
    which hardly change do not rebuild all flags. Returns whether it changed in a way that can be seen. */
-static bool choose_error_limit(struct state *state)
+static bool choose_error_limit(struct field_state *state)
 {
     const struct weights *weights = state->weights;
     double scale = weights->errors ? error_scale(state) : 0;
@@ -153,7 +153,7 @@ static bool choose_error_limit(struct state *state)
     return seen;
 }
 
-static bool qualities_changed(const struct state *state)
+static bool qualities_changed(const struct field_state *state)
 {
     if (state->scalars.version == 0)
         return true;
@@ -163,7 +163,7 @@ static bool qualities_changed(const struct state *state)
     return false;
 }
 
-void update_begin(struct state *state, size_t count)
+void update_begin(struct field_state *state, size_t count)
 {
     size_t wanted = state->wanted > count ? state->wanted : count;
     struct update *update = mem_new(sizeof(*update));
@@ -194,7 +194,8 @@ static uint8_t uncertain_of(double marked, double total, uint8_t filled)
     return leans > filled ? leans : filled;
 }
 
-void update_flags(const struct state *state, const struct weights *weights, size_t vertex, double total, double marked, struct scalar *at)
+void update_flags(const struct field_state *state, const struct weights *weights, size_t vertex, double total, double marked,
+                  struct scalar *at)
 {
     bool blind = state->params.show == SHOW_BLIND; /* around a lost sensor it is told, too */
     bool fill = blind || state->params.fill == FILL_NEIGHBOURS, filled = fill && weights->place[vertex] == PLACE_LOST;
@@ -255,7 +256,7 @@ float update_blind(const struct plant_group *group, float near_m)
 /* Fills the map of coverage, which depends on which sensors are good, and not on their readings. */
 static bool map_block(const struct update *update, size_t begin, size_t count, float *values)
 {
-    const struct state *state = update->state;
+    const struct field_state *state = update->state;
     struct weights *weights = state->weights;
     const double nothing[KERNEL_BLOCK] = { 0 };
     weights_prepare(weights, begin, count);
@@ -286,7 +287,7 @@ static float sum_few(const struct update *update, size_t begin, size_t count, bo
 static void update_blocks(void *arg, size_t begin, size_t end)
 {
     struct update *update = arg;
-    struct state *state = update->state;
+    struct field_state *state = update->state;
     float values[KERNEL_BLOCK], most = 0;
     double room[KERNEL_BLOCK];
     bool value_changed = false, flag_changed = false;
@@ -322,7 +323,7 @@ static double block_work(const struct update *update, size_t block)
     return KERNEL_BLOCK * ((double)(step ? update->changed.count : update->all.count) * each + 4);
 }
 
-bool update_is_light(const struct state *state)
+bool update_is_light(const struct field_state *state)
 {
     const struct update *update = state->update;
     const struct weights *weights = state->weights;
@@ -337,7 +338,7 @@ bool update_is_light(const struct state *state)
     return work < SMALL_WORK;
 }
 
-void update_run(struct state *state)
+void update_run(struct field_state *state)
 {
     struct update *update = state->update;
     update_blocks(update, 0, update->end - update->next);
@@ -349,7 +350,7 @@ void update_run(struct state *state)
    picks tell of them, but a number in the legend would warn of errors that no picture shows. */
 static const float LEGEND_SHARE = 0.3f;
 
-static double drawn_error(const struct state *state)
+static double drawn_error(const struct field_state *state)
 {
     const struct weights *weights = state->weights;
     double error = field_params_cover(&state->params) ? 0 : (double)weights->largest_error;
@@ -360,7 +361,7 @@ static double drawn_error(const struct state *state)
     return weights->erring[b] >= LEGEND_SHARE ? error * state->error_scale : 0;
 }
 
-void update_end(struct state *state, uint64_t *versions)
+void update_end(struct field_state *state, uint64_t *versions)
 {
     struct update *update = state->update;
     struct scalars *scalars = &state->scalars;
@@ -377,7 +378,7 @@ void update_end(struct state *state, uint64_t *versions)
     update_forget(state);
 }
 
-bool update_go_on(struct state *state, struct workers *workers, double work, uint64_t *versions)
+bool update_go_on(struct field_state *state, struct workers *workers, double work, uint64_t *versions)
 {
     struct update *update = state->update;
     double done = 0;
@@ -393,7 +394,7 @@ bool update_go_on(struct state *state, struct workers *workers, double work, uin
     return true;
 }
 
-void update_forget(struct state *state)
+void update_forget(struct field_state *state)
 {
     if (!state->update)
         return;

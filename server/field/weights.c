@@ -42,7 +42,7 @@ static float decay_of(const struct layout_sensor *sensor, const struct field_par
     return params->interpolation == INTERPOLATION_PAPER ? fminf(own * (float)params->decay, KERNEL_FACTOR_LIMIT) : 0.0f;
 }
 
-void weights_key_init(struct weights_key *key, const struct layout *layout, const struct field_params *params, float radius_m,
+void weights_key_init(struct weights_key *key, const struct field_layout *layout, const struct field_params *params, float radius_m,
                       const uint8_t *usable)
 {
     bool paper = params->interpolation == INTERPOLATION_PAPER;
@@ -81,7 +81,7 @@ bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
 }
 
 /* NULL: the interpolation is made from distances, or not prepared. Only sensors that stand where they were prepared for. */
-static const struct influence_entry *influence_of(const struct layout *layout, enum interpolation interpolation)
+static const struct influence_entry *influence_of(const struct field_layout *layout, enum interpolation interpolation)
 {
     const struct influence_entry *entry = interpolation_is_prepared(interpolation) && !layout->trial && !layout->assumed
                                               ? influence_find(&layout->file->influence, layout->number, interpolation)
@@ -96,7 +96,7 @@ static size_t block_count(size_t vertex_count)
 
 static void choose_members(struct weights *weights, const struct field_params *params, const uint8_t *usable)
 {
-    const struct layout *layout = weights->layout;
+    const struct field_layout *layout = weights->layout;
     for (size_t i = 0; i < layout->sensor_count; i++) {
         weights->strength[i] = strength_of(&layout->sensors[i], params);
         weights->decay[i] = decay_of(&layout->sensors[i], params);
@@ -113,7 +113,7 @@ static void choose_members(struct weights *weights, const struct field_params *p
 }
 
 /* A byte holds a fifth of the asset's size to either side of the rim: more than triangles span there, in steps of centimetres at most. */
-static float steps_per_m(const struct layout *layout)
+static float steps_per_m(const struct field_layout *layout)
 {
     const struct asset_header *header = layout->file->view.header;
     float square = 0;
@@ -138,7 +138,7 @@ static bool take_errors(struct weights *weights, const float *errors)
 /* Columns come from the file, and what they are divided by is 1: where they add up to less, the rest is what is around. */
 static bool take_prepared(struct weights *weights, const struct influence_entry *entry)
 {
-    const struct layout *layout = weights->layout;
+    const struct field_layout *layout = weights->layout;
     const struct influence_view *influence = &layout->file->influence;
     for (size_t v = 0; v < layout->vertex_count; v++)
         weights->total[v] = 1;
@@ -164,7 +164,7 @@ static bool take_prepared(struct weights *weights, const struct influence_entry 
     return weights->beyond_m || weights->interpolation == INTERPOLATION_HARMONIC;
 }
 
-struct weights *weights_create(const struct layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
+struct weights *weights_create(const struct field_layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key)
 {
     struct weights *weights = mem_new(sizeof(*weights));
@@ -268,7 +268,7 @@ void weights_destroy(struct weights **weights_ptr)
     *weights_ptr = NULL;
 }
 
-size_t weights_bytes(const struct layout *layout)
+size_t weights_bytes(const struct field_layout *layout)
 {
     size_t each_vertex = 4 * sizeof(float) + 2;
     size_t each_sensor = 2 * sizeof(float) + 1 + sizeof(uint32_t) + sizeof(struct key_sensor);

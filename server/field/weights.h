@@ -37,7 +37,7 @@ enum { WEIGHTS_ERRING = 9 }; /* 2^-8 is a step of colour */
 
 struct weights {
     struct weights_key key;
-    const struct layout *layout;
+    const struct field_layout *layout;
     enum interpolation interpolation;
     enum distance_mode distance;
     float power, reach_m, radius_m, steps_per_m; /* steps: of `lacking` */
@@ -76,7 +76,7 @@ struct weights {
 
 /* Computes the key of everything that G depends on. usable: enum sensor_use by sensor of the layout. radius_m: R of Algorithm 1,
    resolved. */
-void weights_key_init(struct weights_key *key, const struct layout *layout, const struct field_params *params, float radius_m,
+void weights_key_init(struct weights_key *key, const struct field_layout *layout, const struct field_params *params, float radius_m,
                       const uint8_t *usable);
 /* Frees the key. */
 void weights_key_finish(struct weights_key *key);
@@ -84,14 +84,14 @@ void weights_key_finish(struct weights_key *key);
 bool weights_key_equal(const struct weights_key *a, const struct weights_key *b);
 
 /* Creates the weights of this key, which it takes over. Nothing is computed yet. Returns NULL if out of memory. The caller destroys it. */
-struct weights *weights_create(const struct layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
+struct weights *weights_create(const struct field_layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key);
 /* Copies the arrays that are the same in `from`, which has been summed: most are while a parameter is dragged. */
 void weights_copy_known(struct weights *weights, const struct weights *from);
 /* Frees the weights. &NULL is fine; leaves NULL. */
 void weights_destroy(struct weights **weights);
 /* Returns the bytes that weights for this layout take, without columns. */
-size_t weights_bytes(const struct layout *layout);
+size_t weights_bytes(const struct field_layout *layout);
 /* Returns the bytes that all columns would take, cached or not. */
 size_t weights_column_bytes(const struct weights *weights);
 /* Returns the bytes of the columns that are cached. */

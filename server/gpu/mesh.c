@@ -22,7 +22,7 @@ GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *
 }
 
 /* A buffer of the mesh, filled with data. */
-static GLuint own_buffer(struct mesh *mesh, struct log *log, const char *name, size_t bytes, const void *data)
+static GLuint own_buffer(struct gpu_mesh *mesh, struct log *log, const char *name, size_t bytes, const void *data)
 {
     GLuint buffer = mesh_buffer(log, name, bytes, data, 0);
     mesh->bytes += buffer ? bytes : 0;
@@ -30,7 +30,7 @@ static GLuint own_buffer(struct mesh *mesh, struct log *log, const char *name, s
 }
 
 /* Of data that the caller keeps: no copy, where GL reads it in place. */
-static GLuint kept_buffer(struct mesh *mesh, const struct gl *gl, const char *name, size_t bytes, const void *data)
+static GLuint kept_buffer(struct gpu_mesh *mesh, const struct gl *gl, const char *name, size_t bytes, const void *data)
 {
     enum { EXTERNAL_VIRTUAL_MEMORY_BUFFER = 0x9160 }; /* of GL_AMD_pinned_memory, which glad does not know */
     GLuint buffer = 0;
@@ -61,7 +61,7 @@ static void describe_texcoords(GLuint vao, enum mesh_attribute location, GLuint 
     glVertexArrayVertexBuffer(vao, binding, buffer, 0, is_short ? 4 : 8);
 }
 
-static GLuint describe(const struct mesh *mesh)
+static GLuint describe(const struct gpu_mesh *mesh)
 {
     GLuint vao = 0;
     glCreateVertexArrays(1, &vao);
@@ -105,7 +105,7 @@ static void fold(const float n[3], int16_t out[2])
     out[1] = to_short(below ? copysignf(1 - fabsf(x), y) : y);
 }
 
-static GLuint upload_normals(struct mesh *mesh, struct log *log, const char *name, size_t count, const float (*normals)[3])
+static GLuint upload_normals(struct gpu_mesh *mesh, struct log *log, const char *name, size_t count, const float (*normals)[3])
 {
     int16_t(*folded)[2] = mem_try_array(count, sizeof(*folded));
     if (!folded) {
@@ -120,7 +120,7 @@ static GLuint upload_normals(struct mesh *mesh, struct log *log, const char *nam
 }
 
 /* is_short: whether they became 16-bit numbers, where they can and there is memory to do it. */
-static GLuint upload_texcoords(struct mesh *mesh, struct log *log, const char *name, size_t count, const float (*texcoords)[2],
+static GLuint upload_texcoords(struct gpu_mesh *mesh, struct log *log, const char *name, size_t count, const float (*texcoords)[2],
                                bool *is_short)
 {
     const float *at = texcoords[0];
@@ -140,11 +140,11 @@ static GLuint upload_texcoords(struct mesh *mesh, struct log *log, const char *n
 
 /* --- life ----------------------------------------------------------------------------------------------------------------- */
 
-bool mesh_init(struct mesh *mesh, const struct gl *gl, const char *name, const struct mesh_params *params)
+bool mesh_init(struct gpu_mesh *mesh, const struct gl *gl, const char *name, const struct mesh_params *params)
 {
     size_t vertices = params->vertex_count;
     struct log *log = gl->log;
-    *mesh = (struct mesh){ .vertex_count = vertices, .index_count = params->index_count };
+    *mesh = (struct gpu_mesh){ .vertex_count = vertices, .index_count = params->index_count };
     mesh->positions = kept_buffer(mesh, gl, name, vertices * 12, params->positions_m);
     mesh->normals = upload_normals(mesh, log, name, vertices, params->normals);
     mesh->indices = kept_buffer(mesh, gl, name, params->index_count * 4, params->indices);
@@ -166,20 +166,20 @@ bool mesh_init(struct mesh *mesh, const struct gl *gl, const char *name, const s
     return true;
 }
 
-void mesh_finish(struct mesh *mesh)
+void mesh_finish(struct gpu_mesh *mesh)
 {
     GLuint buffers[] = { mesh->positions, mesh->normals, mesh->texcoords, mesh->second_texcoords, mesh->colors, mesh->indices };
     glDeleteVertexArrays(2, (GLuint[2]){ mesh->vao, mesh->instanced_vao });
     glDeleteBuffers(sizeof(buffers) / sizeof(buffers[0]), buffers);
-    *mesh = (struct mesh){ 0 };
+    *mesh = (struct gpu_mesh){ 0 };
 }
 
-void mesh_bind(const struct mesh *mesh)
+void mesh_bind(const struct gpu_mesh *mesh)
 {
     glBindVertexArray(mesh->vao);
 }
 
-void mesh_bind_instances(const struct mesh *mesh, GLuint instances)
+void mesh_bind_instances(const struct gpu_mesh *mesh, GLuint instances)
 {
     glVertexArrayVertexBuffer(mesh->instanced_vao, BIND_INSTANCE, instances, 0, 16 * MESH_INSTANCE_VECTORS);
     glBindVertexArray(mesh->instanced_vao);

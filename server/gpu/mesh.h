@@ -30,17 +30,17 @@ struct mesh_params {
 /* Positions stay floats: light, picking, pictures without GL and faces that coincide with another asset's all rely on the same places.
    Normals are folded into 2 x 16 bits (shaders/normal.glsl), off by 0.005 degrees at most; texture coordinates are 2 x 16 bits where all
    lie in 0..1, off by 1/131,070. */
-struct mesh {
+struct gpu_mesh {
     GLuint vao, instanced_vao, positions, normals, texcoords, second_texcoords, colors, indices;
     size_t vertex_count, index_count, bytes; /* bytes: of its own buffers; what is read in place is none of them */
     bool short_texcoords, short_second_texcoords;
 };
 
-bool mesh_init(struct mesh *mesh, const struct gl *gl, const char *name,
+bool mesh_init(struct gpu_mesh *mesh, const struct gl *gl, const char *name,
                const struct mesh_params *params); /* false: out of memory, logged */
-void mesh_finish(struct mesh *mesh);
-void mesh_bind(const struct mesh *mesh); /* for the next draws */
-void mesh_bind_instances(const struct mesh *mesh, GLuint instances); /* of MESH_INSTANCE_VECTORS each, from its beginning */
+void mesh_finish(struct gpu_mesh *mesh);
+void mesh_bind(const struct gpu_mesh *mesh);                             /* for the next draws */
+void mesh_bind_instances(const struct gpu_mesh *mesh, GLuint instances); /* of MESH_INSTANCE_VECTORS each, from its beginning */
 
 /* An immutable buffer, or 0 when the GPU is out of memory (logged). */
 GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags);

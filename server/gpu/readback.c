@@ -54,7 +54,7 @@ bool readback_wait(struct readback *readback, struct log *log)
     return there;
 }
 
-struct copy {
+struct readback_copy {
     const struct readback *readback;
     uint8_t *bgrx;
     size_t stride_bytes;
@@ -62,7 +62,7 @@ struct copy {
 
 static void copy_rows(void *arg, size_t begin, size_t end)
 {
-    const struct copy *copy = arg;
+    const struct readback_copy *copy = arg;
     size_t row_bytes = (size_t)copy->readback->width_px * 4;
     for (size_t y = begin; y < end; y++)
         memcpy(copy->bgrx + y * copy->stride_bytes, copy->readback->pixels + y * row_bytes, row_bytes);
@@ -70,7 +70,7 @@ static void copy_rows(void *arg, size_t begin, size_t end)
 
 void readback_get(const struct readback *readback, struct workers *workers, uint8_t *bgrx, size_t stride_bytes)
 {
-    struct copy copy = { .readback = readback, .bgrx = bgrx, .stride_bytes = stride_bytes };
+    struct readback_copy copy = { .readback = readback, .bgrx = bgrx, .stride_bytes = stride_bytes };
     workers_for(workers, (size_t)readback->height_px, GRAIN_ROWS, copy_rows, &copy);
 }
 

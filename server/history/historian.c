@@ -34,7 +34,7 @@ enum {
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
                      LOOK_NS = 20 * NS_PER_MS;
 
-struct event_queue {
+struct historian_queue {
     struct sample_event *at; /* samples as they came */
     size_t count, capacity, lost;
 };
@@ -60,14 +60,14 @@ struct historian {
     struct spool_rows spooled; /* of the last run; written before anything else */
     char *spool_path;          /* where they are; NULL: nowhere */
     struct month_file *file;
-    struct event_queue taken;
+    struct historian_queue taken;
     bool recovered, failing, stands_by, fills;
     int64_t fill_us;     /* fills: from when on points are to be read from the database */
     int64_t mirrored_us; /* when the newest sample was taken that was mirrored; 0: none was */
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
     struct thread thread;
     /* --- below: under thread.lock */
-    struct event_queue queue;
+    struct historian_queue queue;
     const struct plant *next; /* whose historian follows; NULL: none */
     struct postgres_owed *owed; /* becomes what is still to be read, for that one; NULL: there is none */
 };
@@ -77,7 +77,7 @@ struct historian {
 static void queue_samples(struct historian *historian, const struct sample_event *samples, size_t count)
 {
     pthread_mutex_lock(&historian->thread.lock);
-    struct event_queue *queue = &historian->queue;
+    struct historian_queue *queue = &historian->queue;
     if (queue->count + count <= QUEUE_MAX) {
         mem_grow(&queue->at, &queue->capacity, queue->count + count, sizeof(*queue->at));
         memcpy(queue->at + queue->count, samples, count * sizeof(*samples));
@@ -198,7 +198,7 @@ static bool is_after_step(const struct sample_event *event, int64_t ahead_ns, in
 static void take_events(struct historian *historian, const struct now *now, int64_t step_ns)
 {
     pthread_mutex_lock(&historian->thread.lock);
-    struct event_queue taken = historian->queue;
+    struct historian_queue taken = historian->queue;
     historian->queue = historian->taken;
     pthread_mutex_unlock(&historian->thread.lock);
     int64_t ahead_ns = now->utc_ns - now->mono_ns;

@@ -38,7 +38,7 @@ struct import_series {
     size_t next;                   /* in `before` */
 };
 
-struct import {
+struct history_import {
     const struct import_params *params;
     struct csv csv;
     int time, tag, value, quality, unit; /* columns; tag -1: wide */
@@ -48,11 +48,11 @@ struct import {
     struct import_counts *counts;
 };
 
-typedef bool take_sample(struct import *import, void *arg, int tag, const struct history_point *point, int column);
+typedef bool take_sample(struct history_import *import, void *arg, int tag, const struct history_point *point, int column);
 
 /* --- what the columns are ------------------------------------------------------------------------------------------------------- */
 
-static int find_time(struct import *import)
+static int find_time(struct history_import *import)
 {
     static const char *const names[] = { "Time", "Timestamp", "UTC", "DateTime", "Date" };
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
@@ -61,7 +61,7 @@ static int find_time(struct import *import)
     return plant_find_tag(import->params->plant, import->csv.header.cells[0].text) < 0 ? 0 : -1; /* whatever it is called */
 }
 
-static bool find_wide(struct import *import)
+static bool find_wide(struct history_import *import)
 {
     const struct csv_row *header = &import->csv.header;
     int known = 0;
@@ -78,7 +78,7 @@ static bool find_wide(struct import *import)
     return known > 0;
 }
 
-static bool find_columns(struct import *import)
+static bool find_columns(struct history_import *import)
 {
     import->tag = csv_find(&import->csv, "Tag");
     import->value = csv_find(&import->csv, "Value");
@@ -102,7 +102,7 @@ static bool find_columns(struct import *import)
 /* --- rows ----------------------------------------------------------------------------------------------------------------------- */
 
 /* In the hour that occurs twice when clocks are set back, a row that is not later than the row before belongs to the second one. */
-static bool take_time(struct import *import, int64_t after_us, int64_t *t_us)
+static bool take_time(struct history_import *import, int64_t after_us, int64_t *t_us)
 {
     const char *text = csv_text(&import->csv, import->time);
     double count;
@@ -122,7 +122,7 @@ static bool take_time(struct import *import, int64_t after_us, int64_t *t_us)
     return false;
 }
 
-static bool take_quality(struct import *import, uint32_t *quality)
+static bool take_quality(struct history_import *import, uint32_t *quality)
 {
     static const struct {
         const char *name;
@@ -152,7 +152,7 @@ static bool take_quality(struct import *import, uint32_t *quality)
 }
 
 /* From the unit that the row says, else the tag's own. */
-static bool take_unit(struct import *import, int tag, double *value)
+static bool take_unit(struct history_import *import, int tag, double *value)
 {
     const struct plant_tag *of = &import->params->plant->tags[tag];
     const char *unit = text_cell_read(csv_text(&import->csv, import->unit)), *to = of->unit ? of->unit : "";
@@ -166,7 +166,7 @@ static bool take_unit(struct import *import, int tag, double *value)
 }
 
 /* One cell: a number, or a word that says that there is none. */
-static bool take_cell(struct import *import, take_sample *take, void *arg, int tag, int column, int64_t t_us, uint32_t quality)
+static bool take_cell(struct history_import *import, take_sample *take, void *arg, int tag, int column, int64_t t_us, uint32_t quality)
 {
     const char *text = csv_text(&import->csv, column);
     struct history_point point = { t_us, NAN, quality };
@@ -187,7 +187,7 @@ static bool take_cell(struct import *import, take_sample *take, void *arg, int t
     return true;
 }
 
-static bool take_long(struct import *import, take_sample *take, void *arg)
+static bool take_long(struct history_import *import, take_sample *take, void *arg)
 {
     const char *name = text_cell_read(csv_text(&import->csv, import->tag));
     int tag = plant_find_tag(import->params->plant, name);
@@ -200,7 +200,7 @@ static bool take_long(struct import *import, take_sample *take, void *arg)
     return tag >= 0 && take_quality(import, &quality) && take_cell(import, take, arg, tag, import->value, t_us, quality);
 }
 
-static bool take_row(struct import *import, take_sample *take, void *arg)
+static bool take_row(struct history_import *import, take_sample *take, void *arg)
 {
     int64_t t_us;
     if (import->tag >= 0)
@@ -218,7 +218,7 @@ static bool take_row(struct import *import, take_sample *take, void *arg)
 static bool read_file(const struct import_params *params, struct diag *diag, struct import_counts *counts, struct import_series *series,
                       take_sample *take, void *arg)
 {
-    struct import import = { .params = params, .counts = counts, .series = series, .row_us = INT64_MIN };
+    struct history_import import = { .params = params, .counts = counts, .series = series, .row_us = INT64_MIN };
     int errors = diag->errors;
     bool going = true;
     if (!csv_open_foreign(&import.csv, params->path, params->encoding, diag, &counts->encoding))
@@ -235,7 +235,7 @@ static bool read_file(const struct import_params *params, struct diag *diag, str
 
 /* --- first pass: errors and spacing ----------------------------------------------------------------------------------------------- */
 
-static bool check_sample(struct import *import, void *arg, int tag, const struct history_point *point, int column)
+static bool check_sample(struct history_import *import, void *arg, int tag, const struct history_point *point, int column)
 {
     struct import_counts *counts = import->counts;
     struct import_series *series = &import->series[tag];
@@ -423,7 +423,7 @@ static void record_pending(struct filling *filling, int tag, int64_t next_us)
     filling->counts->gaps += ends && next_us <= series->last_us;
 }
 
-static bool fill_sample(struct import *import, void *arg, int tag, const struct history_point *point, int column)
+static bool fill_sample(struct history_import *import, void *arg, int tag, const struct history_point *point, int column)
 {
     struct filling *filling = arg;
     struct import_series *series = &import->series[tag];

@@ -8,7 +8,7 @@
 #include "history/month.h"
 #include "value/quality.h"
 
-struct lane {
+struct recorder_lane {
     struct swinging_door door;
     struct swinging_door_params params;
     uint32_t quality;
@@ -17,7 +17,7 @@ struct lane {
 
 struct recorder {
     struct history_tag *tags;
-    struct lane *lanes;
+    struct recorder_lane *lanes;
     size_t count, touched_count;
     int *touched;
 };
@@ -86,7 +86,7 @@ static void add(struct recorder_rows *rows, int tag, const struct history_point 
 
 void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept)
 {
-    struct lane *lane = &recorder->lanes[tag];
+    struct recorder_lane *lane = &recorder->lanes[tag];
     struct history_point points[SWINGING_DOOR_MAX_POINTS];
     add(kept, tag, points, swinging_door_put(&lane->door, &lane->params, sample, points));
     lane->quality = sample->quality;
@@ -114,7 +114,7 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
 {
     struct history_point point;
     for (size_t i = 0; i < recorder->touched_count; i++) {
-        struct lane *lane = &recorder->lanes[recorder->touched[i]];
+        struct recorder_lane *lane = &recorder->lanes[recorder->touched[i]];
         lane->touched = false;
         /* What was kept just now is held too: where the last writer ended must be known. */
         if (!swinging_door_held(&lane->door, &point))

@@ -8,13 +8,13 @@
 #include "message/json_values.h"
 #include "render/overlay/overlay.h"
 
-bool fit_parse(const struct plant *plant, const json_t *o, struct fit *out, struct message_error *error)
+bool fit_parse(const struct plant *plant, const json_t *o, struct fit_message *out, struct message_error *error)
 {
     const json_t *id = json_object_get(o, "id");
     int side = SIDE_NOW;
     bool given;
     char quote[48];
-    *out = (struct fit){ .projection = PROJECTION_AS_IT_IS };
+    *out = (struct fit_message){ .projection = PROJECTION_AS_IT_IS };
     if (!framing_find(plant, json_string_value(id), &out->framing) || (id && !json_is_string(id) && !json_is_null(id))) {
         message_refuse_with(error, "bad_field", "id", REFUSAL_NO_ASSET, "name=%s",
                             json_is_string(id) ? quoted(json_string_value(id), quote) : "(not a text)");
@@ -27,7 +27,7 @@ bool fit_parse(const struct plant *plant, const json_t *o, struct fit *out, stru
     return true;
 }
 
-void fit_apply(const struct scene *scene, const struct fit *fit, const struct view *view, struct camera *camera)
+void fit_apply(const struct scene *scene, const struct fit_message *fit, const struct view *view, struct camera *camera)
 {
     struct view half;
     view_half(view, 0, &half);
@@ -98,7 +98,7 @@ bool view_query_camera(const struct scene *scene, const struct plant *plant, con
                        struct message_error *error)
 {
     json_t *fit_o = json_object();
-    struct fit fit;
+    struct fit_message fit;
     bool fits = json_object_get(o, "fit") || json_object_get(o, "side") || (!scene->plant->view.set && !has_camera(o));
     json_object_set(fit_o, "id", json_object_get(o, "fit"));
     json_object_set(fit_o, "side", json_object_get(o, "side"));

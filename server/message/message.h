@@ -116,7 +116,7 @@ struct params_change {
     struct visibility visibility;
 };
 
-struct fit {
+struct fit_message {
     struct framing framing;
     int projection; /* enum projection, or PROJECTION_AS_IT_IS */
 };
@@ -206,7 +206,7 @@ struct message {
     uint32_t seq;                                              /* camera (hello: the camera's), ack, fit, pick, look */
     struct params_change params;                               /* params, hello */
     struct split_change split;                                 /* likewise; applied after params */
-    struct fit fit;
+    struct fit_message fit;
     struct pick_request pick;
     bool visible;
     double decode_ms; /* ack; negative: not said */

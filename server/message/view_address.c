@@ -159,21 +159,21 @@ bool view_address_each(const char *address, view_address_field *take, void *arg)
     return good;
 }
 
-struct reading {
+struct address_reading {
     struct view_address *out;
     struct message_error *error;
 };
 
 static bool take(void *arg, const char *name, char *value)
 {
-    const struct reading *reading = arg;
+    const struct address_reading *reading = arg;
     return add(reading->out, name, value, reading->error);
 }
 
 bool view_address_read(struct view_address *out, const char *address, struct message_error *error)
 {
     *out = (struct view_address){ .count = 0 };
-    return view_address_each(address, take, &(struct reading){ out, error });
+    return view_address_each(address, take, &(struct address_reading){ out, error });
 }
 
 void view_address_finish(struct view_address *address)

@@ -11,11 +11,11 @@
 #include "message/json_fields.h"
 #include "message/fit_message.h"
 
-enum kind { NUMBER, NUMBER_OR_NONE, STRING, NUMBERS, SENSORS, BREAKS, LINES, SPLIT, STRINGS, PLANES, BOX };
+enum query_kind { NUMBER, NUMBER_OR_NONE, STRING, NUMBERS, SENSORS, BREAKS, LINES, SPLIT, STRINGS, PLANES, BOX };
 
 static const struct {
     const char *name;
-    enum kind kind;
+    enum query_kind kind;
 } known[] = {
     { "width", NUMBER },
     { "height", NUMBER },
@@ -202,7 +202,7 @@ static json_t *box(const char *text)
     return good ? json_pack("{s:{s:[f,f,f],s:[f,f,f]}}", "box", "min", n[0], n[1], n[2], "max", n[3], n[4], n[5]) : NULL;
 }
 
-static json_t *value_of(enum kind kind, const char *text, struct message_error *error)
+static json_t *value_of(enum query_kind kind, const char *text, struct message_error *error)
 {
     const char *end = "";
     json_t *value;

@@ -33,9 +33,9 @@ struct deed {
     struct deed *next;
 };
 
-struct renderer {
+struct renderer_peer {
     struct lws *wsi;
-    struct renderer *next;
+    struct renderer_peer *next;
     char name[64];           /* of its node, as it says */
     char lease[LEASE_NODE_BYTES]; /* of a standby: what tells it from others of its name */
     struct text in, out;     /* out: what is being made, behind LWS_PRE bytes */
@@ -93,13 +93,13 @@ static struct core_identity own_identity(const struct server_context *server)
 }
 
 /* Returns whether promises of the other core count: with other files it is no standby, and as good a witness that it does not lead. */
-static bool is_witness(const struct renderer *renderer)
+static bool is_witness(const struct renderer_peer *renderer)
 {
     return renderer->stands_by && (renderer->state == RENDERER_TAKEN || renderer->state == RENDERER_VOTES);
 }
 
 /* Returns whether a core holds the standby's seat: it has this core's version, plant and configuration. */
-static bool is_standby(const struct renderer *renderer)
+static bool is_standby(const struct renderer_peer *renderer)
 {
     return renderer->stands_by && renderer->state == RENDERER_TAKEN;
 }
@@ -107,8 +107,8 @@ static bool is_standby(const struct renderer *renderer)
 /* Names the core whose promises count, of which there is one at most. */
 static void name_standby(struct server_context *server)
 {
-    const struct renderer *witness = NULL;
-    for (const struct renderer *renderer = server->renderers; renderer; renderer = renderer->next)
+    const struct renderer_peer *witness = NULL;
+    for (const struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next)
         if (is_witness(renderer))
             witness = renderer;
     if (server->params.keeper)
@@ -117,7 +117,7 @@ static void name_standby(struct server_context *server)
 
 bool renderers_have_standby(const struct server_context *server)
 {
-    const struct renderer *renderer = server->renderers;
+    const struct renderer_peer *renderer = server->renderers;
     while (renderer && !is_standby(renderer))
         renderer = renderer->next;
     return renderer;
@@ -126,15 +126,15 @@ bool renderers_have_standby(const struct server_context *server)
 static void count(struct server_context *server)
 {
     int taken = 0;
-    for (const struct renderer *renderer = server->renderers; renderer; renderer = renderer->next)
+    for (const struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next)
         taken += renderer->state == RENDERER_TAKEN;
     counter_set(server->counters.renderers, taken);
 }
 
-static void on_open(struct server_context *server, struct lws *wsi, struct renderer **slot)
+static void on_open(struct server_context *server, struct lws *wsi, struct renderer_peer **slot)
 {
-    struct renderer *renderer = mem_new(sizeof(*renderer));
-    *renderer = (struct renderer){ .wsi = wsi, .next = server->renderers, .answers = json_array() };
+    struct renderer_peer *renderer = mem_new(sizeof(*renderer));
+    *renderer = (struct renderer_peer){ .wsi = wsi, .next = server->renderers, .answers = json_array() };
     server->renderers = *slot = renderer;
     lws_set_timer_usecs(wsi, BEAT_US);
 }
@@ -147,7 +147,7 @@ static void end_deed(struct deed *deed)
 }
 
 /* Answers actions that are on disk, or cannot be kept. */
-static void settle(struct renderer *renderer)
+static void settle(struct renderer_peer *renderer)
 {
     for (struct deed **at = &renderer->deeds, *deed; (deed = *at);) {
         json_t *texts = session_answers_of(&deed->session);
@@ -164,13 +164,13 @@ static void settle(struct renderer *renderer)
 
 void renderers_settle(struct server_context *server)
 {
-    for (struct renderer *renderer = server->renderers; renderer; renderer = renderer->next)
+    for (struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next)
         settle(renderer);
 }
 
-static void on_close(struct server_context *server, struct renderer **slot)
+static void on_close(struct server_context *server, struct renderer_peer **slot)
 {
-    struct renderer *renderer = *slot, **at = &server->renderers;
+    struct renderer_peer *renderer = *slot, **at = &server->renderers;
     if (!renderer)
         return;
     while (*at != renderer)
@@ -198,13 +198,13 @@ static void on_close(struct server_context *server, struct renderer **slot)
 
 void renderers_on_change(struct server_context *server)
 {
-    for (struct renderer *renderer = server->renderers; renderer; renderer = renderer->next)
+    for (struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next)
         lws_callback_on_writable(renderer->wsi);
 }
 
 void renderers_close(struct server_context *server, const char *why)
 {
-    for (struct renderer *renderer = server->renderers; renderer; renderer = renderer->next) {
+    for (struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next) {
         renderer->close_text = why;
         core_samples_end(&renderer->samples); /* their store ends */
         lws_callback_on_writable(renderer->wsi);
@@ -213,7 +213,7 @@ void renderers_close(struct server_context *server, const char *why)
 
 /* --- what goes ---------------------------------------------------------------------------------------------------------------- */
 
-static void begin(struct renderer *renderer)
+static void begin(struct renderer_peer *renderer)
 {
     const char room[LWS_PRE] = { 0 };
     renderer->out.length = 0;
@@ -221,7 +221,7 @@ static void begin(struct renderer *renderer)
 }
 
 /* lws keeps what the socket does not take, and asks for nothing more until that is gone. */
-static bool send_out(struct renderer *renderer, enum lws_write_protocol how)
+static bool send_out(struct renderer_peer *renderer, enum lws_write_protocol how)
 {
     size_t count = renderer->out.length - LWS_PRE;
     bool good = lws_write(renderer->wsi, (unsigned char *)renderer->out.at + LWS_PRE, count, how) >= (int)count;
@@ -231,7 +231,7 @@ static bool send_out(struct renderer *renderer, enum lws_write_protocol how)
 }
 
 /* Takes the message. */
-static bool send_message(struct renderer *renderer, json_t *message)
+static bool send_message(struct renderer_peer *renderer, json_t *message)
 {
     char *text = json_text(message, 0);
     begin(renderer);
@@ -241,13 +241,13 @@ static bool send_message(struct renderer *renderer, json_t *message)
 }
 
 /* It goes on looking for who leads. */
-static bool send_standby(struct renderer *renderer)
+static bool send_standby(struct renderer_peer *renderer)
 {
     renderer->close_text = "it stands by";
     return send_message(renderer, json_pack("{s:s}", "type", "standby"));
 }
 
-static bool send_question(const struct server_context *server, struct renderer *renderer)
+static bool send_question(const struct server_context *server, struct renderer_peer *renderer)
 {
     renderer->asks = false;
     json_int_t number = (json_int_t)lease_keeper_ask(server->params.keeper);
@@ -258,7 +258,7 @@ static bool send_question(const struct server_context *server, struct renderer *
     return send_message(renderer, message);
 }
 
-static bool send_refusal(struct renderer *renderer)
+static bool send_refusal(struct renderer_peer *renderer)
 {
     bool votes = renderer->state == RENDERER_VOTES;
     renderer->refusal_sent = true;
@@ -267,18 +267,18 @@ static bool send_refusal(struct renderer *renderer)
 }
 
 /* Nothing else of this core is for one that votes. */
-static bool send_to_voter(const struct server_context *server, struct renderer *renderer)
+static bool send_to_voter(const struct server_context *server, struct renderer_peer *renderer)
 {
     return !renderer->refusal_sent ? send_refusal(renderer) : !renderer->asks || send_question(server, renderer);
 }
 
-static bool links_differ(const struct server_context *server, const struct renderer *renderer)
+static bool links_differ(const struct server_context *server, const struct renderer_peer *renderer)
 {
     size_t count = server->session_context.plant->source_count;
     return !renderer->links_sent || memcmp(renderer->links, server->links_up, count * sizeof(*renderer->links)) != 0;
 }
 
-static bool send_links(const struct server_context *server, struct renderer *renderer)
+static bool send_links(const struct server_context *server, struct renderer_peer *renderer)
 {
     json_t *up = json_array();
     for (size_t i = 0; i < server->session_context.plant->source_count; i++) {
@@ -296,7 +296,7 @@ static struct lists_seen lists_now(const struct server_context *server)
                                 wall_remote_pointer_number(plant->wall_remote), pairings_number(plant->pairings) };
 }
 
-static bool send_lists(const struct server_context *server, struct renderer *renderer)
+static bool send_lists(const struct server_context *server, struct renderer_peer *renderer)
 {
     const struct net_plant *plant = &server->params.plant;
     char *pointed = wall_remote_pointers_text(plant->wall_remote, renderer->lists.pointed);
@@ -309,7 +309,7 @@ static bool send_lists(const struct server_context *server, struct renderer *ren
     return send_message(renderer, message);
 }
 
-static bool send_alarms(const struct server_context *server, struct renderer *renderer)
+static bool send_alarms(const struct server_context *server, struct renderer_peer *renderer)
 {
     uint64_t since = renderer->alarms_sent ? renderer->alarms : 0;
     renderer->alarms_sent = true;
@@ -319,7 +319,7 @@ static bool send_alarms(const struct server_context *server, struct renderer *re
     return send_message(renderer, message);
 }
 
-static bool send_told(struct notifier *notifier, struct renderer *renderer)
+static bool send_told(struct notifier *notifier, struct renderer_peer *renderer)
 {
     renderer->told = notifier_number(notifier);
     char *kept = notifier_kept(notifier);
@@ -328,13 +328,13 @@ static bool send_told(struct notifier *notifier, struct renderer *renderer)
     return send_message(renderer, message);
 }
 
-static bool lacks_told(const struct server_context *server, const struct renderer *renderer)
+static bool lacks_told(const struct server_context *server, const struct renderer_peer *renderer)
 {
     struct notifier *notifier = server->params.plant.notifier;
     return renderer->stands_by && notifier && renderer->told != notifier_number(notifier);
 }
 
-static bool send_answer(struct renderer *renderer)
+static bool send_answer(struct renderer_peer *renderer)
 {
     json_t *answer = json_incref(json_array_get(renderer->answers, 0));
     json_array_remove(renderer->answers, 0);
@@ -343,7 +343,7 @@ static bool send_answer(struct renderer *renderer)
 
 /* Once it has sent less than a whole message, readings are next, also where new samples have come meanwhile: else, on a slow network, new
    ones always would have. */
-static bool send_samples(const struct server_context *server, struct renderer *renderer)
+static bool send_samples(const struct server_context *server, struct renderer_peer *renderer)
 {
     begin(renderer);
     int count = core_samples_write(renderer->samples, &renderer->out);
@@ -353,7 +353,7 @@ static bool send_samples(const struct server_context *server, struct renderer *r
     return count < 0 ? false : count == 0 || send_out(renderer, LWS_WRITE_BINARY);
 }
 
-static bool send_readings(struct server_context *server, struct renderer *renderer)
+static bool send_readings(struct server_context *server, struct renderer_peer *renderer)
 {
     begin(renderer);
     renderer->told_ns = clock_mono_ns();
@@ -364,7 +364,7 @@ static bool send_readings(struct server_context *server, struct renderer *render
 /* Of those that waited for a standby. */
 static void wake_answers(const struct server_context *server)
 {
-    for (const struct renderer *one = server->renderers; one; one = one->next)
+    for (const struct renderer_peer *one = server->renderers; one; one = one->next)
         if (json_array_size(one->answers) > 0)
             lws_callback_on_writable(one->wsi);
 }
@@ -373,7 +373,7 @@ static void wake_answers(const struct server_context *server)
 static bool standby_lacks(const struct server_context *server)
 {
     struct lists_seen lists = lists_now(server);
-    for (const struct renderer *one = server->renderers; one; one = one->next)
+    for (const struct renderer_peer *one = server->renderers; one; one = one->next)
         if (one->stands_by && one->state == RENDERER_TAKEN && !one->close_text && one->alarms_sent && one->lists_sent &&
             clock_mono_ns() - one->told_ns < PATIENT_NS &&
             (memcmp(&lists, &one->lists, sizeof(lists)) != 0 || one->alarms != alarm_service_number(server->params.plant.alarm_service)))
@@ -381,7 +381,7 @@ static bool standby_lacks(const struct server_context *server)
     return false;
 }
 
-static bool send_hello(struct renderer *renderer)
+static bool send_hello(struct renderer_peer *renderer)
 {
     json_t *hello = renderer->hello;
     renderer->hello = NULL;
@@ -390,7 +390,7 @@ static bool send_hello(struct renderer *renderer)
 
 /* One message at a time: what changed most rarely first, readings last, which so are never newer than the alarms beside them; but readings
    that the others kept waiting come first, for without them the core counts as lost. */
-static bool send_next(struct server_context *server, struct renderer *renderer)
+static bool send_next(struct server_context *server, struct renderer_peer *renderer)
 {
     struct lists_seen lists = lists_now(server);
     renderer->since_ns = 0;
@@ -432,7 +432,7 @@ static bool send_next(struct server_context *server, struct renderer *renderer)
 
 /* Returns why the peer's token has the wrong role, or NULL (mem_free). A renderer's token must not open the standby's seat, whose holder
    takes over as core. */
-static char *role_refusal(const struct renderer *one)
+static char *role_refusal(const struct renderer_peer *one)
 {
     const struct connection *connection = connection_of(one->wsi);
     enum role role = one->stands_by ? ROLE_STANDBY : ROLE_RENDERER;
@@ -445,13 +445,13 @@ static char *role_refusal(const struct renderer *one)
 
 /* Returns why `one` cannot stand by, or NULL (mem_free). Names are unique and there is one standby, so that each promise has one author.
    matches: `one` has this core's version and files, and may replace a core that only votes. */
-static char *standby_refusal(const struct server_context *server, struct renderer *one, const char *id, bool matches)
+static char *standby_refusal(const struct server_context *server, struct renderer_peer *one, const char *id, bool matches)
 {
     if (!server->params.keeper)
         return mem_strdup("this core has no standby: it was started without --core");
     if (!strcmp(one->name, server->params.node_name))
         return mem_printf("both cores have the name %.63s: --node names them", one->name);
-    for (const struct renderer *other = server->renderers; other; other = other->next)
+    for (const struct renderer_peer *other = server->renderers; other; other = other->next)
         if (other != one && (matches ? is_standby(other) : is_witness(other)))
             return mem_printf("%.63s stands by already", other->name);
     if (!id || !lease_name(one->lease, one->name, id))
@@ -460,7 +460,7 @@ static char *standby_refusal(const struct server_context *server, struct rendere
 }
 
 /* It comes again every second. */
-static void say_refusal(struct server_context *server, const struct renderer *renderer)
+static void say_refusal(struct server_context *server, const struct renderer_peer *renderer)
 {
     char said[sizeof(server->renderer_refused)];
     bool votes = renderer->state == RENDERER_VOTES;
@@ -476,7 +476,7 @@ static void say_refusal(struct server_context *server, const struct renderer *re
 /* Closes cores that only vote, once a standby with this version and these files has come. */
 static void end_voters(struct server_context *server)
 {
-    for (struct renderer *one = server->renderers; one; one = one->next)
+    for (struct renderer_peer *one = server->renderers; one; one = one->next)
         if (one->state == RENDERER_VOTES) {
             one->state = RENDERER_REFUSED;
             one->close_text = "another core stands by";
@@ -486,7 +486,7 @@ static void end_voters(struct server_context *server)
 
 /* Of a standby of this plant that has other files, or another version, for it is loaded anew or replaced before or after this core, the
    promise counts. */
-static void judge(struct server_context *server, struct renderer *renderer, const json_t *message, const struct core_identity *own)
+static void judge(struct server_context *server, struct renderer_peer *renderer, const json_t *message, const struct core_identity *own)
 {
     const char *plant = json_string_value(json_object_get(message, "plant")), *id = json_string_value(json_object_get(message, "id"));
     char *cannot_follow = core_identity_difference(message, "renderer", own);
@@ -501,7 +501,7 @@ static void judge(struct server_context *server, struct renderer *renderer, cons
         end_voters(server);
 }
 
-static void introduce(struct server_context *server, struct renderer *renderer, const json_t *message)
+static void introduce(struct server_context *server, struct renderer_peer *renderer, const json_t *message)
 {
     const struct core_identity own = own_identity(server);
     const struct plant *plant = server->session_context.plant;
@@ -534,7 +534,7 @@ static void introduce(struct server_context *server, struct renderer *renderer, 
 
 /* Verifies who sent a message through a renderer. The renderer's own token grants no right to act. Returns NULL and the person in *out, or
    the reason of the refusal (static). */
-static const char *verify_person(const struct server_context *server, const struct renderer *renderer, const json_t *message,
+static const char *verify_person(const struct server_context *server, const struct renderer_peer *renderer, const json_t *message,
                                  struct token_holder *out)
 {
     const char *token = json_string_value(json_object_get(message, "token"));
@@ -557,7 +557,7 @@ static const char *verify_person(const struct server_context *server, const stru
                     : "the core cannot tell who this is: it takes a token, or somebody who is signed in";
 }
 
-static void act(struct server_context *server, struct renderer *renderer, const json_t *message)
+static void act(struct server_context *server, struct renderer_peer *renderer, const json_t *message)
 {
     const char *from = json_string_value(json_object_get(message, "from"));
     const char *node_token = connection_of(renderer->wsi)->holder.name;
@@ -579,7 +579,7 @@ static void act(struct server_context *server, struct renderer *renderer, const 
     renderers_on_change(server);
 }
 
-static const char *on_message(struct server_context *server, struct renderer *renderer)
+static const char *on_message(struct server_context *server, struct renderer_peer *renderer)
 {
     json_t *message = json_loadb(renderer->in.at, renderer->in.length, JSON_REJECT_DUPLICATES, NULL);
     const char *type = json_string_value(json_object_get(message, "type")), *why = NULL;
@@ -600,7 +600,7 @@ static const char *on_message(struct server_context *server, struct renderer *re
 }
 
 /* Returns -1 if the connection is to end. */
-static int on_receive(struct server_context *server, struct renderer *renderer, const void *bytes, size_t count_bytes)
+static int on_receive(struct server_context *server, struct renderer_peer *renderer, const void *bytes, size_t count_bytes)
 {
     const char *why = NULL;
     if (renderer->in.length + count_bytes > MOST_BYTES)
@@ -620,7 +620,7 @@ static int on_receive(struct server_context *server, struct renderer *renderer, 
 /* --- lws ---------------------------------------------------------------------------------------------------------------------- */
 
 /* Steady readings get older, too; and silence would mean that the core is lost. */
-static int on_beat(struct server_context *server, struct renderer *renderer)
+static int on_beat(struct server_context *server, struct renderer_peer *renderer)
 {
     int64_t now_ns = clock_mono_ns();
     const struct token_holder *holder = &connection_of(renderer->wsi)->holder;
@@ -640,7 +640,7 @@ static int on_beat(struct server_context *server, struct renderer *renderer)
     return -1;
 }
 
-static int on_writeable(struct server_context *server, struct renderer *renderer)
+static int on_writeable(struct server_context *server, struct renderer_peer *renderer)
 {
     if (!renderer->close_text)
         return send_next(server, renderer) ? 0 : -1;
@@ -650,7 +650,7 @@ static int on_writeable(struct server_context *server, struct renderer *renderer
 
 int renderer_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
 {
-    struct renderer **slot = user;
+    struct renderer_peer **slot = user;
     switch (reason) {
     case LWS_CALLBACK_ESTABLISHED: on_open(server_context_of(wsi), wsi, slot); break;
     case LWS_CALLBACK_CLOSED: on_close(server_context_of(wsi), slot); break;

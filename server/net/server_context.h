@@ -22,8 +22,8 @@
 enum { SLICE_BYTES = 32 * 1024 };
 
 struct stream;  /* stream.h */
-struct request; /* http_impl.h */
-struct site;    /* site.h */
+struct http_exchange; /* http_impl.h */
+struct web_site;      /* site.h */
 
 /* Displays of walls that were connected since the start (wall_displays.c). */
 enum { WALL_DISPLAYS_SEEN = 256 };
@@ -65,8 +65,8 @@ struct server_context {
     struct view_token_keys token_keys;               /* of a renderer: by which views are signed */
     char core_key[2 * VIEW_TOKEN_KEY_BYTES + 1];     /* of a core: the key that it gives its renderers, hexadecimal; "": none */
     char renderer_refused[300]; /* which was refused last, and why, as logged */
-    struct renderer *renderers;                      /* all connections to /core (renderers.c) */
-    struct request *snapshots;                       /* HTTP requests that wait for a frame, a pick or a reload */
+    struct renderer_peer *renderers;                 /* all connections to /core (renderers.c) */
+    struct http_exchange *snapshots;                 /* HTTP requests that wait for a frame, a pick or a reload */
     int stream_count, picture_count, question_count; /* the latter two: of HTTP, that are being answered */
     int64_t answer_bytes;                            /* of HTTP answers that their clients have not read yet */
     int64_t upload_bytes;                            /* sizes of files that are being uploaded, together */
@@ -78,7 +78,7 @@ struct server_context {
     struct tokens *tokens; /* NULL: none are configured */
     struct openid *openid; /* NULL: nobody signs in */
     struct login_throttle *login_throttle;
-    struct site *site;    /* the page's files */
+    struct web_site *site; /* the page's files */
     char *notice;         /* that is shown before somebody signs in; NULL: none */
     char *content_policy; /* Content-Security-Policy of every answer */
     struct tls *tls;      /* NULL: no TLS */

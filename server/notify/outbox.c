@@ -23,7 +23,7 @@ struct outbox *outbox_create(const struct plant *plant)
     return outbox;
 }
 
-static void free_batch(struct box *box)
+static void free_batch(struct recipient_box *box)
 {
     for (size_t i = 0; i < box->batch_count; i++)
         mem_free(box->batch[i].name);
@@ -97,7 +97,7 @@ static void remove_episode(struct outbox *outbox, size_t index)
 
 static void queue_item(struct outbox *outbox, int recipient, const struct episode *episode, int step, int64_t now_us)
 {
-    struct box *box = &outbox->boxes[recipient];
+    struct recipient_box *box = &outbox->boxes[recipient];
     int index = (int)(episode - outbox->episodes);
     bool may_wait = step > 0 || episode->told_us; /* it has been queued before */
     for (size_t i = 0; may_wait && i < box->waiting.count; i++)
@@ -112,16 +112,16 @@ static void queue_item(struct outbox *outbox, int recipient, const struct episod
     if (box->waiting.count == 0)
         box->since_us = now_us;
     mem_grow(&box->waiting.at, &box->waiting.capacity, box->waiting.count + 1, sizeof(*box->waiting.at));
-    box->waiting.at[box->waiting.count++] = (struct item){ { .name = mem_strdup(episode->name),
-                                                             .tag = episode->tag,
-                                                             .kind = episode->kind,
-                                                             .priority = episode->priority,
-                                                             .step = step,
-                                                             .status = episode->status,
-                                                             .value = episode->value,
-                                                             .limit = episode->limit,
-                                                             .raised_us = episode->raised_us },
-                                                           index };
+    box->waiting.at[box->waiting.count++] = (struct queued_item){ { .name = mem_strdup(episode->name),
+                                                                    .tag = episode->tag,
+                                                                    .kind = episode->kind,
+                                                                    .priority = episode->priority,
+                                                                    .step = step,
+                                                                    .status = episode->status,
+                                                                    .value = episode->value,
+                                                                    .limit = episode->limit,
+                                                                    .raised_us = episode->raised_us },
+                                                                  index };
     outbox->items++;
 }
 
@@ -177,7 +177,7 @@ static bool needs_somebody(const struct alarm *alarm)
 static void mark_alertmanagers(struct outbox *outbox, int64_t now_us)
 {
     for (size_t i = 0; i < outbox->plant->notify->recipient_count; i++) {
-        struct box *box = &outbox->boxes[i];
+        struct recipient_box *box = &outbox->boxes[i];
         if (!box->changed)
             box->since_us = now_us;
         box->changed = true;
@@ -242,7 +242,7 @@ void outbox_end_unseen(struct outbox *outbox, int64_t now_us)
 
 /* --- time ------------------------------------------------------------------------------------------------------------------- */
 
-static void give_up(struct outbox *outbox, struct box *box)
+static void give_up(struct outbox *outbox, struct recipient_box *box)
 {
     outbox->lost += (int64_t)box->batch_count;
     outbox->items -= box->batch_count;
@@ -262,7 +262,7 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
             remove_episode(outbox, i);
     }
     for (size_t i = 0; i < outbox->plant->notify->recipient_count; i++) {
-        struct box *box = &outbox->boxes[i];
+        struct recipient_box *box = &outbox->boxes[i];
         bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER; /* it is told what is, not what was */
         if (!keeps && box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
             give_up(outbox, box);
@@ -279,7 +279,7 @@ static int by_urgency(const void *pa, const void *pb)
     return a->raised_us != b->raised_us ? (a->raised_us < b->raised_us ? -1 : 1) : strcmp(a->name, b->name);
 }
 
-static bool is_due(const struct outbox *outbox, const struct box *box, int64_t now_us)
+static bool is_due(const struct outbox *outbox, const struct recipient_box *box, int64_t now_us)
 {
     const struct plant_notify *notify = outbox->plant->notify;
     int best = ALARM_PRIORITIES + 1;
@@ -293,10 +293,10 @@ static bool is_due(const struct outbox *outbox, const struct box *box, int64_t n
 /* What waits becomes a message: alarms as they are now, but for those that have been set aside meanwhile. */
 static void make_batch(struct outbox *outbox, int recipient, int64_t now_us)
 {
-    struct box *box = &outbox->boxes[recipient];
+    struct recipient_box *box = &outbox->boxes[recipient];
     box->batch = mem_array(box->waiting.count, sizeof(*box->batch));
     for (size_t i = 0; i < box->waiting.count; i++) {
-        struct item *item = &box->waiting.at[i];
+        struct queued_item *item = &box->waiting.at[i];
         const struct episode *episode = item->episode >= 0 ? &outbox->episodes[item->episode] : NULL;
         if (episode && episode->aside) {
             mem_free(item->said.name);
@@ -319,7 +319,7 @@ static void make_batch(struct outbox *outbox, int recipient, int64_t now_us)
         free_batch(box);
 }
 
-static void put_alert(const struct episode *episode, struct box *box)
+static void put_alert(const struct episode *episode, struct recipient_box *box)
 {
     box->batch[box->batch_count++] = (struct outbox_item){ .name = mem_strdup(episode->name),
                                                            .tag = episode->tag,
@@ -344,7 +344,7 @@ static bool goes_to(const struct plant_notify *notify, const struct episode *epi
 /* All alarms that stand, and those that have ended since the last time. */
 static bool make_alerts(struct outbox *outbox, int recipient, int64_t now_us)
 {
-    struct box *box = &outbox->boxes[recipient];
+    struct recipient_box *box = &outbox->boxes[recipient];
     bool gathered = now_us - box->since_us >= (int64_t)(outbox->plant->notify->gather_s * (double)S);
     bool due = (box->changed && gathered) || now_us - box->sent_us >= OUTBOX_REFRESH_US || now_us < box->sent_us;
     if (!due || now_us < box->retry_us)
@@ -367,7 +367,7 @@ static bool make_alerts(struct outbox *outbox, int recipient, int64_t now_us)
 
 bool outbox_next(struct outbox *outbox, int recipient, int64_t now_us, struct outbox_message *out)
 {
-    struct box *box = &outbox->boxes[recipient];
+    struct recipient_box *box = &outbox->boxes[recipient];
     if (outbox->plant->notify->recipients[recipient].kind == NOTIFY_ALERTMANAGER) {
         if (!make_alerts(outbox, recipient, now_us))
             return false;
@@ -385,7 +385,7 @@ bool outbox_next(struct outbox *outbox, int recipient, int64_t now_us, struct ou
 
 void outbox_sent(struct outbox *outbox, int recipient, int64_t now_us)
 {
-    struct box *box = &outbox->boxes[recipient];
+    struct recipient_box *box = &outbox->boxes[recipient];
     bool alerts = outbox->plant->notify->recipients[recipient].kind == NOTIFY_ALERTMANAGER;
     box->last_priority = box->batch_count > 0 ? box->batch[0].priority : ALARM_PRIORITIES;
     outbox->items -= alerts ? 0 : box->batch_count;
@@ -399,7 +399,7 @@ void outbox_sent(struct outbox *outbox, int recipient, int64_t now_us)
 
 void outbox_failed(struct outbox *outbox, int recipient, int64_t now_us)
 {
-    struct box *box = &outbox->boxes[recipient];
+    struct recipient_box *box = &outbox->boxes[recipient];
     int64_t wait_us = S << (box->attempts < 6 ? box->attempts : 6);
     box->attempts++;
     box->retry_us = now_us + (wait_us < RETRY_MAX_US ? wait_us : RETRY_MAX_US);
@@ -411,7 +411,7 @@ void outbox_failed(struct outbox *outbox, int recipient, int64_t now_us)
 
 struct outbox_counts outbox_counts(const struct outbox *outbox, int recipient)
 {
-    const struct box *box = &outbox->boxes[recipient];
+    const struct recipient_box *box = &outbox->boxes[recipient];
     return (struct outbox_counts){ (int64_t)(box->waiting.count + box->batch_count), outbox->lost };
 }
 

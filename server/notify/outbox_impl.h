@@ -23,17 +23,17 @@ struct episode { /* an alarm from when it first needs somebody until nobody is n
     bool seen;           /* since the start: it was put, not only restored */
 };
 
-struct item {
+struct queued_item {
     struct outbox_item said;
     int episode;         /* its index; -1: that is gone */
 };
 
 struct queue {
-    struct item *at;
+    struct queued_item *at;
     size_t count, capacity;
 };
 
-struct box { /* of a recipient */
+struct recipient_box { /* of a recipient */
     struct queue waiting;
     struct outbox_item *batch; /* of the message that is being sent, or sent again */
     size_t batch_count;
@@ -53,7 +53,7 @@ struct outbox {
     struct episode *episodes;
     size_t count, capacity;
     int *by_alarm;       /* 1 + index of the episode, by tag and kind; 0: none */
-    struct box *boxes;   /* by recipient */
+    struct recipient_box *boxes; /* by recipient */
     size_t items;        /* that wait, of all */
     int64_t lost, made;
     bool dirty;

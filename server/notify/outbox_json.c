@@ -23,7 +23,7 @@ static json_t *save_item(const struct outbox_item *item)
                      "limit", number_or_null(item->limit), "raised", (json_int_t)item->raised_us, "ended", (json_int_t)item->ended_us);
 }
 
-static json_t *save_box(const struct box *box)
+static json_t *save_box(const struct recipient_box *box)
 {
     json_t *waiting = json_array(), *batch = json_array();
     for (size_t i = 0; i < box->waiting.count; i++)
@@ -149,7 +149,7 @@ static bool restore_item(const struct outbox *outbox, const json_t *object, stru
     return true;
 }
 
-static void restore_box(struct outbox *outbox, struct box *box, const json_t *object)
+static void restore_box(struct outbox *outbox, struct recipient_box *box, const json_t *object)
 {
     size_t index;
     json_t *item;
@@ -157,7 +157,7 @@ static void restore_box(struct outbox *outbox, struct box *box, const json_t *ob
     const char *id = json_string_value(json_object_get(object, "id"));
     json_array_foreach(waiting, index, item) {
         mem_grow(&box->waiting.at, &box->waiting.capacity, box->waiting.count + 1, sizeof(*box->waiting.at));
-        struct item *to = &box->waiting.at[box->waiting.count];
+        struct queued_item *to = &box->waiting.at[box->waiting.count];
         if (outbox->items < OUTBOX_ITEMS && restore_item(outbox, item, &to->said)) {
             to->episode = outbox_find(outbox, to->said.name, to->said.tag, to->said.kind);
             box->waiting.count++;

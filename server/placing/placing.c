@@ -17,14 +17,14 @@
 
 enum { MOVERS = 4 }; /* kept warm; those that moves are on, in any case */
 
-struct ask { /* distances of one move, on their way */
+struct distance_ask { /* distances of one move, on their way */
     struct placing *placing;
     uint64_t number;
     float *along_m; /* NULL: none came */
-    struct ask *next;
+    struct distance_ask *next;
 };
 
-struct entry {      /* a move; beside it, in the set, what is said of it */
+struct placing_entry { /* a move; beside it, in the set, what is said of it */
     uint64_t asked; /* number; 0: nothing is asked */
     uint64_t ticket;
     struct trial_sensor sensor;
@@ -35,7 +35,7 @@ struct place_set {
     uint32_t trial;
     bool changed;
     size_t count;
-    struct entry entries[PLACING_MOVES];
+    struct placing_entry entries[PLACING_MOVES];
     struct placed placed[PLACING_MOVES];
     struct place_set *next;
 };
@@ -55,7 +55,7 @@ struct placing {
     pthread_mutex_t lock;
     pthread_cond_t idle;
     /* --- below: under lock */
-    struct ask *done;
+    struct distance_ask *done;
     struct sensor_coverage_answer *answers, **answers_last;
     int jobs; /* for coverage */
 };
@@ -80,9 +80,9 @@ struct trials *placing_trials(struct placing *placing)
     return placing->trials;
 }
 
-static void forget_done(struct ask *done)
+static void forget_done(struct distance_ask *done)
 {
-    for (struct ask *next; done; done = next) {
+    for (struct distance_ask *next; done; done = next) {
         next = done->next;
         mem_free(done->along_m);
         mem_free(done);
@@ -161,7 +161,7 @@ static struct relocation *relocation_of(struct placing *placing, int asset)
 
 static void on_distances(void *arg, struct relocation_result *result)
 {
-    struct ask *ask = arg;
+    struct distance_ask *ask = arg;
     struct placing *placing = ask->placing;
     if (result->status == RELOCATION_CANCELLED) {
         mem_free(result->geodesic_m);
@@ -185,7 +185,7 @@ static void to_file(const struct scene_asset *asset, const double plant_m[3], do
 }
 
 /* Where it would be. False: nowhere on the asset. */
-static bool find_place(struct placing *placing, const struct place_move *move, struct entry *entry, struct placed *placed)
+static bool find_place(struct placing *placing, const struct place_move *move, struct placing_entry *entry, struct placed *placed)
 {
     const struct scene_asset *asset = &placing->params.scene->assets[move->asset];
     struct relocation_place place;
@@ -195,19 +195,19 @@ static bool find_place(struct placing *placing, const struct place_move *move, s
         return false;
     *placed = (struct placed){ .move = *move, .distance_m = place.distance_m, .limit_m = far_limit_m(asset) };
     transform_point(asset->placement, place.surface_m, placed->surface_m);
-    *entry = (struct entry){ .sensor = { .tag = move->tag, .asset = move->asset, .vertex = place.vertex } };
+    *entry = (struct placing_entry){ .sensor = { .tag = move->tag, .asset = move->asset, .vertex = place.vertex } };
     memcpy(entry->sensor.place_m, placed->surface_m, sizeof(placed->surface_m));
     for (int c = 0; c < 3; c++)
         entry->sensor.surface_m[c] = (float)place.surface_m[c];
     return true;
 }
 
-static void ask_distances(struct placing *placing, struct entry *entry, struct placed *placed)
+static void ask_distances(struct placing *placing, struct placing_entry *entry, struct placed *placed)
 {
-    struct ask *ask = mem_new(sizeof(*ask));
+    struct distance_ask *ask = mem_new(sizeof(*ask));
     double at_m[3];
     to_file(&placing->params.scene->assets[placed->move.asset], placed->move.position_m, at_m);
-    *ask = (struct ask){ .placing = placing, .number = ++placing->asked };
+    *ask = (struct distance_ask){ .placing = placing, .number = ++placing->asked };
     entry->asked = ask->number;
     entry->ticket = relocation_request(relocation_of(placing, placed->move.asset), at_m, on_distances, ask);
     if (entry->ticket == 0) {
@@ -217,7 +217,7 @@ static void ask_distances(struct placing *placing, struct entry *entry, struct p
     }
 }
 
-static void let_go(struct placing *placing, struct entry *entry, const struct placed *placed)
+static void let_go(struct placing *placing, struct placing_entry *entry, const struct placed *placed)
 {
     if (entry->asked)
         relocation_cancel(placing->warm[placed->move.asset].relocation, entry->ticket);
@@ -288,7 +288,7 @@ static bool check(const struct placing *placing, const struct place_move *moves,
 bool place_set_moves(struct place_set *set, const struct place_move *moves, size_t count, struct refusal *why)
 {
     struct placing *placing = set->placing;
-    struct entry entries[PLACING_MOVES] = { 0 };
+    struct placing_entry entries[PLACING_MOVES] = { 0 };
     struct placed placed[PLACING_MOVES] = { 0 };
     int same[PLACING_MOVES];
     bool kept[PLACING_MOVES] = { 0 };
@@ -340,11 +340,11 @@ bool place_set_changed(struct place_set *set)
 
 /* --- what workers found ------------------------------------------------------------------------------------------------------- */
 
-static void take(struct placing *placing, struct ask *ask)
+static void take(struct placing *placing, struct distance_ask *ask)
 {
     for (struct place_set *set = placing->sets; set; set = set->next)
         for (size_t i = 0; i < set->count; i++) {
-            struct entry *entry = &set->entries[i];
+            struct placing_entry *entry = &set->entries[i];
             if (entry->asked != ask->number)
                 continue;
             entry->asked = 0;
@@ -360,13 +360,13 @@ static void take(struct placing *placing, struct ask *ask)
 struct sensor_coverage_answer *placing_collect(struct placing *placing)
 {
     pthread_mutex_lock(&placing->lock);
-    struct ask *done = placing->done;
+    struct distance_ask *done = placing->done;
     struct sensor_coverage_answer *answers = placing->answers;
     placing->done = NULL;
     placing->answers = NULL;
     placing->answers_last = &placing->answers;
     pthread_mutex_unlock(&placing->lock);
-    for (struct ask *ask = done; ask; ask = ask->next)
+    for (struct distance_ask *ask = done; ask; ask = ask->next)
         take(placing, ask);
     forget_done(done);
     return answers;

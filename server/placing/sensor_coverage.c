@@ -45,7 +45,7 @@ static void to_plant(const struct scene_asset *asset, const float file_m[3], dou
     transform_point(asset->placement, out, out);
 }
 
-static void find_next(const struct layout *layout, enum distance_mode mode, struct sensor_coverage *out)
+static void find_next(const struct field_layout *layout, enum distance_mode mode, struct sensor_coverage *out)
 {
     for (size_t i = 0; i < layout->sensor_count; i++) {
         double least_m = INFINITY;
@@ -66,13 +66,13 @@ static void find_next(const struct layout *layout, enum distance_mode mode, stru
     }
 }
 
-struct nearest { /* of a block of vertices */
+struct nearest_block { /* of a block of vertices */
     float m[KERNEL_BLOCK];
     bool good[KERNEL_BLOCK];
 };
 
-static void find_nearest(const struct sensor_coverage_query *order, const struct layout *layout, size_t at, size_t count,
-                         struct nearest *out)
+static void find_nearest(const struct sensor_coverage_query *order, const struct field_layout *layout, size_t at, size_t count,
+                         struct nearest_block *out)
 {
     float scratch[KERNEL_BLOCK];
     for (size_t v = 0; v < count; v++)
@@ -91,13 +91,13 @@ static void find_nearest(const struct sensor_coverage_query *order, const struct
 bool sensor_coverage_find(const struct sensor_coverage_query *order, struct sensor_coverage *out)
 {
     const struct scene_asset *asset = &order->scene->assets[order->asset];
-    struct layout *layout = layout_create(order->scene, order->asset, order->group, order->trial);
+    struct field_layout *layout = layout_create(order->scene, order->asset, order->group, order->trial);
     *out = (struct sensor_coverage){ .next_tags = { -1, -1 } };
     if (!layout)
         return false;
     double *areas = sensor_coverage_areas(&asset->file->view), all = 0, far = 0, lost = 0;
     double usual_m = isfinite(order->reach_m) ? order->reach_m / 2 : size_of(asset) / 5;
-    struct nearest *nearest = mem_new(sizeof(*nearest));
+    struct nearest_block *nearest = mem_new(sizeof(*nearest));
     size_t farthest = 0;
     out->sensors = layout->sensor_count;
     out->far_m = order->far_m > 0 ? order->far_m : usual_m;

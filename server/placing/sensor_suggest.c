@@ -20,7 +20,7 @@
 #define MEASURED 40     /* of them at most for each suggestion: what is left is worth less than a straight bound */
 #define WORTH 1e-6      /* of the measure: less is nothing */
 
-struct part { /* an asset */
+struct suggest_asset { /* an asset */
     int asset;
     size_t count;
     const float (*at_m)[3];
@@ -38,7 +38,7 @@ struct candidate {
 struct suggesting {
     const struct suggest_query *query;
     double seen_m; /* as far as a hot spot of the whole range is seen from a sensor */
-    struct part *parts;
+    struct suggest_asset *parts;
     size_t part_count;
     double whole_m2;
 };
@@ -53,7 +53,7 @@ static void measure(const struct suggesting *suggesting, double *mean, double *s
 {
     *mean = *share = 0;
     for (size_t p = 0; p < suggesting->part_count; p++) {
-        const struct part *part = &suggesting->parts[p];
+        const struct suggest_asset *part = &suggesting->parts[p];
         for (size_t v = 0; v < part->count; v++) {
             double here = unseen(suggesting, (double)part->near_m[v]);
             *mean += part->area_m2[v] * here / suggesting->whole_m2;
@@ -65,14 +65,14 @@ static void measure(const struct suggesting *suggesting, double *mean, double *s
 static bool add_part(struct suggesting *suggesting, int asset)
 {
     const struct suggest_query *query = suggesting->query;
-    struct layout *layout = layout_create(query->scene, asset, query->group, NULL);
+    struct field_layout *layout = layout_create(query->scene, asset, query->group, NULL);
     if (!layout || layout->assumed) {
         layout_destroy(&layout);
         return true;
     }
     const struct asset_view *view = &layout->file->view;
-    struct part *part = &suggesting->parts[suggesting->part_count++];
-    *part = (struct part){ .asset = asset, .count = layout->vertex_count, .at_m = view->positions_m };
+    struct suggest_asset *part = &suggesting->parts[suggesting->part_count++];
+    *part = (struct suggest_asset){ .asset = asset, .count = layout->vertex_count, .at_m = view->positions_m };
     part->area_m2 = sensor_coverage_areas(view);
     part->near_m = mem_try_array(part->count, sizeof(*part->near_m));
     if (part->near_m) {
@@ -94,7 +94,7 @@ static bool add_part(struct suggesting *suggesting, int asset)
 
 /* --- candidates -------------------------------------------------------------------------------------------------------------- */
 
-static double gain_of(const struct suggesting *suggesting, const struct part *part, const float *away_m)
+static double gain_of(const struct suggesting *suggesting, const struct suggest_asset *part, const float *away_m)
 {
     double gain = 0;
     for (size_t v = 0; v < part->count; v++)
@@ -113,7 +113,7 @@ static void bound_some(void *arg, size_t begin, size_t end)
     const struct bounding *bounding = arg;
     for (size_t i = begin; i < end; i++) {
         struct candidate *candidate = &bounding->candidates[i];
-        const struct part *part = &bounding->suggesting->parts[candidate->part];
+        const struct suggest_asset *part = &bounding->suggesting->parts[candidate->part];
         const float *from = part->at_m[candidate->vertex];
         const double most = bounding->suggesting->seen_m * bounding->suggesting->seen_m;
         for (size_t v = 0; v < part->count; v++) {
@@ -138,7 +138,7 @@ static struct candidate *find_candidates(const struct suggesting *suggesting, si
     struct candidate *list = mem_array(suggesting->part_count * (CANDIDATES + 1), sizeof(*list));
     *count = 0;
     for (size_t p = 0; p < suggesting->part_count; p++) {
-        const struct part *part = &suggesting->parts[p];
+        const struct suggest_asset *part = &suggesting->parts[p];
         double whole = 0, passed = 0, next = 0;
         for (size_t v = 0; v < part->count; v++)
             whole += part->area_m2[v] * unseen(suggesting, (double)part->near_m[v]);
@@ -159,7 +159,7 @@ static struct candidate *find_candidates(const struct suggesting *suggesting, si
 
 /* --- distances along the surface --------------------------------------------------------------------------------------------- */
 
-struct waiting {
+struct suggest_wait {
     pthread_mutex_t lock;
     pthread_cond_t done;
     /* --- below: under lock */
@@ -169,7 +169,7 @@ struct waiting {
 
 static void on_distances(void *arg, struct relocation_result *result)
 {
-    struct waiting *waiting = arg;
+    struct suggest_wait *waiting = arg;
     pthread_mutex_lock(&waiting->lock);
     waiting->result = *result;
     waiting->is_done = true;
@@ -178,10 +178,10 @@ static void on_distances(void *arg, struct relocation_result *result)
 }
 
 /* The caller frees what comes back (mem_free); NULL: it cannot be measured. */
-static float *distances_from(const struct suggesting *suggesting, struct part *part, uint32_t vertex)
+static float *distances_from(const struct suggesting *suggesting, struct suggest_asset *part, uint32_t vertex)
 {
     const struct suggest_query *query = suggesting->query;
-    struct waiting waiting = { .is_done = false };
+    struct suggest_wait waiting = { .is_done = false };
     const double point_m[3] = { (double)part->at_m[vertex][0], (double)part->at_m[vertex][1], (double)part->at_m[vertex][2] };
     if (!part->mover)
         part->mover = mover_create(query->log, query->workers, query->scene, query->folder, part->asset);
@@ -206,7 +206,7 @@ static bool take_best(struct suggesting *suggesting, struct suggestion *out)
     float *best_m = NULL;
     double most = WORTH * suggesting->whole_m2;
     for (size_t i = 0; i < count && i < MEASURED && list[i].bound > most; i++) {
-        struct part *part = &suggesting->parts[list[i].part];
+        struct suggest_asset *part = &suggesting->parts[list[i].part];
         float *away_m = distances_from(suggesting, part, list[i].vertex);
         double gain = away_m ? gain_of(suggesting, part, away_m) : 0;
         if (gain > most) {
@@ -221,7 +221,7 @@ static bool take_best(struct suggesting *suggesting, struct suggestion *out)
     mem_free(list);
     if (!best_m)
         return false;
-    struct part *part = &suggesting->parts[best.part];
+    struct suggest_asset *part = &suggesting->parts[best.part];
     *out = (struct suggestion){ .asset = part->asset };
     measure(suggesting, &out->before, &out->unseen_before);
     for (size_t v = 0; v < part->count; v++)

@@ -35,12 +35,13 @@ void plant_influence_read(struct yaml_reader *reader, yaml_node_t *node, void *r
 
 void plant_gp_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = { { "range_m", KEY_NUMBER, false, offsetof(struct plant_gp, range_m), 1e-3, 1e6, NULL, NULL },
-                                       { "noise", KEY_NUMBER, false, offsetof(struct plant_gp, noise), 0, PLANT_MAX_VALUE, NULL, NULL },
-                                       { "deviation", KEY_NUMBER, false, offsetof(struct plant_gp, deviation), 1e-12, PLANT_MAX_VALUE, NULL,
-                                         NULL },
-                                       { "fit", KEY_NAME, false, offsetof(struct plant_gp, fit), 0, 0, NULL, NULL },
-                                       { 0 } };
+    static const struct yaml_key keys[] = {
+        { "range_m", KEY_NUMBER, false, offsetof(struct plant_gp, range_m), 1e-3, 1e6, NULL, NULL },
+        { "noise", KEY_NUMBER, false, offsetof(struct plant_gp, noise), 0, PLANT_MAX_VALUE, NULL, NULL },
+        { "deviation", KEY_NUMBER, false, offsetof(struct plant_gp, deviation), 1e-12, PLANT_MAX_VALUE, NULL, NULL },
+        { "fit", KEY_NAME, false, offsetof(struct plant_gp, fit), 0, 0, NULL, NULL },
+        { 0 }
+    };
     struct plant_group *group = record;
     struct yaml_map map;
     yaml_map_read(reader, node, "gp", keys, &group->gp, &map);

@@ -88,17 +88,17 @@ static bool has_keyword(const uint8_t *data, size_t length, const char *keyword)
 }
 
 /* A chunk of a PNG file, or the end. */
-struct chunk {
+struct png_chunk {
     const uint8_t *type, *data;
     size_t length;
 };
 
 /* Moves *at to the next chunk. Returns false if there is none, or it is damaged. */
-static bool next_chunk(const uint8_t *png, size_t count, size_t *at, struct chunk *out)
+static bool next_chunk(const uint8_t *png, size_t count, size_t *at, struct png_chunk *out)
 {
     if (count - *at < AROUND)
         return false;
-    *out = (struct chunk){ .type = png + *at + 4, .data = png + *at + 8, .length = get_u32(png + *at) };
+    *out = (struct png_chunk){ .type = png + *at + 4, .data = png + *at + 8, .length = get_u32(png + *at) };
     if (out->length > count - *at - AROUND || get_u32(out->data + out->length) != crc32(0, out->type, (uInt)(4 + out->length)))
         return false;
     *at += AROUND + out->length;
@@ -127,7 +127,7 @@ enum { PLAIN_CHUNKS = sizeof(plain) / sizeof(*plain) };
 #define FAIL(...) (snprintf(why, PNG_PLAIN_WHY_BYTES, __VA_ARGS__), false)
 
 /* Eight bits of red, green and blue, not interlaced: nothing else is shown as its bytes are. */
-static bool is_plain_header(const struct chunk *chunk, char why[PNG_PLAIN_WHY_BYTES])
+static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WHY_BYTES])
 {
     static const uint8_t format[] = { 8, 2, 0, 0, 0 };
     bool is_header = memcmp(chunk->type, "IHDR", 4) == 0 && chunk->length == 13;
@@ -138,7 +138,7 @@ static bool is_plain_header(const struct chunk *chunk, char why[PNG_PLAIN_WHY_BY
 }
 
 /* Returns the row of `plain` that the chunk is of; PLAIN_CHUNKS: of none. */
-static int plain_row(const struct chunk *chunk)
+static int plain_row(const struct png_chunk *chunk)
 {
     int row = 0;
     while (row < PLAIN_CHUNKS && memcmp(chunk->type, plain[row].type, 4) != 0)
@@ -151,7 +151,7 @@ static char printable(uint8_t byte)
     return byte > ' ' && byte < 0x7f ? (char)byte : '?';
 }
 
-static bool takes_plain_chunk(const struct chunk *chunk, int *next, char why[PNG_PLAIN_WHY_BYTES])
+static bool takes_plain_chunk(const struct png_chunk *chunk, int *next, char why[PNG_PLAIN_WHY_BYTES])
 {
     int row = plain_row(chunk);
     if (row == PLAIN_CHUNKS)
@@ -171,7 +171,7 @@ static bool takes_plain_chunk(const struct chunk *chunk, int *next, char why[PNG
 
 bool png_is_plain(const uint8_t *png, size_t count, const char *const *keywords, int keyword_count, char why[PNG_PLAIN_WHY_BYTES])
 {
-    struct chunk chunk;
+    struct png_chunk chunk;
     size_t at = SIGNATURE;
     int texts = 0, next = 0;
     if (!is_png(png, count) || !next_chunk(png, count, &at, &chunk))
@@ -195,7 +195,7 @@ bool png_is_plain(const uint8_t *png, size_t count, const char *const *keywords,
 
 char *png_text_find(const uint8_t *png, size_t count, const char *keyword, size_t max_bytes, size_t *out_length)
 {
-    struct chunk chunk, found = { .data = NULL };
+    struct png_chunk chunk, found = { .data = NULL };
     size_t before = strlen(keyword) + 2;
     for (size_t at = SIGNATURE; is_png(png, count) && next_chunk(png, count, &at, &chunk);)
         if (memcmp(chunk.type, "zTXt", 4) == 0 && has_keyword(chunk.data, chunk.length, keyword)) {

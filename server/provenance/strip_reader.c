@@ -67,12 +67,12 @@ static int find_in_row(const struct strip_picture *picture, int y, struct finder
     return count;
 }
 
-struct row {
+struct strip_row {
     double left_px, cell_px; /* 0: no strip here */
 };
 
 /* Two finders as far apart as their own cells say. */
-static struct row strip_in_row(const struct strip_picture *picture, int y)
+static struct strip_row strip_in_row(const struct strip_picture *picture, int y)
 {
     enum { MOST = 64 };
     static const double APART = STRIP_COLUMNS - STRIP_FINDER; /* cells between their middles */
@@ -82,9 +82,9 @@ static struct row strip_in_row(const struct strip_picture *picture, int y)
         for (int j = count - 1; j > i; j--) {
             double cell_px = (finders[j].middle_px - finders[i].middle_px) / APART;
             if (fabs(finders[i].cell_px - cell_px) < 0.25 * cell_px + 0.3 && fabs(finders[j].cell_px - cell_px) < 0.25 * cell_px + 0.3)
-                return (struct row){ finders[i].middle_px - STRIP_FINDER * cell_px / 2, cell_px };
+                return (struct strip_row){ finders[i].middle_px - STRIP_FINDER * cell_px / 2, cell_px };
         }
-    return (struct row){ 0, 0 };
+    return (struct strip_row){ 0, 0 };
 }
 
 /* The longest run of rows that agree; a row or two between may be spoilt. */
@@ -92,7 +92,7 @@ static bool find_place(const struct strip_picture *picture, struct strip_found *
 {
     double best = 0, left_px = 0, cell_px = 0, first = 0, rows = 0;
     for (int y = 0, last = -9; y < picture->height_px; y++) {
-        struct row row = strip_in_row(picture, y);
+        struct strip_row row = strip_in_row(picture, y);
         if (row.cell_px == 0)
             continue;
         bool goes_on = y - last <= 3 && rows > 0 && fabs(row.left_px - left_px / rows) < 2.5 && fabs(row.cell_px - cell_px / rows) < 0.1;
@@ -117,15 +117,16 @@ static bool find_place(const struct strip_picture *picture, struct strip_found *
 
 /* --- cells -------------------------------------------------------------------------------------------------------------------- */
 
-struct patch {
+struct color_patch {
     double rgb[3]; /* mean */
     int count;
 };
 
 /* The mean of a rectangle, in cells of the strip, of its inner part. */
-static struct patch patch_at(const struct strip_picture *picture, const struct strip_found *found, double column, double row, double rows)
+static struct color_patch patch_at(const struct strip_picture *picture, const struct strip_found *found, double column, double row,
+                                   double rows)
 {
-    struct patch patch = { 0 };
+    struct color_patch patch = { 0 };
     int x0 = (int)ceil(found->left_px + (column + 0.2) * found->cell_px - 0.5),
         x1 = (int)floor(found->left_px + (column + 0.8) * found->cell_px - 0.5);
     int y0 = (int)ceil(found->top_px + (row + 0.25) * found->row_px - 0.5),
@@ -145,7 +146,7 @@ static struct patch patch_at(const struct strip_picture *picture, const struct s
     return patch;
 }
 
-static double grey_of(const struct patch *patch)
+static double grey_of(const struct color_patch *patch)
 {
     return 0.299 * patch->rgb[0] + 0.587 * patch->rgb[1] + 0.114 * patch->rgb[2];
 }
@@ -156,7 +157,7 @@ static bool read_code(const struct strip_picture *picture, struct strip_found *f
     uint8_t code[STRIP_BYTES] = { 0 };
     for (int row = 0; row < STRIP_CODE_ROWS; row++)
         for (int column = 0; column < STRIP_INNER; column++) {
-            struct patch patch = patch_at(picture, found, STRIP_FINDER + column, code_row + row, 1);
+            struct color_patch patch = patch_at(picture, found, STRIP_FINDER + column, code_row + row, 1);
             strip_set_cell(code, row, column, grey_of(&patch) < GREY);
         }
     return strip_decode(code, &found->strip, &found->mended);
@@ -170,7 +171,7 @@ static void read_ramp(const struct strip_picture *picture, struct strip_found *f
     for (int shade = 0; shade < STRIP_SHADES; shade++)
         for (int i = 0; i < STRIP_INNER; i++) {
             double row = 1 + shade * STRIP_SHADE_CELLS, lab[3];
-            struct patch patch = patch_at(picture, found, STRIP_FINDER + i, row, STRIP_SHADE_CELLS);
+            struct color_patch patch = patch_at(picture, found, STRIP_FINDER + i, row, STRIP_SHADE_CELLS);
             lab_from_srgb(patch.rgb, VISION_NORMAL, found->ramp[shade][i]);
             int x = (int)(found->left_px + (STRIP_FINDER + i + 0.5) * found->cell_px);
             for (int k = 0; k < 4; k++) {

@@ -81,30 +81,30 @@ static void safe_box(const double min_m[3], const double max_m[3], double safe_m
 /* One axis of the picture, and the part of it that is to be filled: the tangents of its planes, or, without perspective, where they lie
    in halves of the picture. They touch the box where low = max(-x + z from) and high = max(x - z to), with z forward. Between them
    stands the eye. */
-struct side {
+struct clip_side {
     double from, to, low, high;
 };
 
-static void side_init(struct side *side, double low, double high, double scale)
+static void side_init(struct clip_side *side, double low, double high, double scale)
 {
     double middle = (low + high) / 2, half = (high - low) / 2 / FIT_MARGIN;
-    *side = (struct side){ (middle - half) * scale, (middle + half) * scale, -INFINITY, -INFINITY };
+    *side = (struct clip_side){ (middle - half) * scale, (middle + half) * scale, -INFINITY, -INFINITY };
 }
 
-static void side_add(struct side *side, double x, double z)
+static void side_add(struct clip_side *side, double x, double z)
 {
     side->high = fmax(side->high, x - z * side->to);
     side->low = fmax(side->low, -x + z * side->from);
 }
 
 /* At least so far back. */
-static double side_back(const struct side *side)
+static double side_back(const struct clip_side *side)
 {
     return (side->low + side->high) / (side->to - side->from);
 }
 
 /* To which side, from that far back. */
-static double side_shift(const struct side *side, double back_m)
+static double side_shift(const struct clip_side *side, double back_m)
 {
     return (side->high - side->low - back_m * (side->to + side->from)) / 2;
 }
@@ -113,7 +113,7 @@ static double side_shift(const struct side *side, double back_m)
 static void place_parallel(struct camera *camera, const struct basis *basis, const double half_m[3], const double center_m[3],
                            double aspect, const struct camera_window *window)
 {
-    struct side right, up;
+    struct clip_side right, up;
     double right_m = 0, up_m = 0, deep_m = 0;
     for (int i = 0; i < 3; i++) {
         right_m += fabs(basis->right[i]) * half_m[i];
@@ -136,7 +136,7 @@ static void place_eye(struct camera *camera, const struct basis *basis, const do
                       const double center_m[3], double aspect, const struct camera_window *window)
 {
     double t_up = tan(camera->fov_deg * M_PI / 360), nearest_m = INFINITY;
-    struct side right, up;
+    struct clip_side right, up;
     side_init(&right, window->left, window->right, t_up * aspect);
     side_init(&up, window->bottom, window->top, t_up);
     for (size_t n = 0; n < count; n++) {

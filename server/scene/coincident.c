@@ -15,13 +15,13 @@ static const double LEAST_AREA_M2 = 1e-4, LEAST_OVERLAP_M = 1e-3;
 static const double FORWARD = 4e-5;
 enum { MOST_STEPS = 7 };
 
-struct face {
+struct coincident_face {
     double normal[3]; /* turned so that its largest part is above 0: both sides are alike */
     double offset_m;  /* of its plane, from the middle of where two assets meet */
     double corner[3][3], low[3], high[3];
 };
 struct faces {
-    struct face *at;
+    struct coincident_face *at;
     size_t count, capacity;
 };
 struct region {
@@ -45,7 +45,7 @@ static void turn(double normal[3])
 }
 
 /* False: too small to be looked at. */
-static bool measure(struct face *face)
+static bool measure(struct coincident_face *face)
 {
     double ab[3], ac[3];
     for (int c = 0; c < 3; c++) {
@@ -74,7 +74,7 @@ static void collect(const struct scene_asset *asset, const struct region *region
     for (uint32_t p = 0; p < level->primitive_count; p++) {
         const struct asset_primitive *primitive = &view->primitives[level->first_primitive + p];
         for (uint32_t i = 0; i < primitive->index_count; i += 3) {
-            struct face face = { .offset_m = 0 };
+            struct coincident_face face = { .offset_m = 0 };
             for (int k = 0; k < 3; k++) {
                 const float *place = view->positions_m[view->indices[primitive->first_index + i + (uint32_t)k]];
                 transform_point(asset->placement, (double[3]){ (double)place[0], (double)place[1], (double)place[2] }, face.corner[k]);
@@ -91,11 +91,11 @@ static void collect(const struct scene_asset *asset, const struct region *region
 
 static int by_offset(const void *a, const void *b)
 {
-    const struct face *x = a, *y = b;
+    const struct coincident_face *x = a, *y = b;
     return (x->offset_m > y->offset_m) - (x->offset_m < y->offset_m);
 }
 
-static bool over_each_other(const struct face *a, const struct face *b)
+static bool over_each_other(const struct coincident_face *a, const struct coincident_face *b)
 {
     int wide = 0;
     for (int c = 0; c < 3; c++) {
@@ -107,7 +107,7 @@ static bool over_each_other(const struct face *a, const struct face *b)
     return wide >= 2;
 }
 
-static bool on_one_plane(const struct face *a, const struct face *b)
+static bool on_one_plane(const struct coincident_face *a, const struct coincident_face *b)
 {
     for (int c = 0; c < 3; c++)
         if (fabs(a->normal[c] - b->normal[c]) > SAME_NORMAL)

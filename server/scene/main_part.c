@@ -12,12 +12,12 @@
 
 enum { LOGGED_ASSETS = 5 };
 
-struct parts {
+struct scene_tris {
     struct gap_tri *tris;
     size_t count;
 };
 
-static void add_asset(struct parts *parts, const struct scene *scene, int asset, size_t *capacity)
+static void add_asset(struct scene_tris *parts, const struct scene *scene, int asset, size_t *capacity)
 {
     const struct scene_asset *of = &scene->assets[asset];
     const struct asset_view *view = &of->file->view;
@@ -94,7 +94,7 @@ static void log_outside(struct log *log, const struct scene *scene, size_t all)
 
 void main_part_find(struct log *log, struct scene *scene)
 {
-    struct parts parts = { 0 };
+    struct scene_tris parts = { 0 };
     struct extent extent;
     size_t capacity = 0;
     for (size_t i = 0; i < scene->asset_count; i++)

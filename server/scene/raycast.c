@@ -44,7 +44,7 @@ static bool cross_box(const double origin[3], const double direction[3], const d
     return *low <= *high;
 }
 
-struct search { /* of one asset */
+struct raycast_search { /* of one asset */
     const struct asset_view *view;
     double origin[3], direction[3], low; /* file frame */
     bool cut;
@@ -53,13 +53,13 @@ struct search { /* of one asset */
     int asset;
 };
 
-struct crossing {
+struct surface_crossing {
     double t, u, v;
     bool back; /* it is left there */
 };
 
 /* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. The determinant is negative where a back is seen. */
-static bool cross_triangle(const struct search *search, const uint32_t corners[3], struct crossing *out)
+static bool cross_triangle(const struct raycast_search *search, const uint32_t corners[3], struct surface_crossing *out)
 {
     const float *a = search->view->positions_m[corners[0]], *b = search->view->positions_m[corners[1]],
                 *c = search->view->positions_m[corners[2]];
@@ -80,13 +80,13 @@ static bool cross_triangle(const struct search *search, const uint32_t corners[3
     double v = vec_dot(search->direction, q) / determinant;
     if (v < -RIM || u + v > 1 + RIM)
         return false;
-    *out = (struct crossing){ vec_dot(ac, q) / determinant, u, v, determinant < 0 };
+    *out = (struct surface_crossing){ vec_dot(ac, q) / determinant, u, v, determinant < 0 };
     return true;
 }
 
-static void try_triangle(struct search *search, const uint32_t corners[3], bool one_sided)
+static void try_triangle(struct raycast_search *search, const uint32_t corners[3], bool one_sided)
 {
-    struct crossing at;
+    struct surface_crossing at;
     if (!cross_triangle(search, corners, &at) || (one_sided && at.back) || at.t < search->low || at.t >= search->limit)
         return;
     memcpy(search->hit->corners, corners, sizeof(search->hit->corners));
@@ -96,7 +96,7 @@ static void try_triangle(struct search *search, const uint32_t corners[3], bool 
     search->hit->inside = search->cut && at.back;
 }
 
-static bool cluster_crossed(const struct search *search, const struct asset_cluster *cluster)
+static bool cluster_crossed(const struct raycast_search *search, const struct asset_cluster *cluster)
 {
     double min[3], max[3], low = search->low, high = search->limit;
     for (int i = 0; i < 3; i++) {
@@ -107,7 +107,7 @@ static bool cluster_crossed(const struct search *search, const struct asset_clus
 }
 
 /* The finest level's primitives come first, and their clusters too. */
-static void search_asset(struct search *search)
+static void search_asset(struct raycast_search *search)
 {
     const struct asset_view *view = search->view;
     const struct asset_primitive *primitive = &view->primitives[view->levels[0].first_primitive];
@@ -156,7 +156,7 @@ static double brought_back(const struct ray *ray, const struct scene_asset *asse
 }
 
 /* The ray in the file's frame. False: it passes the asset by. */
-static bool aim_at(struct search *search, const struct scene_asset *asset, const struct ray *ray, double low, double limit)
+static bool aim_at(struct raycast_search *search, const struct scene_asset *asset, const struct ray *ray, double low, double limit)
 {
     double file_from_plant[16], ahead[3], enter = low, leave = limit;
     if (!cross_box(ray->origin, ray->direction, asset->bounds_min_m, asset->bounds_max_m, &enter, &leave) ||
@@ -175,10 +175,10 @@ static bool aim_at(struct search *search, const struct scene_asset *asset, const
 }
 
 /* How many closed bodies of the asset the ray is in at search->low: those that it leaves less those that it comes into. */
-static int count_bodies(const struct search *search, const struct asset *file)
+static int count_bodies(const struct raycast_search *search, const struct asset *file)
 {
     const struct closed_bodies *closed = asset_closed(file, 0);
-    struct crossing at;
+    struct surface_crossing at;
     int count = 0;
     for (size_t r = 0; r < closed->run_count; r++)
         for (uint32_t i = 0; i < closed->runs[r].index_count; i += 3)
@@ -196,7 +196,7 @@ static bool hits_cap(const struct scene *scene, const struct visibility *visibil
         return false;
     for (size_t i = 0; i < scene->asset_count; i++) {
         const struct scene_asset *asset = &scene->assets[i];
-        struct search search = { 0 };
+        struct raycast_search search = { 0 };
         if (visibility_of(visibility, (int)i) != ASSET_SHOWN ||
             !clip_touches(&visibility->clip, asset->bounds_min_m, asset->bounds_max_m) || !aim_at(&search, asset, ray, low, high))
             continue;
@@ -242,7 +242,7 @@ void raycast(const struct scene *scene, const struct visibility *visibility, con
     double nearest = INFINITY;
     for (size_t i = 0; i < scene->asset_count; i++) {
         const struct scene_asset *asset = &scene->assets[i];
-        struct search search = { .hit = hit, .asset = (int)i };
+        struct raycast_search search = { .hit = hit, .asset = (int)i };
         if (visibility_of(visibility, (int)i) != ASSET_SHOWN ||
             !aim_at(&search, asset, ray, low, fmin(high, brought_back(ray, asset, nearest))))
             continue;

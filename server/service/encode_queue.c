@@ -27,12 +27,12 @@ struct encode_queue {
     struct encode_streams streams;
     int jobs;
     int heavy; /* jobs on the workers that are of frames over HTTP, or signed: of many pixels, maybe, and losslessly */
-    struct job *heavy_waiting, **heavy_last;
+    struct encode_job *heavy_waiting, **heavy_last;
     struct request_group rest; /* of encode_queue_submit */
     struct encode_plan plan;
 };
 
-struct job {
+struct encode_job {
     struct encode_queue *queue;
     struct encode_stream *stream;
     struct frame *frame;        /* NULL: nothing to be encoded */
@@ -40,12 +40,12 @@ struct job {
     struct encoder_params quality;
     bool again;
     uint64_t number, *from;
-    struct job *next, *next_heavy;
+    struct encode_job *next, *next_heavy;
     bool heavy;
 };
 
-struct work {                  /* of a stream */
-    struct job *first, **last; /* under lock; the first is running */
+struct stream_work {                  /* of a stream */
+    struct encode_job *first, **last; /* under lock; the first is running */
     struct encoder *encoder;   /* of a codec that is a stream; and below: only the running job's */
     struct frame *before;      /* what the clients of the stream show, in this quality */
     struct encoder_params quality;
@@ -86,7 +86,7 @@ struct encode_queue *encode_queue_create(const struct encode_queue_params *param
 
 static bool is_busy(const struct encode_stream *stream)
 {
-    const struct work *work = stream->work;
+    const struct stream_work *work = stream->work;
     return work->first != NULL;
 }
 
@@ -98,7 +98,7 @@ void encode_queue_sweep(struct encode_queue *queue)
         pthread_mutex_unlock(&queue->lock);
         if (!stream)
             return;
-        struct work *work = stream->work;
+        struct stream_work *work = stream->work;
         encoder_destroy(&work->encoder);
         frame_unref(&work->before);
         mem_free(work);
@@ -151,7 +151,7 @@ void encode_queue_destroy(struct encode_queue **encoding_ptr)
 
 /* --- encoders --------------------------------------------------------------------------------------------------------- */
 
-static struct encoder *encoder_take(struct encode_queue *queue, struct work *work, enum wire_codec codec)
+static struct encoder *encoder_take(struct encode_queue *queue, struct stream_work *work, enum wire_codec codec)
 {
     const char *name = name_of(names_codec, (int)codec);
     if (encoder_is_stream(name)) {
@@ -172,7 +172,7 @@ static struct encoder *encoder_take(struct encode_queue *queue, struct work *wor
     return encoder;
 }
 
-static void encoder_give(struct encode_queue *queue, const struct work *work, enum wire_codec codec, struct encoder *encoder)
+static void encoder_give(struct encode_queue *queue, const struct stream_work *work, enum wire_codec codec, struct encoder *encoder)
 {
     if (!encoder || encoder == work->encoder)
         return;
@@ -198,10 +198,10 @@ static bool same_quality(const struct encoder_params *a, const struct encoder_pa
 }
 
 /* False: it failed. *out NULL: nothing has changed. */
-static bool encode(struct job *job, struct packet **out)
+static bool encode(struct encode_job *job, struct packet **out)
 {
     struct encode_queue *queue = job->queue;
-    struct work *work = job->stream->work;
+    struct stream_work *work = job->stream->work;
     enum wire_codec codec = job->group.tickets[0].request.codec;
     struct encoder_params params = job->quality;
     struct encoder *encoder = encoder_take(queue, work, codec);
@@ -222,7 +222,7 @@ static bool encode(struct job *job, struct packet **out)
 }
 
 /* Under lock: the lowest number that jobs after this one still have to give to someone. */
-static uint64_t still_needed(const struct job *job)
+static uint64_t still_needed(const struct encode_job *job)
 {
     uint64_t least = UINT64_MAX;
     for (; job; job = job->next)
@@ -231,12 +231,12 @@ static uint64_t still_needed(const struct job *job)
     return least;
 }
 
-struct run {
+struct packet_run {
     struct packet *packets[ENCODE_STREAM_KEPT];
     int count; /* negative: gone */
 };
 
-static void take_run(struct job *job, size_t ticket, struct run *run)
+static void take_run(struct encode_job *job, size_t ticket, struct packet_run *run)
 {
     pthread_mutex_lock(&job->queue->lock);
     run->count = encode_stream_catch_up(job->stream, job->from[ticket], job->number, run->packets);
@@ -245,10 +245,10 @@ static void take_run(struct job *job, size_t ticket, struct run *run)
     pthread_mutex_unlock(&job->queue->lock);
 }
 
-static void answer(struct job *job)
+static void answer(struct encode_job *job)
 {
     const struct encode_queue_params *params = &job->queue->params;
-    struct run run;
+    struct packet_run run;
     for (size_t i = 0; i < job->group.count; i++) {
         take_run(job, i, &run);
         params->done(params->done_arg, &job->group.tickets[i], run.packets, run.count < 0 ? 0 : run.count, run.count < 0);
@@ -258,7 +258,7 @@ static void answer(struct job *job)
     params->all_done(params->done_arg);
 }
 
-static void job_destroy(struct job *job)
+static void job_destroy(struct encode_job *job)
 {
     frame_unref(&job->frame);
     request_group_finish(&job->group);
@@ -269,7 +269,7 @@ static void job_destroy(struct job *job)
 static void run_job(void *arg);
 
 /* Frames over HTTP, and those that are signed, leave half of the workers to others. */
-static void start(struct encode_queue *queue, struct job *job)
+static void start(struct encode_queue *queue, struct encode_job *job)
 {
     int most = workers_count(queue->params.workers) / 2;
     pthread_mutex_lock(&queue->lock);
@@ -289,7 +289,7 @@ static void start(struct encode_queue *queue, struct job *job)
 static void start_heavy(struct encode_queue *queue)
 {
     pthread_mutex_lock(&queue->lock);
-    struct job *job = queue->heavy_waiting;
+    struct encode_job *job = queue->heavy_waiting;
     if (job)
         queue->heavy_waiting = job->next_heavy;
     if (!queue->heavy_waiting)
@@ -302,10 +302,10 @@ static void start_heavy(struct encode_queue *queue)
 
 static void run_job(void *arg)
 {
-    struct job *job = arg;
+    struct encode_job *job = arg;
     struct encode_queue *queue = job->queue;
     struct encode_stream *stream = job->stream;
-    struct work *work = stream->work;
+    struct stream_work *work = stream->work;
     struct packet *packet = NULL;
     bool good = !job->frame || encode(job, &packet);
     pthread_mutex_lock(&queue->lock);
@@ -317,7 +317,7 @@ static void run_job(void *arg)
     packet_unref(&packet);
     answer(job);
     pthread_mutex_lock(&queue->lock);
-    struct job *next = work->first = job->next;
+    struct encode_job *next = work->first = job->next;
     if (!next)
         work->last = &work->first;
     pthread_mutex_unlock(&queue->lock);
@@ -349,12 +349,12 @@ static bool same_coding(const struct request_ticket *ticket, void *arg)
 }
 
 /* Under lock. */
-static struct job *make_job(struct encode_queue *queue, struct frame *frame, struct request_group *tickets)
+static struct encode_job *make_job(struct encode_queue *queue, struct frame *frame, struct request_group *tickets)
 {
     struct encode_plan *plan = &queue->plan;
     const struct frame_request *first = &tickets->tickets[0].request;
-    struct job *job = mem_new(sizeof(*job));
-    *job = (struct job){ .queue = queue, .stream = plan->stream, .number = plan->number, .group = *tickets, .from = plan->from };
+    struct encode_job *job = mem_new(sizeof(*job));
+    *job = (struct encode_job){ .queue = queue, .stream = plan->stream, .number = plan->number, .group = *tickets, .from = plan->from };
     job->frame = plan->encode ? frame_ref(frame) : NULL;
     job->quality = first->quality;
     job->quality.key = plan->key;
@@ -368,9 +368,9 @@ static struct job *make_job(struct encode_queue *queue, struct frame *frame, str
 }
 
 /* Under lock. True: nothing of the stream is under way, so that this one may start. */
-static bool append(struct encode_queue *queue, struct job *job)
+static bool append(struct encode_queue *queue, struct encode_job *job)
 {
-    struct work *work = job->stream->work;
+    struct stream_work *work = job->stream->work;
     if (!work) {
         work = job->stream->work = mem_new(sizeof(*work));
         work->last = &work->first;
@@ -390,7 +390,7 @@ static void submit_group(struct encode_queue *queue, struct frame *frame, struct
         encode_streams_plan(&queue->streams, frame, &tickets, clock_mono_ns(), &queue->plan, &queue->rest);
         *same = queue->rest;
         queue->rest = (struct request_group){ 0 };
-        struct job *job = make_job(queue, frame, &tickets);
+        struct encode_job *job = make_job(queue, frame, &tickets);
         bool starts = append(queue, job);
         pthread_mutex_unlock(&queue->lock);
         if (starts)

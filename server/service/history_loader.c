@@ -16,7 +16,7 @@
 static const int64_t SPAN_NS = 60 * NS_PER_S; /* months come and go no more often than that */
 static const int64_t LOOK_NS = 2 * NS_PER_S;  /* while nothing is recorded */
 
-struct wanted {
+struct wanted_instant {
     uint64_t client;
     int64_t at_us;
 };
@@ -30,7 +30,7 @@ struct history_loader {
     int64_t spanned_ns;
     struct thread thread;
     /* --- below: under thread.lock */
-    struct wanted *wanted; /* oldest first */
+    struct wanted_instant *wanted; /* oldest first */
     size_t count, capacity;
     struct history_loader_answer *answers, **last;
     int64_t first_us;
@@ -60,7 +60,7 @@ void history_loader_ask(struct history_loader *loader, uint64_t client, int64_t 
     size_t i = find(loader, client);
     if (i == loader->count)
         mem_grow(&loader->wanted, &loader->capacity, ++loader->count, sizeof(*loader->wanted));
-    loader->wanted[i] = (struct wanted){ client, at_us };
+    loader->wanted[i] = (struct wanted_instant){ client, at_us };
     pthread_cond_signal(&loader->thread.wake);
     pthread_mutex_unlock(&loader->thread.lock);
 }
@@ -140,7 +140,7 @@ static void look_at_span(struct history_loader *loader)
 }
 
 /* False: nothing is, and it is time to look again for the beginning of what is recorded, or to stop. */
-static bool next_wanted(struct history_loader *loader, struct wanted *out, bool *stopping)
+static bool next_wanted(struct history_loader *loader, struct wanted_instant *out, bool *stopping)
 {
     int64_t until_ns = clock_mono_ns() + LOOK_NS;
     pthread_mutex_lock(&loader->thread.lock);
@@ -157,7 +157,7 @@ static bool next_wanted(struct history_loader *loader, struct wanted *out, bool 
     return any;
 }
 
-static void give_answer(struct history_loader *loader, const struct wanted *wanted)
+static void give_answer(struct history_loader *loader, const struct wanted_instant *wanted)
 {
     struct history_loader_answer *answer = mem_new(sizeof(*answer));
     *answer =
@@ -172,7 +172,7 @@ static void give_answer(struct history_loader *loader, const struct wanted *want
 static void *run(void *arg)
 {
     struct history_loader *loader = arg;
-    struct wanted wanted;
+    struct wanted_instant wanted;
     bool stopping = false;
     while (!stopping) {
         look_at_span(loader);

@@ -20,7 +20,7 @@ enum { THREADS = 2 };                            /* one address takes one at a t
 static const size_t PIECE_BYTES = 256 * 1024;    /* a piece ends with the tag that makes it as long, */
 static const int64_t PIECE_NS = 100 * NS_PER_MS; /* or that took as long */
 
-struct question {
+struct pending_query {
     struct history_query query;
     int next_tag; /* to be read; of drifting sensors: asset */
     bool buckets; /* as the last line of a CSV file that names columns says */
@@ -28,7 +28,7 @@ struct question {
     bool wanted;  /* its next piece is */
     bool forgotten;
     uint64_t served; /* when its newest piece was begun; 0: it has none */
-    struct question *next;
+    struct pending_query *next;
 };
 
 struct history_queries {
@@ -45,9 +45,9 @@ struct history_queries {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: under lock */
-    struct question *questions; /* newest first; one that a thread is at is not among them */
+    struct pending_query *questions; /* newest first; one that a thread is at is not among them */
     uint64_t at_work[THREADS];  /* payers; 0: none */
-    struct question *working[THREADS];
+    struct pending_query *working[THREADS];
     uint64_t served; /* pieces begun */
     int count;       /* of questions, those at work too */
     struct history_answer *answers, **last;
@@ -56,7 +56,7 @@ struct history_queries {
 
 /* --- a piece of an answer --------------------------------------------------------------------------------------------- */
 
-static void print_csv(struct question *question, const struct plant_tag *tag, const struct history_series *series, struct text *out)
+static void print_csv(struct pending_query *question, const struct plant_tag *tag, const struct history_series *series, struct text *out)
 {
     bool buckets = series->bucket_us > 0;
     if (question->next_tag == 0 || buckets != question->buckets)
@@ -65,7 +65,8 @@ static void print_csv(struct question *question, const struct plant_tag *tag, co
     series_text_csv(out, tag->name, tag->unit ? tag->unit : "", series);
 }
 
-static void print_json(const struct question *question, const struct plant_tag *tag, const struct history_series *series, struct text *out)
+static void print_json(const struct pending_query *question, const struct plant_tag *tag, const struct history_series *series,
+                       struct text *out)
 {
     const struct history_query *query = &question->query;
     if (question->next_tag == 0)
@@ -78,7 +79,7 @@ static void print_json(const struct question *question, const struct plant_tag *
 }
 
 /* The next tag of it, from the core, which writes it as it would be written here. */
-static bool fetch_tag(const struct history_queries *queries, struct core_history *core, struct question *question, struct text *out)
+static bool fetch_tag(const struct history_queries *queries, struct core_history *core, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;
     const char *tag = queries->plant->tags[query->tags[question->next_tag]].name;
@@ -95,7 +96,7 @@ static int steps_of(const struct history_queries *queries, const struct history_
 }
 
 /* The next tag of it. False: history could not be read. */
-static bool read_tag(struct history_queries *queries, struct history_reader *reader, struct question *question, struct text *out)
+static bool read_tag(struct history_queries *queries, struct history_reader *reader, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;
     const struct plant_tag *tag = &queries->plant->tags[query->tags[question->next_tag]];
@@ -111,7 +112,7 @@ static bool read_tag(struct history_queries *queries, struct history_reader *rea
 }
 
 /* The sensors on the next asset. */
-static bool read_asset(struct history_queries *queries, struct history_reader *reader, struct question *question, struct text *out)
+static bool read_asset(struct history_queries *queries, struct history_reader *reader, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;
     int asset = query->tag >= 0 ? queries->plant->tags[query->tag].asset : question->next_tag;
@@ -153,7 +154,7 @@ static bool read_whole(struct history_queries *queries, struct history_reader *r
 }
 
 static struct history_answer *read_piece(struct history_queries *queries, struct history_reader *reader, struct core_history *core,
-                                         struct question *question)
+                                         struct pending_query *question)
 {
     const struct history_query *query = &question->query;
     struct history_answer *piece = mem_new(sizeof(*piece));
@@ -191,36 +192,36 @@ static bool is_at_work(const struct history_queries *queries, uint64_t account)
 }
 
 /* Under lock. When the newest piece for its address was begun. */
-static uint64_t served_of(const struct history_queries *queries, const struct question *question)
+static uint64_t served_of(const struct history_queries *queries, const struct pending_query *question)
 {
     uint64_t served = question->served;
-    for (const struct question *other = queries->questions; other; other = other->next)
+    for (const struct pending_query *other = queries->questions; other; other = other->next)
         if (question->query.account && other->query.account == question->query.account && other->served > served)
             served = other->served;
     return served;
 }
 
-static bool goes_before(const struct history_queries *queries, const struct question *a, const struct question *b)
+static bool goes_before(const struct history_queries *queries, const struct pending_query *a, const struct pending_query *b)
 {
     uint64_t a_served = served_of(queries, a), b_served = served_of(queries, b);
     return a_served < b_served || (a_served == b_served && a->served <= b->served); /* the older one comes later in the list */
 }
 
 /* Under lock. Taken out of the list; NULL: there is nothing to do. */
-static struct question *take_next(struct history_queries *queries)
+static struct pending_query *take_next(struct history_queries *queries)
 {
-    struct question **best = NULL;
-    for (struct question **at = &queries->questions; *at; at = &(*at)->next)
+    struct pending_query **best = NULL;
+    for (struct pending_query **at = &queries->questions; *at; at = &(*at)->next)
         if ((*at)->wanted && !is_at_work(queries, (*at)->query.account) && (!best || goes_before(queries, *at, *best)))
             best = at;
-    struct question *question = best ? *best : NULL;
+    struct pending_query *question = best ? *best : NULL;
     if (question)
         *best = question->next;
     return question;
 }
 
 /* Under lock. The piece is there. */
-static void give(struct history_queries *queries, struct question *question, struct history_answer *piece)
+static void give(struct history_queries *queries, struct pending_query *question, struct history_answer *piece)
 {
     bool last = piece->last;
     if (question->forgotten) {
@@ -238,14 +239,14 @@ static void give(struct history_queries *queries, struct question *question, str
     queries->questions = question;
 }
 
-struct worker {
+struct query_worker {
     struct history_queries *queries;
     int index;
 };
 
 static void *run(void *arg)
 {
-    struct worker *worker = arg;
+    struct query_worker *worker = arg;
     struct history_queries *queries = worker->queries;
     struct history_reader *reader = queries->folder ? history_reader_create(queries->log, queries->folder) : NULL;
     struct core_history *core = queries->folder ? NULL : core_history_create(queries->log, queries->core_link, &queries->stop);
@@ -255,7 +256,7 @@ static void *run(void *arg)
     mem_free(worker);
     pthread_mutex_lock(&queries->lock);
     while (!queries->stopping) {
-        struct question *question = take_next(queries);
+        struct pending_query *question = take_next(queries);
         if (!question) {
             pthread_cond_wait(&queries->wake, &queries->lock);
             continue;
@@ -298,8 +299,8 @@ struct history_queries *history_queries_create(struct log *log, const struct pla
     queries->notify_arg = arg;
     queries->last = &queries->answers;
     for (int i = 0, error = 0; i < THREADS && !error; i++) {
-        struct worker *worker = mem_new(sizeof(*worker));
-        *worker = (struct worker){ queries, i };
+        struct query_worker *worker = mem_new(sizeof(*worker));
+        *worker = (struct query_worker){ queries, i };
         error = pthread_create(&queries->threads[i], NULL, run, worker);
         queries->thread_count += !error;
         if (!error)
@@ -335,7 +336,7 @@ void history_queries_destroy(struct history_queries **pointer)
         next = answer->next;
         history_answer_free(&answer);
     }
-    for (struct question *question = queries->questions, *next; question; question = next) {
+    for (struct pending_query *question = queries->questions, *next; question; question = next) {
         next = question->next;
         mem_free(question);
     }
@@ -353,8 +354,8 @@ bool history_queries_ask(struct history_queries *queries, const struct history_q
     pthread_mutex_lock(&queries->lock);
     bool room = queries->count < HISTORY_QUERIES_MOST;
     if (room) {
-        struct question *question = mem_new(sizeof(*question));
-        *question = (struct question){ .query = *query, .wanted = true, .next = queries->questions };
+        struct pending_query *question = mem_new(sizeof(*question));
+        *question = (struct pending_query){ .query = *query, .wanted = true, .next = queries->questions };
         queries->questions = question;
         queries->count++;
         pthread_cond_broadcast(&queries->wake);
@@ -366,7 +367,7 @@ bool history_queries_ask(struct history_queries *queries, const struct history_q
 void history_queries_continue(struct history_queries *queries, uint64_t client)
 {
     pthread_mutex_lock(&queries->lock);
-    for (struct question *question = queries->questions; question; question = question->next)
+    for (struct pending_query *question = queries->questions; question; question = question->next)
         question->wanted |= question->query.client == client;
     pthread_cond_broadcast(&queries->wake);
     pthread_mutex_unlock(&queries->lock);
@@ -378,8 +379,8 @@ void history_queries_forget(struct history_queries *queries, uint64_t client)
     for (int i = 0; i < THREADS; i++)
         if (queries->working[i] && queries->working[i]->query.client == client)
             queries->working[i]->forgotten = true;
-    for (struct question **at = &queries->questions; *at;) {
-        struct question *question = *at;
+    for (struct pending_query **at = &queries->questions; *at;) {
+        struct pending_query *question = *at;
         if (question->query.client != client) {
             at = &question->next;
             continue;

@@ -27,7 +27,7 @@ static bool waits_for_long_job(const struct render_thread *thread, const struct 
     return long_job_is_for(&thread->long_job, client) || long_job_is_for(&thread->parked, client);
 }
 
-struct turn {
+struct render_turn {
     bool step;                    /* of the long job; else */
     struct render_client *client; /* NULL: nobody before wait_until_ns */
     int64_t wait_until_ns;
@@ -65,13 +65,13 @@ static bool goes_before(const struct render_thread *thread, const struct render_
 }
 
 /* Under lock. */
-static struct turn next_turn(const struct render_thread *thread, const struct scheduler *scheduler)
+static struct render_turn next_turn(const struct render_thread *thread, const struct scheduler *scheduler)
 {
     const struct render_service *service = thread->service;
     struct render_client *first[URGENCY_COUNT + 1] = { NULL };
     int64_t asked_ns[URGENCY_COUNT], now_ns = clock_mono_ns();
     bool busy = thread->long_job.split != NULL;
-    struct turn turn = { 0 };
+    struct render_turn turn = { 0 };
     for (size_t i = 0; i < service->client_count; i++) {
         struct render_client *client = service->clients[i];
         if (goes_before(thread, client, first[client->request.urgency], now_ns))
@@ -179,7 +179,7 @@ static void answer_pick(struct render_thread *thread)
 bool render_thread_next(struct render_thread *thread, const struct scheduler *scheduler, struct request_group *group)
 {
     struct render_service *service = thread->service;
-    struct turn turn = { 0 };
+    struct render_turn turn = { 0 };
     group->count = 0;
     pthread_mutex_lock(&service->lock);
     while (service->state == RUNNING) {

@@ -11,7 +11,7 @@
 /* Set by the loop; sessions change only the members that say so. */
 struct view_token_keys;
 
-enum lists { LISTS_NAMED, LISTS_OPEN, LISTS_VIEWS, LISTS };
+enum audience_lists { LISTS_NAMED, LISTS_OPEN, LISTS_VIEWS, LISTS };
 
 struct session_context {
     const struct plant *plant;
@@ -58,8 +58,9 @@ struct session_context {
     struct resumes *resumes;               /* changed by hello */
     struct admission *admission;           /* its pixels are changed by hello, resize and visible */
     struct tag_text_cache *tag_texts;      /* NULL: each text is made anew */
-    char **lists_said; /* parts of `welcome` that sessions share, by enum lists: with names, for open viewers, for tokens of some views;
-                          NULL: likewise */
+    /* Parts of `welcome` that sessions share, by enum audience_lists: for clients with names, for open viewers, for tokens narrowed to
+       views. NULL: each text is made again. */
+    char **lists_said;
 };
 
 #endif

@@ -14,13 +14,13 @@
 #include "surface/mesh/bvh.h"
 #include "surface/surface_store.h"
 
-struct ask {
+struct relocation_ask {
     uint64_t ticket;
     double point_m[3];
     struct relocation_place place;
     void (*done)(void *arg, struct relocation_result *result);
     void *arg;
-    struct ask *next;
+    struct relocation_ask *next;
     /* --- below: under the lock */
     bool running, cancelled;
 };
@@ -37,7 +37,7 @@ struct relocation {
     enum relocation_state state;
     struct surface *surface;            /* once warm: read without the lock */
     struct vertex_embedding *embedding; /* likewise; NULL: the surface's vertices are the shape's */
-    struct ask *asks;                   /* waiting or running, oldest first */
+    struct relocation_ask *asks;        /* waiting or running, oldest first */
     uint64_t last_ticket;
     size_t jobs; /* submitted, and not through */
 };
@@ -116,18 +116,18 @@ static bool find_place(const struct relocation *relocation, const struct surface
 
 /* --- the surface ------------------------------------------------------------------------------------------------------------ */
 
-static struct ask *take(struct relocation *relocation, uint64_t ticket)
+static struct relocation_ask *take(struct relocation *relocation, uint64_t ticket)
 {
-    for (struct ask **at = &relocation->asks; *at; at = &(*at)->next)
+    for (struct relocation_ask **at = &relocation->asks; *at; at = &(*at)->next)
         if ((*at)->ticket == ticket) {
-            struct ask *ask = *at;
+            struct relocation_ask *ask = *at;
             *at = ask->next;
             return ask;
         }
     return NULL;
 }
 
-static void answer(struct ask *ask, enum relocation_status status, float *geodesic_m)
+static void answer(struct relocation_ask *ask, enum relocation_status status, float *geodesic_m)
 {
     struct relocation_result result = { .status = status, .ticket = ask->ticket, .place = ask->place, .geodesic_m = geodesic_m };
     ask->done(ask->arg, &result);
@@ -143,10 +143,10 @@ static void end_job(struct relocation *relocation)
 }
 
 /* The oldest ask that nobody has begun; NULL: it was cancelled meanwhile. */
-static struct ask *begin_ask(struct relocation *relocation)
+static struct relocation_ask *begin_ask(struct relocation *relocation)
 {
     pthread_mutex_lock(&relocation->lock);
-    struct ask *ask = relocation->asks;
+    struct relocation_ask *ask = relocation->asks;
     while (ask && ask->running)
         ask = ask->next;
     if (ask)
@@ -164,7 +164,7 @@ static bool find_distances(const struct relocation *relocation, const double sur
 static void solve_next(void *arg)
 {
     struct relocation *relocation = arg;
-    struct ask *ask = begin_ask(relocation);
+    struct relocation_ask *ask = begin_ask(relocation);
     if (ask) {
         enum relocation_status status = relocation->surface ? RELOCATION_NO_MEMORY : RELOCATION_NO_SURFACE;
         float *geodesic_m = relocation->surface ? mem_try_array(relocation->shape.vertex_count, sizeof(*geodesic_m)) : NULL;
@@ -215,7 +215,7 @@ static void warm(void *arg)
     relocation->surface = surface;
     relocation->embedding = embedding;
     relocation->state = surface ? RELOCATION_WARM : RELOCATION_BROKEN;
-    for (const struct ask *ask = relocation->asks; ask; ask = ask->next)
+    for (const struct relocation_ask *ask = relocation->asks; ask; ask = ask->next)
         waiting++;
     relocation->jobs += waiting;
     pthread_mutex_unlock(&relocation->lock);
@@ -241,9 +241,9 @@ void relocation_destroy(struct relocation **relocation_ptr)
     if (!relocation)
         return;
     pthread_mutex_lock(&relocation->lock);
-    struct ask *waiting = NULL, **last = &waiting;
-    for (struct ask **at = &relocation->asks; *at;) {
-        struct ask *ask = *at;
+    struct relocation_ask *waiting = NULL, **last = &waiting;
+    for (struct relocation_ask **at = &relocation->asks; *at;) {
+        struct relocation_ask *ask = *at;
         ask->cancelled = true;
         if (ask->running) {
             at = &ask->next;
@@ -258,7 +258,7 @@ void relocation_destroy(struct relocation **relocation_ptr)
         pthread_cond_wait(&relocation->idle, &relocation->lock);
     pthread_mutex_unlock(&relocation->lock);
     while (waiting) {
-        struct ask *ask = waiting;
+        struct relocation_ask *ask = waiting;
         waiting = ask->next;
         answer(ask, RELOCATION_CANCELLED, NULL);
     }
@@ -301,8 +301,8 @@ uint64_t relocation_request(struct relocation *relocation, const double point_m[
     struct relocation_place place;
     if (!relocation_place(relocation, point_m, &place, NULL))
         return 0;
-    struct ask *ask = mem_new(sizeof(*ask)), **last;
-    *ask = (struct ask){ .point_m = { point_m[0], point_m[1], point_m[2] }, .place = place, .done = done, .arg = arg };
+    struct relocation_ask *ask = mem_new(sizeof(*ask)), **last;
+    *ask = (struct relocation_ask){ .point_m = { point_m[0], point_m[1], point_m[2] }, .place = place, .done = done, .arg = arg };
     pthread_mutex_lock(&relocation->lock);
     uint64_t ticket = ask->ticket = ++relocation->last_ticket;
     for (last = &relocation->asks; *last; last = &(*last)->next)
@@ -319,7 +319,7 @@ uint64_t relocation_request(struct relocation *relocation, const double point_m[
 void relocation_cancel(struct relocation *relocation, uint64_t ticket)
 {
     pthread_mutex_lock(&relocation->lock);
-    struct ask *ask = relocation->asks;
+    struct relocation_ask *ask = relocation->asks;
     while (ask && ask->ticket != ticket)
         ask = ask->next;
     if (ask && ask->running) {

@@ -181,7 +181,7 @@ static void thin_out(struct surface *surface, const uint32_t *part, size_t added
 }
 
 /* What hiding opened. */
-static void close_rims(struct surface *surface, const struct parts *parts, char **hidden)
+static void close_rims(struct surface *surface, const struct body_parts *parts, char **hidden)
 {
     struct repair_report made = { 0 };
     uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
@@ -194,7 +194,7 @@ static void close_rims(struct surface *surface, const struct parts *parts, char 
     memset(*hidden + seen, 1, surface->mesh.tri_count - seen);
 }
 
-static void join_parts(struct surface *surface, struct parts *parts)
+static void join_parts(struct surface *surface, struct body_parts *parts)
 {
     struct repair_report made = { 0 };
     size_t own = surface->mesh.point_count;
@@ -337,7 +337,7 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
 {
     struct surface *surface = mem_new(sizeof(*surface));
     struct surface_report *report = &surface->report;
-    struct parts parts;
+    struct body_parts parts;
     int64_t since_ns = clock_mono_ns();
     double size_m = gap_main_size(positions_m, triangles, triangle_count);
     surface->log = log;

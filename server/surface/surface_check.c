@@ -53,7 +53,7 @@ static double disagreement_of(const struct propagation *propagation, const struc
     return largest_m > 0 ? sqrt(max_of(squares / count - mean * mean, 0)) / largest_m : 0;
 }
 
-struct check {
+struct field_check {
     const struct surface *surface;
     const struct surface_field *field;
     const struct heat *heat;
@@ -62,14 +62,14 @@ struct check {
     atomic_bool failed;
 };
 
-static size_t source_of(const struct check *check, size_t i)
+static size_t source_of(const struct field_check *check, size_t i)
 {
     return i * check->field->source_count / check->count;
 }
 
 static void check_block(void *arg, size_t begin, size_t end)
 {
-    struct check *check = arg;
+    struct field_check *check = arg;
     const struct surface *surface = check->surface;
     size_t points = surface->mesh.point_count, count = end - begin;
     struct heat_source *sources = mem_array(count, sizeof(*sources));
@@ -91,7 +91,7 @@ static void check_block(void *arg, size_t begin, size_t end)
 bool surface_check(struct surface *surface, const struct surface_field *field)
 {
     struct surface_report *report = &surface->report;
-    struct check check = { .surface = surface, .field = field };
+    struct field_check check = { .surface = surface, .field = field };
     int64_t start_ns = clock_mono_ns(), factored_ns;
     if (!surface->component) {
         surface->component = mem_array(surface->mesh.point_count, sizeof(*surface->component));

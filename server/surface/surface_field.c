@@ -183,20 +183,20 @@ void surface_field_at_vertex(const struct surface_field *field, const struct sur
 
 /* Seen from a surface point, an edge of its triangle from corner a to corner b: its length, and the point's place with a at (0, 0) and b at
    (side, 0). */
-struct line_of_sight {
+struct edge_window {
     float side, half, per, x, y;
 };
 
-static struct line_of_sight sight_of(double ab, double to_a, double to_b)
+static struct edge_window sight_of(double ab, double to_a, double to_b)
 {
     double x, y;
     ab = max_of(ab, 1e-30);
     intrinsic_layout((const double[3]){ ab, to_b, to_a }, &x, &y);
-    return (struct line_of_sight){ (float)ab, (float)ab / 2, 1 / (2 * (float)ab), (float)x, (float)y };
+    return (struct edge_window){ (float)ab, (float)ab / 2, 1 / (2 * (float)ab), (float)x, (float)y };
 }
 
 /* The square of what the corners' distances offer through the edge, where the source, laid out beyond it, has a ray there: else best2. */
-SIMD_BODY float through_edge(const struct line_of_sight *sight, float da, float db, float best2)
+SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db, float best2)
 {
     const float x = sight->x, y = sight->y;
     float sx = (da - db) * (da + db) * sight->per + sight->half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
@@ -208,10 +208,10 @@ SIMD_BODY float through_edge(const struct line_of_sight *sight, float da, float 
 }
 
 /* Through each of the edges, or along a straight line from a corner. */
-SIMD_BODY void fill_row(const struct line_of_sight sights[3], const float to_m[3], const float *restrict a, const float *restrict b,
+SIMD_BODY void fill_row(const struct edge_window sights[3], const float to_m[3], const float *restrict a, const float *restrict b,
                         const float *restrict c, size_t count, float *restrict out)
 {
-    const struct line_of_sight ab = sights[0], bc = sights[1], ca = sights[2];
+    const struct edge_window ab = sights[0], bc = sights[1], ca = sights[2];
     const float to_a = to_m[0], to_b = to_m[1], to_c = to_m[2];
     for (size_t s = 0; s < count; s++) {
         float da = a[s], db = b[s], dc = c[s], along_a = da + to_a, along_b = db + to_b, along_c = dc + to_c;
@@ -222,12 +222,12 @@ SIMD_BODY void fill_row(const struct line_of_sight sights[3], const float to_m[3
     }
 }
 
-static void fill_row_plain(const struct line_of_sight sights[3], const float to_m[3], const float *const rows[3], size_t count, float *out)
+static void fill_row_plain(const struct edge_window sights[3], const float to_m[3], const float *const rows[3], size_t count, float *out)
 {
     fill_row(sights, to_m, rows[0], rows[1], rows[2], count, out);
 }
 
-SIMD_AVX2 static void fill_row_wide(const struct line_of_sight sights[3], const float to_m[3], const float *const rows[3], size_t count,
+SIMD_AVX2 static void fill_row_wide(const struct edge_window sights[3], const float to_m[3], const float *const rows[3], size_t count,
                                     float *out)
 {
     fill_row(sights, to_m, rows[0], rows[1], rows[2], count, out);
@@ -238,7 +238,7 @@ void surface_field_at_point(const struct surface_field *field, const struct surf
     const struct trimesh *mesh = &surface->visible;
     const uint32_t *v = mesh->tris[hit->tri];
     const float *rows[3];
-    struct line_of_sight sights[3];
+    struct edge_window sights[3];
     double to_m[3];
     for (int i = 0; i < 3; i++) {
         to_m[i] = vec_distance(hit->point_m, mesh->points[v[i]]);

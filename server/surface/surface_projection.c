@@ -93,14 +93,14 @@ bool surface_find_point_among(const struct surface *surface, const double point_
     return surface_point_on(surface, point_m, INFINITY, at.tri, hit);
 }
 
-struct planes {
+struct tri_planes {
     const uint32_t *of;
     uint32_t at[2];
 };
 
 static bool is_in_one_of(const void *arg, uint32_t triangle)
 {
-    const struct planes *planes = arg;
+    const struct tri_planes *planes = arg;
     return planes->of[triangle] == planes->at[0] || planes->of[triangle] == planes->at[1];
 }
 
@@ -115,7 +115,7 @@ bool surface_find_point_on(const struct surface *surface, const double point_m[3
                            struct surface_point *hit)
 {
     const uint32_t *first = surface->piece_first;
-    const struct planes planes = { surface->plane, { surface->plane[triangles[0]], surface->plane[triangles[1]] } };
+    const struct tri_planes planes = { surface->plane, { surface->plane[triangles[0]], surface->plane[triangles[1]] } };
     size_t count = planes.at[0] == planes.at[1] ? 1 : 2, pieces = 0;
     *hit = (struct surface_point){ .tri = TRIMESH_NONE, .distance_m = limit_m };
     for (size_t i = 0; i < count; i++)

@@ -5,7 +5,7 @@
 #include "base/mem.h"
 #include "surface/surface_impl.h"
 
-struct numbers {
+struct surface_totals {
     size_t vertex_count, visible_count, flips;
     double edge_m;
     struct surface_report report;
@@ -52,11 +52,11 @@ void surface_pack(const struct surface *surface, struct text *to)
 {
     const struct trimesh *mesh = &surface->mesh;
     const struct intrinsic *in = &surface->intrinsic;
-    const struct numbers numbers = { .vertex_count = surface->vertex_count,
-                                     .visible_count = surface->visible.tri_count,
-                                     .flips = in->flips,
-                                     .edge_m = surface->edge_m,
-                                     .report = surface->report };
+    const struct surface_totals numbers = { .vertex_count = surface->vertex_count,
+                                            .visible_count = surface->visible.tri_count,
+                                            .flips = in->flips,
+                                            .edge_m = surface->edge_m,
+                                            .report = surface->report };
     pack_array(to, &numbers, 1, sizeof(numbers));
     pack_array(to, surface->vertex_point, surface->vertex_count, sizeof(*surface->vertex_point));
     pack_array(to, mesh->points, mesh->point_count, sizeof(*mesh->points));
@@ -75,7 +75,7 @@ struct surface *surface_unpack(struct unpack *from, struct log *log, struct work
     struct surface *surface = mem_new(sizeof(*surface));
     struct trimesh *mesh = &surface->mesh;
     struct intrinsic *in = &surface->intrinsic;
-    struct numbers numbers = { 0 };
+    struct surface_totals numbers = { 0 };
     size_t vertices, sources, planes, glues;
     unpack_into(from, &numbers, 1, sizeof(numbers));
     *surface = (struct surface){ .log = log,

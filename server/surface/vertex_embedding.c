@@ -24,19 +24,19 @@ struct vertex_embedding {
     struct anchor *at;
 };
 
-struct table { /* points that have triangles, by place */
+struct point_table { /* points that have triangles, by place */
     const struct trimesh *mesh;
     uint32_t *points;
     size_t mask;
 };
 
-static size_t hash_of(const struct table *table, const double place_m[3])
+static size_t hash_of(const struct point_table *table, const double place_m[3])
 {
     return XXH3_64bits(place_m, 3 * sizeof(*place_m)) & table->mask;
 }
 
 /* The slot that has the place, or the free one where it would be. */
-static size_t slot_of(const struct table *table, const double place_m[3])
+static size_t slot_of(const struct point_table *table, const double place_m[3])
 {
     size_t slot = hash_of(table, place_m);
     while (table->points[slot] != TRIMESH_NONE &&
@@ -45,12 +45,12 @@ static size_t slot_of(const struct table *table, const double place_m[3])
     return slot;
 }
 
-static bool table_init(struct table *table, const struct trimesh *mesh)
+static bool table_init(struct point_table *table, const struct trimesh *mesh)
 {
     size_t size = 16;
     while (size < 2 * mesh->point_count)
         size *= 2;
-    *table = (struct table){ mesh, mem_try_array(size, sizeof(*table->points)), size - 1 };
+    *table = (struct point_table){ mesh, mem_try_array(size, sizeof(*table->points)), size - 1 };
     if (!table->points)
         return false;
     memset(table->points, 0xff, size * sizeof(*table->points));
@@ -60,15 +60,15 @@ static bool table_init(struct table *table, const struct trimesh *mesh)
     return true;
 }
 
-struct job {
+struct embedding_job {
     struct vertex_embedding *embedding;
-    struct table table;
+    struct point_table table;
     const float (*positions_m)[3];
     double (*normals)[3]; /* of no certain length */
     char *is_off;         /* no triangle of the finest level has it: it may be nearer to another side than to its own */
 };
 
-static bool find_normals(struct job *job, const float (*normals)[3], const uint32_t *triangles, size_t triangle_count)
+static bool find_normals(struct embedding_job *job, const float (*normals)[3], const uint32_t *triangles, size_t triangle_count)
 {
     const size_t count = job->embedding->count;
     job->normals = mem_try_array(count, sizeof(*job->normals));
@@ -112,7 +112,7 @@ static void project(const struct surface *surface, const double place_m[3], cons
 
 static void find_some(void *arg, size_t begin, size_t end)
 {
-    struct job *job = arg;
+    struct embedding_job *job = arg;
     for (size_t v = begin; v < end; v++) {
         const float *p = job->positions_m[v];
         const double place_m[3] = { (double)p[0], (double)p[1], (double)p[2] };
@@ -127,7 +127,7 @@ struct vertex_embedding *vertex_embedding_create(const struct surface *surface, 
                                                  size_t count, const uint32_t *triangles, size_t triangle_count)
 {
     struct vertex_embedding *embedding = mem_new(sizeof(*embedding));
-    struct job job = { .embedding = embedding, .positions_m = positions_m };
+    struct embedding_job job = { .embedding = embedding, .positions_m = positions_m };
     *embedding = (struct vertex_embedding){ surface, count, mem_try_array(count, sizeof(*embedding->at)) };
     if (!embedding->at || !table_init(&job.table, &surface->mesh) || !find_normals(&job, normals, triangles, triangle_count)) {
         log_err(surface->log, "surface of %zu points: out of memory for %zu vertices on it", surface->mesh.point_count, count);

@@ -8,21 +8,21 @@
 
 #include "base/mem.h"
 
-struct copy { /* the snapshot comes first: it is what others hold */
+struct baseline_copy { /* the snapshot comes first: it is what others hold */
     struct snapshot snapshot;
     int users; /* under lock */
 };
 
-struct slot {
+struct baseline_slot {
     struct baseline what;
-    struct copy *copy;
+    struct baseline_copy *copy;
 };
 
 struct baselines {
     pthread_mutex_t lock;
     /* --- below: under lock */
     uint32_t last_id;
-    struct slot slots[BASELINES_NAMED + BASELINES_UNNAMED]; /* in order of id */
+    struct baseline_slot slots[BASELINES_NAMED + BASELINES_UNNAMED]; /* in order of id */
     size_t count;
 };
 
@@ -33,16 +33,16 @@ struct baselines *baselines_create(void)
     return baselines;
 }
 
-static struct copy *copy_create(const struct snapshot *from)
+static struct baseline_copy *copy_create(const struct snapshot *from)
 {
-    struct copy *copy = mem_new(sizeof(*copy));
-    *copy = (struct copy){ .snapshot = *from, .users = 1 };
+    struct baseline_copy *copy = mem_new(sizeof(*copy));
+    *copy = (struct baseline_copy){ .snapshot = *from, .users = 1 };
     copy->snapshot.readings = snapshot_copy_readings(from);
     return copy;
 }
 
 /* Under lock. */
-static void copy_unref(struct copy *copy)
+static void copy_unref(struct baseline_copy *copy)
 {
     if (--copy->users > 0)
         return;
@@ -63,7 +63,7 @@ void baselines_destroy(struct baselines **baselines_ptr)
 }
 
 /* Under lock. NULL: none. */
-static struct slot *find_name(struct baselines *baselines, const char *name)
+static struct baseline_slot *find_name(struct baselines *baselines, const char *name)
 {
     for (size_t i = 0; i < baselines->count; i++)
         if (baselines->slots[i].what.name[0] && !strcmp(baselines->slots[i].what.name, name))
@@ -72,7 +72,7 @@ static struct slot *find_name(struct baselines *baselines, const char *name)
 }
 
 /* Under lock. NULL: none. */
-static struct slot *find_id(struct baselines *baselines, uint32_t id)
+static struct baseline_slot *find_id(struct baselines *baselines, uint32_t id)
 {
     for (size_t i = 0; i < baselines->count; i++)
         if (baselines->slots[i].what.id == id)
@@ -90,7 +90,7 @@ static size_t count_of(const struct baselines *baselines, bool named)
 }
 
 /* Under lock. */
-static void slot_remove(struct baselines *baselines, struct slot *slot)
+static void slot_remove(struct baselines *baselines, struct baseline_slot *slot)
 {
     copy_unref(slot->copy);
     size_t after = (size_t)(&baselines->slots[baselines->count] - slot) - 1;
@@ -101,8 +101,9 @@ static void slot_remove(struct baselines *baselines, struct slot *slot)
 /* Under lock; there is room. */
 static uint32_t slot_add(struct baselines *baselines, const char *name, const struct snapshot *snapshot)
 {
-    struct slot *slot = &baselines->slots[baselines->count++];
-    *slot = (struct slot){ .what = { .id = ++baselines->last_id, .taken_utc_ns = snapshot->taken_utc_ns }, .copy = copy_create(snapshot) };
+    struct baseline_slot *slot = &baselines->slots[baselines->count++];
+    *slot = (struct baseline_slot){ .what = { .id = ++baselines->last_id, .taken_utc_ns = snapshot->taken_utc_ns },
+                                    .copy = copy_create(snapshot) };
     snprintf(slot->what.name, sizeof(slot->what.name), "%s", name);
     return slot->what.id;
 }
@@ -111,7 +112,7 @@ uint32_t baselines_set(struct baselines *baselines, const char *name, const stru
 {
     uint32_t id = 0;
     pthread_mutex_lock(&baselines->lock);
-    struct slot *slot = find_name(baselines, name);
+    struct baseline_slot *slot = find_name(baselines, name);
     if (slot) {
         copy_unref(slot->copy);
         slot->copy = copy_create(snapshot);
@@ -125,7 +126,7 @@ uint32_t baselines_set(struct baselines *baselines, const char *name, const stru
 }
 
 /* Under lock. NULL: none. */
-static struct slot *find_unnamed(struct baselines *baselines, int64_t taken_utc_ns)
+static struct baseline_slot *find_unnamed(struct baselines *baselines, int64_t taken_utc_ns)
 {
     for (size_t i = 0; i < baselines->count; i++)
         if (!baselines->slots[i].what.name[0] && (taken_utc_ns < 0 || baselines->slots[i].what.taken_utc_ns == taken_utc_ns))
@@ -136,7 +137,7 @@ static struct slot *find_unnamed(struct baselines *baselines, int64_t taken_utc_
 uint32_t baselines_keep(struct baselines *baselines, const struct snapshot *snapshot)
 {
     pthread_mutex_lock(&baselines->lock);
-    struct slot *slot = find_unnamed(baselines, snapshot->taken_utc_ns);
+    struct baseline_slot *slot = find_unnamed(baselines, snapshot->taken_utc_ns);
     if (!slot && count_of(baselines, false) == BASELINES_UNNAMED)
         slot_remove(baselines, find_unnamed(baselines, -1));
     uint32_t id = slot ? slot->what.id : slot_add(baselines, "", snapshot);
@@ -147,7 +148,7 @@ uint32_t baselines_keep(struct baselines *baselines, const struct snapshot *snap
 void baselines_remove(struct baselines *baselines, const char *name)
 {
     pthread_mutex_lock(&baselines->lock);
-    struct slot *slot = find_name(baselines, name);
+    struct baseline_slot *slot = find_name(baselines, name);
     if (slot)
         slot_remove(baselines, slot);
     pthread_mutex_unlock(&baselines->lock);
@@ -156,7 +157,7 @@ void baselines_remove(struct baselines *baselines, const char *name)
 uint32_t baselines_find(struct baselines *baselines, const char *name)
 {
     pthread_mutex_lock(&baselines->lock);
-    const struct slot *slot = find_name(baselines, name);
+    const struct baseline_slot *slot = find_name(baselines, name);
     uint32_t id = slot ? slot->what.id : 0;
     pthread_mutex_unlock(&baselines->lock);
     return id;
@@ -173,7 +174,7 @@ bool baselines_may_set(struct baselines *baselines, const char *name)
 bool baselines_describe(struct baselines *baselines, uint32_t id, struct baseline *out)
 {
     pthread_mutex_lock(&baselines->lock);
-    const struct slot *slot = find_id(baselines, id);
+    const struct baseline_slot *slot = find_id(baselines, id);
     if (slot)
         *out = slot->what;
     pthread_mutex_unlock(&baselines->lock);
@@ -194,7 +195,7 @@ size_t baselines_list(struct baselines *baselines, struct baseline out[BASELINES
 const struct snapshot *baselines_take(struct baselines *baselines, uint32_t id)
 {
     pthread_mutex_lock(&baselines->lock);
-    struct slot *slot = find_id(baselines, id);
+    struct baseline_slot *slot = find_id(baselines, id);
     if (slot)
         slot->copy->users++;
     const struct snapshot *snapshot = slot ? &slot->copy->snapshot : NULL;
@@ -207,7 +208,7 @@ void baselines_give(struct baselines *baselines, const struct snapshot **snapsho
     if (!*snapshot)
         return;
     pthread_mutex_lock(&baselines->lock);
-    copy_unref((struct copy *)*snapshot);
+    copy_unref((struct baseline_copy *)*snapshot);
     pthread_mutex_unlock(&baselines->lock);
     *snapshot = NULL;
 }

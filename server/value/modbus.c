@@ -19,7 +19,7 @@ static void read_block(struct modbus_source *modbus, size_t index)
 {
     struct read_plan_block *block = &modbus->plan.blocks[index];
     uint16_t words[READ_PLAN_MAX_BITS];
-    struct unit *unit = modbus_unit_of(modbus, block);
+    struct modbus_unit *unit = modbus_unit_of(modbus, block);
     modbus_manners_before(modbus, unit);
     if (!modbus_link_is_open(modbus->link) && !modbus_connect_link(modbus))
         return;
@@ -55,7 +55,7 @@ static void read_block(struct modbus_source *modbus, size_t index)
 /* When this block may be asked: when it is due, and its unit and the connection are not being left alone. */
 static int64_t ready_ns(const struct modbus_source *modbus, const struct read_plan_block *block)
 {
-    const struct unit *unit = modbus_unit_of(modbus, block);
+    const struct modbus_unit *unit = modbus_unit_of(modbus, block);
     int64_t at_ns = block->due_ns;
     if (unit->state == UNIT_DOWN && unit->retry_ns > at_ns)
         at_ns = unit->retry_ns;

@@ -11,7 +11,7 @@
 
 enum unit_state { UNIT_UNKNOWN, UNIT_UP, UNIT_DOWN };
 
-struct unit { /* a device behind the address; a gateway or a serial line has several */
+struct modbus_unit { /* a device behind the address; a gateway or a serial line has several */
     int id;
     enum unit_state state;
     struct backoff backoff;
@@ -42,7 +42,7 @@ struct modbus_source {
     /* --- below: used by the source's thread only */
     struct read_plan plan;
     bool plan_cut; /* blocks were split around addresses that the device refused */
-    struct unit *units;
+    struct modbus_unit *units;
     struct backoff backoff; /* of connecting */
     int64_t connect_ns;     /* do not connect before */
     int64_t asked_ns;       /* when the last request ended */
@@ -58,18 +58,18 @@ struct modbus_source {
 };
 
 /* Returns the unit that a block is read from. */
-struct unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block);
+struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block);
 /* Records that a unit answered; logs it if it had not before. */
-void modbus_unit_is_up(struct modbus_source *modbus, struct unit *unit);
+void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit);
 /* Records that a unit does not answer: its tags lose their link, and it is left alone for a while. */
-void modbus_unit_is_down(struct modbus_source *modbus, struct unit *unit, const char *why);
+void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit, const char *why);
 /* Opens the link if it is closed. Returns false if it cannot be opened now; connect_ns says when to try again. */
 bool modbus_connect_link(struct modbus_source *modbus);
 
 /* Begins with what the plant file says. */
 void modbus_manners_init(struct modbus_source *modbus);
 /* Prepares the link for a request to a unit: sets how long a first answer may take. */
-void modbus_manners_before(struct modbus_source *modbus, const struct unit *unit);
+void modbus_manners_before(struct modbus_source *modbus, const struct modbus_unit *unit);
 /* Ends the connection after an answer, where the device wants one request per connection. */
 void modbus_manners_after(struct modbus_source *modbus);
 /* Learns from an answer. */
@@ -80,9 +80,9 @@ bool modbus_manners_excuse_read(struct modbus_source *modbus, int status, bool u
 /* The same for a connection that could not be made. */
 bool modbus_manners_excuse_connect(struct modbus_source *modbus, int status);
 /* A block failed on a connection of its own while its unit was up. Returns true if another block is asked before anyone is blamed. */
-bool modbus_unit_doubt(struct modbus_source *modbus, struct unit *unit, size_t block);
+bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, size_t block);
 /* A block of the unit was answered: if another one was in doubt, that one is to blame and its tags lose their link. */
-void modbus_unit_settle(struct modbus_source *modbus, struct unit *unit, const struct read_plan_block *answered);
+void modbus_unit_settle(struct modbus_source *modbus, struct modbus_unit *unit, const struct read_plan_block *answered);
 
 /* Decodes the response to a block and writes its tags to the store. */
 void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *block, const uint16_t *words);

@@ -31,7 +31,7 @@ static bool is_network(const struct modbus_source *modbus)
     return modbus->base.config->transport != TRANSPORT_RTU;
 }
 
-void modbus_manners_before(struct modbus_source *modbus, const struct unit *unit)
+void modbus_manners_before(struct modbus_source *modbus, const struct modbus_unit *unit)
 {
     struct modbus_manners *manners = &modbus->manners;
     int64_t patience_ns = manners->first_wait_ns;

@@ -9,7 +9,7 @@
 
 static const int64_t SPLIT_PAUSE_NS = 500 * NS_PER_MS; /* for the other blocks, while addresses that are not answered are searched */
 
-struct unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block)
+struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block)
 {
     size_t i = 0;
     while (modbus->units[i].id != block->unit)
@@ -31,7 +31,7 @@ static void link_lost(struct modbus_source *modbus, const char *why)
     store_link_lost(modbus->base.store, modbus->base.index, now_ns);
 }
 
-void modbus_unit_is_up(struct modbus_source *modbus, struct unit *unit)
+void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit)
 {
     if (unit->state == UNIT_DOWN && modbus->plan_cut)
         modbus_replan(modbus); /* it may have come back another */
@@ -59,7 +59,7 @@ static bool any_unit_up(const struct modbus_source *modbus)
     return false;
 }
 
-static void lose_tags_of(struct modbus_source *modbus, const struct unit *unit)
+static void lose_tags_of(struct modbus_source *modbus, const struct modbus_unit *unit)
 {
     size_t count = 0;
     for (size_t b = 0; b < modbus->plan.block_count; b++) {
@@ -80,7 +80,7 @@ static void try_elsewhere(struct modbus_source *modbus)
         modbus->units[i].retry_ns = now_ns;
 }
 
-void modbus_unit_is_down(struct modbus_source *modbus, struct unit *unit, const char *why)
+void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit, const char *why)
 {
     char more[LOG_PACE_BYTES];
     unit->state = UNIT_DOWN;
@@ -113,7 +113,7 @@ static struct read_plan_block *other_block(struct modbus_source *modbus, const s
     return other;
 }
 
-bool modbus_unit_doubt(struct modbus_source *modbus, struct unit *unit, size_t block)
+bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, size_t block)
 {
     struct read_plan_block *failed = &modbus->plan.blocks[block], *other = other_block(modbus, failed);
     if (unit->state != UNIT_UP || unit->doubted || !other)
@@ -144,7 +144,7 @@ static void blame(struct modbus_source *modbus, size_t index)
     block->due_ns = now_ns + modbus_refused_pause_ns(block->silent_count++);
 }
 
-void modbus_unit_settle(struct modbus_source *modbus, struct unit *unit, const struct read_plan_block *answered)
+void modbus_unit_settle(struct modbus_source *modbus, struct modbus_unit *unit, const struct read_plan_block *answered)
 {
     bool doubted = unit->doubted;
     unit->doubted = false;

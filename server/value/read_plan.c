@@ -10,15 +10,15 @@
 #include "base/mem.h"
 #include "value/decode.h"
 
-struct place { /* where a tag lives; the order of the fields is that of sorting */
+struct register_place { /* where a tag lives; the order of the fields is that of sorting */
     int unit, table, scan_ms, first, end, tag;
 };
 
-static struct place place_of(const struct plant *plant, int tag_index)
+static struct register_place place_of(const struct plant *plant, int tag_index)
 {
     const struct plant_tag *tag = &plant->tags[tag_index];
     const struct plant_source *source = &plant->sources[tag->source];
-    return (struct place){
+    return (struct register_place){
         .unit = tag->modbus_unit >= 0 ? tag->modbus_unit : source->unit,
         .table = (int)tag->table,
         .scan_ms = tag->scan_ms > 0 ? tag->scan_ms : source->poll_ms,
@@ -43,7 +43,7 @@ static int limit_of(const struct plant_source *source, int table)
     return table == TABLE_COIL || table == TABLE_DISCRETE ? source->max_bits : source->max_registers;
 }
 
-static bool fits(const struct read_plan_block *block, const struct place *place, const struct plant_source *source)
+static bool fits(const struct read_plan_block *block, const struct register_place *place, const struct plant_source *source)
 {
     return block->unit == place->unit && (int)block->table == place->table && block->scan_ms == place->scan_ms &&
            place->first <= block->first + block->count + source->max_gap && place->end - block->first <= limit_of(source, place->table);
@@ -55,7 +55,7 @@ static void stretch(struct read_plan_block *block, int end)
         block->count = end - block->first;
 }
 
-static void add_place(struct read_plan *plan, const struct place *place, const struct plant_source *source)
+static void add_place(struct read_plan *plan, const struct register_place *place, const struct plant_source *source)
 {
     struct read_plan_block *last = plan->block_count ? &plan->blocks[plan->block_count - 1] : NULL;
     if (!last || !fits(last, place, source)) {
@@ -78,7 +78,7 @@ static void add_place(struct read_plan *plan, const struct place *place, const s
 
 void read_plan_init(struct read_plan *plan, const struct plant *plant, int source)
 {
-    struct place *places = mem_array(plant->tag_count, sizeof(*places));
+    struct register_place *places = mem_array(plant->tag_count, sizeof(*places));
     size_t count = 0;
     for (size_t i = 0; i < plant->tag_count; i++)
         if (plant->tags[i].source == source)

@@ -16,7 +16,7 @@
 static const int64_t ROUND_NS = 50 * NS_PER_MS;
 static const int64_t LATEST_NS = 10 * NS_PER_S; /* after a sleep of the machine, what is older is passed over */
 
-struct lane { /* a tag and its series */
+struct replay_lane { /* a tag and its series */
     int tag;
     struct unit_change change; /* of its values to readings */
     struct series series; /* count 0: there is none */
@@ -28,7 +28,7 @@ struct replay {
     struct source base;
     counter *samples, *up;
     /* --- below: the thread's own */
-    struct lane *lanes;
+    struct replay_lane *lanes;
     size_t lane_count;
     int64_t start_mono_ns;
 };
@@ -38,7 +38,7 @@ static bool stopping(const struct replay *replay, int64_t until_ns)
     return wait_for(-1, 0, replay->base.stop_fd, until_ns) == -ECANCELED;
 }
 
-static void read_lane(struct replay *replay, struct lane *lane)
+static void read_lane(struct replay *replay, struct replay_lane *lane)
 {
     const struct plant_tag *tag = &replay->base.plant->tags[lane->tag];
     char why[200];
@@ -56,19 +56,19 @@ static void read_lane(struct replay *replay, struct lane *lane)
     store_write(replay->base.store, &none, 1, clock_mono_ns(), clock_utc_ns());
 }
 
-static int64_t due_ns(const struct replay *replay, const struct lane *lane, size_t at)
+static int64_t due_ns(const struct replay *replay, const struct replay_lane *lane, size_t at)
 {
     double time_s = lane->series.time_s[at] + (double)lane->rounds * lane->series.length_s;
     return replay->start_mono_ns + (int64_t)(time_s / replay->base.config->speed * 1e9);
 }
 
-static bool ended(const struct replay *replay, const struct lane *lane)
+static bool ended(const struct replay *replay, const struct replay_lane *lane)
 {
     return lane->series.count == 0 || (!replay->base.config->loop && lane->next == lane->series.count);
 }
 
 /* Moves on; after the last comes the first. */
-static void step(const struct replay *replay, struct lane *lane)
+static void step(const struct replay *replay, struct replay_lane *lane)
 {
     if (++lane->next < lane->series.count || !replay->base.config->loop)
         return;
@@ -76,7 +76,7 @@ static void step(const struct replay *replay, struct lane *lane)
     lane->rounds++;
 }
 
-static void play_lane(struct replay *replay, struct lane *lane, int64_t now_mono_ns, int64_t now_utc_ns)
+static void play_lane(struct replay *replay, struct replay_lane *lane, int64_t now_mono_ns, int64_t now_utc_ns)
 {
     for (int64_t due; !ended(replay, lane) && (due = due_ns(replay, lane, lane->next)) <= now_mono_ns; step(replay, lane)) {
         if (now_mono_ns - due > LATEST_NS)

@@ -17,19 +17,19 @@
 enum { MAX_BYTES = 512 * 1024 * 1024, LONG_CELLS = 5 };
 #define NO_TIME "%s:1: no column is the time: expected a name that ends in _ms, _s, _min or _h, or instants such as 2026-11-20T10:00:00Z"
 
-struct cell {
+struct series_cell {
     const char *at;
     size_t length;
 };
 
-struct lines {
+struct series_lines {
     const char *path, *at;
     int number;
-    struct cell *cells;
+    struct series_cell *cells;
     size_t count, capacity;
 };
 
-static bool next_line(struct lines *lines)
+static bool next_line(struct series_lines *lines)
 {
     if (!*lines->at)
         return false;
@@ -40,7 +40,7 @@ static bool next_line(struct lines *lines)
         size_t length = strcspn(at, ",;\t\r\n");
         mem_grow(&lines->cells, &lines->capacity, lines->count + 1, sizeof(*lines->cells));
         bool quoted = length > 1 && *at == '"' && at[length - 1] == '"';
-        lines->cells[lines->count++] = (struct cell){ at + quoted, length - 2 * quoted };
+        lines->cells[lines->count++] = (struct series_cell){ at + quoted, length - 2 * quoted };
         at += length;
         if (at >= end || *at == '\r')
             break;
@@ -50,18 +50,18 @@ static bool next_line(struct lines *lines)
     return true;
 }
 
-static bool is(const struct cell *cell, const char *text, size_t length)
+static bool is(const struct series_cell *cell, const char *text, size_t length)
 {
     return cell->length == length && !memcmp(cell->at, text, length);
 }
 
 /* Upper and lower case do not matter. */
-static bool is_called(const struct cell *cell, const char *name)
+static bool is_called(const struct series_cell *cell, const char *name)
 {
     return cell->length == strlen(name) && !strncasecmp(cell->at, name, cell->length);
 }
 
-static size_t column_called(const struct lines *lines, const char *name)
+static size_t column_called(const struct series_lines *lines, const char *name)
 {
     size_t i = 0;
     while (i < lines->count && !is_called(&lines->cells[i], name))
@@ -69,7 +69,7 @@ static size_t column_called(const struct lines *lines, const char *name)
     return i;
 }
 
-static bool number_of(const struct cell *cell, double *out)
+static bool number_of(const struct series_cell *cell, double *out)
 {
     char *end;
     *out = cell->length ? strtod(cell->at, &end) : NAN;
@@ -77,7 +77,7 @@ static bool number_of(const struct cell *cell, double *out)
 }
 
 /* A value of a series; NaN where a state word says that there is none. */
-static bool value_of(const struct cell *cell, double *out)
+static bool value_of(const struct series_cell *cell, double *out)
 {
     char text[64];
     uint32_t quality;
@@ -88,7 +88,7 @@ static bool value_of(const struct cell *cell, double *out)
     return state_word_is_bad(text, &quality);
 }
 
-static double unit_of_time(const struct cell *name)
+static double unit_of_time(const struct series_cell *name)
 {
     static const struct {
         const char *ending;
@@ -118,7 +118,7 @@ struct clock {     /* of one file */
     size_t ticks; /* different times */
 };
 
-static bool instant_of(const struct cell *cell, int64_t after_us, int64_t *t_us)
+static bool instant_of(const struct series_cell *cell, int64_t after_us, int64_t *t_us)
 {
     char text[40];
     if (cell->length >= sizeof(text))
@@ -128,7 +128,7 @@ static bool instant_of(const struct cell *cell, int64_t after_us, int64_t *t_us)
     return timestamp_parse_local(text, after_us, t_us);
 }
 
-static bool read_instant(struct clock *clock, const struct cell *cell, double *time_s)
+static bool read_instant(struct clock *clock, const struct series_cell *cell, double *time_s)
 {
     int64_t t_us;
     if (!instant_of(cell, clock->ticks ? clock->last_us - 1 : INT64_MIN, &t_us))
@@ -141,7 +141,7 @@ static bool read_instant(struct clock *clock, const struct cell *cell, double *t
     return true;
 }
 
-static bool read_number(struct clock *clock, const struct cell *cell, double *time_s)
+static bool read_number(struct clock *clock, const struct series_cell *cell, double *time_s)
 {
     double stamp;
     if (!number_of(cell, &stamp))
@@ -154,7 +154,7 @@ static bool read_number(struct clock *clock, const struct cell *cell, double *ti
 }
 
 /* The line's time since the first line. False: it is none, or lies before the line above. */
-static bool tick(struct clock *clock, const struct cell *cell, double *time_s)
+static bool tick(struct clock *clock, const struct series_cell *cell, double *time_s)
 {
     if (!(clock->instants ? read_instant : read_number)(clock, cell, time_s) || *time_s < clock->last_s)
         return false;
@@ -163,7 +163,8 @@ static bool tick(struct clock *clock, const struct cell *cell, double *time_s)
     return true;
 }
 
-static bool read_wide(struct series *series, struct lines *lines, size_t time_column, size_t column, struct clock *clock, char why[200])
+static bool read_wide(struct series *series, struct series_lines *lines, size_t time_column, size_t column, struct clock *clock,
+                      char why[200])
 {
     double time_s, value;
     while (next_line(lines)) {
@@ -185,7 +186,7 @@ static bool read_wide(struct series *series, struct lines *lines, size_t time_co
     return true;
 }
 
-static bool read_long(struct series *series, struct lines *lines, struct clock *clock, char why[200])
+static bool read_long(struct series *series, struct series_lines *lines, struct clock *clock, char why[200])
 {
     double time_s, value;
     const char *slash = strrchr(series->name, '/');
@@ -213,7 +214,7 @@ struct header {              /* columns; the number of columns where there is no
 };
 
 /* The file's first and last time and the number of its lines: tags may come one after the other. */
-static void scan_values(struct lines lines, const struct header *header, struct clock *clock)
+static void scan_values(struct series_lines lines, const struct header *header, struct clock *clock)
 {
     int64_t t_us;
     lines.cells = NULL;
@@ -230,7 +231,7 @@ static void scan_values(struct lines lines, const struct header *header, struct 
 }
 
 /* Lines of one tag and one value, as `plantcast history export` prints them. A blank value is none: its quality was Bad. */
-static bool read_values(struct series *series, struct lines *lines, const struct header *header, struct clock *file, char why[200])
+static bool read_values(struct series *series, struct series_lines *lines, const struct header *header, struct clock *file, char why[200])
 {
     double time_s, value;
     scan_values(*lines, header, file);
@@ -253,7 +254,7 @@ static bool read_values(struct series *series, struct lines *lines, const struct
             snprintf(why, 200, "%s:%d: %s: expected a number", lines->path, lines->number, series->name);
             return false;
         }
-        const struct cell *unit = header->unit < lines->count ? &lines->cells[header->unit] : NULL;
+        const struct series_cell *unit = header->unit < lines->count ? &lines->cells[header->unit] : NULL;
         if (unit && series->unit && !is(unit, series->unit, strlen(series->unit))) {
             snprintf(why, 200, "%s:%d: %s: expected the unit of the lines before, %s", lines->path, lines->number, series->name,
                      series->unit);
@@ -267,9 +268,9 @@ static bool read_values(struct series *series, struct lines *lines, const struct
 }
 
 /* The first line below the header, whose time may be an instant whatever its column is called. */
-static bool begins_with_instant(const struct lines *header, size_t column)
+static bool begins_with_instant(const struct series_lines *header, size_t column)
 {
-    struct lines next = { .at = header->at };
+    struct series_lines next = { .at = header->at };
     int64_t t_us;
     while (next_line(&next) && next.count == 1 && next.cells[0].length == 0)
         continue;
@@ -278,7 +279,7 @@ static bool begins_with_instant(const struct lines *header, size_t column)
     return begins;
 }
 
-static bool read_header(const struct lines *lines, const char *name, struct header *header, struct clock *clock)
+static bool read_header(const struct series_lines *lines, const char *name, struct header *header, struct clock *clock)
 {
     static const char *const times[] = { "Time", "Timestamp", "UTC", "DateTime", "Date" };
     *header = (struct header){ .time = lines->count,
@@ -315,7 +316,7 @@ bool series_read(struct series *series, const char *path, const char *name, bool
     *found = false;
     *series = (struct series){ .name = mem_strdup(name) };
     char *text = text_read_file(path, MAX_BYTES, &bytes);
-    struct lines lines = { .path = path, .at = !text ? "" : strncmp(text, "\xEF\xBB\xBF", 3) ? text : text + 3 };
+    struct series_lines lines = { .path = path, .at = !text ? "" : strncmp(text, "\xEF\xBB\xBF", 3) ? text : text + 3 };
     struct clock clock = { .unit_s = 0.001 };
     if (!text) {
         snprintf(why, 200, "%s: %s", path, strerror(errno));
@@ -402,11 +403,11 @@ static void add_name(struct series_names *names, char *name)
 }
 
 /* One name a line: entity/property, or of a tag. */
-static void list_lines(struct series_names *names, struct lines *lines, size_t tag)
+static void list_lines(struct series_names *names, struct series_lines *lines, size_t tag)
 {
     int first = lines->number;
     do {
-        const struct cell *cells = lines->cells;
+        const struct series_cell *cells = lines->cells;
         if (tag < lines->count)
             add_name(names, mem_printf("%.*s", (int)cells[tag].length, cells[tag].at));
         else if (lines->count >= LONG_CELLS)
@@ -423,7 +424,7 @@ bool series_list(struct series_names *names, const char *path, char why[200])
     bool good = true;
     *names = (struct series_names){ 0 };
     char *text = read_head(path, &names->whole, why);
-    struct lines lines = { .path = path, .at = !text ? "" : strncmp(text, "\xEF\xBB\xBF", 3) ? text : text + 3 };
+    struct series_lines lines = { .path = path, .at = !text ? "" : strncmp(text, "\xEF\xBB\xBF", 3) ? text : text + 3 };
     struct clock clock = { 0 };
     if (!text)
         return false;

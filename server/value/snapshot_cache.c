@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 
-struct entry { /* the snapshot comes first: it is what others hold */
+struct snapshot_entry { /* the snapshot comes first: it is what others hold */
     struct historical_snapshot historical;
     int users;
     uint64_t used;
@@ -19,7 +19,7 @@ struct entry { /* the snapshot comes first: it is what others hold */
 struct snapshot_cache {
     pthread_mutex_t lock;
     /* --- below: under lock */
-    struct entry **entries;
+    struct snapshot_entry **entries;
     size_t count, capacity;
     uint64_t uses;
 };
@@ -31,7 +31,7 @@ struct snapshot_cache *snapshot_cache_create(void)
     return snapshot_cache;
 }
 
-static void entry_destroy(struct entry *entry)
+static void entry_destroy(struct snapshot_entry *entry)
 {
     mem_free(entry->historical.snapshot.readings);
     mem_free(entry);
@@ -51,7 +51,7 @@ void snapshot_cache_destroy(struct snapshot_cache **cache_ptr)
 }
 
 /* Under lock. NULL: none. */
-static struct entry *find(const struct snapshot_cache *snapshot_cache, int64_t at_us)
+static struct snapshot_entry *find(const struct snapshot_cache *snapshot_cache, int64_t at_us)
 {
     for (size_t i = 0; i < snapshot_cache->count; i++)
         if (snapshot_cache->entries[i]->historical.at_us == at_us)
@@ -76,7 +76,7 @@ static void drop_spare(struct snapshot_cache *snapshot_cache)
 {
     size_t spare = 0, oldest = 0;
     for (size_t i = 0; i < snapshot_cache->count; i++) {
-        const struct entry *entry = snapshot_cache->entries[i];
+        const struct snapshot_entry *entry = snapshot_cache->entries[i];
         if (entry->users > 0)
             continue;
         if (spare++ == 0 || entry->used < snapshot_cache->entries[oldest]->used)
@@ -106,8 +106,8 @@ void snapshot_cache_add(struct snapshot_cache *snapshot_cache, int64_t at_us, st
     number_changes(snapshot);
     pthread_mutex_lock(&snapshot_cache->lock);
     if (!find(snapshot_cache, at_us)) {
-        struct entry *entry = mem_new(sizeof(*entry));
-        *entry = (struct entry){ .historical = { .snapshot = *snapshot, .at_us = at_us }, .used = ++snapshot_cache->uses };
+        struct snapshot_entry *entry = mem_new(sizeof(*entry));
+        *entry = (struct snapshot_entry){ .historical = { .snapshot = *snapshot, .at_us = at_us }, .used = ++snapshot_cache->uses };
         *snapshot = (struct snapshot){ 0 };
         mem_grow(&snapshot_cache->entries, &snapshot_cache->capacity, snapshot_cache->count + 1, sizeof(*snapshot_cache->entries));
         snapshot_cache->entries[snapshot_cache->count++] = entry;
@@ -119,7 +119,7 @@ void snapshot_cache_add(struct snapshot_cache *snapshot_cache, int64_t at_us, st
 const struct historical_snapshot *snapshot_cache_take(struct snapshot_cache *snapshot_cache, int64_t at_us)
 {
     pthread_mutex_lock(&snapshot_cache->lock);
-    struct entry *entry = find(snapshot_cache, at_us);
+    struct snapshot_entry *entry = find(snapshot_cache, at_us);
     if (entry) {
         if (entry->users == 0)
             entry->historical.slot = free_slot(snapshot_cache);
@@ -135,7 +135,7 @@ void snapshot_cache_give(struct snapshot_cache *snapshot_cache, const struct his
     if (!*historical)
         return;
     pthread_mutex_lock(&snapshot_cache->lock);
-    ((struct entry *)*historical)->users--;
+    ((struct snapshot_entry *)*historical)->users--;
     drop_spare(snapshot_cache);
     pthread_mutex_unlock(&snapshot_cache->lock);
     *historical = NULL;

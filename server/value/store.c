@@ -25,7 +25,7 @@ struct held {
     uint8_t alarm, alarm_status;
 };
 
-struct link {
+struct source_link {
     bool up;
     int64_t changed_mono_ns;
 };
@@ -35,7 +35,7 @@ struct store {
     pthread_mutex_t lock;
     /* --- below: under lock */
     struct held *tags;
-    struct link *links;
+    struct source_link *links;
     struct {
         store_listener *hear;
         void *arg;
@@ -361,7 +361,7 @@ void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t
 
 static void set_link(struct store *store, int source, bool up, int64_t now_mono_ns)
 {
-    struct link *link = &store->links[source];
+    struct source_link *link = &store->links[source];
     if (now_mono_ns < link->changed_mono_ns)
         return;
     if (link->up != up)

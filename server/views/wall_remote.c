@@ -19,7 +19,7 @@ struct pointer {
     uint64_t number;
 };
 
-struct seen {
+struct display_seen {
     char wall[NAMED_VIEW_ID_BYTES];
     int display;
     bool there;
@@ -30,7 +30,7 @@ struct wall_remote {
     struct kept_list kept; /* { id, wall, display, area, view, title, held, desk, by, time_us } */
     struct pointer pointers[WALL_POINTERS];
     uint64_t pointed;
-    struct seen seen[SEEN];
+    struct display_seen seen[SEEN];
     size_t seen_count;
 };
 
@@ -187,7 +187,7 @@ void wall_remote_see(struct wall_remote *remote, const char *wall, int display, 
         i++;
     if (i == SEEN)
         return;
-    struct seen *seen = &remote->seen[i];
+    struct display_seen *seen = &remote->seen[i];
     if (i < remote->seen_count && seen->there == there)
         return;
     remote->seen_count += i == remote->seen_count;

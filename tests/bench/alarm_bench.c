@@ -35,7 +35,7 @@ static void count(void *arg, const struct alarm_change *change)
     ++*(int *)arg;
 }
 
-struct bench {
+struct alarm_bench {
     struct alarms *alarms;
     struct sample_event *events;
     struct snapshot *snapshot;
@@ -44,7 +44,7 @@ struct bench {
 };
 
 /* One scan of all tags and ten looks at the clock, as in a second of the daemon's life. Milliseconds of work. */
-static double second(struct bench *bench)
+static double second(struct alarm_bench *bench)
 {
     int64_t begun_ns = clock_work_ns();
     for (int i = 0; i < TAGS; i++) {
@@ -61,7 +61,7 @@ static double second(struct bench *bench)
 }
 
 /* FLOOD_HZ tags a second go beyond their limit, and those before them come back. */
-static double flood(struct bench *bench)
+static double flood(struct alarm_bench *bench)
 {
     double worst_ms = 0;
     for (int s = 0; s < SECONDS; s++) {
@@ -75,7 +75,7 @@ static double flood(struct bench *bench)
     return worst_ms;
 }
 
-static double burst(struct bench *bench)
+static double burst(struct alarm_bench *bench)
 {
     for (int i = 0; i < TAGS; i++)
         bench->events[i].value = i < BURST ? 95 : 50;
@@ -152,7 +152,7 @@ static bool look_back(void)
 int main(void)
 {
     struct plant *plant = make_plant();
-    struct bench bench = { .second_ns = 1000 * NS_PER_S };
+    struct alarm_bench bench = { .second_ns = 1000 * NS_PER_S };
     bench.alarms = alarms_create(plant, &(struct alarms_listener){ .changed = count, .arg = &bench.changes });
     bench.events = mem_array(TAGS, sizeof(*bench.events));
     bench.snapshot = snapshot_create(TAGS);

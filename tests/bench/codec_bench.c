@@ -21,7 +21,7 @@
 #define DEMO "build/demo/plant.yaml"
 enum { ORBIT = 30, UPDATES = 5, TAGS = 60 };
 
-struct bench {
+struct codec_bench {
     struct log *log;
     struct plant *plant;
     struct scene *scene;
@@ -33,7 +33,7 @@ struct bench {
     struct sim_values *values;
 };
 
-static bool values_init(struct bench *bench)
+static bool values_init(struct codec_bench *bench)
 {
     struct diag diag = { 0 };
     struct sim_map map = { 0 };
@@ -44,7 +44,7 @@ static bool values_init(struct bench *bench)
 }
 
 /* The first TAGS tags of the group that is shown follow the plant; the others stay as they are. */
-static void read_tags(struct bench *bench, int group, bool all)
+static void read_tags(struct codec_bench *bench, int group, bool all)
 {
     int left = TAGS;
     bench->snapshot->taken_mono_ns = clock_mono_ns();
@@ -59,7 +59,7 @@ static void read_tags(struct bench *bench, int group, bool all)
     }
 }
 
-static bool bench_init(struct bench *bench)
+static bool bench_init(struct codec_bench *bench)
 {
     struct diag diag = { 0 };
     bench->log = log_create(LOG_ERROR);
@@ -81,7 +81,7 @@ static bool bench_init(struct bench *bench)
     return bench->renderer != NULL;
 }
 
-static void bench_finish(struct bench *bench)
+static void bench_finish(struct codec_bench *bench)
 {
     renderer_destroy(&bench->renderer);
     gl_destroy(&bench->gl);
@@ -163,7 +163,7 @@ static void forget(struct measured measured[CODECS])
     }
 }
 
-static struct frame *draw(struct bench *bench, const struct view *view)
+static struct frame *draw(struct codec_bench *bench, const struct view *view)
 {
     struct frame *frame = split_view_draw_now(bench->renderer, view, bench->snapshot);
     if (!frame)
@@ -171,7 +171,7 @@ static struct frame *draw(struct bench *bench, const struct view *view)
     return frame;
 }
 
-static void measure_orbit(struct bench *bench, struct measured measured[CODECS])
+static void measure_orbit(struct codec_bench *bench, struct measured measured[CODECS])
 {
     struct view view;
     view_default(bench->scene, 1920, 1080, &view);
@@ -190,7 +190,7 @@ static void measure_orbit(struct bench *bench, struct measured measured[CODECS])
     }
 }
 
-static void measure_updates(struct bench *bench, struct measured measured[CODECS])
+static void measure_updates(struct codec_bench *bench, struct measured measured[CODECS])
 {
     struct view view;
     view_default(bench->scene, 1920, 1080, &view);
@@ -225,7 +225,7 @@ static void print_rows(const struct measured measured[CODECS], const char *what,
     }
 }
 
-static void measure(struct bench *bench)
+static void measure(struct codec_bench *bench)
 {
     struct measured measured[CODECS] = { { 0 } };
     for (int c = 0; c < CODECS; c++)
@@ -249,7 +249,7 @@ static void measure(struct bench *bench)
 
 int main(void)
 {
-    struct bench bench = { 0 };
+    struct codec_bench bench = { 0 };
     if (access(DEMO, R_OK) != 0) {
         printf("{\"name\": \"encode_jpeg_1080p_orbit_ms\", \"value\": null, \"p95\": null, \"unit\": \"ms\", \"why\": \"%s is not "
                "prepared\"}\n",

@@ -14,7 +14,7 @@
 #define VERTICES 66000
 #define ROUNDS 60
 
-struct bench {
+struct field_bench {
     struct synthetic *plant;
     struct field *field;
     struct field_params params;
@@ -22,51 +22,51 @@ struct bench {
     uint64_t random;
 };
 
-static void change_reading(struct bench *bench, size_t sensor)
+static void change_reading(struct field_bench *bench, size_t sensor)
 {
     bench->plant->snapshot->readings[sensor].value = 100 * synthetic_random_unit(&bench->random);
 }
 
-static void change_all(struct bench *bench)
+static void change_all(struct field_bench *bench)
 {
     for (size_t i = 0; i < bench->sensors; i++)
         change_reading(bench, i);
 }
 
-static void change_one(struct bench *bench)
+static void change_one(struct field_bench *bench)
 {
     change_reading(bench, synthetic_random(&bench->random) % bench->sensors);
 }
 
-static void change_quality(struct bench *bench)
+static void change_quality(struct field_bench *bench)
 {
     struct reading *reading = &bench->plant->snapshot->readings[synthetic_random(&bench->random) % bench->sensors];
     reading->quality = quality_is_bad(reading->quality) ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE;
 }
 
-static void mend_all(struct bench *bench)
+static void mend_all(struct field_bench *bench)
 {
     for (size_t i = 0; i < bench->sensors; i++)
         bench->plant->snapshot->readings[i].quality = QUALITY_GOOD;
 }
 
-static void change_nothing(struct bench *bench)
+static void change_nothing(struct field_bench *bench)
 {
     (void)bench;
 }
 
-static void drag_power(struct bench *bench)
+static void drag_power(struct field_bench *bench)
 {
     bench->params.power = 1 + 4 * synthetic_random_unit(&bench->random);
 }
 
-static void drag_decay(struct bench *bench)
+static void drag_decay(struct field_bench *bench)
 {
     bench->params.decay = 0.5 + synthetic_random_unit(&bench->random);
 }
 
 /* goal_ms 0: none */
-static void measure(struct bench *bench, const char *name, void (*change)(struct bench *), double goal_ms)
+static void measure(struct field_bench *bench, const char *name, void (*change)(struct field_bench *), double goal_ms)
 {
     double ms[ROUNDS], work_ms[ROUNDS];
     for (int i = -5; i < ROUNDS; i++) {
@@ -92,7 +92,7 @@ static void measure(struct bench *bench, const char *name, void (*change)(struct
 }
 
 /* How long the thread that asks is held up, where it asks for pieces as the painter does. */
-static void measure_pieces(struct bench *bench, const char *kind, void (*change)(struct bench *))
+static void measure_pieces(struct field_bench *bench, const char *kind, void (*change)(struct field_bench *))
 {
     enum { MOST = 4096 };
     static double ms[MOST];
@@ -115,7 +115,7 @@ static void measure_pieces(struct bench *bench, const char *kind, void (*change)
     fflush(stdout);
 }
 
-static void measure_named(struct bench *bench, const char *kind, void (*change)(struct bench *), double goal_ms)
+static void measure_named(struct field_bench *bench, const char *kind, void (*change)(struct field_bench *), double goal_ms)
 {
     char *name = mem_printf("field_%zu_%s_ms", bench->sensors, kind);
     measure(bench, name, change, goal_ms);
@@ -124,7 +124,7 @@ static void measure_named(struct bench *bench, const char *kind, void (*change)(
 
 static void measure_plant(struct workers *workers, size_t sensors)
 {
-    struct bench bench = { .plant = synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = 1), .sensors = sensors };
+    struct field_bench bench = { .plant = synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = 1), .sensors = sensors };
     bench.field = field_create(workers, &bench.plant->scene);
     field_params_default(&bench.plant->plant, 0, &bench.params);
     measure_named(&bench, "all_readings", change_all, 4);
@@ -155,7 +155,7 @@ static void measure_plant(struct workers *workers, size_t sensors)
 /* So many columns are not kept but made anew from distances for each change. */
 static void measure_many(struct workers *workers, size_t sensors)
 {
-    struct bench bench = { .plant = synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = 1), .sensors = sensors };
+    struct field_bench bench = { .plant = synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = 1), .sensors = sensors };
     bench.field = field_create(workers, &bench.plant->scene);
     field_params_default(&bench.plant->plant, 0, &bench.params);
     measure_named(&bench, "all_readings", change_all, 300);

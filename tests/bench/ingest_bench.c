@@ -14,7 +14,7 @@
 
 enum { DEVICES = 10, TAGS = 2000, DEAD = 3, SLOW = 7, SLOW_MS = 30, WARM_S = 3, SECONDS = 10, LOOKS = SECONDS * 10 };
 
-static struct plant *make_plant(const struct device *devices)
+static struct plant *make_plant(const struct modbus_device *devices)
 {
     struct plant *plant = plant_by_hand_create(DEVICES * TAGS);
     for (int d = 0; d < DEVICES; d++) {
@@ -81,7 +81,7 @@ static void watch(struct store *store)
 
 int main(void)
 {
-    static struct device devices[DEVICES];
+    static struct modbus_device devices[DEVICES];
     struct source *sources[DEVICES];
     struct log *log = log_create(LOG_ERROR);
     struct counters *counters = counters_create();

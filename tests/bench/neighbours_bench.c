@@ -24,7 +24,7 @@
 enum { ACROSS = 192, ROUNDS = 100, WARM_UP = 5 };
 #define WIDTH_M 10.0
 
-struct bench {
+struct neighbours_bench {
     struct plant *plant;
     struct scene *scene;
     struct field *field;
@@ -59,21 +59,21 @@ static void write_plant(struct prep_case *c, int sensors, bool gp, struct cad_ra
     text_finish(&rows);
 }
 
-static void change_reading(struct bench *bench)
+static void change_reading(struct neighbours_bench *bench)
 {
     size_t sensor = (size_t)(cad_random(&bench->random) * (double)bench->plant->tag_count);
     bench->snapshot->readings[sensor].value = 100 * cad_random(&bench->random);
     bench->snapshot->readings[sensor].changes++;
 }
 
-static void draw_field(struct bench *bench)
+static void draw_field(struct neighbours_bench *bench)
 {
     if (!field_scalars(bench->field, 0, &bench->params, bench->snapshot))
         abort();
 }
 
 /* As a second later: what was found before is too old. */
-static void ask_all(struct bench *bench)
+static void ask_all(struct neighbours_bench *bench)
 {
     bench->snapshot->taken_mono_ns += 2 * NEIGHBOURS_FRESH_NS;
     if (neighbours_look(&bench->cache, bench->scene, 0, 0, bench->snapshot)->count != bench->plant->tag_count)
@@ -81,7 +81,7 @@ static void ask_all(struct bench *bench)
 }
 
 /* Work of all cores. Returns the median; `ms` is sorted. */
-static double time_of(struct bench *bench, void (*work)(struct bench *), double ms[ROUNDS])
+static double time_of(struct neighbours_bench *bench, void (*work)(struct neighbours_bench *), double ms[ROUNDS])
 {
     for (int i = -WARM_UP; i < ROUNDS; i++) {
         change_reading(bench);
@@ -104,7 +104,7 @@ static void print_row(const char *what, int sensors, const char *kind, const dou
     fflush(stdout);
 }
 
-static void measure(struct bench *bench, int sensors, const char *kind)
+static void measure(struct neighbours_bench *bench, int sensors, const char *kind)
 {
     double ms[ROUNDS];
     double reading_ms = time_of(bench, draw_field, ms);
@@ -116,7 +116,7 @@ static void measure(struct bench *bench, int sensors, const char *kind)
 
 static void measure_plant(struct log *log, struct workers *workers, int sensors, bool gp)
 {
-    struct bench bench = { .random = { 1 } };
+    struct neighbours_bench bench = { .random = { 1 } };
     void *state;
     prep_case_set_up(&state);
     struct prep_case *c = state;

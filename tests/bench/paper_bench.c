@@ -38,11 +38,11 @@ static const struct paper_model models[] = {
     { PLANT_MODEL, NULL, "y", "_5parts" },
 };
 
-struct bench {
+struct paper_bench {
     struct log *log;
     struct workers *workers;
     struct gl *gl;
-    struct crowd crowd;
+    struct sensor_crowd crowd;
     struct field *field;
     struct renderer *renderer;
     double hull_m[HULL_POINTS][3];
@@ -53,7 +53,7 @@ struct bench {
     double few_ms; /* with the fewest sensors of a series; 0: not measured */
 };
 
-struct series { /* of one row */
+struct timing_series { /* of one row */
     double time_ms[MOST_FRAMES], work_ms[MOST_FRAMES];
     int frames, triangles, changes;
     double seconds;
@@ -62,7 +62,7 @@ struct series { /* of one row */
 /* --- cameras that have everything in view --------------------------------------------------------------------------------- */
 
 /* Points of the model, plant frame less the instance's own place, that lie farthest out in many directions. */
-static void find_hull(struct bench *bench)
+static void find_hull(struct paper_bench *bench)
 {
     const struct scene_asset *asset = &bench->crowd.scene->assets[0];
     const struct asset_view *file = &asset->file->view;
@@ -82,7 +82,7 @@ static void find_hull(struct bench *bench)
 }
 
 /* Extremes of the picture's plane, in tangents. Instances are moved, not turned. */
-static void find_extremes(const struct bench *bench, const double eye_m[3], double axes[3][3], double low[2], double high[2])
+static void find_extremes(const struct paper_bench *bench, const double eye_m[3], double axes[3][3], double low[2], double high[2])
 {
     low[0] = low[1] = INFINITY;
     high[0] = high[1] = -INFINITY;
@@ -100,7 +100,7 @@ static void find_extremes(const struct bench *bench, const double eye_m[3], doub
 }
 
 /* From that side, as near as it gets with all of it in the picture. */
-static void fit(const struct bench *bench, double azimuth, double elevation, struct camera *camera)
+static void fit(const struct paper_bench *bench, double azimuth, double elevation, struct camera *camera)
 {
     const struct scene *scene = bench->crowd.scene;
     double axes[3][3] = { { -sin(azimuth), cos(azimuth), 0 }, /* right, up, ahead */
@@ -125,13 +125,13 @@ static void fit(const struct bench *bench, double azimuth, double elevation, str
         camera->eye_m[c] = camera->target_m[c] - 1.002 * distance_m * axes[2][c];
 }
 
-static void make_view(const struct bench *bench, int width_px, int height_px, struct view *view)
+static void make_view(const struct paper_bench *bench, int width_px, int height_px, struct view *view)
 {
     view_default(bench->crowd.scene, width_px, height_px, view);
     view->tier = TIER_PREVIEW;
 }
 
-static struct frame *draw(struct bench *bench, const struct view *view)
+static struct frame *draw(struct paper_bench *bench, const struct view *view)
 {
     struct frame *frame = split_view_draw_now(bench->renderer, view, bench->crowd.snapshot);
     if (!frame)
@@ -140,7 +140,7 @@ static struct frame *draw(struct bench *bench, const struct view *view)
 }
 
 /* The part of the pixels that show a field: those that are others by another map of colours. Ground and shadows do not count. */
-static double coverage_from(struct bench *bench, const struct camera *camera)
+static double coverage_from(struct paper_bench *bench, const struct camera *camera)
 {
     struct view view;
     make_view(bench, PROBE_WIDTH_PX, PROBE_HEIGHT_PX, &view);
@@ -156,23 +156,23 @@ static double coverage_from(struct bench *bench, const struct camera *camera)
     return (double)covered / (PROBE_WIDTH_PX * PROBE_HEIGHT_PX);
 }
 
-struct side {
+struct view_side {
     double azimuth, elevation, coverage;
 };
 
-static void try_side(struct bench *bench, double azimuth, double elevation, struct side *best)
+static void try_side(struct paper_bench *bench, double azimuth, double elevation, struct view_side *best)
 {
     struct camera camera;
     fit(bench, azimuth, elevation, &camera);
     double coverage = coverage_from(bench, &camera);
     if (coverage > best->coverage)
-        *best = (struct side){ azimuth, elevation, coverage };
+        *best = (struct view_side){ azimuth, elevation, coverage };
 }
 
 /* The side from which the picture is filled best, and a swing round it; no camera comes twice, or it would stand still for the renderer. */
-static void choose_cameras(struct bench *bench)
+static void choose_cameras(struct paper_bench *bench)
 {
-    struct side best = { 0 };
+    struct view_side best = { 0 };
     find_hull(bench);
     for (int a = 0; a < 18; a++)
         for (int e = 0; e < 4; e++)
@@ -192,7 +192,7 @@ static void choose_cameras(struct bench *bench)
 /* --- rows ------------------------------------------------------------------------------------------------------------------- */
 
 /* What a peer needs to draw the same (tests/bench/vtk_peer.py); its path is that of the plant. */
-static void write_scene(const struct bench *bench, const char *folder)
+static void write_scene(const struct paper_bench *bench, const char *folder)
 {
     char *path = mem_printf("%s/scene.json", folder);
     FILE *out = fopen(path, "w");
@@ -216,7 +216,7 @@ static void write_scene(const struct bench *bench, const char *folder)
     fclose(out);
 }
 
-static bool bench_init(struct bench *bench, const struct paper_model *model, int instances, int sensors)
+static bool bench_init(struct paper_bench *bench, const struct paper_model *model, int instances, int sensors)
 {
     char *folder = mem_printf(FOLDER "/crowd%s-%dx%d", model->suffix, instances, sensors), *path = realpath(model->path, NULL);
     struct crowd_params params = {
@@ -237,14 +237,14 @@ static bool bench_init(struct bench *bench, const struct paper_model *model, int
     return good;
 }
 
-static void bench_finish(struct bench *bench)
+static void bench_finish(struct paper_bench *bench)
 {
     renderer_destroy(&bench->renderer);
     field_destroy(&bench->field);
     crowd_finish(&bench->crowd);
 }
 
-static void draw_one(struct bench *bench, struct series *series, struct view *view, int number)
+static void draw_one(struct paper_bench *bench, struct timing_series *series, struct view *view, int number)
 {
     double start_ms = measure_ms(CLOCK_MONOTONIC), worked_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
     view->camera = bench->cameras[(number + CAMERAS) % CAMERAS];
@@ -258,11 +258,11 @@ static void draw_one(struct bench *bench, struct series *series, struct view *vi
     frame_unref(&frame);
 }
 
-static void run_series(struct bench *bench, struct series *series)
+static void run_series(struct paper_bench *bench, struct timing_series *series)
 {
     struct view view;
     int64_t began_ns = 0, changed_ns = clock_mono_ns();
-    *series = (struct series){ 0 };
+    *series = (struct timing_series){ 0 };
     make_view(bench, WIDTH_PX, HEIGHT_PX, &view);
     for (int i = -1; i < MOST_FRAMES; i++) {
         int64_t now_ns = clock_mono_ns();
@@ -281,10 +281,10 @@ static void run_series(struct bench *bench, struct series *series)
 }
 
 /* One frame, whatever it takes; a small one before it brings all that it needs into the GPU's memory. */
-static void run_one(struct bench *bench, struct series *series)
+static void run_one(struct paper_bench *bench, struct timing_series *series)
 {
     struct view view;
-    *series = (struct series){ 0 };
+    *series = (struct timing_series){ 0 };
     make_view(bench, PROBE_WIDTH_PX, PROBE_HEIGHT_PX, &view);
     draw_one(bench, series, &view, -1);
     make_view(bench, WIDTH_PX, HEIGHT_PX, &view);
@@ -293,13 +293,13 @@ static void run_one(struct bench *bench, struct series *series)
 }
 
 /* Pictures given to the GPU before others have come. */
-static void run_flow(struct bench *bench, struct series *series)
+static void run_flow(struct paper_bench *bench, struct timing_series *series)
 {
     struct view view;
     struct render_job *flying[IN_FLIGHT] = { NULL };
     int64_t began_ns = 0, changed_ns = clock_mono_ns();
     double worked_ms = 0;
-    *series = (struct series){ 0 };
+    *series = (struct timing_series){ 0 };
     make_view(bench, WIDTH_PX, HEIGHT_PX, &view);
     for (int i = -IN_FLIGHT; i < FLOW_FRAMES; i++) {
         int64_t now_ns = clock_mono_ns();
@@ -329,7 +329,7 @@ static void run_flow(struct bench *bench, struct series *series)
     series->work_ms[0] = (measure_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms) / FLOW_FRAMES;
 }
 
-static void print_row(const struct bench *bench, const char *name, struct series *series, double goal_ms)
+static void print_row(const struct paper_bench *bench, const char *name, struct timing_series *series, double goal_ms)
 {
     int middle = series->frames / 2, late = series->frames * 95 / 100;
     double columns = series->changes * (double)bench->crowd.plant->tag_count / series->seconds;
@@ -346,7 +346,7 @@ static void print_row(const struct bench *bench, const char *name, struct series
 }
 
 /* A frame's cost does not grow with the sensors. */
-static void compare_sensors(struct bench *bench, const struct paper_model *model, int sensors, const struct series *series)
+static void compare_sensors(struct paper_bench *bench, const struct paper_model *model, int sensors, const struct timing_series *series)
 {
     double here_ms = series->work_ms[series->frames / 2];
     if (sensors == FEW_SENSORS)
@@ -363,7 +363,7 @@ static void print_missing(const char *name, const char *why)
 }
 
 /* Its time grows with the sensors. */
-static void measure_brute(struct bench *bench, const char *name, int sensors, struct series *series)
+static void measure_brute(struct paper_bench *bench, const char *name, int sensors, struct timing_series *series)
 {
     bool slow = bench->brute_sensors > 0 && bench->brute_ms * sensors / bench->brute_sensors > LONGEST_BRUTE_MS;
     renderer_set_per_fragment(bench->renderer, true);
@@ -376,9 +376,10 @@ static void measure_brute(struct bench *bench, const char *name, int sensors, st
     bench->brute_sensors = sensors;
 }
 
-static void measure(struct bench *bench, const struct paper_model *model, const char *kind, int instances, int sensors, double goal_ms)
+static void measure(struct paper_bench *bench, const struct paper_model *model, const char *kind, int instances, int sensors,
+                    double goal_ms)
 {
-    struct series *series = mem_new(sizeof(*series));
+    struct timing_series *series = mem_new(sizeof(*series));
     int count = sensors == 5 && !strcmp(kind, "instances") ? instances : sensors;
     char *name = mem_printf("render_%s_%d%s_ms", kind, count, model->suffix);
     char *flow_name = mem_printf("flow_%s_%d%s_ms", kind, count, model->suffix);
@@ -418,7 +419,7 @@ static const struct goal sensor_goals[] = { { .count = 5 },    { .count = 10 }, 
 enum { INSTANCE_GOALS = sizeof(instance_goals) / sizeof(instance_goals[0]), SENSOR_GOALS = sizeof(sensor_goals) / sizeof(sensor_goals[0]) };
 
 /* instances, sensors: of the only rows; -1: all of them. */
-static void measure_model(struct bench *bench, const struct paper_model *model, bool gpu, int instances, int sensors)
+static void measure_model(struct paper_bench *bench, const struct paper_model *model, bool gpu, int instances, int sensors)
 {
     for (int i = 0; i < INSTANCE_GOALS; i++) {
         const struct goal *goal = &instance_goals[i];
@@ -435,7 +436,7 @@ static void measure_model(struct bench *bench, const struct paper_model *model, 
 
 int main(int argc, char **argv)
 {
-    struct bench bench = { .log = log_create(LOG_ERROR), .workers = workers_create(0) };
+    struct paper_bench bench = { .log = log_create(LOG_ERROR), .workers = workers_create(0) };
     bool gpu = argc > 1 && !strcmp(argv[1], "gpu");
     int instances = argc > 3 ? atoi(argv[2]) : -1, sensors = argc > 3 ? atoi(argv[3]) : -1;
     mkdir(FOLDER, 0777);

@@ -18,7 +18,7 @@
 #define ASSET "E-101"
 #define PREPARED "build/demo/plant.prepared"
 
-struct box {
+struct relocation_counter {
     pthread_mutex_t lock;
     pthread_cond_t came;
     int count;
@@ -26,7 +26,7 @@ struct box {
 
 static void take(void *arg, struct relocation_result *result)
 {
-    struct box *box = arg;
+    struct relocation_counter *box = arg;
     if (result->status != RELOCATION_DONE)
         abort();
     mem_free(result->geodesic_m);
@@ -48,7 +48,7 @@ static const struct asset_view *find(const struct scene *scene, const char *id)
 static void measure(struct relocation *relocation, const struct asset_view *view)
 {
     double ms[ROUNDS];
-    struct box box = { .lock = PTHREAD_MUTEX_INITIALIZER, .came = PTHREAD_COND_INITIALIZER };
+    struct relocation_counter box = { .lock = PTHREAD_MUTEX_INITIALIZER, .came = PTHREAD_COND_INITIALIZER };
     float *euclidean_m = mem_array(view->header->vertex_count, sizeof(*euclidean_m));
     for (int i = -1; i < ROUNDS; i++) {
         const float *p = view->positions_m[(size_t)(i + 1) * view->header->vertex_count / (ROUNDS + 1)];

@@ -17,7 +17,7 @@
 #define DEMO "build/demo/plant.yaml"
 enum { MOVING_ROUNDS = 40, STILL_ROUNDS = 8, MOST_ROUNDS = 40 };
 
-struct bench {
+struct render_bench {
     struct log *log;
     struct plant *plant;
     struct scene *scene;
@@ -59,7 +59,7 @@ static void fill(struct snapshot *snapshot, const struct plant *plant)
     }
 }
 
-static bool bench_init(struct bench *bench)
+static bool bench_init(struct render_bench *bench)
 {
     struct diag diag = { 0 };
     bench->log = log_create(LOG_ERROR);
@@ -82,7 +82,7 @@ static bool bench_init(struct bench *bench)
     return bench->renderer != NULL;
 }
 
-static void bench_finish(struct bench *bench)
+static void bench_finish(struct render_bench *bench)
 {
     renderer_destroy(&bench->renderer);
     gl_destroy(&bench->gl);
@@ -97,7 +97,7 @@ static void bench_finish(struct bench *bench)
 enum dress { PLAIN, LINED, BANDED, LOGARITHMIC, LIMITS, CUT, ORTHOGRAPHIC, GHOSTS, GLOSSY };
 enum { GHOST_COUNT = 5 };
 
-static void put_on(const struct bench *bench, enum dress dress, struct view *view)
+static void put_on(const struct render_bench *bench, enum dress dress, struct view *view)
 {
     double range = view->range_max - view->range_min;
     for (int i = 1; dress == LINED && i < 10; i++)
@@ -127,7 +127,7 @@ static void put_on(const struct bench *bench, enum dress dress, struct view *vie
 }
 
 /* The plant's own view, from a little farther aside each time: a camera that stands still is only coloured anew. */
-static void measure(struct bench *bench, enum tier tier, enum dress dress, const char *time_name, const char *work_name, int rounds)
+static void measure(struct render_bench *bench, enum tier tier, enum dress dress, const char *time_name, const char *work_name, int rounds)
 {
     struct view view;
     double time_ms[MOST_ROUNDS], work_ms[MOST_ROUNDS];
@@ -150,7 +150,7 @@ static void measure(struct bench *bench, enum tier tier, enum dress dress, const
     print_row(work_name, work_ms, rounds, 0);
 }
 
-static void measure_all(struct bench *bench, enum tier tier, int rounds)
+static void measure_all(struct render_bench *bench, enum tier tier, int rounds)
 {
     static const char *const names[] = { "", "lines_", "bands_", "log_", "operator_", "cut_", "orthographic_", "ghosts_", "glossy_" };
     for (enum dress dress = PLAIN; dress <= GLOSSY; dress++) {
@@ -163,7 +163,7 @@ static void measure_all(struct bench *bench, enum tier tier, int rounds)
 }
 
 /* The camera stands still, and one reading changes. */
-static void measure_recolour(struct bench *bench)
+static void measure_recolour(struct render_bench *bench)
 {
     struct view view;
     double time_ms[MOVING_ROUNDS], work_ms[MOVING_ROUNDS];
@@ -190,7 +190,7 @@ static void measure_recolour(struct bench *bench)
 }
 
 /* Bit by bit, with 10 ms for each step: how long it all takes, and for how long others wait. */
-static void measure_steps(struct bench *bench)
+static void measure_steps(struct render_bench *bench)
 {
     struct view view;
     double work_ms[STILL_ROUNDS], longest_ms[STILL_ROUNDS] = { 0 }, longest_work_ms[STILL_ROUNDS] = { 0 };
@@ -224,7 +224,7 @@ static void measure_steps(struct bench *bench)
 }
 
 /* Under a still camera: one reading, or every one, changed. The field's own part is not counted. */
-static void measure_again(struct bench *bench, enum dress dress, bool all, double goal, const char *time_name, const char *work_name)
+static void measure_again(struct render_bench *bench, enum dress dress, bool all, double goal, const char *time_name, const char *work_name)
 {
     struct view view;
     double time_ms[MOST_ROUNDS], work_ms[MOST_ROUNDS];
@@ -253,7 +253,7 @@ static void measure_again(struct bench *bench, enum dress dress, bool all, doubl
 
 int main(void)
 {
-    struct bench bench = { 0 };
+    struct render_bench bench = { 0 };
     if (access(DEMO, R_OK) != 0) {
         fprintf(stderr, "render_bench: %s is not there: run `make demo` first\n", DEMO);
         print_why(DEMO " is not prepared");

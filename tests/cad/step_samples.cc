@@ -92,12 +92,15 @@ bool write_step(const Handle(TDocStd_Document) & document, const std::string &pa
 
 using entity = Handle(IGESData_IGESEntity);
 
-struct drawing {
+struct iges_drawing {
     IGESControl_Writer writer;
     BRepToIGES_BREntity shapes;
     double unit_mm;
 
-    drawing(const char *unit, double mm) : writer(unit, 0), unit_mm(mm) { shapes.SetModel(writer.Model()); }
+    iges_drawing(const char *unit, double mm) : writer(unit, 0), unit_mm(mm)
+    {
+        shapes.SetModel(writer.Model());
+    }
 
     entity named(const entity &what, const char *text)
     {
@@ -162,7 +165,7 @@ struct drawing {
 /* The same skid; the motor's first side is blue. A casing lies, and a bolt is four times as large. */
 bool write_iges(const std::string &path, const char *unit, double unit_mm)
 {
-    drawing d(unit, unit_mm);
+    iges_drawing d(unit, unit_mm);
     entity plate = d.shapes.TransferShape(BRepPrimAPI_MakeBox(2000, 1000, 20).Shape());
     std::vector<entity> casing = d.sides(BRepPrimAPI_MakeCylinder(100, 300), 100, 0, 0);
     std::vector<entity> motor = d.sides(BRepPrimAPI_MakeBox(200, 200, 200), 0, 100, 0);
@@ -186,7 +189,7 @@ bool write_iges(const std::string &path, const char *unit, double unit_mm)
 /* Surfaces that are in no group, three on level 1, three on level 2: as many CAD systems export. */
 bool write_loose(const std::string &path)
 {
-    drawing d("MM", 1);
+    iges_drawing d("MM", 1);
     int count = 0;
     TopoDS_Shape box = BRepPrimAPI_MakeBox(100, 200, 300);
     for (TopExp_Explorer side(box, TopAbs_FACE); side.More(); side.Next()) {

@@ -20,7 +20,7 @@
 #define EXPORT __attribute__((visibility("default")))
 
 enum { OBJECTS = 1 << 14, RENDERER_BYTES = 32 };
-enum kind { BUFFER, TEXTURE };
+enum gl_object_kind { BUFFER, TEXTURE };
 
 struct faults {
     /* --- below: written by the test */
@@ -38,7 +38,7 @@ struct faults {
 
 struct object {
     EGLContext context;
-    enum kind kind;
+    enum gl_object_kind kind;
     GLuint name;
     uint64_t bytes; /* 0: the place is free */
 };
@@ -102,7 +102,7 @@ static void forget_context(EGLContext context)
             forget(&objects[i]);
 }
 
-static void forget_named(enum kind kind, GLsizei count, const GLuint *names)
+static void forget_named(enum gl_object_kind kind, GLsizei count, const GLuint *names)
 {
     for (GLsizei n = 0; n < count; n++)
         for (int i = 0; names[n] && i < OBJECTS; i++)
@@ -111,7 +111,7 @@ static void forget_named(enum kind kind, GLsizei count, const GLuint *names)
 }
 
 /* False: no room; glGetError says so. */
-static bool take_room(enum kind kind, GLuint name, uint64_t bytes)
+static bool take_room(enum gl_object_kind kind, GLuint name, uint64_t bytes)
 {
     int i = 0;
     if (gone == current || !name || !bytes)

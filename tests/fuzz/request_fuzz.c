@@ -57,7 +57,7 @@ static void read_list(const char *text)
 
 static void read_path(const char *text)
 {
-    static struct site *site;
+    static struct web_site *site;
     if (!site)
         site = site_create(NULL, "clients/web");
     const struct site_file *file = site_find(site, text);

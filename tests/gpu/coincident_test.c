@@ -15,7 +15,7 @@ static struct toy *make_wall(void)
 {
     static const double here[3] = { 100, 50, 0 }, sensor[1][3] = { { 0, 0, 1 } };
     struct toy *toy = toy_create();
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     shape_box(&shape, TOY_BLUE, (double[]){ 0.3, 0, 0.2 }, (double[]){ 9.1, 0.5, 2.9 });
     shape_plate(&shape, TOY_BLUE, (double[]){ 1.1, 0, 0.7 }, (double[]){ 4, 0, 1 }, (double[]){ -0.5, 0, 1 }, 7);
     toy_add(toy, "PLATES", &shape, here, NULL, 0);

@@ -56,9 +56,10 @@ static void make_materials(void)
     materials[3].base_color[3] = 0.4f;
 }
 
-static void wear(struct shape *shape)
+static void wear(struct test_shape *shape)
 {
-    *shape = (struct shape){ .materials = materials, .textures = &texture, .texels = texels[0], .material_count = 4, .texture_count = 1 };
+    *shape =
+        (struct test_shape){ .materials = materials, .textures = &texture, .texels = texels[0], .material_count = 4, .texture_count = 1 };
     shape->texcoords = (const float(*)[2])texcoords;
     shape->texel_bytes = sizeof(texels);
 }
@@ -79,7 +80,7 @@ static struct toy *make_crowd(int more)
 {
     static const double sensors[2][3] = { { 0.5, 0, 0 }, { -0.5, 0, 0.2 } };
     struct toy *toy = toy_create();
-    struct shape shape;
+    struct test_shape shape;
     char id[24];
     wear(&shape);
     shape_sphere(&shape, 0, (double[3]){ 0, 0, 0 }, 0.5, 7);
@@ -226,7 +227,7 @@ static void stand_row(struct stand *stand, int assets)
 {
     static const double sensor[1][3] = { { 0.5, 0, 0 } };
     struct toy *toy = toy_create();
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     shape_sphere(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, 0.5, 9);
     shape_box(&shape, TOY_BLUE, (double[3]){ -0.6, -0.1, -0.1 }, (double[3]){ 0.6, 0.1, 0.1 });
     toy_add(toy, "BALL", &shape, (double[3]){ 0, 0, 0 }, sensor, 1);

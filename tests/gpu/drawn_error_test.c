@@ -22,13 +22,13 @@ static const double STEP = 1.0 / 255, SIDE_M = 4;
 static struct rig rig;
 static uint64_t random_state;
 
-struct site {
+struct drawn_error_case {
     const struct scene *scene;
     struct field *field;
     struct renderer *renderer;
     struct snapshot *snapshot;
 };
-struct tally {
+struct drawn_error_tally {
     int compared, marked, marked_right, no_data, other;
     double worst_pick, worst_drawn;    /* in parts of the range; drawn: where nothing is marked */
     double worst_marked, worst_beyond; /* beyond: what pick.drawn_error says, less than 0 if it is a bound */
@@ -51,7 +51,7 @@ static double weight_of(const struct view *view, double distance_m, double radiu
 }
 
 /* NAN: no data, by distances through space. */
-static double truth_at(const struct site *site, const struct view *view, const struct pick *pick)
+static double truth_at(const struct drawn_error_case *site, const struct view *view, const struct pick *pick)
 {
     const struct scene_asset *asset = &site->scene->assets[pick->asset];
     const struct plant_group *group = &site->scene->plant->groups[view->field.group];
@@ -83,7 +83,8 @@ static double truth_at(const struct site *site, const struct view *view, const s
 
 /* --- comparing -------------------------------------------------------------------------------------------------------------- */
 
-static void compare_pixel(const struct site *site, const struct view *view, const float pixel[4], int x, int y, struct tally *tally)
+static void compare_pixel(const struct drawn_error_case *site, const struct view *view, const float pixel[4], int x, int y,
+                          struct drawn_error_tally *tally)
 {
     double range = view->range_max - view->range_min;
     struct pick pick;
@@ -122,7 +123,7 @@ static void look(const struct scene *scene, struct view *view)
         view->camera.eye_m[c] = view->camera.target_m[c] + nearer * (view->camera.eye_m[c] - view->camera.target_m[c]);
 }
 
-static void compare_view(const struct site *site, const struct view *view, struct tally *tally)
+static void compare_view(const struct drawn_error_case *site, const struct view *view, struct drawn_error_tally *tally)
 {
     float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
     assert_true(renderer_measure(site->renderer, view, site->snapshot, true, measured));
@@ -134,7 +135,7 @@ static void compare_view(const struct site *site, const struct view *view, struc
 }
 
 /* One view each by shepard with a soft and a sharp power, and by the paper. */
-static void compare(const struct site *site, struct tally *tally)
+static void compare(const struct drawn_error_case *site, struct drawn_error_tally *tally)
 {
     static const double powers[] = { 2, 6, 0 };
     for (int way = 0; way < 3; way++) {
@@ -151,7 +152,7 @@ static void compare(const struct site *site, struct tally *tally)
     }
 }
 
-static void expect_truth(const char *name, const struct tally *tally)
+static void expect_truth(const char *name, const struct drawn_error_tally *tally)
 {
     print_message("# %s: %d pixels, %d without data, %d others; picks off by %.2f steps at most, unmarked pixels by %.2f, marked by %.1f; "
                   "marked %d, %d of them right\n",
@@ -168,7 +169,7 @@ static void expect_truth(const char *name, const struct tally *tally)
 
 /* A plate of NEEDLES strips from side to side up to x = end_m, each two triangles, from there on one of small triangles, and a small box
    for each sensor. */
-static void make_plate(struct shape *shape, double end_m, double (*places)[3])
+static void make_plate(struct test_shape *shape, double end_m, double (*places)[3])
 {
     double low = 0;
     for (int i = 0; i < NEEDLES; i++) {
@@ -192,13 +193,13 @@ static void fill(struct snapshot *snapshot, int round)
         toy_set(snapshot, i, between(0, 100), round % 3 == 2 && i == 1 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD);
 }
 
-static void tally_plates(double end_m, struct tally *tally)
+static void tally_plates(double end_m, struct drawn_error_tally *tally)
 {
-    *tally = (struct tally){ .worst_beyond = -1 };
+    *tally = (struct drawn_error_tally){ .worst_beyond = -1 };
     random_state = sweep_seed();
     for (int round = 0; round < sweep(12, 3); round++) {
         struct toy *toy = toy_create();
-        struct shape shape = { 0 };
+        struct test_shape shape = { 0 };
         struct stand stand;
         double places[SENSORS][3];
         make_plate(&shape, end_m, places);
@@ -206,7 +207,7 @@ static void tally_plates(double end_m, struct tally *tally)
         toy->scene.assets[0].file->resolved_levels = 0;
         stand_init(&stand, &rig, toy);
         fill(stand.snapshot, round);
-        struct site site = { &toy->scene, stand.field, stand.renderer, stand.snapshot };
+        struct drawn_error_case site = { &toy->scene, stand.field, stand.renderer, stand.snapshot };
         compare(&site, tally);
         stand_finish(&stand);
     }
@@ -214,7 +215,7 @@ static void tally_plates(double end_m, struct tally *tally)
 
 TEST(test_needles)
 {
-    struct tally tally;
+    struct drawn_error_tally tally;
     tally_plates(SIDE_M, &tally);
     expect_truth("needles", &tally);
     assert_true(tally.marked > tally.compared / 4 && tally.worst_marked > STEP); /* there is something to be marked */
@@ -223,7 +224,7 @@ TEST(test_needles)
 /* Small triangles, which are right, stay unmarked beside needles that are marked. */
 TEST(test_half_of_needles)
 {
-    struct tally tally;
+    struct drawn_error_tally tally;
     tally_plates(SIDE_M / 2, &tally);
     expect_truth("half of needles", &tally);
     assert_true(tally.compared - tally.marked > tally.compared / 4 && tally.marked > tally.compared / 4);
@@ -234,7 +235,7 @@ TEST(test_half_of_needles)
 static void stand_on_plate(struct stand *stand, struct view *view, uint64_t resolved_levels)
 {
     struct toy *toy = toy_create();
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     double places[SENSORS][3];
     random_state = sweep_seed();
     make_plate(&shape, SIDE_M, places);
@@ -299,12 +300,14 @@ TEST_WITH(test_long_part, prep_case_set_up, prep_case_tear_down)
     char *prepared = mem_printf("%s/plant.prepared", c->folder);
     struct scene *scene = plant ? scene_create(rig.log, plant, prepared) : NULL;
     assert_non_null(scene);
-    struct site site = { .scene = scene, .field = field_create(rig.workers, scene), .snapshot = snapshot_create(plant->tag_count) };
+    struct drawn_error_case site = { .scene = scene,
+                                     .field = field_create(rig.workers, scene),
+                                     .snapshot = snapshot_create(plant->tag_count) };
     site.renderer = renderer_create(rig.log, rig.gl, scene, site.field);
     assert_non_null(site.renderer);
     for (int i = 0; i < SENSORS; i++)
         site.snapshot->readings[i] = (struct reading){ .value = readings[i], .quality = QUALITY_GOOD };
-    struct tally tally = { .worst_beyond = -1 };
+    struct drawn_error_tally tally = { .worst_beyond = -1 };
     random_state = sweep_seed();
     for (int round = 0; round < sweep(8, 2); round++)
         compare(&site, &tally);

@@ -30,7 +30,7 @@ static void look_down(struct view *view)
 static int set_up(void **state)
 {
     static const double sensors[PLATE_TAGS][3] = { { 0, 0, 0 }, { 4, 1, 0 }, { 2, 4, 0 } };
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     struct toy *toy = toy_create();
     (void)state;
     shape_plate(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ side_m, 0, 0 }, (double[3]){ 0, side_m, 0 }, CELLS);
@@ -521,7 +521,7 @@ TEST_WITH(test_context_has_no_color, set_up, tear_down)
     enum { STRIPS = 16 };
     static const double low[3] = { 0, 0, 0 };
     struct asset_material materials[STRIPS];
-    struct shape shape = { .materials = materials, .material_count = STRIPS };
+    struct test_shape shape = { .materials = materials, .material_count = STRIPS };
     struct toy *toy = toy_create();
     struct view view;
     for (uint32_t i = 0; i < STRIPS; i++) {

@@ -41,7 +41,7 @@ struct pool_slice *__wrap_pool_take(struct pool *pool, size_t count)
 static int set_up(void **state)
 {
     static const double sensors[2][3] = { { 0, 0, 0 }, { 4, 4, 0 } };
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     struct toy *toy = toy_create();
     (void)state;
     fault = ALL_WELL;
@@ -61,7 +61,7 @@ static int set_up_many(void **state)
     (void)state;
     fault = ALL_WELL;
     for (int i = 0; i < PLATES; i++) {
-        struct shape shape = { 0 };
+        struct test_shape shape = { 0 };
         char name[16];
         snprintf(name, sizeof(name), "P%d", i);
         shape_plate(&shape, TOY_BLUE, (double[3]){ 0, 0, 0 }, (double[3]){ 1.5, 0, 0 }, (double[3]){ 0, 3.5, 0 }, CELLS);

@@ -18,7 +18,7 @@ static struct stand stand;
 
 static int set_up(void **state)
 {
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     struct toy *toy = toy_create();
     (void)state;
     shape_plate(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ side_m, 0, 0 }, (double[3]){ 0, side_m, 0 }, CELLS);

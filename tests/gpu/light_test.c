@@ -132,7 +132,7 @@ TEST(test_large_faces_are_lit_within)
 {
     static const double here[3] = { 0, 0, 0 };
     struct toy *toy = toy_create();
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     struct gpu_scene gpu_scene;
     struct light light;
     struct light_key key = sun(1);

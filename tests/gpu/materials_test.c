@@ -73,7 +73,7 @@ static const double *place_of(int i)
 static void scene_init(struct scene_of *scene, double (*radiance)(const double[3], int), const double base[3])
 {
     struct toy *toy = toy_create();
-    struct shape shape = { .materials = scene->materials, .material_count = (size_t)spheres };
+    struct test_shape shape = { .materials = scene->materials, .material_count = (size_t)spheres };
     *scene = (struct scene_of){ .radiance = radiance };
     for (int i = 0; i < spheres; i++) {
         scene->materials[i] = (struct asset_material){ .base_color = { (float)base[0], (float)base[1], (float)base[2], 1 },

@@ -40,9 +40,9 @@ static void make_normals(void)
     }
 }
 
-static struct mesh make(bool with_texcoords, bool with_colors)
+static struct gpu_mesh make(bool with_texcoords, bool with_colors)
 {
-    struct mesh mesh;
+    struct gpu_mesh mesh;
     struct mesh_params params = {
         .vertex_count = COUNT, .index_count = 3, .positions_m = positions_m, .normals = normals, .indices = indices
     };
@@ -54,7 +54,7 @@ static struct mesh make(bool with_texcoords, bool with_colors)
     return mesh;
 }
 
-static void unfold(const struct mesh *mesh, float (*out)[4])
+static void unfold(const struct gpu_mesh *mesh, float (*out)[4])
 {
     GLuint stages[2] = { program_compile(rig.log, GL_COMPUTE_SHADER, "unfold",
                                          "#include \"normal.glsl\"\n"
@@ -80,7 +80,7 @@ TEST(test_normals_come_back)
 {
     static float out[COUNT][4];
     double most = 0;
-    struct mesh mesh = make(false, false);
+    struct gpu_mesh mesh = make(false, false);
     unfold(&mesh, out);
     for (size_t i = 0; i < COUNT; i++) {
         double square = 0;
@@ -106,7 +106,7 @@ TEST(test_texture_coordinates_that_fit_are_short)
 {
     static uint16_t packed[COUNT][2];
     set_texcoords(0, 1);
-    struct mesh mesh = make(true, false);
+    struct gpu_mesh mesh = make(true, false);
     assert_true(mesh.short_texcoords && mesh.short_second_texcoords);
     glGetNamedBufferSubData(mesh.second_texcoords, 0, sizeof(packed), packed);
     for (size_t i = 0; i < COUNT; i++)
@@ -121,7 +121,7 @@ TEST(test_others_stay_as_they_are)
     static float back[COUNT][2];
     for (int above = 0; above < 2; above++) {
         set_texcoords(above ? 0 : -1e-6F, above ? 1.000001F : 1);
-        struct mesh mesh = make(true, false);
+        struct gpu_mesh mesh = make(true, false);
         assert_false(mesh.short_texcoords || mesh.short_second_texcoords);
         glGetNamedBufferSubData(mesh.texcoords, 0, sizeof(back), back);
         assert_memory_equal(back, texcoords, sizeof(back));
@@ -133,7 +133,7 @@ TEST(test_bytes_of_its_own)
 {
     set_texcoords(0, 1);
     for (int more = 0; more < 4; more++) {
-        struct mesh mesh = make(more & 1, more & 2);
+        struct gpu_mesh mesh = make(more & 1, more & 2);
         GLuint buffers[] = { mesh.normals, mesh.texcoords, mesh.second_texcoords, mesh.positions, mesh.colors, mesh.indices };
         size_t sum = 0, own = rig.gl->reads_in_place ? 3 : sizeof(buffers) / sizeof(buffers[0]);
         for (size_t i = 0; i < own; i++) {
@@ -161,7 +161,7 @@ TEST(test_what_is_kept_is_read_in_place)
     for (int in_place = 1; in_place >= 0; in_place--) {
         float before_m = positions_m[COUNT - 1][2];
         gl->reads_in_place = in_place;
-        struct mesh mesh = make(false, true);
+        struct gpu_mesh mesh = make(false, true);
         positions_m[COUNT - 1][2] = before_m + 1;
         glGetNamedBufferSubData(mesh.positions, 0, sizeof(back_m), back_m);
         assert_memory_equal(back_m, positions_m, sizeof(back_m) - sizeof(float));

@@ -16,7 +16,7 @@ enum { WIDTH_PX = 320, HEIGHT_PX = 180 };
 static struct rig rig;
 static uint64_t seed;
 
-struct tally {
+struct occlusion_tally {
     size_t pictures, left_out, different;
 };
 
@@ -31,7 +31,7 @@ static struct frame *draw(struct renderer *renderer, const struct view *view, co
     return frame;
 }
 
-static void compare(struct tally *tally, struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+static void compare(struct occlusion_tally *tally, struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     size_t none = 1, some = 0;
     struct frame *all = draw(renderer, view, snapshot, false, &none), *seen = draw(renderer, view, snapshot, true, &some);
@@ -85,7 +85,7 @@ static void look_anyhow(const struct scene *scene, struct view *view)
         view->look = LOOK_MATERIALS;
 }
 
-static void finish(const char *what, const struct tally *tally, size_t least)
+static void finish(const char *what, const struct occlusion_tally *tally, size_t least)
 {
     print_message("# %s: %zu pictures, %zu times an asset was left out, %zu pictures differ\n", what, tally->pictures, tally->left_out,
                   tally->different);
@@ -97,7 +97,7 @@ TEST(test_the_demo_plant)
 {
     const size_t least = (size_t)sweep(4, 1);
     struct site site;
-    struct tally tally = { 0 };
+    struct occlusion_tally tally = { 0 };
     assert_true(site_init(&site, &rig, SITE_DEMO, NULL));
     renderer_use_gl(site.renderer, true);
     for (int i = 0; i < 40 && (i < sweep(40, 2) || tally.left_out < least); i++) {
@@ -115,7 +115,7 @@ enum { ROW = 3, SIDE = 6 }; /* assets to a side; squares to the side of a face *
 
 static void add_cube(struct toy *toy, const char *id, const double at[3])
 {
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     for (int face = 0; face < 6; face++) {
         double corner[3] = { 0 }, u[3] = { 0 }, v[3] = { 0 };
         int axis = face / 2, far = face % 2; /* u x v points out */
@@ -142,7 +142,7 @@ TEST(test_cubes)
 {
     for (int i = 0; i < 3; i++) {
         struct stand stand;
-        struct tally tally = { 0 };
+        struct occlusion_tally tally = { 0 };
         double gap_m = (double[]){ 0, 0.02, 0.3 }[i];
         stand_init(&stand, &rig, make_city(gap_m));
         renderer_use_gl(stand.renderer, true);
@@ -188,10 +188,10 @@ TEST(test_a_wall_hides_what_is_behind)
 TEST(test_the_eye_in_a_box)
 {
     struct toy *toy = toy_create();
-    struct shape wall = { 0 }, balls = { 0 };
+    struct test_shape wall = { 0 }, balls = { 0 };
     struct stand stand;
     struct view view;
-    struct tally tally = { 0 };
+    struct occlusion_tally tally = { 0 };
     shape_plate(&wall, TOY_BLUE, (double[3]){ -4, 3, -4 }, (double[3]){ 8, 0, 0 }, (double[3]){ 0, 0, 8 }, 20);
     shape_sphere(&balls, TOY_STEEL, (double[3]){ 0, 2, 0 }, 0.3, 6);
     shape_sphere(&balls, TOY_STEEL, (double[3]){ 9, -9, 9 }, 0.3, 6);

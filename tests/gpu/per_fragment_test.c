@@ -28,7 +28,7 @@ static double between(double low, double high)
 
 static int set_up(void **state)
 {
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     struct toy *toy = toy_create();
     double(*places)[3] = mem_array(SENSORS, sizeof(*places));
     (void)state;
@@ -62,12 +62,12 @@ static const struct asset_view *file(void)
 
 /* --- slow truth --------------------------------------------------------------------------------------------------------------- */
 
-struct spot { /* a place on the plate: where in which triangle */
+struct plate_spot { /* a place on the plate: where in which triangle */
     double at_m[2], parts[3];
     const uint32_t *corners;
 };
 
-static bool find_spot(double x_m, double y_m, struct spot *spot)
+static bool find_spot(double x_m, double y_m, struct plate_spot *spot)
 {
     for (uint32_t i = 0; i < file()->header->index_count; i += 3) {
         const uint32_t *corners = &file()->indices[i];
@@ -77,13 +77,13 @@ static bool find_spot(double x_m, double y_m, struct spot *spot)
         double v = (px * cy - py * cx) / area, w = (bx * py - by * px) / area;
         if (v < 0 || w < 0 || v + w > 1)
             continue;
-        *spot = (struct spot){ .at_m = { x_m, y_m }, .parts = { 1 - v - w, v, w }, .corners = corners };
+        *spot = (struct plate_spot){ .at_m = { x_m, y_m }, .parts = { 1 - v - w, v, w }, .corners = corners };
         return true;
     }
     return false;
 }
 
-static double distance_of(const struct spot *spot, int sensor, enum distance_mode mode)
+static double distance_of(const struct plate_spot *spot, int sensor, enum distance_mode mode)
 {
     const float *at = file()->sensors[sensor].surface_m;
     double sum = 0;
@@ -104,12 +104,13 @@ static double largest_m(void)
     return most_m;
 }
 
-struct truth {
+struct fragment_truth {
     double value;        /* place in the range */
     bool no_data, a_tie; /* a tie: a pixel's worth of rounding decides */
 };
 
-static struct truth truth_at(const struct spot *spot, enum interpolation interpolation, enum distance_mode mode, double radius_m)
+static struct fragment_truth truth_at(const struct plate_spot *spot, enum interpolation interpolation, enum distance_mode mode,
+                                      double radius_m)
 {
     double sum = 0, weights = 0, near_m = INFINITY, lost_m = INFINITY;
     for (int i = 0; i < SENSORS; i++) {
@@ -124,7 +125,7 @@ static struct truth truth_at(const struct spot *spot, enum interpolation interpo
         sum += place * weight * (interpolation == INTERPOLATION_PAPER ? pow(near, tag->decay) : 1);
         weights += weight;
     }
-    return (struct truth){ sum / weights, lost_m < near_m, fabs(lost_m - near_m) < 1e-4 };
+    return (struct fragment_truth){ sum / weights, lost_m < near_m, fabs(lost_m - near_m) < 1e-4 };
 }
 
 /* --- against what is drawn -------------------------------------------------------------------------------------------------- */
@@ -140,18 +141,19 @@ static void look_down(struct view *view, enum interpolation interpolation, enum 
     view->field.distance = distance;
 }
 
-struct tally {
+struct per_fragment_tally {
     double worst;
     int most_off, flags_differ, no_data; /* most_off: colours of the map */
 };
 
-static void compare(const struct view *view, const float (*numbers)[4], const struct frame *frame, double radius_m, struct tally *tally)
+static void compare(const struct view *view, const float (*numbers)[4], const struct frame *frame, double radius_m,
+                    struct per_fragment_tally *tally)
 {
     int x = (int)between(0, side_px), y = (int)between(0, side_px);
     double metre = SIDE_M / side_px;
-    struct spot spot = { 0 };
+    struct plate_spot spot = { 0 };
     assert_true(find_spot((x + 0.5) * metre, (side_px - y - 0.5) * metre, &spot));
-    struct truth truth = truth_at(&spot, view->field.interpolation, view->field.distance, radius_m);
+    struct fragment_truth truth = truth_at(&spot, view->field.interpolation, view->field.distance, radius_m);
     const float *number = numbers[y * side_px + x];
     if (truth.a_tie)
         return;
@@ -171,7 +173,7 @@ TEST_WITH(test_more_than_512_sensors, set_up, tear_down)
     float(*numbers)[4] = mem_array((size_t)side_px * (size_t)side_px, sizeof(*numbers));
     for (int way = 0; way < 4; way++) {
         struct view view;
-        struct tally tally = { 0 };
+        struct per_fragment_tally tally = { 0 };
         look_down(&view, way & 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD, way & 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC);
         assert_true(renderer_measure(stand.renderer, &view, stand.snapshot, true, numbers));
         struct frame *frame = stand_draw(&stand, &view);

@@ -21,7 +21,7 @@ enum { WIDTH_PX = 640, HEIGHT_PX = 360, PIXELS = WIDTH_PX * HEIGHT_PX };
 
 static struct rig rig;
 
-struct site {
+struct pick_case {
     const struct scene *scene;
     struct field *field;
     struct renderer *renderer;
@@ -29,7 +29,7 @@ struct site {
     uint64_t random;
 };
 
-static void fill(struct site *site)
+static void fill(struct pick_case *site)
 {
     const struct plant *plant = site->scene->plant;
     site->random = 7;
@@ -44,13 +44,13 @@ static void fill(struct site *site)
     }
 }
 
-struct tally {
+struct pick_tally {
     int compared, context, inside, no_data, moved, differ, over, marked, marked_right;
     double worst_value, worst_px, worst_sum, longest_ms;
 };
 
 /* Shepard's sum at the place, in double precision, from the distances at its triangle's corners. */
-static double slow_value(const struct site *site, const struct view *view, const struct pick *pick)
+static double slow_value(const struct pick_case *site, const struct view *view, const struct pick *pick)
 {
     double numerator = 0, denominator = 0;
     for (int i = 0; i < pick->nearest_count; i++) {
@@ -62,7 +62,7 @@ static double slow_value(const struct site *site, const struct view *view, const
     return numerator / denominator;
 }
 
-static double project(const struct view *view, const struct site *site, const double place_m[3], double *x_px, double *y_px)
+static double project(const struct view *view, const struct pick_case *site, const double place_m[3], double *x_px, double *y_px)
 {
     double m[16], projection[16], eye[4], clip[4] = { 0 };
     camera_matrices(&view->camera, (double)view->width_px / view->height_px, site->scene->bounds_min_m, site->scene->bounds_max_m, m,
@@ -88,7 +88,8 @@ static const float *same_place(const float (*measured)[4], int x, int y, double 
     return best;
 }
 
-static void compare_pixel(struct site *site, const struct view *view, const float (*measured)[4], int x, int y, struct tally *tally)
+static void compare_pixel(struct pick_case *site, const struct view *view, const float (*measured)[4], int x, int y,
+                          struct pick_tally *tally)
 {
     struct pick pick;
     struct timespec began, ended;
@@ -138,7 +139,7 @@ static void compare_pixel(struct site *site, const struct view *view, const floa
     }
 }
 
-static void compare_view(struct site *site, const struct view *view, int count, struct tally *tally)
+static void compare_view(struct pick_case *site, const struct view *view, int count, struct pick_tally *tally)
 {
     float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
     assert_true(renderer_measure(site->renderer, view, site->snapshot, true, measured));
@@ -150,7 +151,7 @@ static void compare_view(struct site *site, const struct view *view, int count, 
     mem_free(measured);
 }
 
-static void say(const struct tally *tally)
+static void say(const struct pick_tally *tally)
 {
     print_message(
         "# %d picks: %d context, %d inside, %d no data; elsewhere %d, other %d; marked %d, %d of them right; "
@@ -160,7 +161,7 @@ static void say(const struct tally *tally)
         tally->worst_px, tally->longest_ms);
 }
 
-static void assert_exact(const struct tally *tally)
+static void assert_exact(const struct pick_tally *tally)
 {
     say(tally);
     assert_true(tally->worst_value <= 1.0 / 255);
@@ -170,21 +171,22 @@ static void assert_exact(const struct tally *tally)
     assert_true(tally->longest_ms < 10);
 }
 
-static void stand_site(struct stand *stand, struct site *site)
+static void stand_site(struct stand *stand, struct pick_case *site)
 {
-    *site = (struct site){ .scene = &stand->toy->scene, .field = stand->field, .renderer = stand->renderer, .snapshot = stand->snapshot };
+    *site =
+        (struct pick_case){ .scene = &stand->toy->scene, .field = stand->field, .renderer = stand->renderer, .snapshot = stand->snapshot };
     fill(site);
 }
 
 TEST(test_small_plant)
 {
     struct stand stand;
-    struct site site;
+    struct pick_case site;
     struct view view;
     stand_init(&stand, &rig, toy_unit());
     stand_site(&stand, &site);
     for (int way = 0; way < 12; way++) {
-        struct tally tally = { 0 };
+        struct pick_tally tally = { 0 };
         view_default(site.scene, WIDTH_PX, HEIGHT_PX, &view);
         view.tier = way & 1 ? TIER_REFINED : TIER_PREVIEW;
         view.field.distance = way & 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC;
@@ -210,13 +212,13 @@ TEST(test_demo_plant)
     diag_finish(&diag);
     struct scene *scene = plant ? scene_create(rig.log, plant, "build/demo/plant.prepared") : NULL;
     assert_non_null(scene);
-    struct site site = { .scene = scene, .snapshot = snapshot_create(plant->tag_count) };
+    struct pick_case site = { .scene = scene, .snapshot = snapshot_create(plant->tag_count) };
     site.field = field_create(rig.workers, scene);
     site.renderer = renderer_create(rig.log, rig.gl, scene, site.field);
     assert_non_null(site.renderer);
     fill(&site);
     for (int side = SIDE_FRONT; side <= SIDE_ISO; side++) {
-        struct tally tally = { 0 };
+        struct pick_tally tally = { 0 };
         struct view view;
         view_default(scene, WIDTH_PX, HEIGHT_PX, &view);
         view.tier = TIER_PREVIEW;
@@ -239,7 +241,7 @@ TEST(test_demo_plant)
 TEST(test_sensors)
 {
     struct stand stand;
-    struct site site;
+    struct pick_case site;
     struct view view;
     struct pick pick;
     stand_init(&stand, &rig, toy_unit());
@@ -279,7 +281,7 @@ TEST(test_sensors)
 TEST(test_split_view)
 {
     struct stand stand;
-    struct site site;
+    struct pick_case site;
     struct view view, right;
     struct pick left_pick, right_pick;
     stand_init(&stand, &rig, toy_unit());

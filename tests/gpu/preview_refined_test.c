@@ -161,7 +161,7 @@ TEST(test_a_real_plant_does_not_flash)
 /* --- textures ------------------------------------------------------------------------------------------------------------------------ */
 
 enum { CELLS = 8, TEXELS = CELLS * CELLS };
-struct plate {
+struct textured_plate {
     uint8_t texels[TEXELS][4];
     struct asset_texture texture;
     struct asset_material material;
@@ -172,15 +172,15 @@ struct plate {
 };
 
 /* One square of 2 m that lies level, x and y from -1 to 1, seen from above; the texture's columns run along x, its rows along y. */
-static void plate_init(struct plate *plate, const double (*sensors)[3], size_t sensor_count)
+static void plate_init(struct textured_plate *plate, const double (*sensors)[3], size_t sensor_count)
 {
     struct toy *toy = toy_create();
-    struct shape shape = { .materials = &plate->material,
-                           .material_count = 1,
-                           .textures = &plate->texture,
-                           .texture_count = 1,
-                           .texels = plate->texels[0],
-                           .texel_bytes = sizeof(plate->texels) };
+    struct test_shape shape = { .materials = &plate->material,
+                                .material_count = 1,
+                                .textures = &plate->texture,
+                                .texture_count = 1,
+                                .texels = plate->texels[0],
+                                .texel_bytes = sizeof(plate->texels) };
     plate->texture.width_px = plate->texture.height_px = CELLS;
     shape_plate(&shape, 0, (double[3]){ -1, -1, 0 }, (double[3]){ 2, 0, 0 }, (double[3]){ 0, 2, 0 }, 16);
     plate->texcoords = mem_array(shape.vertex_count, sizeof(*plate->texcoords));
@@ -190,7 +190,7 @@ static void plate_init(struct plate *plate, const double (*sensors)[3], size_t s
     shape.texcoords = (void *)plate->texcoords;
     toy_add(toy, "plate", &shape, (double[3]){ 0, 0, 0 }, sensors, sensor_count);
     if (plate->floor) {
-        struct shape floor = { 0 };
+        struct test_shape floor = { 0 };
         shape_plate(&floor, TOY_CONCRETE, (double[3]){ -3, -3, 0 }, (double[3]){ 6, 0, 0 }, (double[3]){ 0, 6, 0 }, 48);
         toy_add(toy, "floor", &floor, (double[3]){ 0, 0, -1 }, NULL, 0);
     }
@@ -203,30 +203,30 @@ static void plate_init(struct plate *plate, const double (*sensors)[3], size_t s
     memcpy(plate->view.light_dir, (double[3]){ 0.6, 0, 0.8 }, sizeof(plate->view.light_dir));
 }
 
-static void plate_finish(struct plate *plate)
+static void plate_finish(struct textured_plate *plate)
 {
     stand_finish(&plate->stand);
     mem_free(plate->texcoords);
 }
 
 /* Grey, without textures; every texel white. */
-static struct plate plain_plate(void)
+static struct textured_plate plain_plate(void)
 {
-    struct plate plate = { .material = { .base_color = { 0.5f, 0.5f, 0.5f, 1 },
-                                         .roughness = 0.8f,
-                                         .normal_scale = 1,
-                                         .occlusion_strength = 1,
-                                         .alpha_cutoff = 0.5f,
-                                         .base_color_texture = ASSET_NO_TEXTURE,
-                                         .metallic_roughness_texture = ASSET_NO_TEXTURE,
-                                         .normal_texture = ASSET_NO_TEXTURE,
-                                         .occlusion_texture = ASSET_NO_TEXTURE,
-                                         .emissive_texture = ASSET_NO_TEXTURE } };
+    struct textured_plate plate = { .material = { .base_color = { 0.5f, 0.5f, 0.5f, 1 },
+                                                  .roughness = 0.8f,
+                                                  .normal_scale = 1,
+                                                  .occlusion_strength = 1,
+                                                  .alpha_cutoff = 0.5f,
+                                                  .base_color_texture = ASSET_NO_TEXTURE,
+                                                  .metallic_roughness_texture = ASSET_NO_TEXTURE,
+                                                  .normal_texture = ASSET_NO_TEXTURE,
+                                                  .occlusion_texture = ASSET_NO_TEXTURE,
+                                                  .emissive_texture = ASSET_NO_TEXTURE } };
     memset(plate.texels, 255, sizeof(plate.texels));
     return plate;
 }
 
-static void paint_right(struct plate *plate, const uint8_t rgba[4])
+static void paint_right(struct textured_plate *plate, const uint8_t rgba[4])
 {
     for (int i = 0; i < TEXELS; i++)
         if (i % CELLS >= CELLS / 2)
@@ -234,7 +234,7 @@ static void paint_right(struct plate *plate, const uint8_t rgba[4])
 }
 
 /* Of the left and the right half: the pixel at their middles. */
-static void halves(struct plate *plate, enum tier tier, int left[3], int right[3])
+static void halves(struct textured_plate *plate, enum tier tier, int left[3], int right[3])
 {
     plate->view.tier = tier;
     struct frame *frame = stand_draw(&plate->stand, &plate->view);
@@ -247,7 +247,7 @@ static void halves(struct plate *plate, enum tier tier, int left[3], int right[3
 
 TEST(test_base_color)
 {
-    struct plate plate = plain_plate();
+    struct textured_plate plate = plain_plate();
     int left[3], right[3];
     plate.material.base_color_texture = 0;
     plate.texture.srgb = 1;
@@ -260,7 +260,7 @@ TEST(test_base_color)
 
 TEST(test_metal_and_roughness)
 {
-    struct plate plate = plain_plate();
+    struct textured_plate plate = plain_plate();
     int left[3], right[3];
     plate.material.metallic_roughness_texture = 0;
     plate.material.metallic = 1;
@@ -276,7 +276,7 @@ TEST(test_metal_and_roughness)
 
 TEST(test_normals)
 {
-    struct plate plate = plain_plate();
+    struct textured_plate plate = plain_plate();
     int left[3], right[3];
     plate.material.normal_texture = 0;
     for (int i = 0; i < TEXELS; i++) /* left: towards the sun, which stands to the right; right: away from it */
@@ -290,7 +290,7 @@ TEST(test_normals)
 
 TEST(test_occlusion_and_glow)
 {
-    struct plate plate = plain_plate();
+    struct textured_plate plate = plain_plate();
     int left[3], right[3];
     plate.material.occlusion_texture = 0;
     paint_right(&plate, (uint8_t[4]){ 0, 255, 255, 255 });
@@ -313,7 +313,7 @@ TEST(test_holes_are_holes_in_both_tiers)
 {
     static const double sensor[1][3] = { { -0.5, 0, 0 } };
     for (size_t sensors = 0; sensors < 2; sensors++) {
-        struct plate plate = plain_plate();
+        struct textured_plate plate = plain_plate();
         int left[3], right[3], still_left[3], still_right[3];
         plate.material.alpha = ASSET_ALPHA_MASK;
         plate.material.base_color[0] = plate.material.base_color[1] = plate.material.base_color[2] = 0.02f;
@@ -335,7 +335,7 @@ TEST(test_holes_are_holes_in_both_tiers)
 TEST(test_holes_let_the_sun_through)
 {
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
-        struct plate plate = plain_plate();
+        struct textured_plate plate = plain_plate();
         plate.floor = true;
         plate.material.alpha = ASSET_ALPHA_MASK;
         plate.material.base_color_texture = 0;
@@ -356,7 +356,7 @@ TEST(test_holes_let_the_sun_through)
 /* Context is muted: what its textures are in one tier and their mean in the other is not far apart. */
 TEST(test_textured_context_does_not_flash)
 {
-    struct plate plate = plain_plate();
+    struct textured_plate plate = plain_plate();
     plate.material.base_color_texture = 0;
     plate.texture.srgb = 1;
     for (int i = 0; i < TEXELS; i++)

@@ -15,7 +15,7 @@ static struct rig rig;
 static struct toy *make_poles(void)
 {
     struct toy *toy = toy_create();
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     for (int i = 0; i < 6; i++)
         shape_cylinder(&shape, TOY_STEEL, (double[3]){ 0, 0.5 * i, 0 }, (double[3]){ 9, 0.7 * i, 0.3 * i }, 0.2, 0.05, 1);
     shape_sphere(&shape, TOY_STEEL, (double[3]){ 5, 1, 1.2 }, 0.6, 24);

@@ -26,7 +26,7 @@ static struct rig rig;
 
 /* --- comparing ------------------------------------------------------------------------------------------------------------- */
 
-struct tally {
+struct reference_tally {
     size_t compared, over, beyond, flags_differ; /* over: at the very point; beyond: of what the finest level has within a pixel */
     double worst, worst_beyond;
     int worst_camera;
@@ -37,17 +37,17 @@ static bool has_value(const float pixel[4])
     return pixel[1] >= 0 && pixel[1] < 0.5f;
 }
 
-struct seen { /* by a camera: numbers of pixels */
+struct pixels_seen { /* by a camera: numbers of pixels */
     const struct view *view;
     float (*shown)[4], (*here)[4], (*finest)[4]; /* here: the reference on the level that is shown */
     bool shown_is_finest;
 };
 
-struct span { /* of values */
+struct value_span { /* of values */
     double low, high;
 };
 
-static void widen(struct span *span, const float pixel[4])
+static void widen(struct value_span *span, const float pixel[4])
 {
     if (!has_value(pixel))
         return;
@@ -55,7 +55,7 @@ static void widen(struct span *span, const float pixel[4])
     span->high = fmax(span->high, (double)pixel[0]);
 }
 
-static double error_beyond(const struct span *span, double value)
+static double error_beyond(const struct value_span *span, double value)
 {
     return value < span->low ? span->low - value : value > span->high ? value - span->high : 0;
 }
@@ -74,9 +74,9 @@ static void look_close(const struct view *view, int x, int y, struct view *close
 }
 
 /* How far a value is from what the reference says within a pixel of there: a level of detail may move a surface that far. */
-static double error_within_a_pixel(struct site *site, const struct seen *seen, size_t at, double value)
+static double error_within_a_pixel(struct site *site, const struct pixels_seen *seen, size_t at, double value)
 {
-    struct span span = { INFINITY, -INFINITY };
+    struct value_span span = { INFINITY, -INFINITY };
     int x = (int)(at % width_px), y = (int)(at / width_px);
     for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < height_px; v++)
         for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < width_px; u++)
@@ -95,7 +95,7 @@ static double error_within_a_pixel(struct site *site, const struct seen *seen, s
     return error_beyond(&span, value);
 }
 
-static void compare(struct site *site, const struct seen *seen, size_t samples, int camera, struct tally *tally)
+static void compare(struct site *site, const struct pixels_seen *seen, size_t samples, int camera, struct reference_tally *tally)
 {
     for (size_t i = 0, tries = 0; i < samples && tries < 100 * samples; tries++) {
         size_t at = (size_t)(synthetic_random_unit(&site->random) * width_px * height_px);
@@ -171,7 +171,7 @@ static void look_at_some_asset(struct site *site, double away, struct view *view
     while (is_inside_any(site->scene, view->camera.eye_m));
 }
 
-struct way { /* of showing a plant */
+struct reference_display { /* of showing a plant */
     int group;
     int number, each; /* by default every each-th view is tried, of each way others */
     enum interpolation interpolation;
@@ -182,7 +182,7 @@ struct way { /* of showing a plant */
 };
 
 /* As a client does. False: it is refused. */
-static bool ask_for(const struct site *site, const struct way *way, struct view *view)
+static bool ask_for(const struct site *site, const struct reference_display *way, struct view *view)
 {
     struct params_change change;
     struct message_error error;
@@ -194,13 +194,13 @@ static bool ask_for(const struct site *site, const struct way *way, struct view 
     return params_apply(&(struct params_context){ .scene = site->scene }, &change, view, &error);
 }
 
-static void compare_views(struct site *site, const struct way *way, struct tally *tally)
+static void compare_views(struct site *site, const struct reference_display *way, struct reference_tally *tally)
 {
     static const double away[VIEWS / 2] = { 0.8, 1.2, 2, 4, 8, 16, 32 };
-    struct seen seen = { .shown = mem_array((size_t)width_px * (size_t)height_px, sizeof(*seen.shown)),
-                         .here = mem_array((size_t)width_px * (size_t)height_px, sizeof(*seen.here)),
-                         .finest = way->finest ? NULL : mem_array((size_t)width_px * (size_t)height_px, sizeof(*seen.finest)),
-                         .shown_is_finest = way->finest };
+    struct pixels_seen seen = { .shown = mem_array((size_t)width_px * (size_t)height_px, sizeof(*seen.shown)),
+                                .here = mem_array((size_t)width_px * (size_t)height_px, sizeof(*seen.here)),
+                                .finest = way->finest ? NULL : mem_array((size_t)width_px * (size_t)height_px, sizeof(*seen.finest)),
+                                .shown_is_finest = way->finest };
     for (int i = 0; i < VIEWS; i++) {
         struct view view;
         if (!sweep_takes(way->number, i, way->each))
@@ -218,7 +218,7 @@ static void compare_views(struct site *site, const struct way *way, struct tally
         assert_true(renderer_measure(site->renderer, &view, site->snapshot, way->finest, seen.here));
         assert_true(way->finest || renderer_measure(site->renderer, &view, site->snapshot, true, seen.finest));
         renderer_set_per_fragment(site->renderer, false);
-        struct seen all = seen;
+        struct pixels_seen all = seen;
         all.view = &view;
         all.finest = way->finest ? seen.here : seen.finest;
         compare(site, &all, SAMPLES, i, tally);
@@ -228,7 +228,7 @@ static void compare_views(struct site *site, const struct way *way, struct tally
     mem_free(seen.finest);
 }
 
-static void say(const struct way *way, const struct tally *tally)
+static void say(const struct reference_display *way, const struct reference_tally *tally)
 {
     print_message("# group %d, %s, %s, %s, %s: %zu pixels; over 1/255: %zu, worst %.3f %% (camera %d); "
                   "within a pixel of the finest level: %zu, worst %.3f %%; other flags %zu\n",
@@ -254,7 +254,7 @@ static void compare_group(struct site *site, int group, int row, int each, int r
     struct view view;
     view_default(site->scene, width_px, height_px, &view);
     for (int i = 0; i < 16; i++) {
-        const struct way way = {
+        const struct reference_display way = {
             .group = group,
             .number = i + i / 4,
             .each = (i & 12) == 8 ? 4 : 7, /* more where errors have their bound on average: moving, on the levels that are drawn */
@@ -264,7 +264,7 @@ static void compare_group(struct site *site, int group, int row, int each, int r
             .finest = !(i & 8),
             .seed = 1000 * (uint64_t)(i + 1),
         };
-        struct tally tally = { 0 };
+        struct reference_tally tally = { 0 };
         if (!ask_for(site, &way, &view)) {
             refused--;
             continue;

@@ -739,7 +739,7 @@ TEST(test_pictures_fly)
 }
 
 /* Another painter, while the first is at work, in one process and on one driver. */
-struct making {
+struct service_making {
     struct view first;
     struct render_service *made;
     _Atomic bool done;
@@ -747,7 +747,7 @@ struct making {
 
 static void *make_another(void *arg)
 {
-    struct making *making = arg;
+    struct service_making *making = arg;
     making->made = render_service_create(&(struct render_service_params){ .log = logger,
                                                                           .scene = &toy->scene,
                                                                           .store = store,
@@ -781,7 +781,7 @@ static int move_while(const _Atomic bool *done, pthread_t thread)
 
 TEST(test_another_is_made_and_the_first_destroyed_beside_it)
 {
-    struct making making = { .made = NULL };
+    struct service_making making = { .made = NULL };
     struct render_service *first = service;
     pthread_t thread;
     view_default(&toy->scene, 320, 180, &making.first);

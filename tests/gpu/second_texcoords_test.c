@@ -47,7 +47,7 @@ static void paint(enum map map, int column, int row, uint8_t rgb[3])
     }
 }
 
-static int add_image(struct maker *maker, enum map map, bool mirrored)
+static int add_image(struct model_maker *maker, enum map map, bool mirrored)
 {
     uint8_t pixels[TEXELS][3], png[8 * TEXELS];
     png_image image = { .version = PNG_IMAGE_VERSION, .width = SIDE, .height = SIDE, .format = PNG_FORMAT_RGB };
@@ -63,7 +63,7 @@ static int add_image(struct maker *maker, enum map map, bool mirrored)
     return maker_add(maker, "images", json_pack("{s:i,s:s}", "bufferView", view, "mimeType", "image/png"));
 }
 
-static json_t *use_of(struct maker *maker, enum map map, enum way way)
+static json_t *use_of(struct model_maker *maker, enum map map, enum way way)
 {
     bool other = map != BASE;
     int image = add_image(maker, map, other && way == MIRRORED_IMAGES);
@@ -78,7 +78,7 @@ static json_t *use_of(struct maker *maker, enum map map, enum way way)
     return use;
 }
 
-static int add_material(struct maker *maker, enum way way)
+static int add_material(struct model_maker *maker, enum way way)
 {
     json_t *pbr = json_pack("{s:o}", "baseColorTexture", use_of(maker, BASE, way));
     json_t *material = json_pack("{s:s,s:o,s:[f,f,f],s:b}", "name", "paint", "pbrMetallicRoughness", pbr, "emissiveFactor", 1.0, 1.0, 1.0,
@@ -95,7 +95,7 @@ static int add_material(struct maker *maker, enum way way)
     return maker_add(maker, "materials", material);
 }
 
-static int add_mesh(struct maker *maker, const struct sheet *s, enum way way)
+static int add_mesh(struct model_maker *maker, const struct wavy_sheet *s, enum way way)
 {
     float(*mirrored)[2] = mem_array(s->vertex_count, sizeof(*mirrored));
     for (uint32_t v = 0; v < s->vertex_count; v++)
@@ -118,8 +118,8 @@ static int add_mesh(struct maker *maker, const struct sheet *s, enum way way)
 
 static void write_model(const char *folder, enum way way)
 {
-    struct sheet sheet;
-    struct maker maker;
+    struct wavy_sheet sheet;
+    struct model_maker maker;
     size_t size;
     sheet_init(&sheet, 32, 16);
     maker_init(&maker);

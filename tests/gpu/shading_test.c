@@ -34,12 +34,12 @@ static int tear_down(void **state)
 }
 
 /* How a picture reaches its reader. */
-struct way {
+struct delivery_path {
     const char *name;
     int quality;                             /* of JPEG; 0: none */
     bool full_chroma, deuteranope, standard; /* standard: by any encoder, with the tables that everybody has */
 };
-static const struct way ways[] = {
+static const struct delivery_path ways[] = {
     { "as drawn", 0, false, false, false },
     { "JPEG q80 4:2:0", 80, false, false, false },
     { "deuteranope", 0, false, true, false },
@@ -58,7 +58,7 @@ static void decode(struct frame *frame, const uint8_t *bytes, size_t count)
     tjDestroy(turbo);
 }
 
-static void through_standard_jpeg(struct frame *frame, const struct way *way)
+static void through_standard_jpeg(struct frame *frame, const struct delivery_path *way)
 {
     unsigned char *bytes = NULL;
     unsigned long count = 0;
@@ -72,7 +72,7 @@ static void through_standard_jpeg(struct frame *frame, const struct way *way)
 }
 
 /* The pixels after a JPEG, as a stream sends it. */
-static void through_jpeg(struct frame *frame, const struct way *way)
+static void through_jpeg(struct frame *frame, const struct delivery_path *way)
 {
     struct encoder *encoder = encoder_create(rig.log, "jpeg", NULL);
     struct packet *packet;

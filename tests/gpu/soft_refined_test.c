@@ -32,7 +32,7 @@ TEST(test_lines_and_scales)
 }
 
 /* A floor of 8 m, cut into strips that share their edges. */
-static void make_floor(struct shape *shape, uint32_t strips)
+static void make_floor(struct test_shape *shape, uint32_t strips)
 {
     shape->vertex_count = 2 * (strips + 1);
     shape->index_count = 6 * strips;
@@ -53,7 +53,7 @@ static void make_floor(struct shape *shape, uint32_t strips)
 static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
 {
     struct toy *toy = toy_create();
-    struct shape floor = { 0 }, box = { 0 };
+    struct test_shape floor = { 0 }, box = { 0 };
     struct stand others = stand;
     struct view view;
     make_floor(&floor, strips);
@@ -112,7 +112,7 @@ TEST(test_thin_poles_have_no_beads)
 {
     enum { FIRST = 80, LAST = 220 };
     struct toy *toy = toy_create();
-    struct shape pole = { 0 };
+    struct test_shape pole = { 0 };
     struct stand others = stand;
     struct view view;
     shape_box(&pole, TOY_STEEL, (double[3]){ -0.056, -0.056, 0 }, (double[3]){ 0.056, 0.056, 8 });

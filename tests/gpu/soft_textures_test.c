@@ -80,13 +80,13 @@ static void make_materials(void)
 static void add_plate(struct toy *toy, const char *id, uint32_t material, double times, const double at_m[3], int sensors)
 {
     static const double places[4][3] = { { 0.2, 0, 0.2 }, { 2.2, 0.3, 1.6 }, { 1.2, 0.2, 0.9 }, { 0.2, 0.2, 1.6 } };
-    struct shape shape = { .materials = materials,
-                           .textures = textures,
-                           .texels = texels[0],
-                           .texcoords = (const float(*)[2])texcoords,
-                           .material_count = MATERIALS,
-                           .texture_count = TEXTURES,
-                           .texel_bytes = sizeof(texels) };
+    struct test_shape shape = { .materials = materials,
+                                .textures = textures,
+                                .texels = texels[0],
+                                .texcoords = (const float(*)[2])texcoords,
+                                .material_count = MATERIALS,
+                                .texture_count = TEXTURES,
+                                .texel_bytes = sizeof(texels) };
     shape_plate(&shape, material, (double[3]){ 0, 0, 0 }, (double[3]){ 2.4, 0.3, 0 }, (double[3]){ 0, 0.2, 1.8 }, 6);
     assert_true(shape.vertex_count <= MOST_VERTICES);
     for (size_t v = 0; v < shape.vertex_count; v++) {

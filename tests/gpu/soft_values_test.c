@@ -73,13 +73,13 @@ static bool is_within(const float (*numbers)[4], int at)
            !bends(numbers, at, WIDTH_PX - 1);
 }
 
-struct tally {
+struct soft_values_tally {
     int within, off, unreadable; /* pixels of one surface: of another colour, and of none of the map */
     int rims, rims_off;          /* the others that have a value */
     int most;
 };
 
-static void compare(const struct view *view, const float (*numbers)[4], const struct frame *frame, struct tally *tally)
+static void compare(const struct view *view, const float (*numbers)[4], const struct frame *frame, struct soft_values_tally *tally)
 {
     const struct colormap *map = colormap_at((size_t)view->colormap);
     for (int y = 1; y < HEIGHT_PX - 1; y++)
@@ -108,7 +108,7 @@ static struct frame *draw(struct site *site, const struct view *view)
     return job ? renderer_end(site->renderer, &job) : NULL;
 }
 
-static void compare_plant(struct site *site, int way, struct tally *tally)
+static void compare_plant(struct site *site, int way, struct soft_values_tally *tally)
 {
     static const double away[] = { 1.2, 2, 4, 8, 16, 32 };
     float(*numbers)[4] = mem_array(PIXELS, sizeof(*numbers));
@@ -138,7 +138,7 @@ static void test_plant(const char *path, const char *name)
     struct site site;
     assert_true(site_init(&site, &rig, path, name));
     for (int way = 0; way < 4; way++) {
-        struct tally tally = { 0 };
+        struct soft_values_tally tally = { 0 };
         bool refined = way & 1;
         compare_plant(&site, way, &tally);
         print_message("# %s, %s: %d pixels, %d of another colour (by %d at most), %d of none; at silhouettes %d, %d others\n",

@@ -231,7 +231,7 @@ static struct toy *nested(bool hollow, bool open)
 {
     static const double sensors[2][1][3] = { { { 1, 0, 0 } }, { { 0, 0, 0.5 } } };
     struct toy *toy = toy_create();
-    struct shape body = { 0 }, core = { 0 };
+    struct test_shape body = { 0 }, core = { 0 };
     shape_box(&body, TOY_STEEL, (double[3]){ -1, -1, -1 }, (double[3]){ 1, 1, 1 });
     if (open)
         body.index_count = body.primitives[0].index_count -= 3;
@@ -393,7 +393,7 @@ TEST_WITH(test_what_is_not_shown_throws_no_shadow, reset, NULL)
 static void stand_room(struct stand *room, struct view *of)
 {
     struct toy *toy = toy_create();
-    struct shape ball = { 0 }, walls = { 0 };
+    struct test_shape ball = { 0 }, walls = { 0 };
     shape_sphere(&ball, TOY_CONCRETE, (double[3]){ 0, 0, 0 }, 1, 12);
     shape_box(&walls, TOY_CONCRETE, (double[3]){ -1.2, -1.2, -1.2 }, (double[3]){ 1.2, 1.2, 1.2 });
     toy_add(toy, "BALL", &ball, (double[3]){ 0, 0, 2 }, NULL, 0);

@@ -19,23 +19,23 @@
 
 enum { MAX_LINKS = 64, CHUNK_BYTES = 1024, CHUNKS = 4096, SOCKET_BYTES = 8192 };
 
-struct chunk {
+struct relay_chunk {
     int64_t due_ns;
     int count, sent;
     char bytes[CHUNK_BYTES];
 };
 
-struct way { /* one direction; chunks in a ring */
+struct relay_direction { /* one direction; chunks in a ring */
     int from, to;
     double bytes_per_s; /* 0: no limit */
     int64_t free_ns;    /* when the next byte may be taken */
     unsigned first, count;
-    struct chunk *chunks;
+    struct relay_chunk *chunks;
 };
 
-struct link {
+struct relay_link {
     bool open;
-    struct way down, up;
+    struct relay_direction down, up;
 };
 
 static int64_t delay_ns;
@@ -65,13 +65,14 @@ static int listen_on_any(int *port)
     return fd;
 }
 
-static bool way_open(struct way *way, int from, int to, double bytes_per_s)
+static bool way_open(struct relay_direction *way, int from, int to, double bytes_per_s)
 {
-    *way = (struct way){ .from = from, .to = to, .bytes_per_s = bytes_per_s, .chunks = mem_array(CHUNKS, sizeof(*way->chunks)) };
+    *way =
+        (struct relay_direction){ .from = from, .to = to, .bytes_per_s = bytes_per_s, .chunks = mem_array(CHUNKS, sizeof(*way->chunks)) };
     return fcntl(from, F_SETFL, O_NONBLOCK) == 0;
 }
 
-static void link_close(struct link *link)
+static void link_close(struct relay_link *link)
 {
     close(link->down.from);
     close(link->up.from);
@@ -80,7 +81,7 @@ static void link_close(struct link *link)
     link->open = false;
 }
 
-static void link_open(struct link *link, int client, int port, double bytes_per_s)
+static void link_open(struct relay_link *link, int client, int port, double bytes_per_s)
 {
     struct sockaddr_in address = local(port);
     int server = socket(AF_INET, SOCK_STREAM, 0);
@@ -93,10 +94,10 @@ static void link_open(struct link *link, int client, int port, double bytes_per_
 }
 
 /* False: the sender is gone. */
-static bool take(struct way *way, int64_t now_ns)
+static bool take(struct relay_direction *way, int64_t now_ns)
 {
     while (way->count < CHUNKS && now_ns >= way->free_ns) {
-        struct chunk *chunk = &way->chunks[(way->first + way->count) % CHUNKS];
+        struct relay_chunk *chunk = &way->chunks[(way->first + way->count) % CHUNKS];
         ssize_t n = recv(way->from, chunk->bytes, CHUNK_BYTES, 0);
         if (n <= 0)
             return n < 0 && (errno == EAGAIN || errno == EINTR);
@@ -111,10 +112,10 @@ static bool take(struct way *way, int64_t now_ns)
 }
 
 /* False: the receiver is gone. */
-static bool give(struct way *way, int64_t now_ns)
+static bool give(struct relay_direction *way, int64_t now_ns)
 {
     while (way->count > 0) {
-        struct chunk *chunk = &way->chunks[way->first];
+        struct relay_chunk *chunk = &way->chunks[way->first];
         if (chunk->due_ns > now_ns)
             return true;
         ssize_t n = send(way->to, chunk->bytes + chunk->sent, (size_t)(chunk->count - chunk->sent), MSG_NOSIGNAL | MSG_DONTWAIT);
@@ -129,13 +130,13 @@ static bool give(struct way *way, int64_t now_ns)
     return true;
 }
 
-static bool serve(struct link *link)
+static bool serve(struct relay_link *link)
 {
     int64_t now_ns = clock_mono_ns();
     return take(&link->down, now_ns) && take(&link->up, now_ns) && give(&link->down, now_ns) && give(&link->up, now_ns);
 }
 
-static void accept_one(int listener, struct link *links, int port, double bytes_per_s)
+static void accept_one(int listener, struct relay_link *links, int port, double bytes_per_s)
 {
     int client = accept(listener, NULL, NULL);
     for (int i = 0; client >= 0 && i < MAX_LINKS; i++) {
@@ -150,7 +151,7 @@ static void accept_one(int listener, struct link *links, int port, double bytes_
 
 int main(int argc, char **argv)
 {
-    static struct link links[MAX_LINKS];
+    static struct relay_link links[MAX_LINKS];
     int port = 0, listener = argc == 4 ? listen_on_any(&port) : -1;
     if (listener < 0) {
         fprintf(stderr, "usage: relay PORT BYTES_PER_S DELAY_MS\n");

@@ -28,13 +28,13 @@ static const char usage[] = "usage: facility --output DIR [--assets N] [--triang
 #define GROUPS 5
 static const char *const groups[GROUPS] = { "temperature", "pressure", "vibration", "current", "speed" };
 
-struct options {
+struct facility_options {
     const char *folder;
     long assets, triangles, sensors, singles, seed;
 };
 
 struct facility {
-    struct options options;
+    struct facility_options options;
     struct cad_random random;
     FILE *bytes; /* the binary chunk */
     size_t byte_count, triangles;
@@ -43,7 +43,7 @@ struct facility {
     long flange; /* its mesh, shared by all */
 };
 
-struct mesh { /* a grid of rows x around, closed around */
+struct pipe_mesh { /* a grid of rows x around, closed around */
     float (*places)[3], (*normals)[3];
     uint32_t *indices;
     size_t vertices, corners;
@@ -68,7 +68,7 @@ static long add_accessor(struct facility *f, const void *bytes, size_t each, siz
     return f->accessors++;
 }
 
-static long add_mesh(struct facility *f, const struct mesh *mesh)
+static long add_mesh(struct facility *f, const struct pipe_mesh *mesh)
 {
     float low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
     for (size_t v = 0; v < mesh->vertices; v++)
@@ -89,20 +89,20 @@ static long add_mesh(struct facility *f, const struct mesh *mesh)
 
 /* --- shapes: a circle that is swept ------------------------------------------------------------------------------------------------ */
 
-struct ring { /* where it is, which way it looks, one direction in its plane */
+struct pipe_ring { /* where it is, which way it looks, one direction in its plane */
     double centre[3], along[3], side[3], radius;
 };
 
-static void sweep(struct mesh *mesh, const struct ring *rings, int rows, int around)
+static void sweep(struct pipe_mesh *mesh, const struct pipe_ring *rings, int rows, int around)
 {
     size_t at = 0;
-    *mesh = (struct mesh){ .vertices = (size_t)rows * (size_t)around, .corners = 6 * (size_t)(rows - 1) * (size_t)around };
+    *mesh = (struct pipe_mesh){ .vertices = (size_t)rows * (size_t)around, .corners = 6 * (size_t)(rows - 1) * (size_t)around };
     mesh->places = mem_array(mesh->vertices, sizeof(*mesh->places));
     mesh->normals = mem_array(mesh->vertices, sizeof(*mesh->normals));
     mesh->indices = mem_array(mesh->corners, sizeof(*mesh->indices));
     for (int r = 0; r < rows; r++)
         for (int a = 0; a < around; a++) {
-            const struct ring *ring = &rings[r];
+            const struct pipe_ring *ring = &rings[r];
             const double *n = ring->along, *s = ring->side, angle = 2 * M_PI * a / around;
             const double t[3] = { n[1] * s[2] - n[2] * s[1], n[2] * s[0] - n[0] * s[2], n[0] * s[1] - n[1] * s[0] };
             for (int axis = 0; axis < 3; axis++) {
@@ -120,7 +120,7 @@ static void sweep(struct mesh *mesh, const struct ring *rings, int rows, int aro
         }
 }
 
-static void mesh_finish(struct mesh *mesh)
+static void mesh_finish(struct pipe_mesh *mesh)
 {
     mem_free(mesh->places);
     mem_free(mesh->normals);
@@ -128,9 +128,9 @@ static void mesh_finish(struct mesh *mesh)
 }
 
 /* Standing, with round heads. */
-static void make_tank(struct mesh *mesh, int rows, int around, double radius, double height)
+static void make_tank(struct pipe_mesh *mesh, int rows, int around, double radius, double height)
 {
-    struct ring *rings = mem_array((size_t)rows, sizeof(*rings));
+    struct pipe_ring *rings = mem_array((size_t)rows, sizeof(*rings));
     for (int r = 0; r < rows; r++) {
         double t = (double)r / (rows - 1), head = 0.15, z, out = 1;
         if (t < head) {
@@ -142,7 +142,7 @@ static void make_tank(struct mesh *mesh, int rows, int around, double radius, do
         } else {
             z = height * (t - head) / (1 - 2 * head);
         }
-        rings[r] = (struct ring){
+        rings[r] = (struct pipe_ring){
             .centre = { 0, 0, z + radius / 2 }, .along = { 0, 0, 1 }, .side = { 1, 0, 0 }, .radius = fmax(radius * out, 1e-3)
         };
     }
@@ -151,13 +151,13 @@ static void make_tank(struct mesh *mesh, int rows, int around, double radius, do
 }
 
 /* A run in the plane z = 1 m with quarter bends left and right in turn. */
-static void make_run(struct mesh *mesh, int rows, int around, double radius, double length)
+static void make_run(struct pipe_mesh *mesh, int rows, int around, double radius, double length)
 {
-    struct ring *rings = mem_array((size_t)rows, sizeof(*rings));
+    struct pipe_ring *rings = mem_array((size_t)rows, sizeof(*rings));
     double bend = 4 * radius, straight = length / 4, x = 0, y = 0, heading = 0, step = (length + 2 * M_PI * bend) / (rows - 1), into = 0;
     for (int r = 0, part = 0; r < rows; r++) {
         rings[r] =
-            (struct ring){ .centre = { x, y, 1 }, .along = { cos(heading), sin(heading), 0 }, .side = { 0, 0, 1 }, .radius = radius };
+            (struct pipe_ring){ .centre = { x, y, 1 }, .along = { cos(heading), sin(heading), 0 }, .side = { 0, 0, 1 }, .radius = radius };
         double long_m = part % 2 ? M_PI / 2 * bend : straight, turn = part % 4 == 1 ? 1 : -1;
         x += step * cos(heading);
         y += step * sin(heading);
@@ -174,13 +174,14 @@ static void make_run(struct mesh *mesh, int rows, int around, double radius, dou
 }
 
 /* About the z axis, 1 m in radius outside, with a hole. */
-static void make_flange(struct mesh *mesh)
+static void make_flange(struct pipe_mesh *mesh)
 {
     static const double profile[FLANGE_ROWS][2] = { { 0.6, 0 }, { 0.6, 0.3 }, { 0.7, 0.3 }, { 0.75, 0.2 },
                                                     { 1, 0.2 }, { 1, 0 },     { 0.8, 0 },   { 0.6, 0 } };
-    struct ring rings[FLANGE_ROWS];
+    struct pipe_ring rings[FLANGE_ROWS];
     for (int r = 0; r < FLANGE_ROWS; r++)
-        rings[r] = (struct ring){ .centre = { 0, 0, profile[r][1] }, .along = { 0, 0, 1 }, .side = { 1, 0, 0 }, .radius = profile[r][0] };
+        rings[r] =
+            (struct pipe_ring){ .centre = { 0, 0, profile[r][1] }, .along = { 0, 0, 1 }, .side = { 1, 0, 0 }, .radius = profile[r][0] };
     sweep(mesh, rings, FLANGE_ROWS, FLANGE_AROUND);
 }
 
@@ -197,7 +198,7 @@ static void add_node(struct facility *f, const char *json_fmt, ...)
     f->nodes++;
 }
 
-static void add_sensors(struct facility *f, long asset, const struct mesh *body, const double at[3])
+static void add_sensors(struct facility *f, long asset, const struct pipe_mesh *body, const double at[3])
 {
     for (int s = 0; s < 2; s++) {
         const float *p = body->places[(size_t)(cad_random(&f->random) * (double)body->vertices)];
@@ -207,7 +208,7 @@ static void add_sensors(struct facility *f, long asset, const struct mesh *body,
 }
 
 /* Tags 0, 1, 2, ... go to assets 0, 1, 2, ... and begin again: each time round with the next group. */
-static void add_singles(struct facility *f, long asset, const struct mesh *body, const double at[3])
+static void add_singles(struct facility *f, long asset, const struct pipe_mesh *body, const double at[3])
 {
     for (long tag = asset, group = 0; tag < f->options.singles; tag += f->options.assets, group++) {
         const float *p = body->places[(size_t)(cad_random(&f->random) * (double)body->vertices)];
@@ -218,14 +219,14 @@ static void add_singles(struct facility *f, long asset, const struct mesh *body,
 
 static void add_asset(struct facility *f, long asset)
 {
-    const struct options *o = &f->options;
+    const struct facility_options *o = &f->options;
     double share = 0.5 + cad_random(&f->random), radius = 0.2 + 0.5 * cad_random(&f->random), length = 2 + 3 * cad_random(&f->random);
     int flanges = o->singles ? 0 : 2 + (int)(4 * cad_random(&f->random)), flange_triangles = 2 * FLANGE_AROUND * (FLANGE_ROWS - 1);
     double wanted = fmax(share * (double)o->triangles / (double)o->assets - flanges * flange_triangles, 200);
     int around = (int)fmax(sqrt(wanted / 5), 8), rows = (int)fmax(wanted / (2 * around), 4) + 1;
     long across = (long)ceil(sqrt((double)o->assets)), root = f->nodes;
     const double at[3] = { SPACING_M * (double)(asset % across), SPACING_M * (double)(asset / across), 0 };
-    struct mesh body;
+    struct pipe_mesh body;
     bool tank = asset % 3 == 0;
     if (tank)
         make_tank(&body, rows, around, radius, length);
@@ -313,7 +314,7 @@ static void facility_finish(struct facility *f)
     fclose(f->bytes);
 }
 
-static bool read_options(int argc, char **argv, struct options *options)
+static bool read_options(int argc, char **argv, struct facility_options *options)
 {
     static const struct option known[] = { { "output", required_argument, NULL, 'o' },    { "assets", required_argument, NULL, 'a' },
                                            { "triangles", required_argument, NULL, 't' }, { "sensors", required_argument, NULL, 's' },
@@ -336,7 +337,7 @@ static bool read_options(int argc, char **argv, struct options *options)
 int main(int argc, char **argv)
 {
     struct facility f = { .options = { .assets = 2000, .triangles = 10000000, .sensors = 8, .seed = 1 } };
-    struct mesh flange;
+    struct pipe_mesh flange;
     if (!read_options(argc, argv, &f.options)) {
         fputs(usage, stderr);
         return 2;

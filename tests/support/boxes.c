@@ -5,7 +5,7 @@
 #include "base/mem.h"
 #include "tests/support/temp.h"
 
-int boxes_add(struct maker *maker, const char *node, const double low[3], const double high[3])
+int boxes_add(struct model_maker *maker, const char *node, const double low[3], const double high[3])
 {
     static const uint16_t corners[36] = { 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                                           2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5 };
@@ -20,14 +20,14 @@ int boxes_add(struct maker *maker, const char *node, const double low[3], const 
     return mesh;
 }
 
-void boxes_add_primitive(struct maker *maker, int mesh, int mode, const float (*corners)[3], size_t count)
+void boxes_add_primitive(struct model_maker *maker, int mesh, int mode, const float (*corners)[3], size_t count)
 {
     int positions = maker_numbers(maker, corners, count * sizeof(*corners), FLOAT, count, "VEC3");
     json_array_append_new(json_object_get(maker_get(maker, "meshes", mesh), "primitives"),
                           json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "mode", mode));
 }
 
-void boxes_write(struct maker *maker, const char *folder, const char *name)
+void boxes_write(struct model_maker *maker, const char *folder, const char *name)
 {
     size_t size;
     char *glb = maker_glb(maker, &size);

@@ -5,10 +5,10 @@
 #include "tests/support/model_maker.h"
 
 /* A closed box of 12 triangles and 8 places as a node of its own: units and axes are the model's. Returns the node's mesh. */
-int boxes_add(struct maker *maker, const char *node, const double low[3], const double high[3]);
+int boxes_add(struct model_maker *maker, const char *node, const double low[3], const double high[3]);
 /* One more primitive in a mesh: these corners, mode as glTF numbers them (0 points, 1 lines, 4 triangles). */
-void boxes_add_primitive(struct maker *maker, int mesh, int mode, const float (*corners)[3], size_t count);
+void boxes_add_primitive(struct model_maker *maker, int mesh, int mode, const float (*corners)[3], size_t count);
 /* Writes FOLDER/NAME and leaves the maker empty. */
-void boxes_write(struct maker *maker, const char *folder, const char *name);
+void boxes_write(struct model_maker *maker, const char *folder, const char *name);
 
 #endif

@@ -65,7 +65,7 @@ static void add_quad(struct cad *cad, struct cad_random *random, uint32_t a, uin
 
 /* --- grids ------------------------------------------------------------------------------------------------------------------ */
 
-struct grid {
+struct cad_grid {
     int across, up; /* cells */
     bool round_u, round_v;
     double jitter;
@@ -74,7 +74,7 @@ struct grid {
     void (*surface)(const double size[3], double u, double v, double out[3]);
 };
 
-static uint32_t grid_vertex(struct cad *cad, struct cad_random *random, const struct grid *g, int i, int j, uint32_t *ids)
+static uint32_t grid_vertex(struct cad *cad, struct cad_random *random, const struct cad_grid *g, int i, int j, uint32_t *ids)
 {
     int columns = g->round_u ? g->across : g->across + 1, rows = g->round_v ? g->up : g->up + 1;
     i %= columns;
@@ -88,7 +88,7 @@ static uint32_t grid_vertex(struct cad *cad, struct cad_random *random, const st
     return *id = add_vertex(cad, p[0], p[1], p[2]);
 }
 
-static void make_grid(struct cad *cad, struct cad_random *random, const struct grid *g)
+static void make_grid(struct cad *cad, struct cad_random *random, const struct cad_grid *g)
 {
     size_t count = (size_t)(g->across + 1) * (size_t)(g->up + 1);
     uint32_t *ids = mem_array(count, sizeof(*ids));
@@ -142,45 +142,46 @@ static void on_bent_pipe(const double size[3], double u, double v, double out[3]
 
 void cad_plate(struct cad *cad, struct cad_random *random, int across, int up, double width, double height, double jitter)
 {
-    make_grid(cad, random, &(struct grid){ .across = across, .up = up, .jitter = jitter, .size = { width, height }, .surface = on_plate });
+    make_grid(cad, random,
+              &(struct cad_grid){ .across = across, .up = up, .jitter = jitter, .size = { width, height }, .surface = on_plate });
 }
 
 void cad_slotted_plate(struct cad *cad, struct cad_random *random, int across, int up, double width, double height, int first, int wide,
                        int high)
 {
     make_grid(cad, random,
-              &(struct grid){ .across = across,
-                              .up = up,
-                              .size = { width, height },
-                              .surface = on_plate,
-                              .hole_first = first,
-                              .hole_wide = wide,
-                              .hole_high = high });
+              &(struct cad_grid){ .across = across,
+                                  .up = up,
+                                  .size = { width, height },
+                                  .surface = on_plate,
+                                  .hole_first = first,
+                                  .hole_wide = wide,
+                                  .hole_high = high });
 }
 
 void cad_cylinder(struct cad *cad, struct cad_random *random, int around, int along, double length, double jitter)
 {
     make_grid(cad, random,
-              &(struct grid){
+              &(struct cad_grid){
                   .across = around, .up = along, .round_u = true, .jitter = jitter, .size = { length }, .surface = on_cylinder });
 }
 
 void cad_torus(struct cad *cad, struct cad_random *random, int around, int tube, double tube_radius, double jitter)
 {
     make_grid(cad, random,
-              &(struct grid){ .across = around,
-                              .up = tube,
-                              .round_u = true,
-                              .round_v = true,
-                              .jitter = jitter,
-                              .size = { tube_radius },
-                              .surface = on_torus });
+              &(struct cad_grid){ .across = around,
+                                  .up = tube,
+                                  .round_u = true,
+                                  .round_v = true,
+                                  .jitter = jitter,
+                                  .size = { tube_radius },
+                                  .surface = on_torus });
 }
 
 void cad_bent_pipe(struct cad *cad, struct cad_random *random, int along, int around, double pipe_radius, double jitter)
 {
     make_grid(cad, random,
-              &(struct grid){
+              &(struct cad_grid){
                   .across = along, .up = around, .round_v = true, .jitter = jitter, .size = { pipe_radius }, .surface = on_bent_pipe });
 }
 

@@ -78,7 +78,7 @@ static bool write_files(const struct crowd_params *params, const struct places *
     return good;
 }
 
-static bool prepare(struct crowd *crowd, struct log *log, struct workers *workers, const char *folder)
+static bool prepare(struct sensor_crowd *crowd, struct log *log, struct workers *workers, const char *folder)
 {
     struct diag diag = { 0 };
     struct prepare prepare;
@@ -130,7 +130,7 @@ static void spread(struct places *places, const struct asset_view *view)
 /* From the model prepared once without sensors. */
 static bool find_places(struct places *places, struct log *log, struct workers *workers, const struct crowd_params *params)
 {
-    struct crowd bare = { 0 };
+    struct sensor_crowd bare = { 0 };
     char *folder = mem_printf("%s-bare", params->folder);
     struct crowd_params one = { .folder = folder, .model = params->model, .nodes = params->nodes, .up = params->up, .instances = 1 };
     struct places none = { .size_m = { 1, 1, 1 } };
@@ -152,10 +152,10 @@ static bool find_places(struct places *places, struct log *log, struct workers *
 
 /* --- all of it -------------------------------------------------------------------------------------------------------------- */
 
-bool crowd_init(struct crowd *crowd, struct log *log, struct workers *workers, const struct crowd_params *params)
+bool crowd_init(struct sensor_crowd *crowd, struct log *log, struct workers *workers, const struct crowd_params *params)
 {
     struct places places;
-    *crowd = (struct crowd){ .random = 1 };
+    *crowd = (struct sensor_crowd){ .random = 1 };
     bool good = find_places(&places, log, workers, params) && write_files(params, &places) && prepare(crowd, log, workers, params->folder);
     mem_free(places.at_m);
     if (!good)
@@ -165,14 +165,14 @@ bool crowd_init(struct crowd *crowd, struct log *log, struct workers *workers, c
     return true;
 }
 
-void crowd_finish(struct crowd *crowd)
+void crowd_finish(struct sensor_crowd *crowd)
 {
     snapshot_destroy(&crowd->snapshot);
     scene_destroy(&crowd->scene);
     plant_destroy(&crowd->plant);
 }
 
-void crowd_change(struct crowd *crowd, int64_t mono_ns)
+void crowd_change(struct sensor_crowd *crowd, int64_t mono_ns)
 {
     crowd->snapshot->taken_mono_ns = mono_ns;
     for (size_t i = 0; i < crowd->plant->tag_count; i++) {

@@ -15,7 +15,7 @@ struct crowd_params {
     int instances, sensors;   /* sensors: on each instance, spread evenly over its surface */
 };
 
-struct crowd {
+struct sensor_crowd {
     struct plant *plant;
     struct scene *scene;
     struct snapshot *snapshot;
@@ -23,8 +23,8 @@ struct crowd {
 };
 
 /* False: logged. Finish in both cases. */
-bool crowd_init(struct crowd *crowd, struct log *log, struct workers *workers, const struct crowd_params *params);
-void crowd_finish(struct crowd *crowd);
-void crowd_change(struct crowd *crowd, int64_t mono_ns); /* every reading becomes another one within the range */
+bool crowd_init(struct sensor_crowd *crowd, struct log *log, struct workers *workers, const struct crowd_params *params);
+void crowd_finish(struct sensor_crowd *crowd);
+void crowd_change(struct sensor_crowd *crowd, int64_t mono_ns); /* every reading becomes another one within the range */
 
 #endif

@@ -6,7 +6,7 @@
 #include "value/source.h"
 
 struct modbus_case {
-    struct device device;
+    struct modbus_device device;
     struct plant *plant;
     struct log *log;
     struct counters *counters;

@@ -24,7 +24,7 @@ enum { MAX_CLIENTS = 8, REGISTERS = 2000 };
 
 struct device_thread {
     pthread_t thread;
-    struct device *device;
+    struct modbus_device *device;
     modbus_t *modbus;
     modbus_mapping_t *mapping, *wrong;
     int listen_fd, stop_fd;
@@ -148,7 +148,7 @@ static void reply_spoilt(struct device_thread *t, int fd, const uint8_t *request
 /* How long the client has let us rest, and how much it wants. */
 static void note_request(struct device_thread *t, const uint8_t *request)
 {
-    struct device *device = t->device;
+    struct modbus_device *device = t->device;
     int64_t gap_ns = clock_mono_ns() - device->last_ns;
     int count = request[t->header + 3] << 8 | request[t->header + 4];
     if (device->last_ns && (!device->least_gap_ns || gap_ns < device->least_gap_ns))
@@ -174,7 +174,7 @@ static void refuse(struct device_thread *t, const uint8_t *request, int code)
 /* Applies the behaviour that depends on the age of a connection. Returns whether the device answers. */
 static bool answers_at_its_age(struct device_thread *t, size_t index)
 {
-    struct device *device = t->device;
+    struct modbus_device *device = t->device;
     int64_t now_ns = clock_mono_ns();
     if (now_ns - t->of[index].since_ns < device->deaf_ms * NS_PER_MS)
         return false;
@@ -186,7 +186,7 @@ static bool answers_at_its_age(struct device_thread *t, size_t index)
 /* False: the connection is to be reset. */
 static bool answer(struct device_thread *t, int fd, const uint8_t *request, int bytes)
 {
-    struct device *device = t->device;
+    struct modbus_device *device = t->device;
     int unit = request[t->header - 1], manner = device->manner;
     note_request(t, request);
     if (manner == DEVICE_RESETTING)
@@ -303,7 +303,7 @@ static void open_line(struct device_thread *t)
     t->client_count = 1;
 }
 
-void device_start(struct device *device)
+void device_start(struct modbus_device *device)
 {
     struct device_thread *t = mem_new(sizeof(*t));
     t->device = device;
@@ -329,7 +329,7 @@ void device_start(struct device *device)
     must(pthread_create(&t->thread, NULL, device_main, t) == 0, "pthread_create");
 }
 
-void device_stop(struct device *device)
+void device_stop(struct modbus_device *device)
 {
     struct device_thread *t = device->thread;
     eventfd_write(t->stop_fd, 1);

@@ -25,7 +25,7 @@ enum device_manner {
 enum device_wire { DEVICE_TCP, DEVICE_RTU_TCP, DEVICE_LINE };
 #define DEVICE_WRONG_VALUE 0x7777
 
-struct device { /* set what you like before or while it runs */
+struct modbus_device { /* set what you like before or while it runs */
     _Atomic int manner, late_ms;
     _Atomic int bad_register, bad_code;  /* a request for this register is refused with this exception; code 0: none */
     _Atomic int bad_times;               /* so often, then no more; 0: always */
@@ -52,7 +52,7 @@ struct device { /* set what you like before or while it runs */
     struct device_thread *thread;
 };
 
-void device_start(struct device *device);
-void device_stop(struct device *device); /* connections are closed; may be started again */
+void device_start(struct modbus_device *device);
+void device_stop(struct modbus_device *device); /* connections are closed; may be started again */
 
 #endif

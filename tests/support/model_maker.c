@@ -8,18 +8,18 @@
 #include "base/mem.h"
 #include "tests/support/glb.h"
 
-void maker_init(struct maker *maker)
+void maker_init(struct model_maker *maker)
 {
-    *maker = (struct maker){ .root = json_pack("{s:{s:s}}", "asset", "version", "2.0") };
+    *maker = (struct model_maker){ .root = json_pack("{s:{s:s}}", "asset", "version", "2.0") };
 }
 
-void maker_finish(struct maker *maker)
+void maker_finish(struct model_maker *maker)
 {
     json_decref(maker->root);
     text_finish(&maker->bin);
 }
 
-int maker_add(struct maker *maker, const char *list, json_t *object)
+int maker_add(struct model_maker *maker, const char *list, json_t *object)
 {
     json_t *items = json_object_get(maker->root, list);
     if (!items) {
@@ -30,12 +30,12 @@ int maker_add(struct maker *maker, const char *list, json_t *object)
     return (int)json_array_size(items) - 1;
 }
 
-json_t *maker_get(struct maker *maker, const char *list, int number)
+json_t *maker_get(struct model_maker *maker, const char *list, int number)
 {
     return json_array_get(json_object_get(maker->root, list), (size_t)number);
 }
 
-int maker_view(struct maker *maker, const void *bytes, size_t count, int stride)
+int maker_view(struct model_maker *maker, const void *bytes, size_t count, int stride)
 {
     while (maker->bin.length % 4 != 0)
         text_add_bytes(&maker->bin, "", 1);
@@ -46,7 +46,7 @@ int maker_view(struct maker *maker, const void *bytes, size_t count, int stride)
     return maker_add(maker, "bufferViews", view);
 }
 
-int maker_accessor(struct maker *maker, int view, int component_type, size_t count, const char *type)
+int maker_accessor(struct model_maker *maker, int view, int component_type, size_t count, const char *type)
 {
     json_t *accessor = json_pack("{s:i,s:I,s:s}", "componentType", component_type, "count", (json_int_t)count, "type", type);
     if (view >= 0)
@@ -54,17 +54,17 @@ int maker_accessor(struct maker *maker, int view, int component_type, size_t cou
     return maker_add(maker, "accessors", accessor);
 }
 
-int maker_numbers(struct maker *maker, const void *bytes, size_t size, int component_type, size_t count, const char *type)
+int maker_numbers(struct model_maker *maker, const void *bytes, size_t size, int component_type, size_t count, const char *type)
 {
     return maker_accessor(maker, maker_view(maker, bytes, size, 0), component_type, count, type);
 }
 
-int maker_mesh(struct maker *maker, json_t *primitive)
+int maker_mesh(struct model_maker *maker, json_t *primitive)
 {
     return maker_add(maker, "meshes", json_pack("{s:s,s:[o]}", "name", "m", "primitives", primitive));
 }
 
-int maker_node(struct maker *maker, const char *name, int mesh, json_t *more)
+int maker_node(struct model_maker *maker, const char *name, int mesh, json_t *more)
 {
     json_t *node = json_pack("{s:s}", "name", name);
     if (mesh >= 0)
@@ -74,14 +74,14 @@ int maker_node(struct maker *maker, const char *name, int mesh, json_t *more)
     return maker_add(maker, "nodes", node);
 }
 
-void maker_require(struct maker *maker, const char *extension)
+void maker_require(struct model_maker *maker, const char *extension)
 {
     maker_add(maker, "extensionsRequired", json_string(extension));
     maker_add(maker, "extensionsUsed", json_string(extension));
 }
 
 /* Roots are the nodes that are nobody's children; the loader finds them where there is no scene. */
-static char *json_of(struct maker *maker, const char *uri)
+static char *json_of(struct model_maker *maker, const char *uri)
 {
     json_t *buffers = json_object_get(maker->root, "buffers"), *first = json_array_get(buffers, 0);
     if (!first && maker->bin.length) {
@@ -95,14 +95,14 @@ static char *json_of(struct maker *maker, const char *uri)
     return json_dumps(maker->root, JSON_COMPACT);
 }
 
-char *maker_glb(struct maker *maker, size_t *size)
+char *maker_glb(struct model_maker *maker, size_t *size)
 {
     char *json = json_of(maker, NULL), *glb = glb_build(json, maker->bin.at, maker->bin.length, size);
     free(json);
     return glb;
 }
 
-char *maker_gltf(struct maker *maker, size_t *size)
+char *maker_gltf(struct model_maker *maker, size_t *size)
 {
     char *uri = maker_data_uri("application/octet-stream", maker->bin.at, maker->bin.length);
     char *json = json_of(maker, uri), *out = mem_strdup(json);
@@ -128,7 +128,7 @@ char *maker_data_uri(const char *kind, const void *bytes, size_t count)
 
 char *maker_glb_of(const struct cad *cad, const char *node, size_t *size)
 {
-    struct maker maker;
+    struct model_maker maker;
     maker_init(&maker);
     int positions = maker_numbers(&maker, cad->positions, cad->vertex_count * sizeof(*cad->positions), FLOAT, cad->vertex_count, "VEC3");
     int indices =

@@ -10,30 +10,30 @@
 
 enum { BYTE = 5120, UBYTE = 5121, SHORT = 5122, USHORT = 5123, UINT = 5125, FLOAT = 5126 };
 
-struct maker {
+struct model_maker {
     json_t *root;
     struct text bin;
 };
 
-void maker_init(struct maker *maker);
-void maker_finish(struct maker *maker);
+void maker_init(struct model_maker *maker);
+void maker_finish(struct model_maker *maker);
 
 /* Each returns the number of what it appended. Lists of the JSON are made as they are needed. */
-int maker_add(struct maker *maker, const char *list, json_t *object);
-int maker_view(struct maker *maker, const void *bytes, size_t count, int stride); /* stride 0: not stated */
-int maker_accessor(struct maker *maker, int view, int component_type, size_t count, const char *type);
-int maker_numbers(struct maker *maker, const void *bytes, size_t size, int component_type, size_t count,
+int maker_add(struct model_maker *maker, const char *list, json_t *object);
+int maker_view(struct model_maker *maker, const void *bytes, size_t count, int stride); /* stride 0: not stated */
+int maker_accessor(struct model_maker *maker, int view, int component_type, size_t count, const char *type);
+int maker_numbers(struct model_maker *maker, const void *bytes, size_t size, int component_type, size_t count,
                   const char *type); /* with its view */
-int maker_mesh(struct maker *maker, json_t *primitive);
-int maker_node(struct maker *maker, const char *name, int mesh, json_t *more); /* a root; more: further properties, or NULL */
-void maker_require(struct maker *maker, const char *extension);
-json_t *maker_get(struct maker *maker, const char *list, int number);
+int maker_mesh(struct model_maker *maker, json_t *primitive);
+int maker_node(struct model_maker *maker, const char *name, int mesh, json_t *more); /* a root; more: further properties, or NULL */
+void maker_require(struct model_maker *maker, const char *extension);
+json_t *maker_get(struct model_maker *maker, const char *list, int number);
 
 /* The file, to be freed with mem_free: a GLB, or JSON with its buffer in a data URI. */
-char *maker_glb(struct maker *maker, size_t *size);
+char *maker_glb(struct model_maker *maker, size_t *size);
 /* A GLB file of one node with this mesh; mem_free. */
 char *maker_glb_of(const struct cad *cad, const char *node, size_t *size);
-char *maker_gltf(struct maker *maker, size_t *size);
+char *maker_gltf(struct model_maker *maker, size_t *size);
 char *maker_data_uri(const char *kind, const void *bytes, size_t count);
 
 #endif

@@ -10,9 +10,9 @@
 #include "tests/support/draco_encode.h"
 #include "tests/support/model_maker.h"
 
-void sheet_init(struct sheet *s, uint32_t across, uint32_t up)
+void sheet_init(struct wavy_sheet *s, uint32_t across, uint32_t up)
 {
-    *s = (struct sheet){ .across = across, .up = up, .vertex_count = (across + 1) * (up + 1), .index_count = across * up * 6 };
+    *s = (struct wavy_sheet){ .across = across, .up = up, .vertex_count = (across + 1) * (up + 1), .index_count = across * up * 6 };
     s->positions = mem_array(s->vertex_count, sizeof(*s->positions));
     s->normals = mem_array(s->vertex_count, sizeof(*s->normals));
     s->texcoords = mem_array(s->vertex_count, sizeof(*s->texcoords));
@@ -34,7 +34,7 @@ void sheet_init(struct sheet *s, uint32_t across, uint32_t up)
         }
 }
 
-void sheet_finish(struct sheet *s)
+void sheet_finish(struct wavy_sheet *s)
 {
     mem_free(s->positions);
     mem_free(s->normals);
@@ -45,32 +45,32 @@ void sheet_finish(struct sheet *s)
 
 /* --- pieces -------------------------------------------------------------------------------------------------------------- */
 
-static int positions(struct maker *m, const struct sheet *s)
+static int positions(struct model_maker *m, const struct wavy_sheet *s)
 {
     return maker_numbers(m, s->positions, 12 * s->vertex_count, FLOAT, s->vertex_count, "VEC3");
 }
 
-static int indices(struct maker *m, const struct sheet *s)
+static int indices(struct model_maker *m, const struct wavy_sheet *s)
 {
     return maker_numbers(m, s->indices, 4 * s->index_count, UINT, s->index_count, "SCALAR");
 }
 
-static int normals(struct maker *m, const struct sheet *s)
+static int normals(struct model_maker *m, const struct wavy_sheet *s)
 {
     return maker_numbers(m, s->normals, 12 * s->vertex_count, FLOAT, s->vertex_count, "VEC3");
 }
 
-static int texcoords(struct maker *m, const struct sheet *s)
+static int texcoords(struct model_maker *m, const struct wavy_sheet *s)
 {
     return maker_numbers(m, s->texcoords, 8 * s->vertex_count, FLOAT, s->vertex_count, "VEC2");
 }
 
-static json_t *plain_primitive(struct maker *m, const struct sheet *s)
+static json_t *plain_primitive(struct model_maker *m, const struct wavy_sheet *s)
 {
     return json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions(m, s), "indices", indices(m, s));
 }
 
-static void finish(struct maker *m, struct seed *seed)
+static void finish(struct model_maker *m, struct seed *seed)
 {
     seed->bytes = maker_glb(m, &seed->size);
     maker_finish(m);
@@ -78,14 +78,14 @@ static void finish(struct maker *m, struct seed *seed)
 
 /* --- ways to say it ------------------------------------------------------------------------------------------------------ */
 
-static void data_uri(struct maker *m, const struct sheet *s, struct seed *seed)
+static void data_uri(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     maker_node(m, "sheet", maker_mesh(m, plain_primitive(m, s)), NULL);
     seed->bytes = maker_gltf(m, &seed->size);
     maker_finish(m);
 }
 
-static void every_attribute(struct maker *m, const struct sheet *s, struct seed *seed)
+static void every_attribute(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int colors = maker_numbers(m, s->colors, 4 * s->vertex_count, UBYTE, s->vertex_count, "VEC4");
     json_object_set_new(maker_get(m, "accessors", colors), "normalized", json_true());
@@ -95,7 +95,7 @@ static void every_attribute(struct maker *m, const struct sheet *s, struct seed 
     finish(m, seed);
 }
 
-static void indices16(struct maker *m, const struct sheet *s, struct seed *seed)
+static void indices16(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     uint16_t *out = mem_array(s->index_count, sizeof(*out));
     for (uint32_t i = 0; i < s->index_count; i++)
@@ -107,7 +107,7 @@ static void indices16(struct maker *m, const struct sheet *s, struct seed *seed)
 }
 
 /* One strip per row of squares, each a primitive over the same vertices. */
-static void strips(struct maker *m, const struct sheet *s, struct seed *seed)
+static void strips(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int at = positions(m, s), mesh = maker_mesh(m, json_null());
     json_t *primitives = json_object_get(maker_get(m, "meshes", mesh), "primitives");
@@ -127,7 +127,7 @@ static void strips(struct maker *m, const struct sheet *s, struct seed *seed)
 }
 
 /* Each square a fan of four corners, all fans by the same indices; and lines and points that are passed over. */
-static void fans(struct maker *m, const struct sheet *s, struct seed *seed)
+static void fans(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int mesh = maker_mesh(m, json_null()), list = maker_numbers(m, (uint8_t[4]){ 0, 1, 2, 3 }, 4, UBYTE, 4, "SCALAR");
     json_t *primitives = json_object_get(maker_get(m, "meshes", mesh), "primitives");
@@ -149,7 +149,7 @@ static void fans(struct maker *m, const struct sheet *s, struct seed *seed)
 }
 
 /* Three corners per triangle, no indices; bytes interleaved. */
-static void soup(struct maker *m, const struct sheet *s, struct seed *seed)
+static void soup(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     float(*corners)[6] = mem_array(s->index_count, sizeof(*corners));
     for (uint32_t i = 0; i < s->index_count; i++) {
@@ -165,7 +165,7 @@ static void soup(struct maker *m, const struct sheet *s, struct seed *seed)
 }
 
 /* Positions all zero, but for a sparse part that names every one of them. */
-static void sparse(struct maker *m, const struct sheet *s, struct seed *seed)
+static void sparse(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     uint32_t *all = mem_array(s->vertex_count, sizeof(*all));
     for (uint32_t v = 0; v < s->vertex_count; v++)
@@ -181,7 +181,7 @@ static void sparse(struct maker *m, const struct sheet *s, struct seed *seed)
 }
 
 /* 16-bit positions, stretched by the node; 8-bit normals; 16-bit texture coordinates. */
-static void quantized(struct maker *m, const struct sheet *s, struct seed *seed)
+static void quantized(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int16_t(*at)[4] = mem_array(s->vertex_count, sizeof(*at));
     int8_t(*up)[4] = mem_array(s->vertex_count, sizeof(*up));
@@ -212,7 +212,7 @@ static void quantized(struct maker *m, const struct sheet *s, struct seed *seed)
 /* --- meshopt ------------------------------------------------------------------------------------------------------------- */
 
 /* A view whose bytes lie compressed in buffer 0, and plainly nowhere: buffer 1 only says how many there would be. */
-static int packed_view(struct maker *m, const void *bytes, size_t count, size_t stride, const char *mode, const char *filter)
+static int packed_view(struct model_maker *m, const void *bytes, size_t count, size_t stride, const char *mode, const char *filter)
 {
     bool list = strcmp(mode, "TRIANGLES") == 0, sequence = strcmp(mode, "INDICES") == 0;
     size_t room = list       ? meshopt_encodeIndexBufferBound(count, count)
@@ -238,7 +238,7 @@ static int packed_view(struct maker *m, const void *bytes, size_t count, size_t 
     return view;
 }
 
-static void meshopt(struct maker *m, const struct sheet *s, struct seed *seed)
+static void meshopt(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int a = maker_accessor(m, packed_view(m, s->positions, s->vertex_count, 12, "ATTRIBUTES", "NONE"), FLOAT, s->vertex_count, "VEC3");
     int i = maker_accessor(m, packed_view(m, s->indices, s->index_count, 4, "TRIANGLES", "NONE"), UINT, s->index_count, "SCALAR");
@@ -246,7 +246,7 @@ static void meshopt(struct maker *m, const struct sheet *s, struct seed *seed)
     finish(m, seed);
 }
 
-static void meshopt_filters(struct maker *m, const struct sheet *s, struct seed *seed)
+static void meshopt_filters(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     float(*up)[4] = mem_array(s->vertex_count, sizeof(*up));
     uint8_t *oct = mem_array(s->vertex_count, 8), *exponential = mem_array(s->vertex_count, 12);
@@ -268,7 +268,7 @@ static void meshopt_filters(struct maker *m, const struct sheet *s, struct seed 
 }
 
 /* Two instances, one turned upside down by a quaternion that went through its filter. */
-static void meshopt_instances(struct maker *m, const struct sheet *s, struct seed *seed)
+static void meshopt_instances(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     const float turns[2][4] = { { 0, 0, 0, 1 }, { 1, 0, 0, 0 } }, places[2][3] = { { 0, 0, 0 }, { 0, 0, 5 } };
     uint8_t filtered[2][8];
@@ -286,7 +286,7 @@ static void meshopt_instances(struct maker *m, const struct sheet *s, struct see
 
 /* --- Draco --------------------------------------------------------------------------------------------------------------- */
 
-static void draco(struct maker *m, const struct sheet *s, struct seed *seed, bool sequential, int bits)
+static void draco(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed, bool sequential, int bits)
 {
     size_t size;
     uint32_t vertices;
@@ -305,12 +305,12 @@ static void draco(struct maker *m, const struct sheet *s, struct seed *seed, boo
     finish(m, seed);
 }
 
-static void draco_edgebreaker(struct maker *m, const struct sheet *s, struct seed *seed)
+static void draco_edgebreaker(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     draco(m, s, seed, false, 14);
 }
 
-static void draco_sequential(struct maker *m, const struct sheet *s, struct seed *seed)
+static void draco_sequential(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     draco(m, s, seed, true, 0);
 }
@@ -318,7 +318,7 @@ static void draco_sequential(struct maker *m, const struct sheet *s, struct seed
 /* --- trees, instances, materials ----------------------------------------------------------------------------------------- */
 
 /* Shared meshes: plain, mirrored, deep in a tree, by a matrix. */
-static void tree(struct maker *m, const struct sheet *s, struct seed *seed)
+static void tree(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int mesh = maker_mesh(m, plain_primitive(m, s));
     maker_node(m, "sheet", mesh, NULL);
@@ -332,7 +332,7 @@ static void tree(struct maker *m, const struct sheet *s, struct seed *seed)
     finish(m, seed);
 }
 
-static void instances(struct maker *m, const struct sheet *s, struct seed *seed)
+static void instances(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     const float places[3][3] = { { 0, 0, 0 }, { 0, 2, 0 }, { 0, 4, 0 } }, sizes[3][3] = { { 1, 1, 1 }, { 1, 1, -1 }, { 2, 2, 2 } };
     int mesh = maker_mesh(m, plain_primitive(m, s));
@@ -351,14 +351,14 @@ static const unsigned char png[] = {
     12,  255, 129, 0,  0,   31,  238, 5,   251, 241, 171, 186, 119, 0,  0,  0,  0,   73,  69, 78,  68,  174, 66,  96, 130,
 };
 
-static int textured_mesh(struct maker *m, const struct sheet *s, json_t *material)
+static int textured_mesh(struct model_maker *m, const struct wavy_sheet *s, json_t *material)
 {
     json_t *primitive = json_pack("{s:{s:i,s:i},s:i,s:i}", "attributes", "POSITION", positions(m, s), "TEXCOORD_0", texcoords(m, s),
                                   "indices", indices(m, s), "material", maker_add(m, "materials", material));
     return maker_mesh(m, primitive);
 }
 
-static void textured(struct maker *m, const struct sheet *s, struct seed *seed)
+static void textured(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int image = maker_add(m, "images", json_pack("{s:i,s:s}", "bufferView", maker_view(m, png, sizeof(png), 0), "mimeType", "image/png"));
     int sampler = maker_add(m, "samplers", json_pack("{s:i,s:i}", "wrapS", 33071, "wrapT", 33071));
@@ -371,7 +371,7 @@ static void textured(struct maker *m, const struct sheet *s, struct seed *seed)
     finish(m, seed);
 }
 
-static void textured_by_uri(struct maker *m, const struct sheet *s, struct seed *seed)
+static void textured_by_uri(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     char *uri = maker_data_uri("image/png", png, sizeof(png));
     int texture = maker_add(m, "textures", json_pack("{s:i}", "source", maker_add(m, "images", json_pack("{s:s}", "uri", uri))));
@@ -383,7 +383,7 @@ static void textured_by_uri(struct maker *m, const struct sheet *s, struct seed 
 }
 
 /* On two sets of coordinates, and once more on the second in a way of its own. */
-static void textured_twice(struct maker *m, const struct sheet *s, struct seed *seed)
+static void textured_twice(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int image = maker_add(m, "images", json_pack("{s:i,s:s}", "bufferView", maker_view(m, png, sizeof(png), 0), "mimeType", "image/png"));
     int texture = maker_add(m, "textures", json_pack("{s:i}", "source", image));
@@ -397,18 +397,18 @@ static void textured_twice(struct maker *m, const struct sheet *s, struct seed *
     finish(m, seed);
 }
 
-static void external(struct maker *m, const struct sheet *s, struct seed *seed)
+static void external(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     maker_node(m, "sheet", maker_mesh(m, plain_primitive(m, s)), NULL);
     maker_add(m, "images", json_pack("{s:s}", "uri", "a%20picture.png"));
     finish(m, seed);
 }
 
-void seed_make(struct seed *seed, int number, const struct sheet *sheet)
+void seed_make(struct seed *seed, int number, const struct wavy_sheet *sheet)
 {
     static const struct {
         const char *name;
-        void (*make)(struct maker *, const struct sheet *, struct seed *);
+        void (*make)(struct model_maker *, const struct wavy_sheet *, struct seed *);
         double tolerance_m;
     } seeds[SEED_COUNT] = {
         { "data_uri.gltf", data_uri, 0 },
@@ -431,7 +431,7 @@ void seed_make(struct seed *seed, int number, const struct sheet *sheet)
         { "external.glb", external, 0 },
         { "textured_twice.glb", textured_twice, 0 },
     };
-    struct maker maker;
+    struct model_maker maker;
     maker_init(&maker);
     *seed = (struct seed){ .name = seeds[number].name, .triangles = sheet->index_count / 3, .tolerance_m = seeds[number].tolerance_m };
     seeds[number].make(&maker, sheet, seed);

@@ -5,15 +5,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct sheet { /* a grid of across x up squares over 2 m x 1 m, rolling along x; every array has vertex_count or index_count items */
+struct wavy_sheet { /* a grid of across x up squares over 2 m x 1 m, rolling along x; every array has vertex_count or index_count items */
     uint32_t across, up, vertex_count, index_count;
     float (*positions)[3], (*normals)[3], (*texcoords)[2];
     uint8_t (*colors)[4];
     uint32_t *indices;
 };
 
-void sheet_init(struct sheet *sheet, uint32_t across, uint32_t up);
-void sheet_finish(struct sheet *sheet);
+void sheet_init(struct wavy_sheet *sheet, uint32_t across, uint32_t up);
+void sheet_finish(struct wavy_sheet *sheet);
 
 enum { SEED_COUNT = 19 };
 
@@ -26,6 +26,6 @@ struct seed {
 };
 
 /* Makes the seed of that number from a sheet of at most 65535 vertices. */
-void seed_make(struct seed *seed, int number, const struct sheet *sheet);
+void seed_make(struct seed *seed, int number, const struct wavy_sheet *sheet);
 
 #endif

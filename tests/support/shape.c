@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 
-static uint32_t add_vertex(struct shape *shape, const double p[3], const double n[3])
+static uint32_t add_vertex(struct test_shape *shape, const double p[3], const double n[3])
 {
     size_t i = shape->vertex_count++;
     double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
@@ -20,7 +20,7 @@ static uint32_t add_vertex(struct shape *shape, const double p[3], const double 
     return (uint32_t)i;
 }
 
-static void add_triangle(struct shape *shape, uint32_t a, uint32_t b, uint32_t c)
+static void add_triangle(struct test_shape *shape, uint32_t a, uint32_t b, uint32_t c)
 {
     mem_grow(&shape->indices, &shape->index_capacity, shape->index_count + 3, sizeof(*shape->indices));
     shape->indices[shape->index_count++] = a;
@@ -28,14 +28,14 @@ static void add_triangle(struct shape *shape, uint32_t a, uint32_t b, uint32_t c
     shape->indices[shape->index_count++] = c;
 }
 
-static void begin(struct shape *shape, uint32_t material)
+static void begin(struct test_shape *shape, uint32_t material)
 {
     mem_grow(&shape->primitives, &shape->primitive_capacity, shape->primitive_count + 1, sizeof(*shape->primitives));
     shape->primitives[shape->primitive_count] =
         (struct asset_primitive){ .first_index = (uint32_t)shape->index_count, .material = material };
 }
 
-static void end(struct shape *shape)
+static void end(struct test_shape *shape)
 {
     struct asset_primitive *primitive = &shape->primitives[shape->primitive_count++];
     primitive->index_count = (uint32_t)shape->index_count - primitive->first_index;
@@ -49,7 +49,7 @@ static void cross(const double a[3], const double b[3], double out[3])
 }
 
 /* A (columns + 1) x (rows + 1) grid of vertices that were just added, row by row. */
-static void add_grid(struct shape *shape, uint32_t first, int columns, int rows)
+static void add_grid(struct test_shape *shape, uint32_t first, int columns, int rows)
 {
     for (int y = 0; y < rows; y++)
         for (int x = 0; x < columns; x++) {
@@ -59,7 +59,7 @@ static void add_grid(struct shape *shape, uint32_t first, int columns, int rows)
         }
 }
 
-static void add_plate(struct shape *shape, const double corner[3], const double u[3], const double v[3], int n)
+static void add_plate(struct test_shape *shape, const double corner[3], const double u[3], const double v[3], int n)
 {
     double normal[3];
     uint32_t first = (uint32_t)shape->vertex_count;
@@ -74,14 +74,14 @@ static void add_plate(struct shape *shape, const double corner[3], const double 
     add_grid(shape, first, n, n);
 }
 
-void shape_plate(struct shape *shape, uint32_t material, const double corner[3], const double u[3], const double v[3], int n)
+void shape_plate(struct test_shape *shape, uint32_t material, const double corner[3], const double u[3], const double v[3], int n)
 {
     begin(shape, material);
     add_plate(shape, corner, u, v, n);
     end(shape);
 }
 
-void shape_box(struct shape *shape, uint32_t material, const double low[3], const double high[3])
+void shape_box(struct test_shape *shape, uint32_t material, const double low[3], const double high[3])
 {
     double x[3] = { high[0] - low[0], 0, 0 }, y[3] = { 0, high[1] - low[1], 0 }, z[3] = { 0, 0, high[2] - low[2] };
     begin(shape, material);
@@ -95,11 +95,11 @@ void shape_box(struct shape *shape, uint32_t material, const double low[3], cons
     end(shape);
 }
 
-struct profile { /* a curve around the axis: how far along, how far out, and its normal */
+struct curve_point { /* a curve around the axis: how far along, how far out, and its normal */
     double along, out, normal_along, normal_out;
 };
 
-static void add_lathe(struct shape *shape, const double a[3], const double axis[3], const struct profile *profile, int count)
+static void add_lathe(struct test_shape *shape, const double a[3], const double axis[3], const struct curve_point *profile, int count)
 {
     enum { AROUND = 48 };
     bool steep = fabs(axis[2]) >= 0.9;
@@ -123,31 +123,31 @@ static void add_lathe(struct shape *shape, const double a[3], const double axis[
     add_grid(shape, first, AROUND, count - 1);
 }
 
-void shape_cylinder(struct shape *shape, uint32_t material, const double a[3], const double b[3], double ra, double rb, int round)
+void shape_cylinder(struct test_shape *shape, uint32_t material, const double a[3], const double b[3], double ra, double rb, int round)
 {
     enum { CAP = 9, RINGS = 24 };
-    struct profile side[RINGS + 1], cap[CAP];
+    struct curve_point side[RINGS + 1], cap[CAP];
     double axis[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] };
     double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
     for (int c = 0; c < 3; c++)
         axis[c] /= length;
     begin(shape, material);
     for (int i = 0; i <= RINGS; i++)
-        side[i] = (struct profile){ length * i / RINGS, ra + (rb - ra) * i / RINGS, (ra - rb) / length, 1 };
+        side[i] = (struct curve_point){ length * i / RINGS, ra + (rb - ra) * i / RINGS, (ra - rb) / length, 1 };
     add_lathe(shape, a, axis, side, RINGS + 1);
     for (int end_cap = 0; end_cap < 2; end_cap++) {
         double at = end_cap ? length : 0, r = end_cap ? rb : ra, sign = end_cap ? 1 : -1;
         for (int i = 0; i < CAP; i++) {
             double angle = 0.5 * M_PI * (end_cap ? i : CAP - 1 - i) / (CAP - 1), out = fmax(cos(angle), 1e-4);
-            cap[i] = round ? (struct profile){ at + sign * 0.5 * r * sin(angle), r * out, sign * 2 * sin(angle), out }
-                           : (struct profile){ at, r * out, sign, 0 };
+            cap[i] = round ? (struct curve_point){ at + sign * 0.5 * r * sin(angle), r * out, sign * 2 * sin(angle), out }
+                           : (struct curve_point){ at, r * out, sign, 0 };
         }
         add_lathe(shape, a, axis, cap, CAP);
     }
     end(shape);
 }
 
-void shape_sphere(struct shape *shape, uint32_t material, const double middle[3], double radius, int n)
+void shape_sphere(struct test_shape *shape, uint32_t material, const double middle[3], double radius, int n)
 {
     uint32_t first = (uint32_t)shape->vertex_count;
     begin(shape, material);
@@ -163,11 +163,11 @@ void shape_sphere(struct shape *shape, uint32_t material, const double middle[3]
     end(shape);
 }
 
-void shape_finish(struct shape *shape)
+void shape_finish(struct test_shape *shape)
 {
     mem_free(shape->positions);
     mem_free(shape->normals);
     mem_free(shape->indices);
     mem_free(shape->primitives);
-    *shape = (struct shape){ 0 };
+    *shape = (struct test_shape){ 0 };
 }

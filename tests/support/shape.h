@@ -7,7 +7,7 @@
 
 #include "protocol/asset_format.h"
 
-struct shape { /* zero-initialise */
+struct test_shape { /* zero-initialise */
     float (*positions)[3], (*normals)[3];
     uint32_t *indices;
     struct asset_primitive *primitives;
@@ -22,12 +22,12 @@ struct shape { /* zero-initialise */
 };
 
 /* A grid of n x n squares in a plane through `corner`, along u and v; its normal is u x v. */
-void shape_plate(struct shape *shape, uint32_t material, const double corner[3], const double u[3], const double v[3], int n);
-void shape_box(struct shape *shape, uint32_t material, const double low[3], const double high[3]);
+void shape_plate(struct test_shape *shape, uint32_t material, const double corner[3], const double u[3], const double v[3], int n);
+void shape_box(struct test_shape *shape, uint32_t material, const double low[3], const double high[3]);
 /* From a to b; the radius goes from ra to rb. Round caps where round is set, else flat. */
-void shape_cylinder(struct shape *shape, uint32_t material, const double a[3], const double b[3], double ra, double rb, int round);
+void shape_cylinder(struct test_shape *shape, uint32_t material, const double a[3], const double b[3], double ra, double rb, int round);
 /* A ball of 2 n x n squares. */
-void shape_sphere(struct shape *shape, uint32_t material, const double middle[3], double radius, int n);
-void shape_finish(struct shape *shape);
+void shape_sphere(struct test_shape *shape, uint32_t material, const double middle[3], double radius, int n);
+void shape_finish(struct test_shape *shape);
 
 #endif

@@ -80,7 +80,7 @@ static double distance(const float a[3], const float b[3])
     return sqrt(x * x + y * y + z * z);
 }
 
-static void place_sensor(const struct shape *shape, const double place[3], struct asset_sensor *sensor, float *distances)
+static void place_sensor(const struct test_shape *shape, const double place[3], struct asset_sensor *sensor, float *distances)
 {
     double best = DBL_MAX;
     for (int c = 0; c < 3; c++)
@@ -98,7 +98,7 @@ static void place_sensor(const struct shape *shape, const double place[3], struc
         distances[v] = (float)distance(shape->positions[v], sensor->surface_m);
 }
 
-static struct asset *make_file(const char *id, const struct shape *shape, const double (*sensors)[3], size_t sensor_count)
+static struct asset *make_file(const char *id, const struct test_shape *shape, const double (*sensors)[3], size_t sensor_count)
 {
     static const struct asset_material materials[TOY_MATERIALS] = {
         [TOY_STEEL] = { .base_color = { 0.62f, 0.64f, 0.66f, 1 }, .metallic = 0.9f, .roughness = 0.35f },
@@ -221,7 +221,8 @@ static int add(struct toy *toy, const char *id, struct asset *file, const double
     return index;
 }
 
-int toy_add(struct toy *toy, const char *id, struct shape *shape, const double at_m[3], const double (*sensors)[3], size_t sensor_count)
+int toy_add(struct toy *toy, const char *id, struct test_shape *shape, const double at_m[3], const double (*sensors)[3],
+            size_t sensor_count)
 {
     double placement[16];
     for (int i = 0; i < 16; i++)
@@ -266,7 +267,7 @@ void toy_fill(struct snapshot *snapshot, double more)
 static void add_exchanger(struct toy *toy)
 {
     static const double sensors[5][3] = { { -1.9, -0.6, 1.2 }, { -0.8, 0, 1.8 }, { 0.2, -0.55, 1.4 }, { 1.1, 0, 1.8 }, { 1.9, -0.6, 1.2 } };
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     shape_cylinder(&shape, TOY_STEEL, (double[3]){ -2, 0, 1.2 }, (double[3]){ 2, 0, 1.2 }, 0.6, 0.6, 1);
     for (int side = -1; side <= 1; side += 2) {
         shape_cylinder(&shape, TOY_STEEL, (double[3]){ side * 1.72, 0, 1.2 }, (double[3]){ side * 1.80, 0, 1.2 }, 0.70, 0.70, 0);
@@ -281,7 +282,7 @@ struct toy *toy_unit(void)
 {
     static const double tank_sensors[3][3] = { { -0.7, -0.7, 0.6 }, { -0.7, -0.7, 1.8 }, { 0, -1, 2.9 } };
     struct toy *toy = toy_create();
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     add_exchanger(toy);
     shape_cylinder(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ 0, 0, 3 }, 1, 1, 1);
     toy_add(toy, "T-201", &shape, (double[3]){ 4.2, 1.2, 0 }, tank_sensors, 3);

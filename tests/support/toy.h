@@ -18,7 +18,8 @@ struct toy *toy_create(void);
 void toy_destroy(struct toy **toy);
 /* Takes the shape's content and leaves it empty. at_m: where its origin stands. Sensors: places in the shape's own frame. Tags are
    named ASSET-1, ASSET-2, ... Distances are straight lines from the nearest vertex. Returns the asset's index. */
-int toy_add(struct toy *toy, const char *id, struct shape *shape, const double at_m[3], const double (*sensors)[3], size_t sensor_count);
+int toy_add(struct toy *toy, const char *id, struct test_shape *shape, const double at_m[3], const double (*sensors)[3],
+            size_t sensor_count);
 /* Another one of asset `of`, with its own sensors likewise; plant_from_shape: column-major, without shear. Returns its index. */
 int toy_add_again(struct toy *toy, const char *id, int of, const double plant_from_shape[16]);
 /* After the last asset: readings for every tag, all Bad_WaitingForInitialData. */

@@ -18,7 +18,7 @@
 
 /* --- the truth ---------------------------------------------------------------------------------------------------------------- */
 
-struct truth {
+struct distance_truth {
     double sources[SOURCES][3];
     double *distances[SOURCES]; /* of the clean shape's vertices; NaN: not on the outer surface */
 };
@@ -53,7 +53,7 @@ static int cells(int whole)
     return sweep(whole, whole / 2);
 }
 
-static void find_truth(struct truth *truth, int row, const struct cad *clean, const struct oracle_mesh *outer)
+static void find_truth(struct distance_truth *truth, int row, const struct cad *clean, const struct oracle_mesh *outer)
 {
     double *all = mem_array(outer->vertex_count, sizeof(*all));
     long *outer_of = mem_array(clean->vertex_count, sizeof(*outer_of));
@@ -84,8 +84,8 @@ static void find_truth(struct truth *truth, int row, const struct cad *clean, co
 
 /* --- scoring ------------------------------------------------------------------------------------------------------------------ */
 
-static void score(const char *name, int fault, int source, const struct truth *truth, const struct cad *clean, const float *distances,
-                  const uint32_t *vertex_of, double scale)
+static void score(const char *name, int fault, int source, const struct distance_truth *truth, const struct cad *clean,
+                  const float *distances, const uint32_t *vertex_of, double scale)
 {
     double mean = 0, worst = 0, largest = 0, count = 0;
     for (size_t v = 0; v < clean->vertex_count; v++) {
@@ -117,7 +117,7 @@ static void put_point(const struct cad_place *place, const double p[3], double o
 /* Clean, and with each fault; by default with one of them, of each shape another. */
 static void test_faults(const char *name, int row, const struct cad *clean, const struct oracle_mesh *outer)
 {
-    struct truth truth = { 0 };
+    struct distance_truth truth = { 0 };
     struct cad_place place;
     double sources[SOURCES][3];
     uint32_t *vertex_of = mem_array(clean->vertex_count, sizeof(*vertex_of));

@@ -15,7 +15,7 @@
 #include "tests/support/temp.h"
 #include "value/quality.h"
 
-struct setup { /* two tags with H 80 and HH 90 */
+struct alarm_message_setup { /* two tags with H 80 and HH 90 */
     struct log *log;
     struct counters *counters;
     struct plant *plant;
@@ -26,9 +26,9 @@ struct setup { /* two tags with H 80 and HH 90 */
 
 static int set_up(void **state)
 {
-    static struct setup s;
+    static struct alarm_message_setup s;
     static int sorted[] = { 0, 1 };
-    s = (struct setup){ .log = log_create(LOG_ERROR), .counters = counters_create(), .folder = temp_folder_create() };
+    s = (struct alarm_message_setup){ .log = log_create(LOG_ERROR), .counters = counters_create(), .folder = temp_folder_create() };
     s.plant = plant_by_hand_create(2);
     s.plant->alarms = ALARMS_LOCAL;
     s.plant->tags_by_name = sorted;
@@ -47,7 +47,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct alarm_message_setup *s = *state;
     alarm_service_stop(&s->alarm_service);
     store_destroy(&s->store);
     s->plant->tags_by_name = NULL;
@@ -58,10 +58,10 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct alarm_message_setup *s, name, set_up, tear_down)
 
 /* And waits until alarms know it. */
-static void give(struct setup *s, int tag, double value, uint32_t quality)
+static void give(struct alarm_message_setup *s, int tag, double value, uint32_t quality)
 {
     uint64_t before = alarm_service_number(s->alarm_service);
     int64_t end_ns = clock_mono_ns() + 5 * NS_PER_S;
@@ -88,7 +88,7 @@ static const char *state_of(const json_t *message, const char *kind)
     return NULL;
 }
 
-static bool ask(struct setup *s, const char *text, struct message *message, struct message_error *error)
+static bool ask(struct alarm_message_setup *s, const char *text, struct message *message, struct message_error *error)
 {
     return message_parse(s->plant, text, strlen(text), message, error);
 }
@@ -189,7 +189,7 @@ CASE(roles_are_kept)
     }
 }
 
-static bool query(struct setup *s, bool journal, const char *arg, struct alarm_query *out)
+static bool query(struct alarm_message_setup *s, bool journal, const char *arg, struct alarm_query *out)
 {
     struct message_error error = { 0 };
     return alarm_query_parse(s->plant, journal, &arg, 1, 1000000, out, &error);

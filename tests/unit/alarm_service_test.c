@@ -20,7 +20,7 @@
 
 enum { TAGS = 1000 };
 
-struct setup {
+struct alarm_service_setup {
     char *folder;
     struct log *log;
     struct counters *counters;
@@ -31,8 +31,8 @@ struct setup {
 
 static int set_up(void **state)
 {
-    static struct setup s;
-    s = (struct setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR), .counters = counters_create() };
+    static struct alarm_service_setup s;
+    s = (struct alarm_service_setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR), .counters = counters_create() };
     s.plant = plant_by_hand_create(TAGS);
     s.plant->alarms = ALARMS_LOCAL;
     s.plant->tags_by_name = mem_array(TAGS, sizeof(int));
@@ -48,7 +48,7 @@ static int set_up(void **state)
     return 0;
 }
 
-static void start(struct setup *s)
+static void start(struct alarm_service_setup *s)
 {
     const struct alarm_service_params params = {
         .log = s->log, .counters = s->counters, .plant = s->plant, .store = s->store, .folder = s->folder, .keep_days = 400
@@ -59,7 +59,7 @@ static void start(struct setup *s)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct alarm_service_setup *s = *state;
     alarm_service_stop(&s->alarm_service);
     store_destroy(&s->store);
     mem_free(s->plant->tags_by_name);
@@ -71,9 +71,9 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct alarm_service_setup *s, name, set_up, tear_down)
 
-static void give_all(struct setup *s, double value)
+static void give_all(struct alarm_service_setup *s, double value)
 {
     struct sample samples[TAGS];
     for (int i = 0; i < TAGS; i++)
@@ -81,7 +81,7 @@ static void give_all(struct setup *s, double value)
     store_write(s->store, samples, TAGS, clock_mono_ns(), clock_utc_ns());
 }
 
-struct rows {
+struct alarm_rows {
     int count, unacknowledged;
     int64_t smallest_id;
     char last[400];
@@ -89,7 +89,7 @@ struct rows {
 
 static void count_row(void *arg, const struct journal_row *row)
 {
-    struct rows *rows = arg;
+    struct alarm_rows *rows = arg;
     rows->count++;
     rows->unacknowledged += !strcmp(row->after, "unacknowledged");
     rows->smallest_id = row->id;
@@ -97,9 +97,9 @@ static void count_row(void *arg, const struct journal_row *row)
              row->value, row->who, row->reason);
 }
 
-static struct rows read_rows(struct setup *s, const char *tag, int limit, int64_t before_id)
+static struct alarm_rows read_rows(struct alarm_service_setup *s, const char *tag, int limit, int64_t before_id)
 {
-    struct rows rows = { 0 };
+    struct alarm_rows rows = { 0 };
     const struct journal_query query = { INT64_MIN, INT64_MAX, before_id, tag, limit };
     assert_int_equal(journal_read(s->log, s->folder, &query, count_row, &rows), 0);
     return rows;
@@ -110,7 +110,7 @@ static void count_alarm(void *arg, const struct alarm *alarm)
     ((int *)arg)[alarm_status_of(alarm)]++;
 }
 
-static int wait_for(struct setup *s, enum alarm_status word, int wanted)
+static int wait_for(struct alarm_service_setup *s, enum alarm_status word, int wanted)
 {
     int64_t end_ns = clock_mono_ns() + 5 * NS_PER_S;
     for (;;) {
@@ -141,19 +141,19 @@ CASE(a_thousand_at_once_are_all_written)
     give_all(s, 20);
     assert_int_equal(wait_for(s, ALARM_RETURNED, TAGS - 1), TAGS - 1);
     alarm_service_stop(&s->alarm_service);
-    struct rows all = read_rows(s, NULL, 100000, INT64_MAX), page = read_rows(s, NULL, 500, INT64_MAX);
+    struct alarm_rows all = read_rows(s, NULL, 100000, INT64_MAX), page = read_rows(s, NULL, 500, INT64_MAX);
     assert_int_equal(all.count, 2 * TAGS + 1);
     assert_int_equal(page.count, 500);
     assert_int_equal(read_rows(s, NULL, 100000, page.smallest_id).count, 2 * TAGS + 1 - 500);
-    struct rows one = read_rows(s, "T-0007", 2, INT64_MAX); /* the second newest of it */
+    struct alarm_rows one = read_rows(s, "T-0007", 2, INT64_MAX); /* the second newest of it */
     assert_string_equal(one.last, "T-0007 H shelve shelved 3 nan kim filter is being changed");
-    struct rows then = { 0 };
+    struct alarm_rows then = { 0 };
     assert_int_equal(journal_at(s->log, s->folder, between_us, count_row, &then), 0);
     assert_int_equal(then.count, TAGS);
     assert_int_equal(then.unacknowledged, TAGS - 1);
 }
 
-static int alarms_of(struct setup *s, struct history_reader *reader, int64_t at_us)
+static int alarms_of(struct alarm_service_setup *s, struct history_reader *reader, int64_t at_us)
 {
     struct snapshot *then = snapshot_create(TAGS);
     int count = 0;
@@ -217,7 +217,7 @@ CASE(killed_at_any_moment_it_goes_on)
     assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, TAGS + 400); /* still there is nothing new */
 }
 
-static double counted(struct setup *s, const char *name)
+static double counted(struct alarm_service_setup *s, const char *name)
 {
     return (double)*counters_add(s->counters, name, "counter", "");
 }
@@ -243,7 +243,7 @@ CASE(a_lost_device_is_no_flood)
     assert_int_equal(wait_for(s, ALARM_SUPPRESSED, 0), 0);
     alarm_service_stop(&s->alarm_service);
     assert_int_equal((int)counted(s, "plantcast_alarms_raised_total"), 1);
-    struct rows one = read_rows(s, "T-0007", 2, INT64_MAX), device = read_rows(s, "plc", 10, INT64_MAX);
+    struct alarm_rows one = read_rows(s, "T-0007", 2, INT64_MAX), device = read_rows(s, "plc", 10, INT64_MAX);
     assert_int_equal(one.count, 2);
     assert_string_equal(one.last, "T-0007 BAD raise suppressed 4 nan  plc");
     assert_int_equal(device.count, 3);

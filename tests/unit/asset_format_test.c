@@ -68,15 +68,15 @@ static const struct asset_parts good = {
     .name_bytes = 6,
 };
 
-struct file {
+struct asset_bytes {
     char *bytes;
     size_t size;
     struct asset_header *header;
 };
 
-static struct file build(const struct asset_parts *parts)
+static struct asset_bytes build(const struct asset_parts *parts)
 {
-    struct file f;
+    struct asset_bytes f;
     f.bytes = asset_build(parts, &f.size);
     assert_non_null(f.bytes);
     f.header = (struct asset_header *)f.bytes;
@@ -84,18 +84,18 @@ static struct file build(const struct asset_parts *parts)
 }
 
 /* The checksum made right again, the way the format's page words it. */
-static void seal(struct file *f)
+static void seal(struct asset_bytes *f)
 {
     f->header->checksum = 0;
     f->header->checksum = XXH3_64bits(f->bytes, f->size);
 }
 
-static void *part(const struct file *f, enum asset_section section)
+static void *part(const struct asset_bytes *f, enum asset_section section)
 {
     return f->bytes + f->header->sections[section].offset;
 }
 
-static void refused(struct file *f, size_t size, const char *reason)
+static void refused(struct asset_bytes *f, size_t size, const char *reason)
 {
     struct asset_view view;
     char why[200] = "";
@@ -106,7 +106,7 @@ static void refused(struct file *f, size_t size, const char *reason)
     free(f->bytes);
 }
 
-static void refused_sealed(struct file *f, const char *reason)
+static void refused_sealed(struct asset_bytes *f, const char *reason)
 {
     seal(f);
     refused(f, f->size, reason);
@@ -114,7 +114,7 @@ static void refused_sealed(struct file *f, const char *reason)
 
 TEST(what_is_built_is_read_back)
 {
-    struct file f = build(&good);
+    struct asset_bytes f = build(&good);
     struct asset_view v;
     char why[200] = "";
     if (!asset_view_init(&v, f.bytes, f.size, why))
@@ -154,7 +154,7 @@ TEST(the_smallest_asset_is_good)
                                  .index_count = 6,
                                  .primitive_count = 1,
                                  .material_count = 1 };
-    struct file f = build(&small);
+    struct asset_bytes f = build(&small);
     struct asset_view v;
     char why[200] = "";
     if (!asset_view_init(&v, f.bytes, f.size, why))
@@ -186,7 +186,7 @@ TEST(the_layout_is_pinned)
     assert_int_equal(sizeof(struct asset_texture), 24);
     assert_int_equal(sizeof(struct asset_sensor), 40);
     assert_int_equal(ASSET_SECTION_COUNT, 15);
-    struct file f = build(&good);
+    struct asset_bytes f = build(&good);
     assert_memory_equal(f.bytes, "PLCASSET\5\0\0\0\x68\1\0\0", 16);
     assert_int_equal(XXH3_64bits(f.bytes + 360, f.size - 360), 0x111241323613397full); /* changes only with the format's version */
     free(f.bytes);
@@ -198,10 +198,10 @@ TEST(truncated_or_foreign_files_are_refused)
     char why[200] = "";
     assert_false(asset_view_init(&view, NULL, 0, why));
     for (size_t cut = 1; cut < 1000; cut += 37) {
-        struct file f = build(&good);
+        struct asset_bytes f = build(&good);
         refused(&f, cut < f.size ? f.size - cut : 0, "");
     }
-    struct file f = build(&good);
+    struct asset_bytes f = build(&good);
     refused(&f, f.size - 64, "truncated: ");
     f = build(&good);
     refused(&f, 100, "truncated: 100 bytes, the header alone has 360");
@@ -225,7 +225,7 @@ TEST(truncated_or_foreign_files_are_refused)
 
 TEST(every_flipped_bit_is_noticed)
 {
-    struct file f = build(&good);
+    struct asset_bytes f = build(&good);
     struct asset_view view;
     char why[200];
     for (size_t i = 0; i < f.size; i++) {
@@ -242,7 +242,7 @@ TEST(every_flipped_bit_is_noticed)
 TEST(sections_out_of_bounds_are_refused)
 {
     for (int i = 0; i < ASSET_SECTION_COUNT; i++) {
-        struct file f = build(&good);
+        struct asset_bytes f = build(&good);
         f.header->sections[i].offset = f.size + 64;
         refused_sealed(&f, "outside the file");
         f = build(&good);
@@ -258,7 +258,7 @@ TEST(sections_out_of_bounds_are_refused)
         f.header->sections[i].offset += 4;
         refused_sealed(&f, "section");
     }
-    struct file f = build(&good);
+    struct asset_bytes f = build(&good);
     f.header->sections[ASSET_GEODESIC].bytes -= 4;
     refused_sealed(&f, "section geodesic: 1020 bytes, expected 1024");
     f = build(&good);
@@ -277,7 +277,7 @@ TEST(sections_out_of_bounds_are_refused)
 
 TEST(wrong_vertices_are_refused)
 {
-    struct file f = build(&good);
+    struct asset_bytes f = build(&good);
     ((float *)part(&f, ASSET_POSITIONS))[7] = NAN;
     refused_sealed(&f, "vertex 2: position is not finite");
     f = build(&good);
@@ -305,7 +305,7 @@ TEST(wrong_vertices_are_refused)
 
 TEST(wrong_primitives_and_levels_are_refused)
 {
-    struct file f = build(&good);
+    struct asset_bytes f = build(&good);
     ((uint32_t *)part(&f, ASSET_INDICES))[4] = 4;
     refused_sealed(&f, "primitive 0: index 4 names vertex 4 of 4");
     f = build(&good);
@@ -349,7 +349,7 @@ TEST(wrong_primitives_and_levels_are_refused)
 
 TEST(wrong_clusters_are_refused)
 {
-    struct file f = build(&good);
+    struct asset_bytes f = build(&good);
     ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[1].first_index = 0;
     refused_sealed(&f, "cluster 1 of 3: indices 0+3, expected some of 3..6 (primitive 0)");
     f = build(&good);
@@ -445,7 +445,7 @@ TEST(turned_away_means_only_backs)
 
 TEST(wrong_materials_and_textures_are_refused)
 {
-    struct file f = build(&good);
+    struct asset_bytes f = build(&good);
     ((struct asset_material *)part(&f, ASSET_MATERIALS))->normal_texture = 1;
     refused_sealed(&f, "material 0: texture 1 of 1");
     f = build(&good);
@@ -491,7 +491,7 @@ TEST(wrong_materials_and_textures_are_refused)
 
 TEST(wrong_sensors_are_refused)
 {
-    struct file f = build(&good);
+    struct asset_bytes f = build(&good);
     ((struct asset_sensor *)part(&f, ASSET_SENSORS))[1].surface_m[0] = NAN;
     refused_sealed(&f, "sensor 1: place is not finite");
     f = build(&good);
@@ -548,7 +548,7 @@ TEST(distances_lie_in_blocks)
     plain.base_color_texture = plain.occlusion_texture = ASSET_NO_TEXTURE;
     plain.second = 0;
     parts.materials = &plain;
-    struct file f = build(&parts);
+    struct asset_bytes f = build(&parts);
     if (!asset_view_init(&v, f.bytes, f.size, why))
         fail_msg("%s", why);
     assert_int_equal(v.header->sections[ASSET_GEODESIC].bytes, 3 * 768 * 2);

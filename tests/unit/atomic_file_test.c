@@ -11,13 +11,13 @@
 #include "base/text/text.h"
 #include "tests/support/temp.h"
 
-struct fixture {
+struct atomic_file_fixture {
     char *folder, *path;
 };
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct atomic_file_fixture *f = mem_new(sizeof(*f));
     f->folder = temp_folder_create();
     f->path = temp_write_text(f->folder, "f", "old");
     *state = f;
@@ -26,14 +26,14 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct atomic_file_fixture *f = *state;
     temp_folder_destroy(&f->folder);
     mem_free(f->path);
     mem_free(f);
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct atomic_file_fixture *f, name, set_up, tear_down)
 
 static void assert_text(const char *path, const char *want)
 {
@@ -43,7 +43,7 @@ static void assert_text(const char *path, const char *want)
     mem_free(text);
 }
 
-static void assert_nothing_beside(const struct fixture *f)
+static void assert_nothing_beside(const struct atomic_file_fixture *f)
 {
     char *look = mem_printf("test -z \"$(ls '%s' | grep new)\"", f->folder);
     assert_int_equal(system(look), 0);

@@ -18,7 +18,7 @@ static double cpu_s(void)
 }
 
 /* In a plane across one axis, or in space; sizes up to `size`, some of them long or thin. */
-static void fill(struct box *boxes, size_t count, int flat, double size, uint64_t seed)
+static void fill(struct part_box *boxes, size_t count, int flat, double size, uint64_t seed)
 {
     struct cad_random random = { .state = seed };
     for (uint32_t i = 0; i < count; i++) {
@@ -39,7 +39,7 @@ static uint32_t *fresh(size_t count)
     return parent;
 }
 
-static bool meet(const struct box *a, const struct box *b)
+static bool meet(const struct part_box *a, const struct part_box *b)
 {
     bool apart = false;
     for (int axis = 0; axis < 3; axis++)
@@ -51,7 +51,7 @@ TEST(groups_are_those_of_all_pairs)
 {
     for (uint64_t seed = 1; seed <= 40; seed++) {
         enum { COUNT = 400 };
-        struct box boxes[COUNT];
+        struct part_box boxes[COUNT];
         size_t groups = 0;
         fill(boxes, COUNT, (int)(seed % 4), 0.002 * (double)seed, seed);
         uint32_t *found = fresh(COUNT), *wanted = fresh(COUNT);
@@ -75,7 +75,7 @@ TEST(groups_are_those_of_all_pairs)
 TEST(a_plate_across_any_axis_takes_no_longer)
 {
     enum { COUNT = 83750 };
-    struct box *boxes = mem_array(COUNT, sizeof(*boxes));
+    struct part_box *boxes = mem_array(COUNT, sizeof(*boxes));
     for (int flat = 0; flat < 4; flat++)
         for (int large = 0; large < 3; large++) {
             fill(boxes, COUNT, flat, (const double[]){ 0.002, 0.02, 0.1 }[large], 7);

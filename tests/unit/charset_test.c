@@ -8,7 +8,7 @@
 
 enum { MOST = 24 };
 
-static const struct kind {
+static const struct encoded_sample {
     const char *encoding, *texts[MOST];
 } kinds[] = {
     { "UTF-8", { "°C", "泵", "Füllstand Behälter", "Насос;бар", "ポンプ", "펌프 ℃" } },

@@ -12,7 +12,7 @@ enum { BOX = 192 }; /* triangles of shape_box */
 static const double low[3] = { -1, -1, -1 }, high[3] = { 1, 1, 1 };
 
 /* Takes the shape. How many of its triangles bound closed bodies. */
-static uint32_t closed_triangles(struct shape *shape)
+static uint32_t closed_triangles(struct test_shape *shape)
 {
     struct toy *toy = toy_create();
     int asset = toy_add(toy, "A", shape, (double[3]){ 0 }, NULL, 0);
@@ -30,7 +30,7 @@ static uint32_t closed_triangles(struct shape *shape)
 
 TEST(test_a_box_is_closed)
 {
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     shape_box(&shape, TOY_STEEL, low, high); /* each side has vertices of its own */
     assert_int_equal(closed_triangles(&shape), BOX);
 }
@@ -38,7 +38,7 @@ TEST(test_a_box_is_closed)
 TEST(test_what_has_a_hole_is_not)
 {
     for (uint32_t gone = 0; gone < BOX; gone += 17) {
-        struct shape shape = { 0 };
+        struct test_shape shape = { 0 };
         shape_box(&shape, TOY_STEEL, low, high);
         memmove(shape.indices + 3 * gone, shape.indices + 3 * gone + 3, (3 * (BOX - 1) - 3 * gone) * sizeof(*shape.indices));
         shape.index_count -= 3;
@@ -51,7 +51,7 @@ TEST(test_what_has_a_hole_is_not)
 TEST(test_seams_may_gape_by_rounding)
 {
     for (int wide = 0; wide < 2; wide++) {
-        struct shape shape = { 0 };
+        struct test_shape shape = { 0 };
         shape_box(&shape, TOY_STEEL, low, high);
         for (size_t i = 0; i < shape.vertex_count; i++)
             for (int c = 0; c < 3; c++)
@@ -62,7 +62,7 @@ TEST(test_seams_may_gape_by_rounding)
 
 TEST(test_what_is_turned_round_in_part_is_not)
 {
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     shape_box(&shape, TOY_STEEL, low, high);
     uint32_t first = shape.indices[0];
     shape.indices[0] = shape.indices[1];
@@ -72,7 +72,7 @@ TEST(test_what_is_turned_round_in_part_is_not)
 
 TEST(test_bodies_are_judged_one_by_one)
 {
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     shape_box(&shape, TOY_STEEL, low, high);
     shape_plate(&shape, TOY_BLUE, (double[3]){ 3, 3, 3 }, (double[3]){ 1, 0, 0 }, (double[3]){ 0, 1, 0 }, 2);
     shape_box(&shape, TOY_CONCRETE, (double[3]){ 5, 5, 5 }, (double[3]){ 6, 6, 6 });
@@ -89,7 +89,7 @@ TEST(test_glass_bounds_nothing)
                                           .normal_texture = ASSET_NO_TEXTURE,
                                           .occlusion_texture = ASSET_NO_TEXTURE,
                                           .emissive_texture = ASSET_NO_TEXTURE };
-    struct shape shape = { .materials = &glass, .material_count = 1 };
+    struct test_shape shape = { .materials = &glass, .material_count = 1 };
     shape_box(&shape, 0, low, high);
     assert_int_equal(closed_triangles(&shape), 0);
 }

@@ -13,7 +13,7 @@ static const double HERE[3] = { 0, 0, 0 }, SENSOR[1][3] = { { 0.5, 0.5, 1 } };
 static int add_box(struct toy *toy, const char *id, double low_x, double low_y, double low_z, double high_x, double high_y, double high_z,
                    size_t sensor_count)
 {
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     shape_box(&shape, TOY_STEEL, (double[]){ low_x, low_y, low_z }, (double[]){ high_x, high_y, high_z });
     return toy_add(toy, id, &shape, HERE, SENSOR, sensor_count);
 }

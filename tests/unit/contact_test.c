@@ -268,13 +268,13 @@ TEST(a_box_stands_at_the_edge_of_another)
     cad_finish(&above);
 }
 
-struct drawn {
+struct contact_case {
     bool stacked;
     uint64_t shape, faults;
 };
 
 /* By default every third one. */
-static void score_drawn(const char *name, int row, const struct drawn *drawn, size_t count, enum cad_fault fault)
+static void score_drawn(const char *name, int row, const struct contact_case *drawn, size_t count, enum cad_fault fault)
 {
     const struct cad_random was = chance;
     for (size_t i = 0; i < count; i++) {
@@ -301,10 +301,10 @@ static void score_drawn(const char *name, int row, const struct drawn *drawn, si
    fitted the one above and closed with that, so that nothing at all was hidden. */
 TEST(gaps_at_a_rim_that_boxes_share)
 {
-    static const struct drawn drawn[] = { { false, 4572757393123136864u, 9974078172818400498u },
-                                          { true, 15637282480159728428u, 4190595509245954882u },
-                                          { true, 8255063493486768376u, 17951463482698918783u },
-                                          { true, 11029998158218764781u, 5666404303935474837u } };
+    static const struct contact_case drawn[] = { { false, 4572757393123136864u, 9974078172818400498u },
+                                                 { true, 15637282480159728428u, 4190595509245954882u },
+                                                 { true, 8255063493486768376u, 17951463482698918783u },
+                                                 { true, 11029998158218764781u, 5666404303935474837u } };
     skip_if_watched();
     score_drawn("boxes, gaps at their rim", 0, drawn, sizeof(drawn) / sizeof(drawn[0]), CAD_GAPS);
 }
@@ -313,10 +313,10 @@ TEST(gaps_at_a_rim_that_boxes_share)
    edge on the other side stayed open. Last: three faces of four were, each elsewhere, and each vertex was set into one other only. */
 TEST(vertices_hang_in_an_edge_that_boxes_share)
 {
-    static const struct drawn drawn[] = { { false, 16412639206824042380u, 3835865350566676432u },
-                                          { true, 347, 2937101372886084558u },
-                                          { true, 315, 344318115056305710u },
-                                          { false, 5411203762277396347u, 17379661297130099942u } };
+    static const struct contact_case drawn[] = { { false, 16412639206824042380u, 3835865350566676432u },
+                                                 { true, 347, 2937101372886084558u },
+                                                 { true, 315, 344318115056305710u },
+                                                 { false, 5411203762277396347u, 17379661297130099942u } };
     skip_if_watched();
     score_drawn("boxes, two in one edge", 1, drawn, sizeof(drawn) / sizeof(drawn[0]), CAD_HANGING);
 }
@@ -326,9 +326,9 @@ TEST(vertices_hang_in_an_edge_that_boxes_share)
 TEST(nothing_stays_open_where_vertices_hang)
 {
     enum { FOUND = 3, DRAWN = 8 };
-    static const struct drawn found[FOUND] = { { true, 3616225228971510762u, 9529096995392165780u },
-                                               { false, 12847895688012758659u, 7169513539583218994u },
-                                               { false, 12320550652532879441u, 10885357293221945589u } };
+    static const struct contact_case found[FOUND] = { { true, 3616225228971510762u, 9529096995392165780u },
+                                                      { false, 12847895688012758659u, 7169513539583218994u },
+                                                      { false, 12320550652532879441u, 10885357293221945589u } };
     const struct cad_random was = chance;
     for (int i = 0; i < FOUND + DRAWN; i++) {
         struct cad below = { 0 }, above = { 0 }, both = { 0 }, broken;

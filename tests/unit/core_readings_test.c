@@ -25,7 +25,7 @@ static struct snapshot *make_snapshot(void)
 }
 
 /* From a core's snapshot to what a renderer has read. */
-struct way {
+struct readings_path {
     struct snapshot *snapshot;
     struct core_sent sent;
     struct text text; /* the message that was written last */
@@ -33,33 +33,33 @@ struct way {
     struct core_readings readings;
 };
 
-static void way_init(struct way *way)
+static void way_init(struct readings_path *way)
 {
-    *way = (struct way){ .snapshot = make_snapshot(), .readings = { .at = way->got, .least_ns = INT64_MAX } };
+    *way = (struct readings_path){ .snapshot = make_snapshot(), .readings = { .at = way->got, .least_ns = INT64_MAX } };
     core_sent_init(&way->sent, TAGS);
 }
 
-static void way_finish(struct way *way)
+static void way_finish(struct readings_path *way)
 {
     core_sent_finish(&way->sent);
     text_finish(&way->text);
     snapshot_destroy(&way->snapshot);
 }
 
-static void write_message(struct way *way)
+static void write_message(struct readings_path *way)
 {
     way->text.length = 0;
     core_readings_write(&way->text, way->snapshot, &way->sent);
 }
 
-static const char *read_message(struct way *way, int64_t now_mono_ns)
+static const char *read_message(struct readings_path *way, int64_t now_mono_ns)
 {
     return core_readings_read(&way->readings, TAGS, way->text.at, way->text.length, now_mono_ns);
 }
 
 TEST(only_changes_are_sent)
 {
-    struct way way;
+    struct readings_path way;
     const struct mirrored *got = way.got;
     way_init(&way);
     write_message(&way);
@@ -80,7 +80,7 @@ TEST(only_changes_are_sent)
 
 TEST(nonsense_is_refused)
 {
-    struct way way;
+    struct readings_path way;
     way_init(&way);
     write_message(&way);
     const size_t whole = way.text.length;
@@ -105,7 +105,7 @@ TEST(nonsense_is_refused)
 /* What waited on its way is older by that. */
 #define DRIFT_NS (S / 500) /* that clocks may have drifted apart between two messages */
 
-static void assert_late(struct way *way, int64_t core_ns, int64_t now_ns, int64_t late_ns)
+static void assert_late(struct readings_path *way, int64_t core_ns, int64_t now_ns, int64_t late_ns)
 {
     way->snapshot->taken_mono_ns = core_ns;
     core_sent_finish(&way->sent); /* all of them again */
@@ -118,7 +118,7 @@ static void assert_late(struct way *way, int64_t core_ns, int64_t now_ns, int64_
 
 TEST(late_readings_are_older)
 {
-    struct way way;
+    struct readings_path way;
     way_init(&way);
     for (int i = 0; i < 3; i++) { /* each a second after the one before; the second takes 5 s longer */
         int64_t late_ns = i == 1 ? 5 * S : 0;

@@ -29,15 +29,15 @@ static double between(double low, double high)
     return low + (high - low) * cad_random(&chance);
 }
 
-struct model {
+struct crossing_model {
     float at[AROUND * RINGS][3];
     uint32_t corners[6 * AROUND * RINGS], vertex_point[AROUND * RINGS];
     size_t vertex_count, triangle_count;
     struct trimesh mesh;
-    struct parts parts;
+    struct body_parts parts;
 };
 
-static void model_join(struct model *model, double tolerance_m)
+static void model_join(struct crossing_model *model, double tolerance_m)
 {
     size_t degenerate = 0, repeated = 0;
     assert_true(trimesh_weld(&model->mesh, (const float(*)[3])model->at, model->vertex_count, model->corners, model->triangle_count, 1e-6,
@@ -46,16 +46,16 @@ static void model_join(struct model *model, double tolerance_m)
     trimesh_stop_counting(&model->mesh);
 }
 
-static void model_finish(struct model *model)
+static void model_finish(struct crossing_model *model)
 {
     parts_finish(&model->parts);
     trimesh_finish(&model->mesh);
 }
 
 /* A pipe that winds up by rise_m at each turn of 1 m in radius: it passes through itself where that is less than its own width. */
-static void make_coil(struct model *model, double radius_m, double rise_m, double turns)
+static void make_coil(struct crossing_model *model, double radius_m, double rise_m, double turns)
 {
-    *model = (struct model){ 0 };
+    *model = (struct crossing_model){ 0 };
     for (int r = 0; r < RINGS; r++)
         for (int a = 0; a < AROUND; a++) {
             double turn = 2 * M_PI * turns * r / (RINGS - 1), angle = 2 * M_PI * a / AROUND, out = 1 + radius_m * cos(angle);
@@ -74,7 +74,7 @@ static void make_coil(struct model *model, double radius_m, double rise_m, doubl
     model_join(model, 1e-3);
 }
 
-static size_t count_flagged(const struct model *model, const char *crosses)
+static size_t count_flagged(const struct crossing_model *model, const char *crosses)
 {
     size_t count = 0;
     for (size_t t = 0; crosses && t < model->triangle_count; t++)
@@ -84,7 +84,7 @@ static size_t count_flagged(const struct model *model, const char *crosses)
 
 TEST(a_pipe_that_winds_past_itself_has_none)
 {
-    struct model *model = mem_new(sizeof(*model));
+    struct crossing_model *model = mem_new(sizeof(*model));
     for (int n = 0; n < 50; n++) {
         double radius_m = between(0.02, 0.4);
         make_coil(model, radius_m, between(2.1, 4) * radius_m, between(0.2, 2));
@@ -96,7 +96,7 @@ TEST(a_pipe_that_winds_past_itself_has_none)
 
 TEST(a_pipe_that_winds_into_itself_has_some)
 {
-    struct model *model = mem_new(sizeof(*model));
+    struct crossing_model *model = mem_new(sizeof(*model));
     make_coil(model, 0.2, 0.3, 1.25); /* the last quarter is in the first */
     char *crosses = crossing_faces_find(&model->parts);
     assert_in_range(count_flagged(model, crosses), 20, model->triangle_count / 2);
@@ -108,7 +108,7 @@ TEST(a_pipe_that_winds_into_itself_has_some)
 }
 
 /* As repair.h defines a crossing. */
-static bool piece_crosses(const struct model *model, const uint32_t edge[2], uint32_t own, uint32_t tri)
+static bool piece_crosses(const struct crossing_model *model, const uint32_t edge[2], uint32_t own, uint32_t tri)
 {
     const struct trimesh *mesh = &model->mesh;
     const double *p = mesh->points[edge[0]], *q = mesh->points[edge[1]], *reach_m = model->parts.reach_m;
@@ -129,9 +129,9 @@ static bool piece_crosses(const struct model *model, const uint32_t edge[2], uin
 }
 
 /* Few points and many triangles between them: these meet at corners and along sides, lie on each other and pass through each other. */
-static void make_tangle(struct model *model, uint32_t points, double flatness)
+static void make_tangle(struct crossing_model *model, uint32_t points, double flatness)
 {
-    *model = (struct model){ .vertex_count = points, .triangle_count = (size_t)between(4, MOST_FACES) };
+    *model = (struct crossing_model){ .vertex_count = points, .triangle_count = (size_t)between(4, MOST_FACES) };
     for (uint32_t p = 0; p < points; p++)
         for (int axis = 0; axis < 3; axis++)
             model->at[p][axis] = (float)(between(-1, 1) * (axis == 2 ? flatness : 1));
@@ -141,7 +141,7 @@ static void make_tangle(struct model *model, uint32_t points, double flatness)
 }
 
 /* Counts the sampled pieces that edges of a face's own pieces pass through. */
-static size_t count_crossings(const struct model *model, size_t piece)
+static size_t count_crossings(const struct crossing_model *model, size_t piece)
 {
     const struct trimesh *mesh = &model->mesh;
     size_t count = 0;
@@ -155,7 +155,7 @@ static size_t count_crossings(const struct model *model, size_t piece)
 
 TEST(no_crossing_of_pieces_is_missed)
 {
-    struct model *model = mem_new(sizeof(*model));
+    struct crossing_model *model = mem_new(sizeof(*model));
     size_t found = 0, flagged = 0, all = 0;
     for (int n = 0; n < sweep(400, 60); n++) {
         make_tangle(model, (uint32_t)between(5, 40), pow(10, between(-6, 0)));

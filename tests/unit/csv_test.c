@@ -8,7 +8,7 @@
 #include "base/text/text.h"
 #include "tests/support/temp.h"
 
-struct fixture {
+struct csv_fixture {
     char *folder, *path;
     struct diag diag;
     struct csv csv;
@@ -16,14 +16,14 @@ struct fixture {
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct csv_fixture *f = mem_new(sizeof(*f));
     f->folder = temp_folder_create();
     f->path = temp_path(f->folder, "t.csv");
     *state = f;
     return 0;
 }
 
-static void forget(struct fixture *f)
+static void forget(struct csv_fixture *f)
 {
     csv_close(&f->csv);
     diag_finish(&f->diag);
@@ -31,7 +31,7 @@ static void forget(struct fixture *f)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct csv_fixture *f = *state;
     forget(f);
     mem_free(f->path);
     temp_folder_destroy(&f->folder);
@@ -39,22 +39,22 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct csv_fixture *f, name, set_up, tear_down)
 
-static void open_bytes(struct fixture *f, const char *text, size_t bytes)
+static void open_bytes(struct csv_fixture *f, const char *text, size_t bytes)
 {
     forget(f);
     mem_free(temp_write(f->folder, "t.csv", text, bytes));
     assert_true(csv_open(&f->csv, f->path, &f->diag));
 }
 
-static void open_text(struct fixture *f, const char *text)
+static void open_text(struct csv_fixture *f, const char *text)
 {
     open_bytes(f, text, strlen(text));
 }
 
 /* The next row, cells joined by |. */
-static void assert_row(struct fixture *f, const char *joined)
+static void assert_row(struct csv_fixture *f, const char *joined)
 {
     char got[1000] = "";
     assert_true(csv_next(&f->csv));
@@ -63,7 +63,7 @@ static void assert_row(struct fixture *f, const char *joined)
     assert_string_equal(got, joined);
 }
 
-static void assert_one_error(struct fixture *f, int line, int column, const char *words)
+static void assert_one_error(struct csv_fixture *f, int line, int column, const char *words)
 {
     while (csv_next(&f->csv))
         ;

@@ -20,14 +20,14 @@ static const char *const sql[STATEMENTS] = {
 };
 static const struct database_format first = { 99, 1, "", schemas, sql, STATEMENTS }, second = { 99, 2, "", schemas, sql, STATEMENTS };
 
-struct setup {
+struct database_setup {
     struct log *log;
     char *folder;
 };
 
 static int set_up(void **state)
 {
-    struct setup *s = mem_new(sizeof(*s));
+    struct database_setup *s = mem_new(sizeof(*s));
     s->log = log_create(LOG_ERROR);
     s->folder = temp_folder_create();
     *state = s;
@@ -36,23 +36,23 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct database_setup *s = *state;
     temp_folder_destroy(&s->folder);
     log_destroy(&s->log);
     mem_free(s);
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct database_setup *s, name, set_up, tear_down)
 
-static struct database make(struct setup *s, const struct database_format *format)
+static struct database make(struct database_setup *s, const struct database_format *format)
 {
     struct database db;
     database_init(&db, s->log, temp_path(s->folder, "x.sqlite"), format);
     return db;
 }
 
-static void write_once(struct setup *s, const struct database_format *format)
+static void write_once(struct database_setup *s, const struct database_format *format)
 {
     struct database db = make(s, format);
     bool renewed;
@@ -65,7 +65,7 @@ static void write_once(struct setup *s, const struct database_format *format)
     database_finish(&db);
 }
 
-static int version_read(struct setup *s, const struct database_format *format)
+static int version_read(struct database_setup *s, const struct database_format *format)
 {
     struct database db = make(s, format);
     int error = database_open_to_read(&db);

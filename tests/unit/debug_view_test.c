@@ -30,7 +30,7 @@ static int set_up(void **state)
 {
     prep_case_set_up(state);
     struct prep_case *c = *state;
-    struct maker maker;
+    struct model_maker maker;
     maker_init(&maker);
     boxes_add(&maker, "gap-1", (const double[3]){ 0, 0, 0 }, (const double[3]){ 1, 1, 1 });
     boxes_add(&maker, "gap-2", (const double[3]){ 1.0002, 0, 0 }, (const double[3]){ 2, 1, 1 });
@@ -47,7 +47,7 @@ static int set_up(void **state)
 
 #define CASE(name) TEST_ON(struct prep_case *c, name, set_up, prep_case_tear_down)
 
-struct glb {
+struct parsed_glb {
     struct text file;
     json_t *root;
     const unsigned char *bytes;
@@ -63,9 +63,9 @@ static uint32_t number_at(const struct text *file, size_t at)
 }
 
 /* Header and chunks, as glTF 2.0 lays them out in a binary file. */
-static void glb_open(struct glb *glb, struct prep_case *c, const char *name)
+static void glb_open(struct parsed_glb *glb, struct prep_case *c, const char *name)
 {
-    *glb = (struct glb){ 0 };
+    *glb = (struct parsed_glb){ 0 };
     prep_case_read(c, name, &glb->file);
     assert_memory_equal(glb->file.at, "glTF", 4);
     assert_int_equal(number_at(&glb->file, 4), 2);
@@ -84,20 +84,20 @@ static void glb_open(struct glb *glb, struct prep_case *c, const char *name)
     assert_true(glb->size <= bin_bytes && bin_bytes < glb->size + 4);
 }
 
-static void glb_close(struct glb *glb)
+static void glb_close(struct parsed_glb *glb)
 {
     json_decref(glb->root);
     text_finish(&glb->file);
 }
 
-static const json_t *object_of(const struct glb *glb, const char *list, const json_t *number)
+static const json_t *object_of(const struct parsed_glb *glb, const char *list, const json_t *number)
 {
     const json_t *object = json_array_get(json_object_get(glb->root, list), (size_t)json_integer_value(number));
     assert_non_null(object);
     return object;
 }
 
-static const void *elements(const struct glb *glb, const json_t *accessor, size_t each)
+static const void *elements(const struct parsed_glb *glb, const json_t *accessor, size_t each)
 {
     const json_t *view = object_of(glb, "bufferViews", json_object_get(accessor, "bufferView"));
     size_t offset = (size_t)json_integer_value(json_object_get(view, "byteOffset"));
@@ -108,7 +108,7 @@ static const void *elements(const struct glb *glb, const json_t *accessor, size_
     return glb->bytes + offset;
 }
 
-static void check_positions(const struct glb *glb, const json_t *accessor)
+static void check_positions(const struct parsed_glb *glb, const json_t *accessor)
 {
     const float(*places)[3] = elements(glb, accessor, 12);
     for (size_t axis = 0; axis < 3; axis++) {
@@ -124,7 +124,7 @@ static void check_positions(const struct glb *glb, const json_t *accessor)
 }
 
 /* What the specification asks of each primitive, accessor and view. */
-static void check_rules(const struct glb *glb)
+static void check_rules(const struct parsed_glb *glb)
 {
     const json_t *meshes = json_object_get(glb->root, "meshes");
     assert_true(json_array_size(meshes) > 0);
@@ -155,7 +155,7 @@ static void check_rules(const struct glb *glb)
 }
 
 /* The primitive of the node whose name begins so, NULL: there is none. */
-static const json_t *node_shape(const struct glb *glb, const char *name)
+static const json_t *node_shape(const struct parsed_glb *glb, const char *name)
 {
     const json_t *nodes = json_object_get(glb->root, "nodes");
     for (size_t i = 0; i < json_array_size(nodes); i++) {
@@ -166,13 +166,13 @@ static const json_t *node_shape(const struct glb *glb, const char *name)
     return NULL;
 }
 
-static const json_t *positions_of(const struct glb *glb, const json_t *primitive)
+static const json_t *positions_of(const struct parsed_glb *glb, const json_t *primitive)
 {
     assert_non_null(primitive);
     return object_of(glb, "accessors", json_object_get(json_object_get(primitive, "attributes"), "POSITION"));
 }
 
-static size_t count_of(const struct glb *glb, const char *name)
+static size_t count_of(const struct parsed_glb *glb, const char *name)
 {
     return (size_t)json_integer_value(json_object_get(positions_of(glb, node_shape(glb, name)), "count"));
 }
@@ -183,7 +183,7 @@ CASE(views_follow_the_rules)
                                          "plant.debug/BARE.glb" };
     prep_case_expect(c, "$PLANT --debug-view", 0);
     for (size_t i = 0; i < 4; i++) {
-        struct glb glb;
+        struct parsed_glb glb;
         glb_open(&glb, c, names[i]);
         check_rules(&glb);
         glb_close(&glb);
@@ -202,7 +202,7 @@ CASE(views_follow_the_rules)
 
 CASE(bridges_and_points_are_those_of_the_report)
 {
-    struct glb glb;
+    struct parsed_glb glb;
     prep_case_expect(c, "$PLANT --debug-view=$FOLDER/views --report json", 0);
     json_t *report = prep_case_json(&c->out);
     glb_open(&glb, c, "views/GAP%2F1.glb");
@@ -224,7 +224,7 @@ CASE(bridges_and_points_are_those_of_the_report)
 
 CASE(what_cannot_be_reached_is_shown)
 {
-    struct glb glb;
+    struct parsed_glb glb;
     prep_case_expect(c, "$PLANT --debug-view", 0);
     glb_open(&glb, c, "plant.debug/APART.glb");
     const json_t *positions = positions_of(&glb, node_shape(&glb, "unreachable")); /* the second box: 11.5 to 12, less 11 */
@@ -245,7 +245,7 @@ CASE(what_cannot_be_reached_is_shown)
 /* Dark where the sensor is, bright at the other end: the ends of the colour map. */
 CASE(colors_follow_the_distance)
 {
-    struct glb glb;
+    struct parsed_glb glb;
     for (int far = 0; far < 2; far++) {
         prep_case_expect(c, far ? "$PLANT --debug-view --sensor T-GAP2" : "$PLANT --debug-view --sensor T-GAP", 0);
         glb_open(&glb, c, "plant.debug/GAP%2F1.glb");

@@ -28,14 +28,14 @@ static int set_up(void **state)
 }
 
 /* Two triangles with a side in common, from (0, 0, 0) to (1, 1, 0): to its right the corner (1, 0, 0), to its left (0, 1, lift_m). */
-struct plate {
+struct flat_plate {
     struct trimesh mesh;
     uint32_t part[MOST_TRIS], plane[2];
     char hidden[MOST_TRIS], keep[ADDED + 8];
     uint32_t target[ADDED + 8];
 };
 
-static void plate_init(struct plate *plate, double lift_m)
+static void plate_init(struct flat_plate *plate, double lift_m)
 {
     const double corners[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, lift_m } };
     memset(plate, 0, sizeof(*plate));
@@ -47,13 +47,13 @@ static void plate_init(struct plate *plate, double lift_m)
     trimesh_add_tri(&plate->mesh, 0, 2, 3, 1);
 }
 
-static void set_corner(struct plate *plate, size_t tri, int corner, uint32_t point)
+static void set_corner(struct flat_plate *plate, size_t tri, int corner, uint32_t point)
 {
     plate->mesh.tris[tri][corner] = point;
 }
 
 /* A piece of a triangle with another point in place of one corner. */
-static void add_piece(struct plate *plate, size_t of, int corner, uint32_t point)
+static void add_piece(struct flat_plate *plate, size_t of, int corner, uint32_t point)
 {
     struct trimesh *mesh = &plate->mesh;
     const uint32_t v[3] = { mesh->tris[of][0], mesh->tris[of][1], mesh->tris[of][2] };
@@ -61,7 +61,7 @@ static void add_piece(struct plate *plate, size_t of, int corner, uint32_t point
     set_corner(plate, mesh->tri_count - 1, corner, point);
 }
 
-static void put_inside(struct plate *plate, size_t tri)
+static void put_inside(struct flat_plate *plate, size_t tri)
 {
     struct trimesh *mesh = &plate->mesh;
     double weights[3], sum = 0, at[3] = { 0 };
@@ -77,7 +77,7 @@ static void put_inside(struct plate *plate, size_t tri)
 }
 
 /* Into all triangles that have it. */
-static void put_on_edge(struct plate *plate, uint32_t a, uint32_t b)
+static void put_on_edge(struct flat_plate *plate, uint32_t a, uint32_t b)
 {
     struct trimesh *mesh = &plate->mesh;
     double share = between(0.2, 0.8), at[3];
@@ -96,7 +96,7 @@ static void put_on_edge(struct plate *plate, uint32_t a, uint32_t b)
         }
 }
 
-static void cut_up(struct plate *plate)
+static void cut_up(struct flat_plate *plate)
 {
     for (int i = 0; i < ADDED; i++) {
         size_t tri = (size_t)between(0, (double)plate->mesh.tri_count - 0.5);
@@ -108,7 +108,7 @@ static void cut_up(struct plate *plate)
     }
 }
 
-static void thin(struct plate *plate)
+static void thin(struct flat_plate *plate)
 {
     decimate_mesh(&plate->mesh, plate->hidden,
                   &(struct decimate_params){ .part = plate->part, .keep = plate->keep, .within_m = WITHIN_M, .longest_m = 10 },
@@ -116,7 +116,7 @@ static void thin(struct plate *plate)
 }
 
 /* Area of the pieces of one of the two triangles, by which side of the line they are on; all look as it does. */
-static double area_of(const struct plate *plate, int side, const double normal[3])
+static double area_of(const struct flat_plate *plate, int side, const double normal[3])
 {
     double sum = 0;
     for (size_t t = 0; t < plate->mesh.tri_count; t++) {
@@ -139,7 +139,7 @@ static double area_of(const struct plate *plate, int side, const double normal[3
     return sum;
 }
 
-static void same_areas(const struct plate *plate, double lift_m)
+static void same_areas(const struct flat_plate *plate, double lift_m)
 {
     const double length = sqrt(1 + 2 * lift_m * lift_m), across[3] = { lift_m / length, -lift_m / length, 1 / length };
     assert_float_equal(area_of(plate, 0, (const double[3]){ 0, 0, 1 }), 0.5, 1e-6);
@@ -148,7 +148,7 @@ static void same_areas(const struct plate *plate, double lift_m)
 
 TEST(a_flat_plate_has_its_corners_left)
 {
-    struct plate plate;
+    struct flat_plate plate;
     plate_init(&plate, 0);
     cut_up(&plate);
     assert_int_equal(plate.mesh.point_count, ADDED + 4);
@@ -165,7 +165,7 @@ TEST(a_flat_plate_has_its_corners_left)
 
 TEST(triangles_of_the_model_that_share_pieces_are_one_plane)
 {
-    struct plate plate;
+    struct flat_plate plate;
     plate_init(&plate, 0);
     put_on_edge(&plate, 0, 2);
     put_on_edge(&plate, 1, 4);
@@ -179,7 +179,7 @@ TEST(triangles_of_the_model_that_share_pieces_are_one_plane)
 
 TEST(a_fold_stays_where_it_is)
 {
-    struct plate plate;
+    struct flat_plate plate;
     plate_init(&plate, 0.3);
     put_on_edge(&plate, 0, 2);
     cut_up(&plate);
@@ -195,7 +195,7 @@ TEST(a_fold_stays_where_it_is)
 TEST(a_border_stays_where_it_is)
 {
     for (int hides = 0; hides < 2; hides++) {
-        struct plate plate;
+        struct flat_plate plate;
         plate_init(&plate, 0);
         put_on_edge(&plate, 0, 2);
         cut_up(&plate);
@@ -223,7 +223,7 @@ TEST(a_border_stays_where_it_is)
 
 TEST(what_is_not_flat_stays)
 {
-    struct plate plate;
+    struct flat_plate plate;
     plate_init(&plate, 0);
     put_inside(&plate, 0);
     plate.mesh.points[4][2] = 1e-3;

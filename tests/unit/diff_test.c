@@ -55,7 +55,7 @@ static const char lost_rows[] = "T-GONE,400011,Float,plc,temperature,GONE,,50.5,
    higher, GONE has another name, and TT-2 is not there. */
 static void write_model(struct prep_case *c, bool is_new)
 {
-    struct maker maker;
+    struct model_maker maker;
     const double s = is_new ? 0.70710678118654752 : 0;
     maker_init(&maker);
     boxes_add(&maker, "SAME", (const double[3]){ 0, 0, 0 }, (const double[3]){ 1, 1, 1 });
@@ -208,7 +208,7 @@ CASE(levels_are_no_change)
 {
     struct cad_random chance = { 1 };
     struct cad ball = { 0 };
-    struct maker maker;
+    struct model_maker maker;
     cad_sphere(&ball, &chance, 20);
     maker_init(&maker);
     int at = maker_numbers(&maker, ball.positions, 12 * ball.vertex_count, FLOAT, ball.vertex_count, "VEC3");

@@ -17,7 +17,7 @@ static const double LENGTH_M = 3, MOVED_M[3] = { 10, -20, 5 };
 static size_t write_cylinder(struct prep_case *c, struct cad_random *random)
 {
     struct cad cad = { 0 };
-    struct maker maker;
+    struct model_maker maker;
     size_t size;
     cad_cylinder(&cad, random, AROUND, ALONG, LENGTH_M, 0.5);
     maker_init(&maker);

@@ -192,7 +192,7 @@ TEST(test_what_cannot_be_told_is_unknown)
 
 /* --- real series ---------------------------------------------------------------------------------------------------------- */
 
-struct series {
+struct recorded_series {
     const char *file, *columns[SENSORS];
     int count; /* of columns */
     double noise, beyond; /* of a reading; of the alarm's limit: a tenth of the range */
@@ -200,7 +200,7 @@ struct series {
     double hours[DRIFT_HOURS][SENSORS];
 };
 
-static void read_series(struct series *s)
+static void read_series(struct recorded_series *s)
 {
     char *path = mem_printf(SERIES "%s", s->file), *line = NULL;
     FILE *file = fopen(path, "r");
@@ -302,7 +302,7 @@ static void leave(struct row_of_sensors *row)
 }
 
 /* The week's first hours, with a drift that is `change` after all of them put into one sensor. */
-static void find(const struct row_of_sensors *row, const struct series *s, int hours, int sensor, double change, struct drift *out)
+static void find(const struct row_of_sensors *row, const struct recorded_series *s, int hours, int sensor, double change, struct drift *out)
 {
     double values[DRIFT_HOURS * SENSORS], noise[SENSORS];
     for (int h = 0; h < hours; h++)
@@ -314,7 +314,7 @@ static void find(const struct row_of_sensors *row, const struct series *s, int h
 }
 
 /* Looked at each hour from half a week on. Returns how many different sensors are accused in all that time; *times: how often. */
-static int accused(const struct row_of_sensors *row, const struct series *s, int *times)
+static int accused(const struct row_of_sensors *row, const struct recorded_series *s, int *times)
 {
     bool ever[SENSORS] = { false };
     int sensors = 0;
@@ -334,7 +334,7 @@ static int accused(const struct row_of_sensors *row, const struct series *s, int
 
 #define RIG "hydraulic/hydraulic_ts_1hz.csv", { "TS1", "TS2", "TS3", "TS4" }, 4, 0.2, 4
 #define PROCESS { "XMEAS09", "XMEAS11", "XMEAS18", "XMEAS21", "XMEAS22" }, 5, 0.5, 10, 0, 1, { { 0 } }
-static struct series all_series[] = {
+static struct recorded_series all_series[] = {
     { RIG, 0, 1, { { 0 } } }, /* its cooler is changed from 3 to 20 to 100 %, at a third and at two */
     { "tep/tep_d00_normal.csv", PROCESS },
     { "tep/tep_d04_reactor_cooling_step.csv", PROCESS },
@@ -352,7 +352,7 @@ TEST_WITH(test_false_accusations_are_counted, prep_case_set_up, prep_case_tear_d
 {
     static const int most[] = { 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0 }; /* sensors */
     for (size_t k = 0; k < sizeof(all_series) / sizeof(*all_series); k++) {
-        struct series *s = &all_series[k];
+        struct recorded_series *s = &all_series[k];
         struct row_of_sensors row;
         int times;
         read_series(s);
@@ -399,7 +399,7 @@ TEST_WITH(test_held_out_series, prep_case_set_up, prep_case_tear_down)
     free(line);
     fclose(file);
     for (int first = 0; first < MIXERS; first += SENSORS) {
-        struct series s = { .count = SENSORS, .noise = 0.45 };
+        struct recorded_series s = { .count = SENSORS, .noise = 0.45 };
         struct row_of_sensors row;
         int looks;
         for (int h = 0; h < DRIFT_HOURS; h++)
@@ -419,15 +419,15 @@ TEST_WITH(test_held_out_series, prep_case_set_up, prep_case_tear_down)
     assert_true(sensors == 0 && told == MIXERS);
 }
 
-struct search {
+struct drift_detection {
     int hours;      /* when it was found; 0: it was not */
     double drifted; /* by then */
     double limit;   /* how far the reading was still from its alarm's limit: the least so far */
 };
 
-static struct search search(const struct row_of_sensors *row, const struct series *s, int sensor, double change)
+static struct drift_detection search(const struct row_of_sensors *row, const struct recorded_series *s, int sensor, double change)
 {
-    struct search out = { 0, 0, INFINITY };
+    struct drift_detection out = { 0, 0, INFINITY };
     double extreme = s->hours[0][sensor];
     for (int h = 1; h < DRIFT_HOURS; h++)
         extreme = change > 0 ? fmax(extreme, s->hours[h][sensor]) : fmin(extreme, s->hours[h][sensor]);
@@ -447,7 +447,7 @@ static struct search search(const struct row_of_sensors *row, const struct serie
 }
 
 /* Returns whether, at the week's end, another sensor is accused than the one that drifts. */
-static bool accuses_another(const struct row_of_sensors *row, const struct series *s, int sensor, double change)
+static bool accuses_another(const struct row_of_sensors *row, const struct recorded_series *s, int sensor, double change)
 {
     struct drift drifts[SENSORS];
     bool another = false;
@@ -467,7 +467,7 @@ TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_te
                                         { 8, 8, 8 }, { 6, 7, 8 },    { 6, 7, 8 }, { 5, 6, 8 }, { 8, 8, 8 } };
     int others = 0; /* accused in place of the one that drifts, or beside it */
     for (size_t k = 0; k < sizeof(all_series) / sizeof(*all_series); k++) {
-        struct series *s = &all_series[k];
+        struct recorded_series *s = &all_series[k];
         if (least[k][0] == 0)
             continue;
         struct row_of_sensors row;
@@ -480,7 +480,7 @@ TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_te
             double most_sigmas = 0, least_limit = INFINITY;
             for (int i = 0; i < s->count; i++)
                 for (int sign = -1; sign <= 1; sign += 2, tries++) {
-                    struct search at = search(&row, s, i, sign * sizes[size] * none[i].scatter);
+                    struct drift_detection at = search(&row, s, i, sign * sizes[size] * none[i].scatter);
                     found += at.hours > 0;
                     others += accuses_another(&row, s, i, sign * sizes[size] * none[i].scatter);
                     if (at.hours == 0)
@@ -504,7 +504,7 @@ TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_te
 /* With the drifting one left out, the others are judged by each other: none of them is accused for it. */
 TEST_WITH(test_one_that_drifts_does_not_accuse_others, prep_case_set_up, prep_case_tear_down)
 {
-    struct series *s = &all_series[1];
+    struct recorded_series *s = &all_series[1];
     struct row_of_sensors row;
     struct drift drifts[SENSORS];
     read_series(s);
@@ -521,13 +521,13 @@ TEST_WITH(test_one_that_drifts_does_not_accuse_others, prep_case_set_up, prep_ca
 /* Nor does one that is lost for a day and a half, whatever it reads otherwise. */
 TEST_WITH(test_one_that_is_lost_for_a_while_accuses_nobody, prep_case_set_up, prep_case_tear_down)
 {
-    struct series s = all_series[1];
+    struct recorded_series s = all_series[1];
     struct row_of_sensors row;
     struct drift drifts[SENSORS];
     read_series(&s);
     stand_sensors(*state, s.count, &row);
     for (int i = 0; i < s.count; i++) {
-        struct series lossy = s;
+        struct recorded_series lossy = s;
         for (int h = 20; h < 56; h++)
             lossy.hours[h][i] = NAN;
         find(&row, &lossy, DRIFT_HOURS, 0, 0, drifts);
@@ -542,13 +542,13 @@ TEST_WITH(test_one_that_is_lost_for_a_while_accuses_nobody, prep_case_set_up, pr
 /* Of one that never reads anything nothing is said, and the others are held against those that do. */
 TEST_WITH(test_one_that_is_silent_hides_nothing, prep_case_set_up, prep_case_tear_down)
 {
-    struct series s = all_series[1];
+    struct recorded_series s = all_series[1];
     struct row_of_sensors row;
     struct drift drifts[SENSORS];
     read_series(&s);
     stand_sensors(*state, s.count, &row);
     for (int i = 0; i < s.count; i++) {
-        struct series silent = s;
+        struct recorded_series silent = s;
         int drifting = (i + 1) % s.count;
         for (int h = 0; h < DRIFT_HOURS; h++)
             silent.hours[h][i] = NAN;
@@ -575,7 +575,7 @@ TEST_WITH(test_the_nearest_are_found, prep_case_set_up, prep_case_tear_down)
 
 TEST_WITH(test_of_two_nobody_can_tell_which, prep_case_set_up, prep_case_tear_down)
 {
-    struct series two = all_series[1];
+    struct recorded_series two = all_series[1];
     struct row_of_sensors row;
     struct drift drifts[SENSORS];
     two.count = 2;

@@ -13,11 +13,11 @@ enum { CLIENTS = 12, WIDTH = 64, HEIGHT = 36 };
 static const int64_t MS = NS_PER_MS;
 
 /* Bytes of a packet here: the number of the state that it needs, and of that which it leaves. */
-struct state {
+struct chain_state {
     uint64_t needs, leaves;
 };
 
-struct fixture {
+struct encode_streams_fixture {
     struct encode_streams streams;
     struct encode_plan plan;
     struct request_group rest;
@@ -28,13 +28,13 @@ struct fixture {
     enum wire_codec codec;
 };
 
-struct head { /* of a chain: what its clients show */
+struct chain_head { /* of a chain: what its clients show */
     uint64_t state;
 };
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct encode_streams_fixture *f = mem_new(sizeof(*f));
     f->now_ns = 1000 * NS_PER_S;
     f->codec = WIRE_CODEC_H264;
     *state = f;
@@ -47,7 +47,7 @@ static bool never_busy(const struct encode_stream *stream)
     return false;
 }
 
-static void destroy_empty(struct fixture *f)
+static void destroy_empty(struct encode_streams_fixture *f)
 {
     for (struct encode_stream *stream; (stream = encode_streams_take_empty(&f->streams, never_busy));) {
         mem_free(stream->work);
@@ -57,7 +57,7 @@ static void destroy_empty(struct fixture *f)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct encode_streams_fixture *f = *state;
     for (uint64_t client = 0; client < CLIENTS; client++)
         encode_streams_forget(&f->streams, client);
     destroy_empty(f);
@@ -69,19 +69,19 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct encode_streams_fixture *f, name, set_up, tear_down)
 
-static struct request_ticket order_of(const struct fixture *f, uint64_t client, const struct view *view)
+static struct request_ticket order_of(const struct encode_streams_fixture *f, uint64_t client, const struct view *view)
 {
     struct request_ticket ticket = { .client = client, .request = { .view = *view, .codec = f->codec, .quality = { .quality = 80 } } };
     return ticket;
 }
 
 /* What the encoder would make. */
-static struct packet *encode(struct fixture *f, struct encode_stream *stream, const struct frame *frame, bool key)
+static struct packet *encode(struct encode_streams_fixture *f, struct encode_stream *stream, const struct frame *frame, bool key)
 {
-    struct head *head = stream->work ? stream->work : (stream->work = mem_new(sizeof(*head)));
-    struct state made = { .needs = key ? 0 : head->state, .leaves = ++f->last_state };
+    struct chain_head *head = stream->work ? stream->work : (stream->work = mem_new(sizeof(*head)));
+    struct chain_state made = { .needs = key ? 0 : head->state, .leaves = ++f->last_state };
     uint8_t bytes[512] = { 0 };
     memcpy(bytes, &made, sizeof(made));
     head->state = made.leaves;
@@ -90,16 +90,16 @@ static struct packet *encode(struct fixture *f, struct encode_stream *stream, co
     return packet_create(frame, f->codec, key, bytes, key ? sizeof(bytes) : 64);
 }
 
-static void decode(struct fixture *f, uint64_t client, const struct packet *packet)
+static void decode(struct encode_streams_fixture *f, uint64_t client, const struct packet *packet)
 {
-    struct state made;
+    struct chain_state made;
     memcpy(&made, packet->bytes, sizeof(made));
     if (made.needs)
         assert_int_equal(f->shown[client], made.needs);
     f->shown[client] = made.leaves;
 }
 
-static uint64_t least_needed(const struct fixture *f, const struct request_group *tickets)
+static uint64_t least_needed(const struct encode_streams_fixture *f, const struct request_group *tickets)
 {
     uint64_t least = UINT64_MAX;
     for (size_t i = 0; i < tickets->count; i++)
@@ -107,10 +107,10 @@ static uint64_t least_needed(const struct fixture *f, const struct request_group
     return least;
 }
 
-static void deliver(struct fixture *f, const struct request_group *tickets)
+static void deliver(struct encode_streams_fixture *f, const struct request_group *tickets)
 {
     struct packet *run[ENCODE_STREAM_KEPT];
-    const struct head *head = f->plan.stream->work;
+    const struct chain_head *head = f->plan.stream->work;
     for (size_t i = 0; i < tickets->count; i++) {
         int count = encode_stream_catch_up(f->plan.stream, f->plan.from[i], f->plan.number, run);
         assert_true(count >= 0);
@@ -121,7 +121,7 @@ static void deliver(struct fixture *f, const struct request_group *tickets)
 }
 
 /* One frame for these clients (a bit each); all of them show it after. */
-static void show(struct fixture *f, unsigned clients, int view_number, uint64_t content, bool alone)
+static void show(struct encode_streams_fixture *f, unsigned clients, int view_number, uint64_t content, bool alone)
 {
     struct frame *frame = frame_create(WIDTH, HEIGHT);
     struct request_group tickets = { 0 };
@@ -152,7 +152,7 @@ static void show(struct fixture *f, unsigned clients, int view_number, uint64_t 
     f->now_ns += 50 * MS;
 }
 
-static size_t chain_count(const struct fixture *f)
+static size_t chain_count(const struct encode_streams_fixture *f)
 {
     size_t count = 0;
     for (const struct encode_stream *stream = f->streams.first; stream; stream = stream->next)

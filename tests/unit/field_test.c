@@ -14,14 +14,14 @@
 
 /* --- slow truth ----------------------------------------------------------------------------------------------------------- */
 
-struct truth {
+struct vertex_truth {
     double value;
     bool no_data, uncertain;
     bool near_tie; /* flags hang on less than the rounding of a float */
 };
 
 #define MAX_SENSORS 4096
-struct sight { /* what one vertex sees of each sensor */
+struct vertex_sight { /* what one vertex sees of each sensor */
     double distance_m[MAX_SENSORS], weight[MAX_SENSORS], term[MAX_SENSORS];
     bool usable[MAX_SENSORS], configured[MAX_SENSORS];
 };
@@ -62,8 +62,8 @@ static double faded(const struct field_params *params, double near_m, double dis
 }
 
 /* Weights of those that take part: all within reach, or the nearest. */
-static void truth_weights(struct sight *s, size_t count, const struct plant_tag *tags, const struct field_params *params, double near_m,
-                          double radius_m)
+static void truth_weights(struct vertex_sight *s, size_t count, const struct plant_tag *tags, const struct field_params *params,
+                          double near_m, double radius_m)
 {
     double limit_m = fmax(near_m, params->reach_m);
     bool at_sensor = false;
@@ -93,9 +93,9 @@ static void truth_weights(struct sight *s, size_t count, const struct plant_tag 
     }
 }
 
-static struct truth truth_at(const struct synthetic *plant, const struct field_params *params, double radius_m, size_t vertex)
+static struct vertex_truth truth_at(const struct synthetic *plant, const struct field_params *params, double radius_m, size_t vertex)
 {
-    static struct sight s;
+    static struct vertex_sight s;
     size_t count = plant->scene.assets[0].sensor_count;
     bool paper = params->interpolation == INTERPOLATION_PAPER;
     double nearest_usable = INFINITY, nearest_configured = INFINITY, sum = 0, total = 0, uncertain = 0;
@@ -110,7 +110,7 @@ static struct truth truth_at(const struct synthetic *plant, const struct field_p
             nearest_usable = fmin(nearest_usable, s.distance_m[i]);
     }
     bool reached = isfinite(nearest_usable) && nearest_usable <= params->reach_m, lost = nearest_configured < nearest_usable;
-    struct truth truth = { .value = plant->group.min, .no_data = !reached || (lost && params->fill == FILL_NONE) };
+    struct vertex_truth truth = { .value = plant->group.min, .no_data = !reached || (lost && params->fill == FILL_NONE) };
     truth.near_tie = fabs(nearest_usable - params->reach_m) < 1e-5;
     truth_weights(&s, count, plant->plant.tags, params, nearest_usable, radius_m);
     for (size_t i = 0; i < count; i++) {
@@ -141,33 +141,33 @@ static struct truth truth_at(const struct synthetic *plant, const struct field_p
 
 static struct workers *workers;
 
-struct rig {
+struct field_rig {
     struct synthetic *plant;
     struct field *field;
     struct field_params params;
 };
 
-static struct rig rig_create(struct synthetic *plant)
+static struct field_rig rig_create(struct synthetic *plant)
 {
-    struct rig rig = { .plant = plant, .field = field_create(workers, &plant->scene) };
+    struct field_rig rig = { .plant = plant, .field = field_create(workers, &plant->scene) };
     field_params_default(&plant->plant, 0, &rig.params);
     return rig;
 }
 
-static void rig_finish(struct rig *rig)
+static void rig_finish(struct field_rig *rig)
 {
     field_destroy(&rig->field);
     synthetic_destroy(&rig->plant);
 }
 
-static const struct scalars *show(const struct rig *rig)
+static const struct scalars *show(const struct field_rig *rig)
 {
     const struct scalars *scalars = field_scalars(rig->field, 0, &rig->params, rig->plant->snapshot);
     assert_non_null(scalars);
     return scalars;
 }
 
-static void set(const struct rig *rig, size_t sensor, double value, uint32_t quality)
+static void set(const struct field_rig *rig, size_t sensor, double value, uint32_t quality)
 {
     rig->plant->snapshot->readings[sensor].value = value;
     rig->plant->snapshot->readings[sensor].quality = quality;
@@ -180,7 +180,7 @@ static void assert_all_finite(const struct scalars *scalars)
 }
 
 /* Equal bits as a field that has never seen anything else. */
-static void assert_as_fresh(const struct rig *rig)
+static void assert_as_fresh(const struct field_rig *rig)
 {
     struct field *fresh = field_create(workers, &rig->plant->scene);
     const struct scalars *want = field_scalars(fresh, 0, &rig->params, rig->plant->snapshot), *got = show(rig);
@@ -189,12 +189,12 @@ static void assert_as_fresh(const struct rig *rig)
     field_destroy(&fresh);
 }
 
-static void assert_true_field(const struct rig *rig, double tolerance)
+static void assert_true_field(const struct field_rig *rig, double tolerance)
 {
     const struct scalars *scalars = show(rig);
     double range = rig->plant->group.max - rig->plant->group.min, radius_m = truth_radius(rig->plant, &rig->params);
     for (size_t j = 0; j < scalars->count; j++) {
-        struct truth truth = truth_at(rig->plant, &rig->params, radius_m, j);
+        struct vertex_truth truth = truth_at(rig->plant, &rig->params, radius_m, j);
         if (truth.near_tie)
             continue;
         assert_int_equal(scalars->at[j].lacking > 127, scalars->at[j].no_data > 0);
@@ -214,7 +214,7 @@ static double between(uint64_t *random, double low, double high)
 
 TEST(test_worked_example_of_the_paper)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2, .max = 1));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2, .max = 1));
     rig.params.interpolation = INTERPOLATION_PAPER;
     rig.params.radius_m = 10;
     synthetic_set_distance(rig.plant, 0, 7, 1); /* d = 0.9 */
@@ -228,7 +228,7 @@ TEST(test_worked_example_of_the_paper)
     rig_finish(&rig);
 }
 
-static void randomize(struct rig *rig, uint64_t *random)
+static void randomize(struct field_rig *rig, uint64_t *random)
 {
     struct field_params *p = &rig->params;
     p->interpolation = synthetic_random(random) % 2 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -257,7 +257,7 @@ TEST(test_random_input_is_as_plain_loops_say)
     for (int round = 0; round < 60; round++) {
         size_t sensors = 1 + synthetic_random(&random) % 24, vertices = 260 + synthetic_random(&random) % 600;
         struct synthetic *plant = synthetic_create(.vertices = vertices, .sensors = sensors, .island = 10, .seed = seed + (uint64_t)round);
-        struct rig rig = rig_create(plant);
+        struct field_rig rig = rig_create(plant);
         randomize(&rig, &random);
         assert_true_field(&rig, 1e-4);
         for (int change = 0; change < 4; change++) {
@@ -271,7 +271,7 @@ TEST(test_random_input_is_as_plain_loops_say)
 TEST(test_extreme_parameters)
 {
     uint64_t random = sweep_seed();
-    struct rig rig = rig_create(synthetic_create(.vertices = 1500, .sensors = 9, .seed = random));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 1500, .sensors = 9, .seed = random));
     const double powers[] = { 0.5, 2, 16 }, strengths[] = { 0, 1, 100 };
     for (int i = 0; i < 3; i++)
         for (int bad = 0; bad < 2; bad++)
@@ -293,7 +293,7 @@ TEST(test_extreme_parameters)
 TEST(test_4096_sensors)
 {
     uint64_t random = sweep_seed();
-    struct rig rig = rig_create(synthetic_create(.vertices = 4400, .sensors = 4096, .seed = random));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 4400, .sensors = 4096, .seed = random));
     for (size_t i = 0; i < 4096; i += 7)
         set(&rig, i, 1e3, QUALITY_BAD_SENSOR_FAILURE);
     for (int way = 0; way < 4; way++) {
@@ -306,7 +306,7 @@ TEST(test_4096_sensors)
         }
         double radius_m = truth_radius(rig.plant, &rig.params);
         for (size_t j = 4096; j < 4400; j++) {
-            struct truth truth = truth_at(rig.plant, &rig.params, radius_m, j);
+            struct vertex_truth truth = truth_at(rig.plant, &rig.params, radius_m, j);
             assert_true(fabs((double)scalars->at[j].value - truth.value) < 1e-3);
             assert_true(truth.near_tie || !scalars->at[j].no_data == !truth.no_data);
         }
@@ -318,7 +318,7 @@ TEST(test_4096_sensors)
 
 TEST(test_exact_at_the_sensor)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 12, .seed = sweep_seed()));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 12, .seed = sweep_seed()));
     const double powers[] = { 0.5, 1, 2, 3.7, 16 };
     for (int k = 0; k < 5; k++)
         for (int mode = 0; mode < 2; mode++) {
@@ -340,7 +340,7 @@ TEST(test_exact_at_the_sensor)
 
 TEST(test_two_sensors_at_one_place_are_averaged)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 3));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 3));
     for (size_t v = 0; v < 300; v++)
         synthetic_set_distance(rig.plant, 1, v, asset_distance_m(&rig.plant->file.view, 0, v));
     rig.plant->plant.tags[1].strength = 3;
@@ -352,7 +352,7 @@ TEST(test_two_sensors_at_one_place_are_averaged)
 
 TEST(test_losing_the_hottest_is_not_painted_over)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .seed = sweep_seed()));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .seed = sweep_seed()));
     for (size_t i = 0; i < 5; i++)
         set(&rig, i, i == 2 ? 95 : 20, i == 2 ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD);
     for (int way = 0; way < 4; way++) {
@@ -381,7 +381,7 @@ TEST(test_losing_the_hottest_is_not_painted_over)
 
 TEST(test_a_good_twin_keeps_the_place)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 3));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 3));
     for (size_t v = 0; v < 300; v++)
         synthetic_set_distance(rig.plant, 1, v, asset_distance_m(&rig.plant->file.view, 0, v));
     set(&rig, 0, 50, QUALITY_BAD_SENSOR_FAILURE);
@@ -395,7 +395,7 @@ TEST(test_a_good_twin_keeps_the_place)
 
 TEST(test_zero_is_a_reading)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2, .min = -10, .max = 10));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2, .min = -10, .max = 10));
     set(&rig, 0, 0.0, QUALITY_GOOD);
     set(&rig, 1, 8, QUALITY_GOOD);
     const struct scalars *scalars = show(&rig);
@@ -414,7 +414,7 @@ TEST(test_zero_is_a_reading)
 
 TEST(test_all_bad_is_no_data)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 6, .min = 20, .max = 90));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 6, .min = 20, .max = 90));
     for (int paper = 0; paper < 2; paper++)
         for (int fill = 0; fill < 2; fill++) {
             rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -431,7 +431,7 @@ TEST(test_all_bad_is_no_data)
 
 TEST(test_one_sensor_is_everywhere)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 1));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 1));
     set(&rig, 0, 41.7, QUALITY_GOOD);
     const struct scalars *scalars = show(&rig);
     for (size_t j = 0; j < scalars->count; j++)
@@ -439,7 +439,7 @@ TEST(test_one_sensor_is_everywhere)
     rig_finish(&rig);
 }
 
-static void assert_even(const struct rig *rig, float value)
+static void assert_even(const struct field_rig *rig, float value)
 {
     const struct scalars *scalars = show(rig);
     for (size_t j = 0; j < scalars->count; j++)
@@ -450,7 +450,7 @@ static void assert_even(const struct rig *rig, float value)
 /* Whatever the group or whoever looks asks for, a place that nobody knows makes no gradient. */
 TEST(test_an_assumed_place_is_the_whole_asset_evenly)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 1, .island = 100));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 1, .island = 100));
     rig.plant->plant.tags[0].place_assumed = true;
     rig.plant->plant.tags[0].strength = 0;
     set(&rig, 0, 41.7, QUALITY_GOOD);
@@ -470,7 +470,7 @@ TEST(test_an_assumed_place_is_the_whole_asset_evenly)
 
 TEST(test_of_assumed_places_the_nearest_to_trouble_stands_for_all)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     for (int i = 0; i < 3; i++) {
         rig.plant->plant.tags[i].place_assumed = true;
         for (int limit = 0; limit < LIMIT_COUNT; limit++)
@@ -497,7 +497,7 @@ TEST(test_of_assumed_places_the_nearest_to_trouble_stands_for_all)
 
 TEST(test_beside_a_known_place_an_assumed_one_paints_nothing)
 {
-    struct rig with = rig_create(synthetic_create(.vertices = 700, .sensors = 3)), without = with;
+    struct field_rig with = rig_create(synthetic_create(.vertices = 700, .sensors = 3)), without = with;
     with.plant->plant.tags[2].place_assumed = true;
     set(&with, 2, 99, QUALITY_GOOD);
     without.plant = synthetic_create(.vertices = 700, .sensors = 3);
@@ -515,7 +515,7 @@ TEST(test_beside_a_known_place_an_assumed_one_paints_nothing)
 
 TEST(test_over_range_passes_shepard_and_not_paper)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     set(&rig, 0, 250, QUALITY_GOOD);
     set(&rig, 1, -40, QUALITY_GOOD);
     const struct scalars *scalars = show(&rig);
@@ -531,7 +531,7 @@ TEST(test_over_range_passes_shepard_and_not_paper)
 /* Rounding must not turn a plant at exactly MAX into one beyond it. */
 TEST(test_equal_readings_make_exactly_that)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 11, .min = 0.1, .max = 0.3, .seed = sweep_seed()));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 11, .min = 0.1, .max = 0.3, .seed = sweep_seed()));
     rig.params.power = 3.3;
     for (size_t i = 0; i < 11; i++)
         set(&rig, i, 0.3, QUALITY_GOOD);
@@ -547,7 +547,7 @@ TEST(test_equal_readings_make_exactly_that)
 
 TEST(test_not_a_number_does_not_poison)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 4));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 4));
     const double poison[] = { (double)NAN, (double)INFINITY, -(double)INFINITY };
     for (int paper = 0; paper < 2; paper++)
         for (int k = 0; k < 3; k++) {
@@ -564,7 +564,7 @@ TEST(test_not_a_number_does_not_poison)
 
 TEST(test_a_mad_reading_leaves_nothing_behind)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 9));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 9));
     const double mad[] = { 1e300, -1e300, 1e12, 3e7 };
     for (int k = 0; k < 4; k++) {
         set(&rig, 4, 50, QUALITY_GOOD);
@@ -579,7 +579,7 @@ TEST(test_a_mad_reading_leaves_nothing_behind)
 
 TEST(test_half_the_weight_uncertain)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         for (size_t j = 0; j < 3; j++) { /* nearer to the good one, between, nearer to the uncertain one */
@@ -602,7 +602,7 @@ TEST(test_half_the_weight_uncertain)
 
 TEST(test_a_part_that_nobody_reaches)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 900, .sensors = 4, .island = 50, .min = -5, .max = 5));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 900, .sensors = 4, .island = 50, .min = -5, .max = 5));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         rig.params.distance = DISTANCE_GEODESIC;
@@ -621,7 +621,7 @@ TEST(test_a_part_that_nobody_reaches)
 
 TEST(test_a_sensor_out_of_reach_does_not_make_its_place_lost)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     for (size_t j = 0; j < 300; j++)
         synthetic_set_distance(rig.plant, 0, j, INFINITY); /* Bad, and on another part */
     set(&rig, 0, 90, QUALITY_BAD_SENSOR_FAILURE);
@@ -634,7 +634,7 @@ TEST(test_a_sensor_out_of_reach_does_not_make_its_place_lost)
 
 TEST(test_reach_ends_the_field)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     rig.params.reach_m = 2;
     set(&rig, 0, 30, QUALITY_GOOD);
     set(&rig, 1, 70, QUALITY_GOOD);
@@ -658,7 +658,7 @@ TEST(test_reach_ends_the_field)
 TEST(test_a_sensor_fades_towards_its_reach)
 {
     for (int paper = 0; paper < 2; paper++) {
-        struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
+        struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         rig.params.decay = 0;
         rig.params.radius_m = 8;
@@ -689,7 +689,7 @@ TEST(test_a_sensor_fades_towards_its_reach)
 
 TEST(test_a_sensor_of_strength_0_has_no_say)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     rig.plant->plant.tags[0].strength = 0;
     set(&rig, 0, 90, QUALITY_BAD_SENSOR_FAILURE);
     set(&rig, 1, 40, QUALITY_GOOD);
@@ -705,7 +705,7 @@ TEST(test_a_sensor_of_strength_0_has_no_say)
 
 TEST(test_a_sensor_acts_on_its_own_asset_only)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 3, .assets = 2));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 3, .assets = 2));
     struct scalar *before = mem_array(600, sizeof(*before));
     const struct scalars *other = field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot);
     memcpy(before, other->at, 600 * sizeof(*before));
@@ -722,7 +722,7 @@ TEST(test_a_sensor_acts_on_its_own_asset_only)
 
 TEST(test_an_asset_without_sensors_of_the_group_has_no_field)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     rig.plant->plant.tags[0].group = rig.plant->plant.tags[1].group = 3;
     assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot));
     rig_finish(&rig);
@@ -733,7 +733,7 @@ TEST(test_an_asset_without_sensors_of_the_group_has_no_field)
 TEST(test_an_hour_of_flicker_leaves_no_drift)
 {
     uint64_t random = sweep_seed();
-    struct rig rig = rig_create(synthetic_create(.vertices = 800, .sensors = 12, .seed = random));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 800, .sensors = 12, .seed = random));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         for (int tick = 0; tick < 36000; tick++) {
@@ -753,7 +753,7 @@ TEST(test_flicker_at_any_moment_leaves_no_drift)
     static const uint32_t qualities[] = { QUALITY_GOOD, QUALITY_BAD_COMMUNICATION_ERROR, QUALITY_UNCERTAIN_LAST_USABLE,
                                           QUALITY_BAD_SENSOR_FAILURE };
     uint64_t random = sweep_seed();
-    struct rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 12, .seed = random));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 12, .seed = random));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         for (int tick = 0; tick < 36000; tick++) {
@@ -777,7 +777,7 @@ TEST(test_flicker_at_any_moment_leaves_no_drift)
     rig_finish(&rig);
 }
 
-static float worst_difference(const struct rig *rig)
+static float worst_difference(const struct field_rig *rig)
 {
     struct field *fresh = field_create(workers, &rig->plant->scene);
     const struct scalars *want = field_scalars(fresh, 0, &rig->params, rig->plant->snapshot), *got = show(rig);
@@ -791,7 +791,7 @@ static float worst_difference(const struct rig *rig)
 TEST(test_an_hour_of_changes_leaves_no_drift)
 {
     uint64_t random = sweep_seed();
-    struct rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 40, .seed = random));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 40, .seed = random));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         for (int tick = 0; tick < 36000; tick++) {
@@ -807,7 +807,7 @@ TEST(test_an_hour_of_changes_leaves_no_drift)
 
 TEST(test_sums_are_made_anew_now_and_then)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12));
     for (size_t i = 0; i < 12; i++) /* what adding and taking away again leaves behind */
         set(&rig, i, 33.3 + (double)i, QUALITY_GOOD);
     for (int tick = 0; tick <= 2 * 4096; tick++) {
@@ -821,7 +821,7 @@ TEST(test_sums_are_made_anew_now_and_then)
 TEST(test_a_day_of_changes_leaves_no_drift)
 {
     uint64_t random = sweep_seed();
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12, .seed = random));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12, .seed = random));
     for (int tick = 0; tick < 86400; tick++) {
         set(&rig, synthetic_random(&random) % 12, between(&random, -1000, 1000), QUALITY_GOOD);
         show(&rig);
@@ -836,7 +836,7 @@ TEST(test_a_day_of_changes_leaves_no_drift)
 TEST(test_cut_of_the_work_does_not_matter)
 {
     uint64_t random = sweep_seed();
-    struct rig rig = rig_create(synthetic_create(.vertices = 70000, .sensors = 9, .seed = random));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 70000, .sensors = 9, .seed = random));
     struct workers *one = workers_create(1), *many = workers_create(5);
     struct field *alone = field_create(one, &rig.plant->scene), *crowd = field_create(many, &rig.plant->scene);
     for (int tick = 0; tick < 12; tick++) {
@@ -859,7 +859,7 @@ TEST(test_cut_of_the_work_does_not_matter)
 
 TEST(test_version_grows_with_real_changes_only)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     const struct scalars *scalars = show(&rig);
     uint64_t version = scalars->version, flags = scalars->flags_version;
     double travel = scalars->travel;
@@ -890,7 +890,7 @@ TEST(test_version_grows_with_real_changes_only)
 
 TEST(test_a_bad_reading_that_moves_changes_nothing)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     set(&rig, 1, 10, QUALITY_BAD_SENSOR_FAILURE);
     uint64_t version = show(&rig)->version;
     set(&rig, 1, 90, QUALITY_BAD_DEVICE_FAILURE);
@@ -900,7 +900,7 @@ TEST(test_a_bad_reading_that_moves_changes_nothing)
 
 TEST(test_a_reading_without_weight_changes_nothing)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     rig.plant->plant.tags[1].strength = 0;
     uint64_t version = show(&rig)->version;
     set(&rig, 1, 77, QUALITY_GOOD);
@@ -912,7 +912,7 @@ TEST(test_a_reading_without_weight_changes_nothing)
 
 TEST(test_equal_parameters_share)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     struct field_params again;
     field_params_default(&rig.plant->plant, 0, &again);
     const struct scalars *first = show(&rig);
@@ -927,7 +927,7 @@ TEST(test_equal_parameters_share)
 
 TEST(test_instances_share_their_weights)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 16, .assets = 10));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 16, .assets = 10));
     size_t bytes[3] = { 0 };
     for (int round = 0; round < 3; round++) {
         for (int asset = 0; asset < 10; asset++) {
@@ -954,7 +954,7 @@ static size_t bytes_allocated(void)
 TEST(test_dragging_stays_under_the_bound)
 {
     const size_t slack = 256 << 10; /* layouts, and what only lives during a call */
-    struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 20, .assets = 2));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 20, .assets = 2));
     size_t bound = 3 << 20;
     field_set_cache_limit(rig.field, bound);
     rig.params.interpolation = INTERPOLATION_PAPER;
@@ -976,7 +976,7 @@ TEST(test_dragging_stays_under_the_bound)
 TEST(test_without_room_for_columns_the_bits_are_the_same)
 {
     uint64_t random = sweep_seed();
-    struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37, .seed = random));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37, .seed = random));
     struct field *tight = field_create(workers, &rig.plant->scene), *half = field_create(workers, &rig.plant->scene);
     const size_t columns = (size_t)3000 * 37 * sizeof(float);
     field_set_cache_limit(tight, 1);
@@ -1004,7 +1004,7 @@ TEST(test_without_room_for_columns_the_bits_are_the_same)
 /* Where there is not room for all columns, all that there is is used, and once there is room for all, that. */
 TEST(test_as_many_columns_as_fit_are_kept)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37));
     const size_t block = (size_t)37 * (256 * sizeof(float) + 1), columns = (3000 + 255) / 256 * block;
     set(&rig, 0, 1, QUALITY_GOOD);
     show(&rig);
@@ -1024,7 +1024,7 @@ TEST(test_as_many_columns_as_fit_are_kept)
 /* Two sessions that look at all assets in turn, with room for less than one of them: all pointers of one round stay good. */
 TEST(test_scalars_of_the_same_parameters_stay)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .assets = 8));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .assets = 8));
     field_set_cache_limit(rig.field, 100000);
     for (int round = 0; round < 6; round++) {
         const struct scalars *all[8];
@@ -1046,7 +1046,7 @@ TEST(test_few_sensors_are_summed_in_one_go)
     uint64_t random = sweep_seed();
     for (size_t sensors = 1; sensors <= 9; sensors++)
         for (int paper = 0; paper < 2; paper++) {
-            struct rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = random + sensors));
+            struct field_rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = random + sensors));
             float before[VERTICES] = { 0 };
             double travel = 0;
             rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -1070,7 +1070,7 @@ TEST(test_few_sensors_are_summed_in_one_go)
 }
 
 /* The first vertices are as those of a field that has never seen anything else. */
-static void assert_first_as_fresh(const struct rig *rig, size_t count)
+static void assert_first_as_fresh(const struct field_rig *rig, size_t count)
 {
     struct field *fresh = field_create(workers, &rig->plant->scene);
     const struct scalars *want = field_scalars(fresh, 0, &rig->params, rig->plant->snapshot);
@@ -1084,7 +1084,7 @@ static void assert_first_as_fresh(const struct rig *rig, size_t count)
 static void check_many_at_once(size_t sensors)
 {
     enum { ASSETS = 12, VERTICES = 1500 };
-    struct rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = sensors, .assets = ASSETS));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = sensors, .assets = ASSETS));
     struct field *alone = field_create(workers, &rig.plant->scene);
     uint64_t random = sweep_seed();
     size_t bounds[] = { FIELD_DEFAULT_BYTES, 100000 };
@@ -1128,7 +1128,7 @@ TEST(test_many_at_once_are_as_one_by_one)
 static void check_far_assets(size_t sensors)
 {
     enum { ASSETS = 40, VERTICES = 20000, DRAWN = 300 };
-    struct rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = sensors, .assets = ASSETS));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = sensors, .assets = ASSETS));
     int assets[ASSETS];
     size_t counts[ASSETS], columns = (size_t)(VERTICES + 255) / 256 * sensors * (256 * sizeof(float) + 1), last = 0, bound = 4 << 20;
     field_set_cache_limit(rig.field, columns + bound);
@@ -1170,7 +1170,7 @@ TEST(test_far_assets_have_room_for_what_is_drawn)
 TEST(test_a_level_is_a_prefix)
 {
     uint64_t random = sweep_seed();
-    struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 20, .seed = random));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 20, .seed = random));
     const size_t counts[] = { 300, 3000, 300, 300, 1, 2000, 700, 2999 };
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -1185,7 +1185,7 @@ TEST(test_a_level_is_a_prefix)
 
 TEST(test_a_prefix_costs_less)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 20000, .sensors = 4));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 20000, .sensors = 4));
     const struct scalars *scalars = field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, 500);
     assert_int_equal(scalars->ready, 512);
     uint64_t version = scalars->version, grown = scalars->grown;
@@ -1205,7 +1205,7 @@ TEST(test_a_prefix_costs_less)
 TEST(test_in_pieces_it_is_the_same)
 {
     uint64_t random = sweep_seed();
-    struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 30, .seed = random));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 30, .seed = random));
     for (int round = 0; round < 6; round++) {
         double first = between(&random, 0, 100);
         int pieces = 1;
@@ -1226,7 +1226,7 @@ TEST(test_in_pieces_it_is_the_same)
 
 TEST(test_what_is_under_way_may_be_dropped)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 30));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 30));
     struct field_params other = rig.params;
     field_set_cache_limit(rig.field, 0);
     for (int round = 0; round < 20; round++) {
@@ -1244,7 +1244,7 @@ TEST(test_what_is_under_way_may_be_dropped)
 
 TEST(test_parameters_out_of_range)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 1));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 1));
     const struct plant *plant = &rig.plant->plant;
     assert_null(field_params_wrong(plant, &rig.params));
 #define WRONG(field_name, bad, word)                                                                                                       \
@@ -1285,7 +1285,7 @@ TEST(test_parameters_out_of_range)
 
 TEST(test_distance_from_one_sensor)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 500, .sensors = 3, .assets = 2, .island = 20));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 500, .sensors = 3, .assets = 2, .island = 20));
     struct field_params straight = rig.params;
     double low, high;
     rig.params.show = straight.show = SHOW_DISTANCE;
@@ -1318,7 +1318,7 @@ TEST(test_distance_from_one_sensor)
 /* --- difference, overrides ------------------------------------------------------------------------------------------------ */
 
 /* What the field would show, by itself. */
-static struct scalar *shown_alone(const struct rig *rig, const struct field_params *params, const struct snapshot *snapshot)
+static struct scalar *shown_alone(const struct field_rig *rig, const struct field_params *params, const struct snapshot *snapshot)
 {
     struct field *alone = field_create(workers, &rig->plant->scene);
     const struct scalars *scalars = field_scalars(alone, 0, params, snapshot);
@@ -1328,7 +1328,7 @@ static struct scalar *shown_alone(const struct rig *rig, const struct field_para
     return copy;
 }
 
-static void assert_difference(const struct rig *rig, const struct snapshot *then)
+static void assert_difference(const struct field_rig *rig, const struct snapshot *then)
 {
     struct field_params values = rig->params;
     values.show = SHOW_VALUE;
@@ -1346,7 +1346,7 @@ static void assert_difference(const struct rig *rig, const struct snapshot *then
 TEST(test_difference_is_that_of_two_fields)
 {
     uint64_t random = sweep_seed();
-    struct rig rig = rig_create(synthetic_create(.vertices = 900, .sensors = 12, .island = 9, .seed = random));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 900, .sensors = 12, .island = 9, .seed = random));
     struct baselines *baselines = baselines_create();
     field_set_baselines(rig.field, baselines);
     rig.params.show = SHOW_DIFFERENCE;
@@ -1370,7 +1370,7 @@ TEST(test_difference_is_that_of_two_fields)
 
 TEST(test_difference_needs_both)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 400, .sensors = 4));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 400, .sensors = 4));
     struct baselines *baselines = baselines_create();
     rig.params.show = SHOW_DIFFERENCE;
     rig.params.baseline = 1;
@@ -1400,7 +1400,7 @@ TEST(test_difference_needs_both)
 
 TEST(test_overrides_are_as_if_configured)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 6, .seed = sweep_seed()));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 6, .seed = sweep_seed()));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         struct field_params overridden = rig.params;
@@ -1425,7 +1425,7 @@ TEST(test_overrides_are_as_if_configured)
 
 TEST(test_overrides_are_bounded_and_ordered)
 {
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 300));
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 300));
     struct field_params turned = rig.params, before = rig.params;
     for (int i = 0; i < FIELD_OVERRIDES; i++) {
         assert_true(field_params_override(&rig.params, (struct field_override){ i, (float)i / 10, FIELD_AS_CONFIGURED }));

@@ -157,7 +157,7 @@ TEST(a_sensor_is_seen_from_outside)
 
 static void add_box(struct toy *toy, const char *id, const double size_m[3], const double at_m[3])
 {
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     shape_box(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, size_m);
     toy_add(toy, id, &shape, at_m, NULL, 0);
 }
@@ -198,7 +198,7 @@ TEST(a_stray_piece_is_left_out)
 TEST(a_stray_vertex_is_left_out)
 {
     struct toy *toy = toy_create();
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     shape_box(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ 4, 2, 1 });
     shape_plate(&shape, TOY_STEEL, (double[3]){ 1, 1, 0.5 }, (double[3]){ 0.1, 0, 0 }, (double[3]){ 0, 0.1, 0 }, 1);
     shape.positions[shape.vertex_count - 1][0] = -250000;

@@ -13,7 +13,7 @@
 #include "tests/support/surface_case.h"
 #include "tests/support/temp.h"
 
-struct solved {
+struct gaussian_case {
     struct cad shape;
     struct surface *surface;
     struct influence_mesh mesh;
@@ -21,7 +21,7 @@ struct solved {
     struct influence influence;
 };
 
-static void prepare(struct solved *s, const double (*places_m)[3], size_t count, double disc_m, double edge_m)
+static void prepare(struct gaussian_case *s, const double (*places_m)[3], size_t count, double disc_m, double edge_m)
 {
     const size_t vertices = s->shape.vertex_count;
     s->surface = surface_create(the_log, workers, (const float(*)[3])s->shape.positions, vertices, s->shape.triangles,
@@ -36,7 +36,7 @@ static void prepare(struct solved *s, const double (*places_m)[3], size_t count,
 }
 
 /* The shape's own triangles, without the surface's finer ones: small enough for dense algebra. */
-static void prepare_coarse(struct solved *s, const double (*places_m)[3], size_t count, double disc_m)
+static void prepare_coarse(struct gaussian_case *s, const double (*places_m)[3], size_t count, double disc_m)
 {
     const struct cad *shape = &s->shape;
     struct influence_mesh *mesh = &s->mesh;
@@ -64,13 +64,13 @@ static void prepare_coarse(struct solved *s, const double (*places_m)[3], size_t
         s->anchors[v] = (struct influence_anchor){ { v, v, v }, { 1, 0, 0 } };
 }
 
-static void solve(struct solved *s, struct gaussian_params params)
+static void solve(struct gaussian_case *s, struct gaussian_params params)
 {
     influence_finish(&s->influence);
     assert_true(gaussian_solve(&s->influence, the_log, workers, &s->mesh, &params, s->anchors, s->shape.vertex_count, NULL));
 }
 
-static void finish(struct solved *s)
+static void finish(struct gaussian_case *s)
 {
     influence_finish(&s->influence);
     influence_mesh_finish(&s->mesh);
@@ -79,7 +79,7 @@ static void finish(struct solved *s)
     cad_finish(&s->shape);
 }
 
-static double value_at(const struct solved *s, const double *readings, size_t vertex)
+static double value_at(const struct gaussian_case *s, const double *readings, size_t vertex)
 {
     double sum = 0;
     for (size_t i = 0; i < s->influence.count; i++)
@@ -87,7 +87,7 @@ static double value_at(const struct solved *s, const double *readings, size_t ve
     return sum;
 }
 
-static size_t nearest_vertex(const struct solved *s, const double place[3])
+static size_t nearest_vertex(const struct gaussian_case *s, const double place[3])
 {
     size_t best = 0;
     double least = INFINITY;
@@ -225,7 +225,7 @@ static double krige(const struct dense *d, const struct gaussian_params *p, cons
     return variance;
 }
 
-static double *place_of(const struct dense *d, const struct solved *s, size_t vertex)
+static double *place_of(const struct dense *d, const struct gaussian_case *s, size_t vertex)
 {
     struct laplacian laplacian;
     double *place = mem_array(d->rows, sizeof(*place));
@@ -245,7 +245,7 @@ TEST(test_agrees_with_a_dense_one)
 {
     static const struct gaussian_params cases[3] = { { 0.8, 0.5, 10 }, { 3, 0.1, 4 }, { 40, 0.2, 20 } }; /* the last: far longer */
     for (int c = 0; c < 3; c++) {
-        struct solved s = { 0 };
+        struct gaussian_case s = { 0 };
         struct dense d = { 0 };
         uint8_t all[FEW], some[FEW];
         double weights[FEW], worst = 0, worst_share = 0;
@@ -290,7 +290,7 @@ TEST(test_precision_says_what_the_others_say)
 {
     const struct gaussian_params p = { 0.8, 0.5, 10 };
     const double readings[FEW] = { 20, 35, 28, 22, 90 };
-    struct solved s = { 0 };
+    struct gaussian_case s = { 0 };
     struct dense d = { 0 };
     cad_plate(&s.shape, &chance, 17, 9, 2, 1, 0.3);
     prepare_coarse(&s, few_places, FEW, 0.2);
@@ -314,7 +314,7 @@ TEST(test_precision_says_what_the_others_say)
     finish(&s);
 }
 
-static void sphere_of(struct solved *s, const double (*places_m)[3], size_t count, struct gaussian_params params)
+static void sphere_of(struct gaussian_case *s, const double (*places_m)[3], size_t count, struct gaussian_params params)
 {
     cad_sphere(&s->shape, &chance, 16);
     prepare(s, places_m, count, 0.08, params.range_m / 5);
@@ -325,7 +325,7 @@ static void sphere_of(struct solved *s, const double (*places_m)[3], size_t coun
 TEST(test_readings_are_met_within_noise)
 {
     enum { MANY = 40 };
-    struct solved s = { 0 };
+    struct gaussian_case s = { 0 };
     double places[MANY][3], readings[MANY], ones[MANY];
     for (size_t i = 0; i < MANY; i++) { /* a spiral from pole to pole */
         double z = 1 - (2 * (double)i + 1) / MANY, turn = 2.4 * (double)i, across = sqrt(1 - z * z);
@@ -354,7 +354,7 @@ TEST(test_two_sensors_at_one_place_that_disagree)
 {
     const double places[3][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, -1 } }, readings[3] = { 20, 40, 60 };
     for (int i = 0; i < 2; i++) {
-        struct solved s = { 0 };
+        struct gaussian_case s = { 0 };
         sphere_of(&s, places, 3, (struct gaussian_params){ 2, i ? 0.5 : 0, 10 }); /* noise 0 too */
         const double met = value_at(&s, readings, nearest_vertex(&s, places[0]));
         assert_true(fabs(met - 30) < 0.2);
@@ -366,7 +366,7 @@ TEST(test_two_sensors_at_one_place_that_disagree)
 /* One sensor gives its value to its whole body, and its doubt grows away from it; a body without a sensor gets nothing. */
 TEST(test_one_sensor_and_bodies_apart)
 {
-    struct solved s = { 0 };
+    struct gaussian_case s = { 0 };
     const double places[1][3] = { { 0, 0, 1 } }, reading[1] = { 50 };
     cad_sphere(&s.shape, &chance, 16);
     const size_t own = s.shape.vertex_count, triangles = s.shape.triangle_count;
@@ -394,7 +394,7 @@ TEST(test_one_sensor_and_bodies_apart)
 
 TEST(test_all_in_a_line_and_a_kernel_longer_than_all)
 {
-    struct solved s = { 0 };
+    struct gaussian_case s = { 0 };
     double places[6][3] = { { 0 } }, readings[6];
     for (size_t i = 0; i < 6; i++) {
         places[i][0] = 0.1 + 0.36 * (double)i;
@@ -413,7 +413,7 @@ TEST(test_all_in_a_line_and_a_kernel_longer_than_all)
 
 TEST(test_threads_change_nothing)
 {
-    struct solved s = { 0 };
+    struct gaussian_case s = { 0 };
     cad_plate(&s.shape, &chance, 41, 21, 2, 1, 0.2);
     prepare(&s, few_places, FEW, 0.15, (double)INFINITY);
     solve(&s, (struct gaussian_params){ 1, 0.2, 10 });
@@ -433,7 +433,7 @@ TEST(test_threads_change_nothing)
 TEST(test_covariance_agrees_with_a_dense_one)
 {
     static const double ranges_m[4] = { 0.25, 0.8, 3, 20 };
-    struct solved s = { 0 };
+    struct gaussian_case s = { 0 };
     struct gaussian_covariance found;
     cad_plate(&s.shape, &chance, 17, 9, 2, 1, 0.3);
     prepare_coarse(&s, few_places, FEW, 0.2);
@@ -469,7 +469,7 @@ static double gaussian(void)
 TEST(test_fit_finds_what_made_the_readings)
 {
     enum { SENSORS = 24, INSTANTS = 200 };
-    struct solved s = { 0 };
+    struct gaussian_case s = { 0 };
     struct readings_table table = { .count = SENSORS, .instants = INSTANTS };
     struct gaussian_covariance kernel;
     double places[SENSORS][3] = { { 0 } }, *root;

@@ -49,7 +49,7 @@ static int make_plant(void **state)
 {
     struct cad torus = { 0 };
     struct cad_random chance = { 3 };
-    struct maker maker;
+    struct model_maker maker;
     size_t size;
     prep_case_set_up(state);
     struct prep_case *c = made.c = *state;

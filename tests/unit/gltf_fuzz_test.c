@@ -17,7 +17,7 @@ TEST(seeds_and_their_changes_keep_the_promises)
 
 static int write_seeds(const char *to)
 {
-    struct sheet sheet;
+    struct wavy_sheet sheet;
     sheet_init(&sheet, 2, 2);
     for (int i = 0; i < SEED_COUNT; i++) {
         struct seed seed;

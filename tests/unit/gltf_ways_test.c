@@ -29,7 +29,7 @@ static void try_bytes(struct gltf_case *l, char *bytes, size_t size)
     mem_free(bytes);
 }
 
-static void try_model(struct gltf_case *l, struct maker *maker)
+static void try_model(struct gltf_case *l, struct model_maker *maker)
 {
     size_t size;
     char *bytes = maker_glb(maker, &size);
@@ -51,14 +51,14 @@ static void assert_good(const struct gltf_case *l)
 
 /* --- the same surface ---------------------------------------------------------------------------------------------------- */
 
-struct corner {
+struct gltf_corner {
     double at[3];
     const float *normal;
     const uint8_t *color;
 };
 
 /* Is it one of the sheet's triangles, from the same side? -1: no. */
-static int triangle_of(const struct sheet *sheet, struct corner corners[3], double tolerance_m)
+static int triangle_of(const struct wavy_sheet *sheet, struct gltf_corner corners[3], double tolerance_m)
 {
     for (uint32_t t = 0; t < sheet->index_count / 3; t++)
         for (int turn = 0; turn < 3; turn++) {
@@ -73,7 +73,7 @@ static int triangle_of(const struct sheet *sheet, struct corner corners[3], doub
     return -1;
 }
 
-static void assert_look(const struct corner *corner, double tolerance_m)
+static void assert_look(const struct gltf_corner *corner, double tolerance_m)
 {
     double slope = -0.3 * sin(3 * corner->at[0]), length = sqrt(1 + slope * slope);
     if (corner->normal) {
@@ -87,7 +87,7 @@ static void assert_look(const struct corner *corner, double tolerance_m)
 }
 
 /* Every triangle of the sheet once, in the primitives of one node. */
-static void assert_sheet(const struct gltf_model *model, const struct gltf_node *node, const struct sheet *sheet, double tolerance_m)
+static void assert_sheet(const struct gltf_model *model, const struct gltf_node *node, const struct wavy_sheet *sheet, double tolerance_m)
 {
     bool *seen = mem_array(sheet->index_count / 3, sizeof(*seen));
     uint32_t count = 0;
@@ -95,11 +95,11 @@ static void assert_sheet(const struct gltf_model *model, const struct gltf_node 
     for (uint32_t i = 0; i < mesh->primitive_count; i++) {
         const struct gltf_primitive *p = &model->primitives[mesh->first_primitive + i];
         for (uint32_t index = 0; index < p->index_count; index += 3, count++) {
-            struct corner corners[3];
+            struct gltf_corner corners[3];
             for (uint32_t c = 0; c < 3; c++) {
                 uint32_t v = p->indices[index + c];
                 const float *at = p->positions[v];
-                corners[c] = (struct corner){ .normal = p->normals ? p->normals[v] : NULL, .color = p->colors ? p->colors[v] : NULL };
+                corners[c] = (struct gltf_corner){ .normal = p->normals ? p->normals[v] : NULL, .color = p->colors ? p->colors[v] : NULL };
                 transform_point(node->world, (double[3]){ (double)at[0], (double)at[1], (double)at[2] }, corners[c].at);
                 assert_look(&corners[c], tolerance_m);
             }
@@ -133,7 +133,7 @@ static const struct gltf_node *first_drawn(const struct gltf_model *model)
 
 CASE(every_way_gives_the_same_surface)
 {
-    struct sheet sheet;
+    struct wavy_sheet sheet;
     sheet_init(&sheet, 24, 10);
     for (int i = 0; i < SEED_COUNT; i++) {
         struct seed seed;
@@ -150,7 +150,7 @@ CASE(every_way_gives_the_same_surface)
 CASE(great_meshes_are_decompressed)
 {
     static const char *const names[] = { "meshopt.glb", "meshopt_filters.glb", "draco_edgebreaker.glb", "draco_sequential.glb" };
-    struct sheet sheet;
+    struct wavy_sheet sheet;
     sheet_init(&sheet, 300, 200); /* 120,000 triangles, 60,501 vertices */
     for (int i = 0; i < SEED_COUNT; i++) {
         struct seed seed;
@@ -181,9 +181,9 @@ static bool has_program(const char *name)
     return status == 0;
 }
 
-static size_t write_plain(struct gltf_case *l, const struct sheet *sheet)
+static size_t write_plain(struct gltf_case *l, const struct wavy_sheet *sheet)
 {
-    struct maker maker;
+    struct model_maker maker;
     size_t size, count = sheet->vertex_count;
     maker_init(&maker);
     int positions = maker_numbers(&maker, sheet->positions, count * 12, FLOAT, count, "VEC3");
@@ -207,7 +207,7 @@ static size_t write_plain(struct gltf_case *l, const struct sheet *sheet)
 /* FOLDER/plain.glb by that command into FOLDER/packed.glb, which says that it has that extension. */
 static void try_packed(struct gltf_case *l, const char *program, const char *options, const char *extension, double tolerance_m)
 {
-    struct sheet sheet;
+    struct wavy_sheet sheet;
     size_t size;
     sheet_init(&sheet, 24, 10);
     size_t before = write_plain(l, &sheet);
@@ -251,7 +251,7 @@ CASE(what_draco_writes_is_read)
 /* Every byte of the compressed data in turn is another: never a crash, and what is accepted holds together. */
 CASE(broken_compression_is_refused_or_harmless)
 {
-    struct sheet sheet;
+    struct wavy_sheet sheet;
     sheet_init(&sheet, 6, 4);
     for (int i = 9; i <= 12; i++) {
         struct seed seed;
@@ -274,10 +274,10 @@ CASE(broken_compression_is_refused_or_harmless)
 }
 
 /* The JSON and bytes of a seed again, to be changed. */
-static struct maker seed_open(int number, const char *name, const struct sheet *sheet)
+static struct model_maker seed_open(int number, const char *name, const struct wavy_sheet *sheet)
 {
     struct seed seed;
-    struct maker maker;
+    struct model_maker maker;
     seed_make(&seed, number, sheet);
     assert_string_equal(seed.name, name);
     uint32_t json_bytes;
@@ -292,14 +292,14 @@ static struct maker seed_open(int number, const char *name, const struct sheet *
     return maker;
 }
 
-static json_t *meshopt_of(struct maker *maker, int view)
+static json_t *meshopt_of(struct model_maker *maker, int view)
 {
     return json_object_get(json_object_get(maker_get(maker, "bufferViews", view), "extensions"), "EXT_meshopt_compression");
 }
 
 CASE(false_claims_of_compressed_views_are_refused)
 {
-    struct sheet sheet;
+    struct wavy_sheet sheet;
     sheet_init(&sheet, 6, 4);
     const struct {
         const char *key;
@@ -319,28 +319,28 @@ CASE(false_claims_of_compressed_views_are_refused)
         { "mode", json_null(), "has no extensions.EXT_meshopt_compression.mode" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
-        struct maker maker = seed_open(8, "meshopt.glb", &sheet);
+        struct model_maker maker = seed_open(8, "meshopt.glb", &sheet);
         json_object_set_new(meshopt_of(&maker, 0), cases[i].key, cases[i].value);
         try_model(l, &maker);
         assert_refused(l, cases[i].reason);
     }
-    struct maker maker = seed_open(8, "meshopt.glb", &sheet);
+    struct model_maker maker = seed_open(8, "meshopt.glb", &sheet);
     json_object_del(maker_get(&maker, "bufferViews", 0), "extensions");
     try_model(l, &maker);
     assert_refused(l, "bufferView 0: buffer 1 has no bytes of its own");
     sheet_finish(&sheet);
 }
 
-static json_t *primitive_of(struct maker *maker)
+static json_t *primitive_of(struct model_maker *maker)
 {
     return json_array_get(json_object_get(maker_get(maker, "meshes", 0), "primitives"), 0);
 }
 
 CASE(false_claims_of_draco_are_refused)
 {
-    struct sheet sheet;
+    struct wavy_sheet sheet;
     sheet_init(&sheet, 6, 4);
-    struct maker maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
+    struct model_maker maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
     memcpy(maker.bin.at + 13, "\xff\xff\xff\xff\x0f", 5); /* 4294967295 triangles */
     try_model(l, &maker);
     assert_refused(l, "mesh 0 'm', primitive 0: KHR_draco_mesh_compression: ");
@@ -384,7 +384,7 @@ CASE(false_claims_of_draco_are_refused)
 
 CASE(vertices_that_are_not_used_are_left_out)
 {
-    struct maker maker;
+    struct model_maker maker;
     float many[1000][3] = { { 0 } };
     for (int i = 0; i < 1000; i++)
         many[i][0] = many[i][1] = (float)(i * i);
@@ -403,7 +403,7 @@ CASE(vertices_that_are_not_used_are_left_out)
 
 CASE(what_a_small_file_claims_is_bounded)
 {
-    struct maker maker;
+    struct model_maker maker;
     maker_init(&maker);
     int at = maker_accessor(&maker, -1, FLOAT, 4000000000u, "VEC3");
     maker_node(&maker, "n", maker_mesh(&maker, json_pack("{s:{s:i}}", "attributes", "POSITION", at)), NULL);
@@ -431,7 +431,7 @@ CASE(what_a_small_file_claims_is_bounded)
 
 CASE(wrong_types_and_references_are_refused_by_name)
 {
-    struct sheet sheet;
+    struct wavy_sheet sheet;
     sheet_init(&sheet, 2, 2);
     static const struct {
         const char *list, *key, *json, *reason;
@@ -475,7 +475,7 @@ CASE(wrong_types_and_references_are_refused_by_name)
         { "buffers", "uri", "\"https://localhost/x.bin\"", "it is a URL" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
-        struct maker maker;
+        struct model_maker maker;
         maker_init(&maker);
         int at = maker_numbers(&maker, sheet.positions, 12 * sheet.vertex_count, FLOAT, sheet.vertex_count, "VEC3");
         int list = maker_numbers(&maker, sheet.indices, 4 * sheet.index_count, UINT, sheet.index_count, "SCALAR");
@@ -492,8 +492,8 @@ CASE(wrong_types_and_references_are_refused_by_name)
 
 CASE(whole_numbers_may_be_written_as_reals)
 {
-    struct sheet sheet;
-    struct maker maker;
+    struct wavy_sheet sheet;
+    struct model_maker maker;
     sheet_init(&sheet, 2, 2);
     maker = seed_open(2, "indices16.glb", &sheet);
     json_object_set_new(maker_get(&maker, "nodes", 0), "mesh", json_real(0));
@@ -535,7 +535,7 @@ CASE(colors_are_read_in_every_type)
     const float corners[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, reals[3][3] = { { 1, 0.5f, 0 }, { 0, 0, 0 }, { 2, -1, 1 } };
     const uint16_t shorts[3][4] = { { 65535, 32768, 0, 65535 }, { 0, 0, 0, 65535 }, { 65535, 0, 65535, 65535 } };
     for (int way = 0; way < 2; way++) {
-        struct maker maker;
+        struct model_maker maker;
         maker_init(&maker);
         int at = maker_numbers(&maker, corners, sizeof(corners), FLOAT, 3, "VEC3");
         int colors = way ? maker_numbers(&maker, shorts, sizeof(shorts), USHORT, 3, "VEC4")
@@ -553,11 +553,11 @@ CASE(colors_are_read_in_every_type)
 /* --- materials ----------------------------------------------------------------------------------------------------------- */
 
 /* Another texture of the same material, which lies otherwise: on a set of its own, or on the same one. A third way is one too many. */
-static void second_texcoords_are_read(struct gltf_case *l, const struct sheet *sheet)
+static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_sheet *sheet)
 {
     struct geometry g;
     char why[MODEL_WHY_BYTES];
-    struct maker maker = seed_open(15, "textured.glb", sheet);
+    struct model_maker maker = seed_open(15, "textured.glb", sheet);
     json_t *material = maker_get(&maker, "materials", 0), *attributes = json_object_get(primitive_of(&maker), "attributes");
     json_object_set_new(material, "occlusionTexture", json_pack("{s:i,s:i}", "index", 0, "texCoord", 1));
     json_object_set_new(material, "normalTexture", json_pack("{s:i,s:i}", "index", 0, "texCoord", 1));
@@ -591,8 +591,8 @@ static void second_texcoords_are_read(struct gltf_case *l, const struct sheet *s
 
 CASE(textures_lie_where_their_transform_puts_them)
 {
-    struct sheet sheet;
-    struct maker maker;
+    struct wavy_sheet sheet;
+    struct model_maker maker;
     sheet_init(&sheet, 2, 2);
     maker = seed_open(15, "textured.glb", &sheet);
     try_model(l, &maker);
@@ -705,8 +705,8 @@ static void face_normal(const struct geometry *g, uint32_t triangle, double out[
 
 CASE(assets_are_cut_from_a_tree)
 {
-    struct sheet sheet;
-    struct maker maker;
+    struct wavy_sheet sheet;
+    struct model_maker maker;
     char why[MODEL_WHY_BYTES];
     sheet_init(&sheet, 24, 10);
     maker = seed_open(13, "tree.glb", &sheet);
@@ -755,9 +755,9 @@ CASE(assets_are_cut_from_a_tree)
 
 CASE(mirrored_instances_keep_their_outside)
 {
-    struct sheet sheet;
+    struct wavy_sheet sheet;
     sheet_init(&sheet, 4, 2);
-    struct maker maker = seed_open(14, "instances.glb", &sheet);
+    struct model_maker maker = seed_open(14, "instances.glb", &sheet);
     try_model(l, &maker);
     assert_good(l);
     struct geometry g = cut(l, "sheet", 1, AXIS_Z);
@@ -776,7 +776,7 @@ CASE(mirrored_instances_keep_their_outside)
 /* Fifty thousand nodes of a mesh of a thousand triangles, each a primitive of its own. */
 CASE(what_many_nodes_draw_is_bounded)
 {
-    struct maker maker;
+    struct model_maker maker;
     struct geometry g;
     char why[MODEL_WHY_BYTES];
     const float corners[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } };
@@ -799,8 +799,8 @@ CASE(what_many_nodes_draw_is_bounded)
 
 CASE(a_name_is_meant_as_it_stands)
 {
-    struct sheet sheet;
-    struct maker maker;
+    struct wavy_sheet sheet;
+    struct model_maker maker;
     sheet_init(&sheet, 2, 2);
     maker = seed_open(2, "indices16.glb", &sheet);
     maker_node(&maker, "TANK[12]", 0, NULL);
@@ -819,8 +819,8 @@ CASE(a_name_is_meant_as_it_stands)
 
 CASE(lines_are_counted_for_the_asset_that_has_them)
 {
-    struct sheet sheet;
-    struct maker maker;
+    struct wavy_sheet sheet;
+    struct model_maker maker;
     char why[MODEL_WHY_BYTES];
     sheet_init(&sheet, 2, 2);
     maker = seed_open(4, "fans.glb", &sheet);
@@ -910,11 +910,11 @@ CASE(a_real_model_survives_compression)
     const struct gltf_primitive *most = &real.primitives[0];
     for (uint32_t p = 0; p < real.primitive_count; p++)
         most = real.primitives[p].index_count > most->index_count && real.primitives[p].normals ? &real.primitives[p] : most;
-    struct sheet sheet = { .vertex_count = most->vertex_count,
-                           .index_count = most->index_count,
-                           .positions = most->positions,
-                           .normals = most->normals,
-                           .indices = most->indices };
+    struct wavy_sheet sheet = { .vertex_count = most->vertex_count,
+                                .index_count = most->index_count,
+                                .positions = most->positions,
+                                .normals = most->normals,
+                                .indices = most->indices };
     sheet.colors = mem_array(sheet.vertex_count, sizeof(*sheet.colors));
     double low[3], high[3], area = 0;
     for (size_t i = 0; i < sizeof(ways) / sizeof(ways[0]); i++) {

@@ -12,7 +12,7 @@
 
 #include "base/mem.h"
 
-struct fixture {
+struct h264_fixture {
     struct log *log;
     struct workers *workers; /* that help; NULL: none */
     struct encoder *encoder;
@@ -25,7 +25,7 @@ struct fixture {
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct h264_fixture *f = mem_new(sizeof(*f));
     f->log = log_create(LOG_ERROR);
     f->encoder = encoder_create(f->log, "h264", ENCODER_H264_LIBRARY);
     f->decoder = avcodec_alloc_context3(avcodec_find_decoder(AV_CODEC_ID_H264));
@@ -38,7 +38,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct h264_fixture *f = *state;
     encoder_destroy(&f->encoder);
     avcodec_free_context(&f->decoder);
     av_frame_free(&f->picture);
@@ -48,7 +48,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct h264_fixture *f, name, set_up, tear_down)
 
 /* level: of the field's patches; they lie on a grey ground with thin lines. */
 static struct frame *picture(int w, int h, int level)
@@ -68,7 +68,7 @@ static struct frame *picture(int w, int h, int level)
 }
 
 /* Encodes and decodes. False: nothing had changed. */
-static bool pass(struct fixture *f, struct frame *frame, int quality, bool key, struct frame *before)
+static bool pass(struct h264_fixture *f, struct frame *frame, int quality, bool key, struct frame *before)
 {
     struct encoder_params params = { .quality = quality, .key = key, .workers = f->workers, .before = before };
     struct packet *packet;
@@ -95,7 +95,7 @@ static bool pass(struct fixture *f, struct frame *frame, int quality, bool key, 
 }
 
 /* In the middle of the patches, of all channels. */
-static int worst(const struct fixture *f, const struct frame *frame)
+static int worst(const struct h264_fixture *f, const struct frame *frame)
 {
     int most = 0, w = frame->width_px, h = frame->height_px;
     for (int column = 1; column < 8; column += 2) {
@@ -106,7 +106,7 @@ static int worst(const struct fixture *f, const struct frame *frame)
     return most;
 }
 
-static void check_size(struct fixture *f, int w, int h)
+static void check_size(struct h264_fixture *f, int w, int h)
 {
     struct frame *frame = picture(w, h, 0);
     assert_true(pass(f, frame, 92, false, NULL)); /* another size: it starts anew */
@@ -221,7 +221,7 @@ static struct frame *building(int w, int h, int turn)
     return frame;
 }
 
-static double mean_off(const struct fixture *f, const struct frame *frame)
+static double mean_off(const struct h264_fixture *f, const struct frame *frame)
 {
     double sum = 0;
     size_t pixels = (size_t)frame->width_px * (size_t)frame->height_px;

@@ -17,7 +17,7 @@
 #define SIZE "\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"]"
 #define HELLO "{\"type\":\"hello\"," SIZE "}"
 
-struct fixture {
+struct hello_fixture {
     struct session_context context;
     struct quotas quotas;
     struct admission admission;
@@ -28,7 +28,7 @@ struct fixture {
     uint64_t next_id;
 };
 
-static void write_tokens(struct fixture *f, bool with_bob)
+static void write_tokens(struct hello_fixture *f, bool with_bob)
 {
     struct text text = { 0 };
     struct token_holder alice = { .role = ROLE_ENGINEER, .name = "alice", .until_utc_ns = INT64_MAX };
@@ -45,7 +45,7 @@ static void write_tokens(struct fixture *f, bool with_bob)
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct hello_fixture *f = mem_new(sizeof(*f));
     f->folder = temp_folder_create();
     f->path = temp_path(f->folder, "tokens");
     f->log = log_create(LOG_ERROR);
@@ -71,7 +71,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct hello_fixture *f = *state;
     struct snapshot *snapshot = (struct snapshot *)f->context.snapshot;
     assert_int_equal(f->admission.pixels, 0);
     snapshot_destroy(&snapshot);
@@ -85,14 +85,14 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct hello_fixture *f, name, set_up, tear_down)
 
-static void say(struct fixture *f, struct session *session, const char *text)
+static void say(struct hello_fixture *f, struct session *session, const char *text)
 {
     session_on_message(session, text, strlen(text), f->now_ns, f->now_ns);
 }
 
-static struct session *open_session(struct fixture *f, enum role role, const char *text)
+static struct session *open_session(struct hello_fixture *f, enum role role, const char *text)
 {
     struct session *session = session_create(&f->context, ++f->next_id, f->now_ns);
     session->identity.role = role;
@@ -100,14 +100,14 @@ static struct session *open_session(struct fixture *f, enum role role, const cha
     return session;
 }
 
-static void leave(struct fixture *f, struct session **session)
+static void leave(struct hello_fixture *f, struct session **session)
 {
     session_leave(*session, true, f->now_ns);
     session_destroy(session);
 }
 
 /* The first text that is due. */
-static json_t *hear(struct fixture *f, struct session *session)
+static json_t *hear(struct hello_fixture *f, struct session *session)
 {
     struct text text = { 0 };
     assert_true(session_next_text(session, f->now_ns, f->now_ns, &text));
@@ -116,7 +116,7 @@ static json_t *hear(struct fixture *f, struct session *session)
     return message;
 }
 
-static void expect_error(struct fixture *f, struct session *session, const char *code, int close_code)
+static void expect_error(struct hello_fixture *f, struct session *session, const char *code, int close_code)
 {
     json_t *message = hear(f, session);
     assert_string_equal(json_string_value(json_object_get(message, "type")), "error");
@@ -126,7 +126,7 @@ static void expect_error(struct fixture *f, struct session *session, const char 
     json_decref(message);
 }
 
-static void expect_welcome(struct fixture *f, struct session *session, const char *role, bool resumed)
+static void expect_welcome(struct hello_fixture *f, struct session *session, const char *role, bool resumed)
 {
     json_t *message = hear(f, session);
     assert_string_equal(json_string_value(json_object_get(message, "type")), "welcome");
@@ -212,7 +212,7 @@ CASE(a_login_that_is_held_up_keeps_no_holder)
     "\"params\":{\"seq\":5,\"group\":\"pressure\",\"ramp_interval\":2}}"
 
 /* "" where there is no more after `extra`. */
-static void come_back(struct fixture *f, enum role role, const char *secret, const char *extra, struct session **out)
+static void come_back(struct hello_fixture *f, enum role role, const char *secret, const char *extra, struct session **out)
 {
     char text[400];
     snprintf(text, sizeof(text), "{\"type\":\"hello\",\"resume\":\"%s\"%s}", secret, extra);
@@ -325,7 +325,7 @@ CASE(without_room_a_session_is_told_when_to_come_again)
     leave(f, &second);
 }
 
-static struct session *open_of(struct fixture *f, struct address_share *share, const char *hello)
+static struct session *open_of(struct hello_fixture *f, struct address_share *share, const char *hello)
 {
     struct session *session = session_create(&f->context, ++f->next_id, f->now_ns);
     session->room.share = share;
@@ -334,7 +334,7 @@ static struct session *open_of(struct fixture *f, struct address_share *share, c
     return session;
 }
 
-static void leave_share(struct fixture *f, struct session **session)
+static void leave_share(struct hello_fixture *f, struct session **session)
 {
     struct address_share *share = (*session)->room.share;
     leave(f, session);

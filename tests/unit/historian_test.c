@@ -42,7 +42,7 @@ int64_t __wrap_clock_utc_ns(void)
     return __real_clock_utc_ns() + atomic_load(&clock_off_ns);
 }
 
-struct setup {
+struct historian_setup {
     char *folder;
     struct log *log;
     struct counters *counters;
@@ -54,7 +54,7 @@ struct setup {
 
 static int set_up(void **state)
 {
-    static struct setup s;
+    static struct historian_setup s;
     atomic_store(&clock_off_ns, MID_MONTH_S * NS_PER_S - __real_clock_utc_ns());
     s.folder = temp_folder_create();
     s.log = log_create(LOG_ERROR);
@@ -75,7 +75,7 @@ static int set_up(void **state)
     return 0;
 }
 
-static void start(struct setup *s)
+static void start(struct historian_setup *s)
 {
     char *folder = temp_path(s->folder, "history");
     const struct historian_params params = {
@@ -88,7 +88,7 @@ static void start(struct setup *s)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct historian_setup *s = *state;
     historian_stop(&s->historian);
     mem_free(s->tags);
     store_destroy(&s->store);
@@ -104,7 +104,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct historian_setup *s, name, set_up, tear_down)
 
 /* Not on a line, whose inner points history does not keep. */
 static double bent(int i)
@@ -113,7 +113,7 @@ static double bent(int i)
 }
 
 /* When they came. */
-static int64_t write_all(struct setup *s, double value)
+static int64_t write_all(struct historian_setup *s, double value)
 {
     int64_t utc_ns = clock_utc_ns();
     struct sample samples[TAGS];
@@ -123,7 +123,7 @@ static int64_t write_all(struct setup *s, double value)
     return utc_ns;
 }
 
-static double counted(struct setup *s, const char *name)
+static double counted(struct historian_setup *s, const char *name)
 {
     struct text text = { 0 };
     counters_print(s->counters, &text);
@@ -135,7 +135,7 @@ static double counted(struct setup *s, const char *name)
     return value;
 }
 
-static void look(struct setup *s, int64_t utc_ns, struct snapshot *into)
+static void look(struct historian_setup *s, int64_t utc_ns, struct snapshot *into)
 {
     char *folder = temp_path(s->folder, "history");
     struct history_reader *reader = history_reader_create(s->log, folder);
@@ -144,7 +144,7 @@ static void look(struct setup *s, int64_t utc_ns, struct snapshot *into)
     mem_free(folder);
 }
 
-static size_t points_around(struct setup *s, int tag, int64_t around_us, struct history_series *series)
+static size_t points_around(struct historian_setup *s, int tag, int64_t around_us, struct history_series *series)
 {
     char *folder = temp_path(s->folder, "history");
     struct history_reader *reader = history_reader_create(s->log, folder);
@@ -155,13 +155,13 @@ static size_t points_around(struct setup *s, int tag, int64_t around_us, struct 
     return series->points.count;
 }
 
-static size_t points_of(struct setup *s, int tag, struct history_series *series)
+static size_t points_of(struct historian_setup *s, int tag, struct history_series *series)
 {
     return points_around(s, tag, clock_utc_ns() / 1000, series);
 }
 
 /* How often the table of events has this kind; in the file of that month. */
-static int events_of(struct setup *s, const char *kind, int64_t utc_ns)
+static int events_of(struct historian_setup *s, const char *kind, int64_t utc_ns)
 {
     char name[MONTH_NAME_BYTES], *query = mem_printf("SELECT count(*) FROM event WHERE kind = '%s'", kind);
     month_name(month_of(utc_ns / 1000), name);
@@ -179,7 +179,7 @@ static int events_of(struct setup *s, const char *kind, int64_t utc_ns)
     return count;
 }
 
-static void wait_until_counted(struct setup *s, const char *name, double wanted)
+static void wait_until_counted(struct historian_setup *s, const char *name, double wanted)
 {
     int64_t end_ns = clock_mono_ns() + 30 * NS_PER_S;
     while (counted(s, name) != wanted && clock_mono_ns() < end_ns)
@@ -225,7 +225,7 @@ CASE(quiet_readers_see_the_last_second)
 }
 
 /* Writes until it is killed; says in shared memory what the store was told last. */
-static void record_for_ever(struct setup *s, _Atomic int64_t *told)
+static void record_for_ever(struct historian_setup *s, _Atomic int64_t *told)
 {
     start(s);
     for (int64_t i = 1;; i++) {
@@ -236,7 +236,7 @@ static void record_for_ever(struct setup *s, _Atomic int64_t *told)
 }
 
 /* Seconds between what the store was told last and what is on the disk. */
-static double kill_one(struct setup *s, _Atomic int64_t *told, unsigned *seed)
+static double kill_one(struct historian_setup *s, _Atomic int64_t *told, unsigned *seed)
 {
     struct history_series series;
     atomic_store(told, 0);
@@ -321,7 +321,7 @@ static bool has_point(const struct history_series *series, int64_t utc_ns, doubl
     return false;
 }
 
-static void expect_spooled_run(struct setup *s, int64_t first_ns, int64_t last_ns)
+static void expect_spooled_run(struct historian_setup *s, int64_t first_ns, int64_t last_ns)
 {
     struct history_series series;
     start(s);
@@ -421,7 +421,7 @@ TEST_WITH(summer_time_comes_and_goes, set_up, tear_down)
     setenv("TZ", "Europe/Berlin", 1);
     tzset();
     for (int k = 0; k < 2; k++) {
-        struct setup *s = *state;
+        struct historian_setup *s = *state;
         int64_t times_ns[10], change_ns = changes_s[k] * NS_PER_S;
         struct history_series series;
         atomic_store(&clock_off_ns, change_ns - NS_PER_S - __real_clock_utc_ns()); /* under a sanitizer it starts within that, too */
@@ -548,14 +548,14 @@ CASE(a_read_only_disk_loses_nothing)
     mem_free(folder);
 }
 
-static void month_path(struct setup *s, char *path, size_t bytes)
+static void month_path(struct historian_setup *s, char *path, size_t bytes)
 {
     char name[MONTH_NAME_BYTES];
     month_name(month_of(clock_utc_ns() / 1000), name);
     snprintf(path, bytes, "%s/history/%s", s->folder, name);
 }
 
-static size_t count_set_aside(struct setup *s)
+static size_t count_set_aside(struct historian_setup *s)
 {
     glob_t found;
     char *pattern = mem_printf("%s/history/history-*.damaged-*.sqlite", s->folder);

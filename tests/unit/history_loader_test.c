@@ -16,7 +16,7 @@
 
 static const int64_t BEGIN = INT64_C(1793500000) * US_PER_S;
 
-struct setup {
+struct history_loader_setup {
     char *folder;
     struct log *log;
     struct plant *plant;
@@ -27,12 +27,12 @@ struct setup {
 
 static void on_answer(void *arg)
 {
-    struct setup *s = arg;
+    struct history_loader_setup *s = arg;
     s->notified++;
 }
 
 /* A tag that rises by 1 each second for 50 s, and has no value for the 10 s after that. */
-static void record(struct setup *s)
+static void record(struct history_loader_setup *s)
 {
     struct history_tag *tags = history_tags(s->plant);
     struct history_point points[52];
@@ -48,8 +48,8 @@ static void record(struct setup *s)
 
 static int set_up(void **state)
 {
-    static struct setup s;
-    s = (struct setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR), .plant = plant_by_hand_create(1) };
+    static struct history_loader_setup s;
+    s = (struct history_loader_setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR), .plant = plant_by_hand_create(1) };
     plant_by_hand_source(s.plant, "plc", 502);
     plant_by_hand_tag(s.plant, "A", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0;
     record(&s);
@@ -67,7 +67,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct history_loader_setup *s = *state;
     history_loader_destroy(&s->loader);
     snapshot_cache_destroy(&s->snapshot_cache);
     plant_by_hand_destroy(&s->plant);
@@ -77,7 +77,7 @@ static int tear_down(void **state)
 }
 
 /* What was read of the tag at that time. */
-static struct reading read_at(struct setup *s, int64_t at_us)
+static struct reading read_at(struct history_loader_setup *s, int64_t at_us)
 {
     int before = s->notified;
     history_loader_ask(s->loader, 7, at_us);
@@ -97,7 +97,7 @@ static struct reading read_at(struct setup *s, int64_t at_us)
 
 TEST_WITH(test_an_instant_is_as_it_was, set_up, tear_down)
 {
-    struct setup *s = *state;
+    struct history_loader_setup *s = *state;
     struct reading middle = read_at(s, BEGIN + 20500000), gap = read_at(s, BEGIN + 55 * US_PER_S), before = read_at(s, BEGIN - 1);
     assert_true(middle.quality == QUALITY_GOOD && fabs(middle.value - 20.5) < 1e-9);
     assert_true(gap.quality == QUALITY_BAD_COMMUNICATION_ERROR && gap.age_ns == 4 * NS_PER_S);
@@ -108,7 +108,7 @@ TEST_WITH(test_an_instant_is_as_it_was, set_up, tear_down)
 
 TEST_WITH(test_only_the_newest_wish_of_a_client_counts, set_up, tear_down)
 {
-    struct setup *s = *state;
+    struct history_loader_setup *s = *state;
     enum { WISHES = 2000 };
     for (int i = 1; i <= WISHES; i++)
         history_loader_ask(s->loader, 7, BEGIN + i);

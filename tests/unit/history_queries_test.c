@@ -15,7 +15,7 @@
 
 static const int64_t NOW = INT64_C(1793500000) * US_PER_S;
 
-struct setup {
+struct history_queries_setup {
     char *folder;
     struct log *log;
     struct plant *plant;
@@ -25,13 +25,13 @@ struct setup {
 
 static void on_answer(void *arg)
 {
-    struct setup *s = arg;
+    struct history_queries_setup *s = arg;
     s->notified++;
 }
 
 static int set_up(void **state)
 {
-    static struct setup s;
+    static struct history_queries_setup s;
     static int query[2] = { 0, 1 };
     s.folder = temp_folder_create();
     s.log = log_create(LOG_ERROR);
@@ -55,7 +55,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct history_queries_setup *s = *state;
     history_queries_destroy(&s->queries);
     s->plant->tags_by_name = NULL;
     plant_by_hand_destroy(&s->plant);
@@ -64,9 +64,10 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct history_queries_setup *s, name, set_up, tear_down)
 
-static bool parse(struct setup *s, const char *const *args, size_t count, struct history_query *query, struct message_error *error)
+static bool parse(struct history_queries_setup *s, const char *const *args, size_t count, struct history_query *query,
+                  struct message_error *error)
 {
     return history_query_parse(s->plant, args, count, NOW, query, error);
 }
@@ -116,7 +117,7 @@ TEST(gaps_are_asked_by_time_alone)
     assert_false(history_query_parse_gaps((const char *const[]){ "from=-1h", "to=-2h" }, 2, NOW, &query, &error));
 }
 
-static struct history_answer *wait_for(struct setup *s, int count)
+static struct history_answer *wait_for(struct history_queries_setup *s, int count)
 {
     for (int i = 0; i < 1000 && s->notified < count; i++)
         sleep_ns(10 * NS_PER_MS);
@@ -163,7 +164,7 @@ CASE(csv_has_quotes_where_it_needs_them)
 }
 
 /* 20,000 points of each tag: more than goes into one piece. */
-static void record_much(struct setup *s)
+static void record_much(struct history_queries_setup *s)
 {
     struct history_tag *tags = history_tags(s->plant);
     int error;

@@ -24,7 +24,7 @@
 enum { TAGS = 3 };
 static const int64_t NOVEMBER = INT64_C(1793491200) * US_PER_S; /* 2026-11-01T00:00:00Z */
 
-struct setup {
+struct history_setup {
     char *folder;
     struct log *log;
     struct plant *plant; /* two analog tags within 0.4, 1, and a switch */
@@ -34,7 +34,7 @@ struct setup {
 
 static int set_up(void **state)
 {
-    static struct setup s;
+    static struct history_setup s;
     s.folder = temp_folder_create();
     s.log = log_create(LOG_ERROR);
     s.plant = plant_by_hand_create(TAGS);
@@ -51,7 +51,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct history_setup *s = *state;
     history_reader_destroy(&s->reader);
     mem_free(s->tags);
     plant_by_hand_destroy(&s->plant);
@@ -60,9 +60,9 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct history_setup *s, name, set_up, tear_down)
 
-static struct month_file *open_file(struct setup *s, int64_t t_us)
+static struct month_file *open_file(struct history_setup *s, int64_t t_us)
 {
     int error;
     struct month_file *file = month_file_open(s->log, s->folder, month_of(t_us), s->tags, TAGS, &error);
@@ -84,7 +84,7 @@ static uint32_t quality_at(int tag, int64_t second)
 }
 
 /* One sample a second, as the historian would have it: doors, one transaction each minute, tidied every ten. */
-static void record(struct setup *s, int64_t begin_us, int seconds)
+static void record(struct history_setup *s, int64_t begin_us, int seconds)
 {
     struct recorder *recorder = recorder_create(s->plant);
     struct recorder_rows rows = { 0 }, held = { 0 };
@@ -518,7 +518,7 @@ CASE(what_cannot_be_brought_up_stays_as_it_was)
     mem_free(path);
 }
 
-static void make_month(const struct setup *s, const char *name, size_t bytes)
+static void make_month(const struct history_setup *s, const char *name, size_t bytes)
 {
     char *content = mem_array(bytes, 1), *path = temp_write(s->folder, name, content, bytes);
     mem_free(path);
@@ -555,7 +555,7 @@ enum { LOT = 60000 };
 static const int64_t LIMIT = 5000000;
 
 /* Two tags, a point a second each, of which none is on the line of the others. */
-static void record_a_lot(struct setup *s, int64_t from_us)
+static void record_a_lot(struct history_setup *s, int64_t from_us)
 {
     int error;
     struct month_file *file = month_file_open(s->log, s->folder, month_of(from_us), s->tags, TAGS, &error);
@@ -569,7 +569,7 @@ static void record_a_lot(struct setup *s, int64_t from_us)
     mem_free(rows);
 }
 
-static int64_t size_of_month(const struct setup *s, int64_t t_us)
+static int64_t size_of_month(const struct history_setup *s, int64_t t_us)
 {
     struct stat st;
     char name[MONTH_NAME_BYTES];
@@ -580,14 +580,14 @@ static int64_t size_of_month(const struct setup *s, int64_t t_us)
     return size;
 }
 
-static void apply_for_some_minutes(struct setup *s, int64_t limit, int64_t now_us)
+static void apply_for_some_minutes(struct history_setup *s, int64_t limit, int64_t now_us)
 {
     int64_t unsent;
     for (int minute = 0; minute < 10; minute++)
         retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = (double)limit }, now_us, &unsent);
 }
 
-static void check_what_is_left(struct setup *s, int64_t last_us)
+static void check_what_is_left(struct history_setup *s, int64_t last_us)
 {
     struct history_reader *reader = history_reader_create(s->log, s->folder);
     struct history_series series;
@@ -642,7 +642,7 @@ CASE(a_month_that_is_over_shrinks)
 
 /* --- what waits for another database -------------------------------------------------------------------------------------------- */
 
-static int64_t waiting_in(const struct setup *s, int month)
+static int64_t waiting_in(const struct history_setup *s, int month)
 {
     int error;
     int64_t count = 0;
@@ -654,7 +654,7 @@ static int64_t waiting_in(const struct setup *s, int month)
 }
 
 /* Of the month of that time, a point a second, all of which wait. */
-static void record_to_send(struct setup *s, int64_t from_us, size_t count)
+static void record_to_send(struct history_setup *s, int64_t from_us, size_t count)
 {
     int error;
     struct month_file *file = month_file_open(s->log, s->folder, month_of(from_us), s->tags, TAGS, &error);

@@ -15,7 +15,7 @@
 
 static const int64_t OCTOBER_25 = INT64_C(1792886400) * US_PER_S; /* 2026-10-25T00:00:00Z */
 
-struct setup {
+struct import_setup {
     char *folder;
     struct log *log;
     struct plant *plant;
@@ -26,7 +26,7 @@ struct setup {
 
 static int set_up(void **state)
 {
-    static struct setup s;
+    static struct import_setup s;
     static int order[2] = { 0, 1 };
     s.folder = temp_folder_create();
     s.log = log_create(LOG_ERROR);
@@ -44,7 +44,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct import_setup *s = *state;
     diag_finish(&s->diag);
     s->plant->tags_by_name = NULL;
     plant_by_hand_destroy(&s->plant);
@@ -53,9 +53,9 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct import_setup *s, name, set_up, tear_down)
 
-static bool import(struct setup *s, const char *folder_name, const char *csv, int64_t start_us, int64_t unit_us)
+static bool import(struct import_setup *s, const char *folder_name, const char *csv, int64_t start_us, int64_t unit_us)
 {
     char *path = temp_write_text(s->folder, "series.csv", csv), *folder = temp_path(s->folder, folder_name);
     const struct import_params params = {
@@ -68,7 +68,7 @@ static bool import(struct setup *s, const char *folder_name, const char *csv, in
     return good;
 }
 
-static struct history_series read_series(struct setup *s, const char *folder_name, const char *tag)
+static struct history_series read_series(struct import_setup *s, const char *folder_name, const char *tag)
 {
     char *folder = temp_path(s->folder, folder_name);
     struct history_reader *reader = history_reader_create(s->log, folder);
@@ -95,7 +95,7 @@ static void assert_points(const struct history_points *points, const struct want
     }
 }
 
-static struct reading read_at(struct setup *s, const char *folder_name, int tag, int64_t t_us)
+static struct reading read_at(struct import_setup *s, const char *folder_name, int tag, int64_t t_us)
 {
     char *folder = temp_path(s->folder, folder_name);
     struct history_reader *reader = history_reader_create(s->log, folder);

@@ -12,14 +12,14 @@
 enum { FEW = 5, MANY = 70, PLACES = 4000, MOST = 400000 }; /* many: more than one block, and the last not full */
 static const double DISC_M = 0.1, ON_SURFACE_M = 1e-6, FINER_M = 0.04;
 
-struct drawn { /* coarse triangles, and places in them by chance */
+struct bend_case { /* coarse triangles, and places in them by chance */
     struct cad shape;
     float (*positions)[3], (*facing)[3]; /* vertices, then places; no matter for vertices, which triangles have */
     uint32_t tri[PLACES];
     double weights[PLACES][3], normals[PLACES][3];
 };
 
-static void draw(struct drawn *drawn)
+static void draw(struct bend_case *drawn)
 {
     const size_t vertices = drawn->shape.vertex_count;
     drawn->positions = mem_array(vertices + PLACES, sizeof(*drawn->positions));
@@ -89,7 +89,7 @@ static void make_gaps(struct cad *shape)
 }
 
 /* Of MAX - MIN: readings that are MAX where that makes it worse, and MIN elsewhere; then the other way round. */
-static double worst_at(const struct drawn *drawn, const struct influence *influence, size_t place, double around)
+static double worst_at(const struct bend_case *drawn, const struct influence *influence, size_t place, double around)
 {
     double plus = 0, minus = 0;
     for (size_t s = 0; s < influence->count; s++) {
@@ -132,8 +132,8 @@ struct case_of {
 };
 
 /* A solution on much smaller triangles stands for the exact one: what is drawn may differ from it by the errors of the corners. */
-static void compare_finer(const struct case_of *of, const struct drawn *drawn, const struct surface *surface, const double (*places_m)[3],
-                          const struct vertex_embedding *embedding, const float *errors)
+static void compare_finer(const struct case_of *of, const struct bend_case *drawn, const struct surface *surface,
+                          const double (*places_m)[3], const struct vertex_embedding *embedding, const float *errors)
 {
     struct influence_mesh mesh;
     struct influence exact = { 0 };
@@ -170,7 +170,7 @@ static void compare_finer(const struct case_of *of, const struct drawn *drawn, c
 
 static void holds(const struct case_of *of)
 {
-    struct drawn drawn = { 0 };
+    struct bend_case drawn = { 0 };
     struct influence_mesh mesh;
     struct influence_bend bend;
     struct influence ours = { 0 }, truth = { 0 };

@@ -8,14 +8,14 @@
 #include "preprocess/influence/influence.h"
 #include "tests/support/surface_case.h"
 
-struct solved {
+struct influence_case {
     struct cad shape;
     struct surface *surface;
     struct influence influence;
     float *errors; /* by vertex */
 };
 
-static void solve(struct solved *s, const double (*places_m)[3], size_t count, double disc_m, double decay_m)
+static void solve(struct influence_case *s, const double (*places_m)[3], size_t count, double disc_m, double decay_m)
 {
     struct influence_mesh mesh;
     const size_t vertices = s->shape.vertex_count;
@@ -44,7 +44,7 @@ static void solve(struct solved *s, const double (*places_m)[3], size_t count, d
     vertex_embedding_destroy(&embedding);
 }
 
-static void finish(struct solved *s)
+static void finish(struct influence_case *s)
 {
     influence_finish(&s->influence);
     mem_free(s->errors);
@@ -52,7 +52,7 @@ static void finish(struct solved *s)
     cad_finish(&s->shape);
 }
 
-static double value_at(const struct solved *s, const double *readings, size_t vertex)
+static double value_at(const struct influence_case *s, const double *readings, size_t vertex)
 {
     double sum = 0;
     for (size_t i = 0; i < s->influence.count; i++)
@@ -66,7 +66,7 @@ static double value_at(const struct solved *s, const double *readings, size_t ve
 #define DISC_M 0.1
 static const double rod_places[3][3] = { { 1, 0.05, 0 }, { 5, 0.05, 0 }, { 9, 0.05, 0 } };
 
-static void make_strip(struct solved *s)
+static void make_strip(struct influence_case *s)
 {
     cad_plate(&s->shape, &chance, 200, 3, STRIP_M, WIDTH_M, 0);
 }
@@ -76,7 +76,7 @@ static const double covered_m = 0.0957;
 
 TEST(test_rod_is_straight_between_sensors)
 {
-    struct solved s = { 0 };
+    struct influence_case s = { 0 };
     const double readings[3] = { 20, 100, 60 };
     make_strip(&s);
     solve(&s, rod_places, 3, DISC_M, (double)INFINITY);
@@ -96,7 +96,7 @@ TEST(test_rod_is_straight_between_sensors)
 /* Between two sensors as sinh, beyond the last one as exp: Incropera, Fundamentals of Heat and Mass Transfer, 3.6. */
 TEST(test_fin_falls_by_its_decay_length)
 {
-    struct solved s = { 0 };
+    struct influence_case s = { 0 };
     const double decay_m = 0.8, readings[3] = { 80, 80, 80 };
     make_strip(&s);
     solve(&s, rod_places, 3, DISC_M, decay_m);
@@ -118,7 +118,7 @@ TEST(test_fin_falls_by_its_decay_length)
 /* On a sphere the temperature between two caps is linear in ln tan(theta / 2). */
 TEST(test_sphere_between_caps)
 {
-    struct solved s = { 0 };
+    struct influence_case s = { 0 };
     const double disc_m = 0.1, cap = 2 * asin(disc_m / 2), places[2][3] = { { 0, 0, 1 }, { 0, 0, -1 } }, readings[2] = { 1, 0 };
     double worst = 0;
     cad_sphere(&s.shape, &chance, 20);
@@ -143,7 +143,7 @@ struct tally {
 };
 
 /* Compares places inside triangles with the exact solution, which is NAN where it is not asked for. spread: of the readings. */
-static void tally_places(const struct solved *s, const double *readings, double spread, double (*exact)(const double at[3]),
+static void tally_places(const struct influence_case *s, const double *readings, double spread, double (*exact)(const double at[3]),
                          struct tally *tally)
 {
     *tally = (struct tally){ 0 };
@@ -181,7 +181,7 @@ static double exact_fin(const double at[3])
     return (fin.low * sinh(to / fin.decay_m) + fin.high * sinh(from / fin.decay_m)) / sinh((4 - 2 * NEAR_M) / fin.decay_m);
 }
 
-static double value_near(const struct solved *s, const double *readings, double x)
+static double value_near(const struct influence_case *s, const double *readings, double x)
 {
     size_t best = 0;
     for (size_t v = 1; v < s->shape.vertex_count; v++)
@@ -200,10 +200,10 @@ TEST(test_fin_on_long_triangles_is_marked)
         bool marked;
     } cases[] = { { 200, 0.8, false }, { 10, 0.8, true }, { 5, 0.8, true }, { 200, 0.2, false }, { 25, 0.2, true }, { 5, 0.2, true } };
     const double readings[3] = { 80, 40, 80 };
-    struct solved fine = { 0 };
+    struct influence_case fine = { 0 };
     make_strip(&fine);
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
-        struct solved s = { 0 };
+        struct influence_case s = { 0 };
         struct tally tally;
         solve(&fine, rod_places, 3, DISC_M, cases[i].decay_m);
         fin.decay_m = cases[i].decay_m;
@@ -235,7 +235,7 @@ TEST(test_coarse_spheres_are_marked)
     const double places_m[2][3] = { { 0, 0, 1 }, { 0, 0, -1 } }, readings[2] = { 1, 0 };
     static const int cells[] = { 30, 12, 5 };
     for (int i = 0; i < 3; i++) {
-        struct solved s = { 0 };
+        struct influence_case s = { 0 };
         struct tally tally;
         double up = 0, down = 0;
         cad_sphere(&s.shape, &chance, cells[i]);
@@ -259,7 +259,7 @@ TEST(test_coarse_spheres_are_marked)
 
 TEST(test_shares_are_those_of_an_average)
 {
-    struct solved s = { 0 };
+    struct influence_case s = { 0 };
     const double places[4][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { -0.577, -0.577, 0.577 } };
     cad_sphere(&s.shape, &chance, 16);
     solve(&s, places, 4, 0.05, (double)INFINITY);
@@ -274,7 +274,7 @@ TEST(test_shares_are_those_of_an_average)
 
 TEST(test_readings_are_met)
 {
-    struct solved s = { 0 };
+    struct influence_case s = { 0 };
     const double places[2][3] = { { 1, 0, 0 }, { -1, 0, 0 } }, readings[2] = { 100, 0 };
     double best = 1;
     cad_sphere(&s.shape, &chance, 16);
@@ -289,7 +289,7 @@ TEST(test_readings_are_met)
 /* What is left without a sensor is what there would be had it never been there; of its disc of metal, a little is left. */
 TEST(test_lost_sensor_leaves_the_field_of_the_others)
 {
-    struct solved all = { 0 }, others = { 0 };
+    struct influence_case all = { 0 }, others = { 0 };
     double readings[3] = { 20, 0, 60 };
     const double two[2][3] = { { 1, 0.05, 0 }, { 9, 0.05, 0 } };
     const uint8_t used[3] = { 1, 0, 1 };
@@ -309,7 +309,7 @@ TEST(test_lost_sensor_leaves_the_field_of_the_others)
 
 TEST(test_two_sensors_at_one_place_share_it)
 {
-    struct solved s = { 0 };
+    struct influence_case s = { 0 };
     const double places[3][3] = { { 1, 0.05, 0 }, { 1, 0.05, 0 }, { 9, 0.05, 0 } };
     double readings[3] = { 20, 40, 60 };
     const uint8_t one_left[3] = { 1, 0, 1 };
@@ -325,7 +325,7 @@ TEST(test_two_sensors_at_one_place_share_it)
 
 TEST(test_one_sensor_and_bodies_apart)
 {
-    struct solved s = { 0 };
+    struct influence_case s = { 0 };
     const double places[1][3] = { { 0, 0, 1 } }, reading[1] = { 50 };
     cad_sphere(&s.shape, &chance, 10);
     const size_t own = s.shape.vertex_count, triangles = s.shape.triangle_count;
@@ -349,7 +349,7 @@ TEST(test_one_sensor_and_bodies_apart)
 TEST(test_many_sensors_are_solved_in_blocks)
 {
     enum { MANY = 75 };
-    struct solved s = { 0 };
+    struct influence_case s = { 0 };
     double places[MANY][3], ones[MANY];
     for (size_t i = 0; i < MANY; i++) { /* a spiral from pole to pole */
         double z = 1 - (2 * (double)i + 1) / MANY, turn = 2.4 * (double)i, across = sqrt(1 - z * z);

@@ -19,19 +19,19 @@ static int set_up(void **state)
     return 0;
 }
 
-struct trial {
+struct weights_trial {
     size_t count, padded;
     float distance_m[MOST], strength[MOST], decay[MOST];
     struct interp_group group;
 };
 
-static bool takes_part(const struct trial *trial, double near_m, double d)
+static bool takes_part(const struct weights_trial *trial, double near_m, double d)
 {
     return isfinite(d) && (d < (double)trial->group.reach_m || d <= near_m);
 }
 
 /* What a weight is times towards the reach: of the nearest, 1. */
-static double faded(const struct trial *trial, double near_m, double d)
+static double faded(const struct weights_trial *trial, double near_m, double d)
 {
     double reach_m = (double)trial->group.reach_m;
     if (!takes_part(trial, near_m, d))
@@ -39,7 +39,7 @@ static double faded(const struct trial *trial, double near_m, double d)
     return isinf(reach_m) || d <= near_m ? 1 : pow((reach_m - d) / (reach_m - near_m), 2);
 }
 
-static double least_of(const struct trial *trial)
+static double least_of(const struct weights_trial *trial)
 {
     double near_m = INFINITY;
     for (size_t i = 0; i < trial->count; i++)
@@ -48,14 +48,14 @@ static double least_of(const struct trial *trial)
 }
 
 /* By how much of itself a weight changes over a metre, since it fades. */
-static double fading(const struct trial *trial, double d)
+static double fading(const struct weights_trial *trial, double d)
 {
     double reach_m = (double)trial->group.reach_m;
     return isinf(reach_m) ? 0 : 2 / fmax(1e-5, reach_m - d);
 }
 
 /* Some sensors are not reached, some stand at the point itself. */
-static void make(struct trial *trial, bool decays)
+static void make(struct weights_trial *trial, bool decays)
 {
     trial->count = 1 + (size_t)(cad_random(&chance) * (MOST - 8));
     trial->padded = interp_padded(trial->count);
@@ -77,7 +77,7 @@ TEST(shepards_shares_are_those_of_a_plain_loop)
 {
     const float powers[5] = { 1, 2, 3, 2.5f, 12 };
     for (int n = 0; n < 2000; n++) {
-        struct trial trial;
+        struct weights_trial trial;
         float shares[MOST];
         double weights[MOST], sum = 0, slope = 0, fade = 0, fastest = 0;
         make(&trial, false);
@@ -115,7 +115,7 @@ TEST(shepards_shares_are_those_of_a_plain_loop)
 TEST(papers_shares_are_those_of_a_plain_loop)
 {
     for (int n = 0; n < 2000; n++) {
-        struct trial trial;
+        struct weights_trial trial;
         float shares[MOST], radius_m = (float)exp(4 * cad_random(&chance) - 1);
         double weights[MOST], near[MOST], sum = 0, all = 0, slope = 0;
         make(&trial, n % 2);
@@ -147,7 +147,7 @@ TEST(papers_shares_are_those_of_a_plain_loop)
 TEST(no_value_changes_faster_than_is_said)
 {
     for (int n = 0; n < 2000; n++) {
-        struct trial trial;
+        struct weights_trial trial;
         float shares[2][MOST], radius_m = (float)exp(4 * cad_random(&chance) - 1), step_m = 1e-3f * radius_m;
         double more = 0, less = 0;
         make(&trial, n % 2);

@@ -11,24 +11,24 @@
 
 enum { ROWS = 3000, TAGS = 7, KINDS = 3, BEGIN_US = 1000000 };
 
-struct row {
+struct expected_row {
     int tag, kind;
     int64_t t_us;
     enum alarm_status after;
 };
 
-struct setup {
+struct journal_setup {
     char *folder;
     struct log *log;
     struct journal_file *file;
-    struct row rows[ROWS]; /* by id, from 1 on */
+    struct expected_row rows[ROWS]; /* by id, from 1 on */
 };
 
-static void write_rows(struct setup *s)
+static void write_rows(struct journal_setup *s)
 {
     struct journal_entry *entries = mem_array(ROWS, sizeof(*entries));
     for (int i = 0; i < ROWS; i++) {
-        const struct row *row = &s->rows[i];
+        const struct expected_row *row = &s->rows[i];
         entries[i] = (struct journal_entry){
             .alarm = { .kind = (enum alarm_kind)(ALARM_LL + row->kind), .priority = 2, .limit = NAN, .value = NAN },
             .changed = true,
@@ -46,18 +46,18 @@ static void write_rows(struct setup *s)
 /* Many at the same time, as in a flood, and some gaps. */
 static int set_up(void **state)
 {
-    static struct setup s;
+    static struct journal_setup s;
     bool renewed;
     int error;
     unsigned seed = (unsigned)sweep_seed();
     int64_t t_us = BEGIN_US;
-    s = (struct setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR) };
+    s = (struct journal_setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR) };
     s.file = journal_file_open(s.log, s.folder, &renewed, &error);
     assert_non_null(s.file);
     for (int i = 0; i < ROWS; i++) {
         t_us += rand_r(&seed) % 3 ? 0 : rand_r(&seed) % 1000;
-        s.rows[i] =
-            (struct row){ rand_r(&seed) % TAGS, rand_r(&seed) % KINDS, t_us, rand_r(&seed) % 2 ? ALARM_NORMAL : ALARM_UNACKNOWLEDGED };
+        s.rows[i] = (struct expected_row){ rand_r(&seed) % TAGS, rand_r(&seed) % KINDS, t_us,
+                                           rand_r(&seed) % 2 ? ALARM_NORMAL : ALARM_UNACKNOWLEDGED };
     }
     write_rows(&s);
     *state = &s;
@@ -66,32 +66,32 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct journal_setup *s = *state;
     journal_file_close(&s->file);
     log_destroy(&s->log);
     temp_folder_destroy(&s->folder);
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct journal_setup *s, name, set_up, tear_down)
 
-struct found {
+struct found_rows {
     int64_t ids[ROWS];
     int count;
 };
 
 static void on_row(void *arg, const struct journal_row *row)
 {
-    struct found *found = arg;
+    struct found_rows *found = arg;
     assert_true(found->count < ROWS);
     found->ids[found->count++] = row->id;
 }
 
-static void check_at(struct setup *s, int64_t t_us)
+static void check_at(struct journal_setup *s, int64_t t_us)
 {
     int64_t last[TAGS][KINDS] = { 0 };
     int wanted = 0;
-    struct found found = { .count = 0 };
+    struct found_rows found = { .count = 0 };
     for (int i = 0; i < ROWS && s->rows[i].t_us <= t_us; i++)
         last[s->rows[i].tag][s->rows[i].kind] = i + 1;
     assert_int_equal(journal_file_at(s->file, t_us, on_row, &found), 0);
@@ -120,12 +120,12 @@ CASE(each_alarm_is_as_it_was_then)
 }
 
 /* Page by page, the newest first: every row of the time asked for once, whether of one tag or of all. */
-static void check_pages(struct setup *s, const char *tag, int64_t from_us, int64_t to_us, int limit)
+static void check_pages(struct journal_setup *s, const char *tag, int64_t from_us, int64_t to_us, int limit)
 {
     struct journal_query query = { from_us, to_us, INT64_MAX, tag, limit };
     int at = ROWS;
     for (;;) {
-        struct found found = { .count = 0 };
+        struct found_rows found = { .count = 0 };
         assert_int_equal(journal_file_rows(s->file, &query, on_row, &found), 0);
         for (int k = 0; k < found.count; k++) {
             do
@@ -153,7 +153,7 @@ CASE(pages_follow_each_other)
 /* Rows that a page ended with may be forgotten before the next is asked for. */
 CASE(a_page_after_rows_that_are_gone)
 {
-    struct found found = { .count = 0 };
+    struct found_rows found = { .count = 0 };
     const struct journal_query query = { INT64_MIN, INT64_MAX, 500, NULL, ROWS };
     assert_int_equal(journal_file_forget(s->file, INT64_MAX), 0);
     assert_int_equal(journal_file_rows(s->file, &query, on_row, &found), 0);

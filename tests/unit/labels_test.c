@@ -17,9 +17,9 @@ static double at(const json_t *array, size_t i)
     return json_number_value(json_array_get(array, i));
 }
 
-static struct box box_of(const json_t *array)
+static struct label_box box_of(const json_t *array)
 {
-    return (struct box){ at(array, 0), at(array, 1), at(array, 2) - at(array, 0), at(array, 3) - at(array, 1) };
+    return (struct label_box){ at(array, 0), at(array, 1), at(array, 2) - at(array, 0), at(array, 3) - at(array, 1) };
 }
 
 /* As wide and high as it says, whatever is in it. */
@@ -39,7 +39,7 @@ static void check_vector(const char *name)
     const json_t *list = json_object_get(vector, "items"), *blocked = json_object_get(vector, "blocked");
     size_t count = json_array_size(list), blocked_count = json_array_size(blocked);
     struct label_item *items = mem_array(count, sizeof(*items));
-    struct box *boxes = mem_array(blocked_count, sizeof(*boxes));
+    struct label_box *boxes = mem_array(blocked_count, sizeof(*boxes));
     struct label_place *places = mem_array(count, sizeof(*places));
     for (size_t i = 0; i < count; i++) {
         const json_t *item = json_array_get(list, i);
@@ -106,10 +106,10 @@ TEST(many_labels_do_not_overlap)
     for (int i = 0; i < COUNT; i++) {
         if (places[i].slot == LABEL_NONE)
             continue;
-        struct box a = places[i].box;
+        struct label_box a = places[i].box;
         assert_true(items[i].rank != LABEL_NOT_WANTED && a.x >= 0 && a.y >= 0 && a.x + a.width <= 1920 && a.y + a.height <= 1080);
         for (int k = 0; k < i; k++) {
-            struct box b = places[k].slot == LABEL_NONE ? (struct box){ 0 } : places[k].box;
+            struct label_box b = places[k].slot == LABEL_NONE ? (struct label_box){ 0 } : places[k].box;
             assert_true(a.x >= b.x + b.width || b.x >= a.x + a.width || a.y >= b.y + b.height || b.y >= a.y + a.height);
         }
         shown++;

@@ -23,7 +23,7 @@ struct flight { /* a message on its way */
     int64_t sent_ns; /* on the clock of the node */
 };
 
-struct node {
+struct lease_node {
     struct lease lease;
     uint64_t life;       /* a process; 0: none runs */
     int64_t starts_ns, wakes_ns, next_ns, asked_ns; /* of the world */
@@ -34,10 +34,10 @@ struct node {
     int times_led;
 };
 
-struct world {
+struct lease_world {
     int64_t now_ns;
     struct lease_row row;
-    struct node nodes[NODES];
+    struct lease_node nodes[NODES];
     bool cut[NODES + 1][NODES + 1];
     int64_t frozen_ns; /* the database answers again then */
     struct flight flights[FLIGHTS];
@@ -47,18 +47,18 @@ struct world {
     int most, changes; /* most that led at once */
 };
 
-static int chance(struct world *world, int n)
+static int chance(struct lease_world *world, int n)
 {
     world->seed = world->seed * 1664525u + 1013904223u;
     return (int)((world->seed >> 8) % (unsigned)n);
 }
 
-static int64_t clock_of(const struct world *world, const struct node *node)
+static int64_t clock_of(const struct lease_world *world, const struct lease_node *node)
 {
     return node->ahead_ns + (int64_t)((double)world->now_ns * node->rate);
 }
 
-static struct flight *send(struct world *world, enum what what, int from, int to)
+static struct flight *send(struct lease_world *world, enum what what, int from, int to)
 {
     if (world->cut[from][to] || world->cut[to][from])
         return NULL;
@@ -74,9 +74,9 @@ static struct flight *send(struct world *world, enum what what, int from, int to
     return NULL;
 }
 
-static void start(struct world *world, int i)
+static void start(struct lease_world *world, int i)
 {
-    struct node *node = &world->nodes[i];
+    struct lease_node *node = &world->nodes[i];
     char name[2] = { (char)('a' + i), 0 };
     node->life = ++world->lives;
     node->waits = false;
@@ -85,7 +85,7 @@ static void start(struct world *world, int i)
     lease_init(&node->lease, name, (int64_t)node->life);
 }
 
-static void end(struct world *world, struct node *node)
+static void end(struct lease_world *world, struct lease_node *node)
 {
     node->life = 0;
     node->starts_ns = world->now_ns + (100 + chance(world, 4000)) * MS;
@@ -98,7 +98,7 @@ static bool expects(const struct lease_row *a, const struct lease_row *b)
     return a->epoch == b->epoch && a->beat == b->beat;
 }
 
-static void change(struct world *world, struct flight *flight)
+static void change(struct lease_world *world, struct flight *flight)
 {
     struct lease_row *row = &world->row;
     flight->good = expects(row, &flight->row);
@@ -119,7 +119,7 @@ static void change(struct world *world, struct flight *flight)
     }
 }
 
-static void on_database(struct world *world, struct flight *flight)
+static void on_database(struct lease_world *world, struct flight *flight)
 {
     struct flight asked = *flight;
     if (world->now_ns < world->frozen_ns) { /* it does it later */
@@ -142,7 +142,7 @@ static void on_database(struct world *world, struct flight *flight)
 
 /* --- a node --------------------------------------------------------------------------------------------------------------------- */
 
-static void on_node(struct world *world, struct node *node, int i, const struct flight *flight)
+static void on_node(struct lease_world *world, struct lease_node *node, int i, const struct flight *flight)
 {
     int64_t now_ns = clock_of(world, node);
     switch (flight->what) {
@@ -184,7 +184,7 @@ static void on_node(struct world *world, struct node *node, int i, const struct 
 }
 
 /* The node that the leader is connected to: the first that it reaches. */
-static int follower_of(const struct world *world, int i)
+static int follower_of(const struct lease_world *world, int i)
 {
     for (int k = 0; k < NODES; k++)
         if (k != i && world->nodes[k].life && !world->cut[i][k] && !world->cut[k][i])
@@ -192,7 +192,7 @@ static int follower_of(const struct world *world, int i)
     return -1;
 }
 
-static void ask_database(struct world *world, struct node *node, int i, enum what what, const char *standby)
+static void ask_database(struct lease_world *world, struct lease_node *node, int i, enum what what, const char *standby)
 {
     struct flight *flight = send(world, what, i, NODES);
     node->waits = true;
@@ -206,7 +206,7 @@ static void ask_database(struct world *world, struct node *node, int i, enum wha
     snprintf(flight->standby, sizeof(flight->standby), "%s", standby);
 }
 
-static void lead(struct world *world, struct node *node, int i)
+static void lead(struct lease_world *world, struct lease_node *node, int i)
 {
     int follower = follower_of(world, i);
     const char name[2] = { follower < 0 ? 0 : (char)('a' + follower), 0 };
@@ -223,7 +223,7 @@ static void lead(struct world *world, struct node *node, int i)
     }
 }
 
-static void follow(struct world *world, struct node *node, int i)
+static void follow(struct lease_world *world, struct lease_node *node, int i)
 {
     if (node->waits)
         return;
@@ -235,9 +235,9 @@ static void follow(struct world *world, struct node *node, int i)
     }
 }
 
-static void run_node(struct world *world, int i)
+static void run_node(struct lease_world *world, int i)
 {
-    struct node *node = &world->nodes[i];
+    struct lease_node *node = &world->nodes[i];
     if (!node->life && world->now_ns >= node->starts_ns)
         start(world, i);
     if (!node->life)
@@ -259,9 +259,9 @@ static void run_node(struct world *world, int i)
         follow(world, node, i);
 }
 
-static void deliver(struct world *world, struct flight *flight)
+static void deliver(struct lease_world *world, struct flight *flight)
 {
-    struct node *node = flight->to < NODES ? &world->nodes[flight->to] : NULL;
+    struct lease_node *node = flight->to < NODES ? &world->nodes[flight->to] : NULL;
     if (!node) {
         on_database(world, flight);
         return;
@@ -277,7 +277,7 @@ static void deliver(struct world *world, struct flight *flight)
         on_node(world, node, came.to, &came);
 }
 
-static void disturb(struct world *world)
+static void disturb(struct lease_world *world)
 {
     if (world->calm || chance(world, 40))
         return;
@@ -298,7 +298,7 @@ static void disturb(struct world *world)
     }
 }
 
-static int leaders(const struct world *world)
+static int leaders(const struct lease_world *world)
 {
     int count = 0;
     for (int i = 0; i < NODES; i++)
@@ -306,7 +306,7 @@ static int leaders(const struct world *world)
     return count;
 }
 
-static void run(struct world *world, int64_t ns)
+static void run(struct lease_world *world, int64_t ns)
 {
     for (int64_t end_ns = world->now_ns + ns; world->now_ns < end_ns; world->now_ns += STEP_MS * MS) {
         disturb(world);
@@ -324,7 +324,7 @@ TEST(never_two_and_one_in_the_end)
 {
     unsigned seed = (unsigned)sweep_seed();
     int terms = 0;
-    struct world *world = malloc(sizeof(*world));
+    struct lease_world *world = malloc(sizeof(*world));
     for (int round = 0; round < sweep(4000, 150); round++) {
         memset(world, 0, sizeof(*world));
         world->seed = seed + (unsigned)round;

@@ -11,8 +11,8 @@
 static size_t chosen_within(double error_px, double away_m, double pixel_per_radian)
 {
     struct model_level levels[4] = { { .error_m = 0 }, { .error_m = 0.001f }, { .error_m = 0.01f }, { .error_m = 0.1f } };
-    struct model model = { .levels = levels, .level_count = 4 };
-    const struct model *of_asset[1] = { &model };
+    struct gl_model model = { .levels = levels, .level_count = 4 };
+    const struct gl_model *of_asset[1] = { &model };
     struct scene_asset asset = { .bounds_min_m = { 5 + away_m, 1, 1 }, .bounds_max_m = { 7 + away_m, 3, 3 } };
     struct scene scene = { .assets = &asset, .asset_count = 1 };
     struct gpu_scene gpu_scene = { .scene = &scene, .of_asset = of_asset };
@@ -51,8 +51,8 @@ static double error_among(size_t assets, int fewer, enum tier tier)
                                      { .triangles = 300000 / fewer, .error_m = 0.002f },
                                      { .triangles = 100000 / fewer, .error_m = 0.004f },
                                      { .triangles = 30000 / fewer, .error_m = 0.008f } };
-    struct model model = { .levels = levels, .level_count = 4 };
-    const struct model **of_asset = mem_array(assets, sizeof(const struct model *));
+    struct gl_model model = { .levels = levels, .level_count = 4 };
+    const struct gl_model **of_asset = mem_array(assets, sizeof(const struct gl_model *));
     struct scene scene = { .assets = mem_array(assets, sizeof(*scene.assets)), .asset_count = assets };
     struct gpu_scene gpu_scene = { .scene = &scene, .of_asset = of_asset };
     int *visible = mem_array(assets, sizeof(*visible));

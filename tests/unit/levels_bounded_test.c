@@ -9,7 +9,7 @@
 
 #define ROUND 96u /* corners of a circle */
 
-struct shape { /* of one part, on one primitive or two */
+struct bounded_shape { /* of one part, on one primitive or two */
     struct geometry g;
     struct welds welds;
     struct trimesh mesh;
@@ -18,7 +18,7 @@ struct shape { /* of one part, on one primitive or two */
     struct bounded *bounded;
 };
 
-static uint32_t add_vertex(struct shape *s, double x, double y, double z)
+static uint32_t add_vertex(struct bounded_shape *s, double x, double y, double z)
 {
     float *at = s->g.positions_m[s->g.vertex_count];
     at[0] = (float)x;
@@ -28,7 +28,7 @@ static uint32_t add_vertex(struct shape *s, double x, double y, double z)
     return s->g.vertex_count++;
 }
 
-static void add_triangle(struct shape *s, uint32_t a, uint32_t b, uint32_t c)
+static void add_triangle(struct bounded_shape *s, uint32_t a, uint32_t b, uint32_t c)
 {
     const uint32_t v[3] = { a, b, c };
     memcpy(s->g.indices + s->g.index_count, v, sizeof(v));
@@ -36,15 +36,15 @@ static void add_triangle(struct shape *s, uint32_t a, uint32_t b, uint32_t c)
     s->g.primitives[s->g.primitive_count - 1].index_count += 3;
 }
 
-static void begin_primitive(struct shape *s)
+static void begin_primitive(struct bounded_shape *s)
 {
     s->g.primitives[s->g.primitive_count++] = (struct asset_primitive){ .first_index = s->g.index_count };
 }
 
-static void shape_begin(struct shape *s)
+static void shape_begin(struct bounded_shape *s)
 {
     const size_t most = 64 * (size_t)ROUND;
-    *s = (struct shape){ .g = { .material_count = 1 } };
+    *s = (struct bounded_shape){ .g = { .material_count = 1 } };
     s->g.positions_m = mem_array(most, sizeof(*s->g.positions_m));
     s->g.normals = mem_array(most, sizeof(*s->g.normals));
     s->g.indices = mem_array(6 * most, sizeof(*s->g.indices));
@@ -55,7 +55,7 @@ static void shape_begin(struct shape *s)
     begin_primitive(s);
 }
 
-static void shape_end(struct shape *s)
+static void shape_end(struct bounded_shape *s)
 {
     assert_true(welds_init(&s->welds, &s->g));
     assert_int_equal(s->welds.part_count, 1);
@@ -76,7 +76,7 @@ static void shape_end(struct shape *s)
     mem_free(places);
 }
 
-static void shape_finish(struct shape *s)
+static void shape_finish(struct bounded_shape *s)
 {
     bounded_destroy(&s->bounded);
     bvh_destroy(&s->bvh);
@@ -87,7 +87,7 @@ static void shape_finish(struct shape *s)
 }
 
 /* How far corners of the model are from what is left, and middles of what is left from the model; by plain search. */
-static double stray(const struct shape *s)
+static double stray(const struct bounded_shape *s)
 {
     size_t count = bounded_count(s->bounded);
     uint32_t *left = mem_array(3 * count, sizeof(*left));
@@ -126,7 +126,7 @@ static double angle_of(uint32_t i)
 TEST(a_disc_takes_few_triangles)
 {
     for (double error_m = 0.005; error_m < 0.2; error_m *= 2) {
-        struct shape s;
+        struct bounded_shape s;
         shape_begin(&s);
         uint32_t middle = add_vertex(&s, 0, 0, 0);
         for (uint32_t i = 0; i < ROUND; i++)
@@ -146,7 +146,7 @@ TEST(a_disc_takes_few_triangles)
 /* A tube of rings with a bend, closed by nothing: what is asked for next is never finer, and each stays within its error. */
 TEST(errors_grow_with_what_is_asked)
 {
-    struct shape s;
+    struct bounded_shape s;
     size_t before = SIZE_MAX;
     shape_begin(&s);
     for (uint32_t r = 0; r < 40; r++)
@@ -174,7 +174,7 @@ TEST(errors_grow_with_what_is_asked)
 }
 
 /* How many edges do not have one triangle on either side. */
-static size_t count_open(const struct shape *s)
+static size_t count_open(const struct bounded_shape *s)
 {
     size_t count = 3 * bounded_count(s->bounded), open = 0;
     uint32_t *left = mem_array(count, sizeof(*left));
@@ -197,7 +197,7 @@ static size_t count_open(const struct shape *s)
 TEST(what_is_closed_stays_so)
 {
     for (uint32_t around = 5; around <= 12; around++) {
-        struct shape s;
+        struct bounded_shape s;
         shape_begin(&s);
         for (uint32_t r = 0; r < ROUND; r++)
             for (uint32_t i = 0; i < around; i++) {
@@ -226,7 +226,7 @@ TEST(what_is_closed_stays_so)
 /* Two materials on one plate meet along a wave: the border stays within half of the error, and no triangle has both. */
 TEST(seams_stay)
 {
-    struct shape s;
+    struct bounded_shape s;
     const double error_m = 0.05;
     shape_begin(&s);
     for (uint32_t side = 0; side < 2; side++) {

@@ -19,7 +19,7 @@
 #define ALONG 16            /* cells of the rod */
 #define OFF 0.02            /* m, of half a metre and more: on the wrong side it is that */
 
-struct pair { /* a sheet in z from 0 up, and a rod along x, over it or beside it */
+struct sheet_and_rod { /* a sheet in z from 0 up, and a rod along x, over it or beside it */
     struct cad cad;
     size_t sheet_count; /* vertices; the rest is the rod's */
     double thick, rod, source[3];
@@ -34,9 +34,9 @@ static void stretch(struct cad *cad, size_t from, double x, double y, double z, 
 }
 
 /* low: the rod's lowest corner. The source is in the middle of the side that looks away from the sheet. */
-static void make_pair(struct pair *pair, double thick, double rod, const double low[3], const double source[3])
+static void make_pair(struct sheet_and_rod *pair, double thick, double rod, const double low[3], const double source[3])
 {
-    *pair = (struct pair){ .thick = thick, .rod = rod };
+    *pair = (struct sheet_and_rod){ .thick = thick, .rod = rod };
     cad_box(&pair->cad, &chance, ACROSS, UP, 1, CELL);
     stretch(&pair->cad, 0, 1, 1, thick / CELL, (const double[3]){ 0, 0, 0 });
     pair->sheet_count = pair->cad.vertex_count;
@@ -56,7 +56,7 @@ static void make_pair(struct pair *pair, double thick, double rod, const double 
 }
 
 /* From p on one side of the sheet to q on its other side, over the nearest of its rims. */
-static double way_round(const struct pair *pair, const double p[3], const double q[3])
+static double way_round(const struct sheet_and_rod *pair, const double p[3], const double q[3])
 {
     double least = INFINITY;
     for (int axis = 0; axis < 2; axis++)
@@ -68,7 +68,7 @@ static double way_round(const struct pair *pair, const double p[3], const double
 }
 
 /* What distances there are to the sheet's sides, in one piece; or none, if it hangs apart. beside: the rod lies along a rim. */
-static void test_pair(const char *name, const struct pair *pair, bool below, bool beside, size_t pieces)
+static void test_pair(const char *name, const struct sheet_and_rod *pair, bool below, bool beside, size_t pieces)
 {
     static const enum cad_fault faults[] = { CAD_CLEAN, CAD_SOUP, CAD_REPEATED }; /* gaps are as wide as the sheet is thick */
     for (size_t i = 0; i < sizeof(faults) / sizeof(faults[0]); i++) {
@@ -116,7 +116,7 @@ TEST(a_rod_is_joined_to_the_side_that_looks_at_it)
 {
     static const double gaps[] = { 0, 0.4, 0.6 }; /* tolerances */
     for (int i = 0; i < 12; i++) {
-        struct pair pair;
+        struct sheet_and_rod pair;
         bool below = i % 2, thin = i / 2 % 2;
         double thick = 0.3 * TOLERANCE, rod = (thin ? 0.8 : 6) * TOLERANCE, gap = gaps[i / 4] * TOLERANCE;
         double x = 0.25 + 0.1 * cad_random(&chance), y = 0.3 + 0.05 * cad_random(&chance), z = below ? -gap - rod : thick + gap;
@@ -132,7 +132,7 @@ TEST(a_rod_is_joined_to_the_side_that_looks_at_it)
 TEST(a_rod_farther_than_the_tolerance_hangs_apart)
 {
     for (int below = 0; below < 2; below++) {
-        struct pair pair;
+        struct sheet_and_rod pair;
         double thick = 0.3 * TOLERANCE, rod = 6 * TOLERANCE, z = below ? -1.2 * TOLERANCE_MOST - rod : thick + 1.2 * TOLERANCE_MOST;
         make_pair(&pair, thick, rod, (const double[3]){ 0.3, 0.3, z }, (const double[3]){ 0.45, 0.3 + rod / 2, below ? z : z + rod });
         test_pair("rod too far off", &pair, below, false, 2);
@@ -145,7 +145,7 @@ TEST(a_rod_is_joined_to_the_rim)
 {
     static const double gaps[] = { 0, 0.4, 0.8 };
     for (int i = 0; i < 3; i++) {
-        struct pair pair;
+        struct sheet_and_rod pair;
         double thick = 0.3 * TOLERANCE, rod = 4 * TOLERANCE, x = 0.3 + 0.1 * cad_random(&chance), y = -gaps[i] * TOLERANCE - rod;
         make_pair(&pair, thick, rod, (const double[3]){ x, y, (thick - rod) / 2 }, (const double[3]){ x + ALONG * CELL / 2, y, thick / 2 });
         test_pair("rod beside the rim", &pair, false, true, 1);

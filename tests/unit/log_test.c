@@ -15,14 +15,14 @@
 #include "base/system/service_manager.h"
 #include "tests/support/temp.h"
 
-struct place {
+struct socket_place {
     char *folder, *path;
     int fd; /* of a datagram socket at path */
 };
 
 static int set_up(void **state)
 {
-    struct place *place = mem_new(sizeof(*place));
+    struct socket_place *place = mem_new(sizeof(*place));
     struct sockaddr_un here = { .sun_family = AF_UNIX };
     place->folder = temp_folder_create();
     place->path = temp_path(place->folder, "socket");
@@ -34,7 +34,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct place *place = *state;
+    struct socket_place *place = *state;
     close(place->fd);
     temp_folder_destroy(&place->folder);
     mem_free(place->path);
@@ -44,7 +44,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-static size_t receive(const struct place *place, char *out, size_t size)
+static size_t receive(const struct socket_place *place, char *out, size_t size)
 {
     ssize_t count = recv(place->fd, out, size - 1, 0);
     out[count > 0 ? count : 0] = 0;
@@ -74,7 +74,7 @@ static char *written(enum log_format format, const char *socket_path, enum log_l
 
 TEST_WITH(an_entry_of_the_journal_has_its_priority_plant_and_message_id, set_up, tear_down)
 {
-    const struct place *place = *state;
+    const struct socket_place *place = *state;
     char got[2048], want[2048];
     char *text = written(LOG_JOURNAL, place->path, LOG_ERROR, EVENT_RELOAD_REFUSED, "it is wrong");
     assert_string_equal(text, "");
@@ -88,7 +88,7 @@ TEST_WITH(an_entry_of_the_journal_has_its_priority_plant_and_message_id, set_up,
 
 TEST_WITH(a_message_of_two_lines_is_one_entry, set_up, tear_down)
 {
-    const struct place *place = *state;
+    const struct socket_place *place = *state;
     char got[2048];
     static const char want[] = "MESSAGE\n\3\0\0\0\0\0\0\0a\nb\nPRIORITY=6\n";
     char *text = written(LOG_JOURNAL, place->path, LOG_INFO, EVENT_NONE, "a\nb");
@@ -136,7 +136,7 @@ TEST(every_event_has_a_name_and_an_id_of_its_own)
 
 TEST_WITH(the_journal_is_known_by_its_stream, set_up, tear_down)
 {
-    const struct place *place = *state;
+    const struct socket_place *place = *state;
     struct stat st;
     char stream[64];
     assert_int_equal(fstat(place->fd, &st), 0);
@@ -150,7 +150,7 @@ TEST_WITH(the_journal_is_known_by_its_stream, set_up, tear_down)
 
 TEST_WITH(the_manager_is_told_and_asked_for_patience, set_up, tear_down)
 {
-    const struct place *place = *state;
+    const struct socket_place *place = *state;
     char got[256];
     assert_false(service_notify("READY=1"));
     assert_null(service_patience_begin("reading", 600));

@@ -13,7 +13,7 @@
 #include "tests/support/temp.h"
 
 enum { TAGS = 3, COMPUTED = 2, NOBODY = 65534 };
-struct fixture {
+struct loop_checks_fixture {
     struct log *log;
     struct plant *plant;
     char *folder;
@@ -22,7 +22,7 @@ struct fixture {
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct loop_checks_fixture *f = mem_new(sizeof(*f));
     f->log = log_create(LOG_ERROR);
     f->plant = plant_by_hand_create(TAGS);
     plant_by_hand_source(f->plant, "plc", 502);
@@ -41,7 +41,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct loop_checks_fixture *f = *state;
     loop_checks_close(&f->loop_checks);
     temp_folder_destroy(&f->folder);
     mem_free(f->plant->tags_by_name);
@@ -51,7 +51,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-static void open_again(struct fixture *f)
+static void open_again(struct loop_checks_fixture *f)
 {
     loop_checks_close(&f->loop_checks);
     f->loop_checks = loop_checks_open(f->log, f->plant, f->folder);
@@ -65,7 +65,7 @@ static const struct loop_check passed = { .state = LOOP_CHECK_PASSED,
                                           .who = "Kim, \"field\"",
                                           .remark = "calibrator 7\nline 2" };
 
-static void expect_unproven(const struct fixture *f, bool first, bool second)
+static void expect_unproven(const struct loop_checks_fixture *f, bool first, bool second)
 {
     assert_int_equal(loop_checks_unproven(f->loop_checks, 0), first);
     assert_int_equal(loop_checks_unproven(f->loop_checks, 1), second);
@@ -74,7 +74,7 @@ static void expect_unproven(const struct fixture *f, bool first, bool second)
 
 TEST_WITH(test_unproven_is_said_only_once_somebody_began, set_up, tear_down)
 {
-    struct fixture *f = *state;
+    struct loop_checks_fixture *f = *state;
     assert_false(loop_checks_begun(f->loop_checks));
     expect_unproven(f, false, false);
     struct loop_check failed = passed;
@@ -91,7 +91,7 @@ TEST_WITH(test_unproven_is_said_only_once_somebody_began, set_up, tear_down)
 
 TEST_WITH(test_a_proof_outlives_the_daemon, set_up, tear_down)
 {
-    struct fixture *f = *state;
+    struct loop_checks_fixture *f = *state;
     assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     open_again(f);
     const struct loop_check *check = loop_checks_of(f->loop_checks, 0);
@@ -106,7 +106,7 @@ TEST_WITH(test_a_proof_outlives_the_daemon, set_up, tear_down)
 
 TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
 {
-    struct fixture *f = *state;
+    struct loop_checks_fixture *f = *state;
     struct plant_tag *tag = &f->plant->tags[0], was = *tag;
     assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     uint64_t before = loop_check_fingerprint(f->plant, 0);
@@ -131,7 +131,7 @@ TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
     assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
 }
 
-static char *read_file(const struct fixture *f)
+static char *read_file(const struct loop_checks_fixture *f)
 {
     char *path = temp_path(f->folder, LOOP_CHECKS_FILE);
     size_t bytes;
@@ -143,7 +143,7 @@ static char *read_file(const struct fixture *f)
 
 TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
 {
-    struct fixture *f = *state;
+    struct loop_checks_fixture *f = *state;
     assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     char *path = temp_path(f->folder, LOOP_CHECKS_FILE), *whole = read_file(f);
     size_t length = strlen(whole);
@@ -167,7 +167,7 @@ TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
 
 TEST_WITH(test_what_cannot_be_kept_is_refused_and_counts_for_nothing, set_up, tear_down)
 {
-    struct fixture *f = *state;
+    struct loop_checks_fixture *f = *state;
     bool root = geteuid() == 0;
     assert_int_equal(chmod(f->folder, 0555), 0);
     if (root)
@@ -183,7 +183,7 @@ TEST_WITH(test_what_cannot_be_kept_is_refused_and_counts_for_nothing, set_up, te
 
 TEST_WITH(test_the_folder_is_made_where_nobody_has_yet, set_up, tear_down)
 {
-    struct fixture *f = *state;
+    struct loop_checks_fixture *f = *state;
     assert_int_equal(rmdir(f->folder), 0);
     assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     open_again(f);
@@ -192,7 +192,7 @@ TEST_WITH(test_the_folder_is_made_where_nobody_has_yet, set_up, tear_down)
 
 TEST_WITH(test_all_tags_with_a_source_are_told, set_up, tear_down)
 {
-    struct fixture *f = *state;
+    struct loop_checks_fixture *f = *state;
     struct text text = { 0 };
     assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     loop_checks_print(f->loop_checks, &text);

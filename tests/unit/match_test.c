@@ -25,7 +25,7 @@ static const char plant_text[] =
     "\"M_Radiator:25:583216\" }\n"
     "groups: [{ id: g, unit: K, min: 0, max: 1 }]\ntags: tags.csv\n";
 
-struct fixture {
+struct match_fixture {
     char *folder;
     struct plant *plant;
     struct model_index site;
@@ -34,7 +34,7 @@ struct fixture {
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct match_fixture *f = mem_new(sizeof(*f));
     char why[MODEL_INDEX_WHY_BYTES] = "";
     f->folder = temp_folder_create();
     mem_free(temp_write_text(f->folder, "m.gltf", model));
@@ -51,7 +51,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct match_fixture *f = *state;
     matcher_finish(&f->matcher);
     model_index_finish(&f->site);
     plant_destroy(&f->plant);
@@ -60,10 +60,10 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct match_fixture *f, name, set_up, tear_down)
 
 /* asset NULL: none. why: in the reason. */
-static void expect(struct fixture *f, const char *name, const char *description, enum match_status status, const char *asset,
+static void expect(struct match_fixture *f, const char *name, const char *description, enum match_status status, const char *asset,
                    const char *why)
 {
     struct tag_export list = { 0 };

@@ -24,8 +24,8 @@ enum { SPEED = 60, TICK_MS = 50, SHORT_S = 8, OUTAGE_MS = 1500, SPIKE_MS = 400, 
 static const char plant_path[] = "tests/plants/cookie_line.yaml", map_path[] = "tests/plants/cookie_line.map";
 static const char data_path[] = "../shared/data/sensors/cookie_factory/telemetry.csv";
 
-struct rows { /* what the registers held, or what the store was told */
-    struct row {
+struct register_rows { /* what the registers held, or what the store was told */
+    struct register_row {
         int64_t mono_ns, utc_ns;
         double value;
         uint32_t quality;
@@ -33,32 +33,32 @@ struct rows { /* what the registers held, or what the store was told */
     size_t count, capacity;
 };
 
-struct replay {
+struct modbus_replay {
     struct plant *plant;
     struct sim_values *values;
     struct sim sim;
     int port, stop_fd;
     _Atomic bool deaf;        /* the device does not answer */
     _Atomic int spike;        /* tag that is forced, or -1 */
-    struct rows *held, *told; /* by tag */
+    struct register_rows *held, *told; /* by tag */
     size_t *mapped, mapped_count;
 };
 
-static void add_row(struct rows *rows, int64_t mono_ns, int64_t utc_ns, double value, uint32_t quality)
+static void add_row(struct register_rows *rows, int64_t mono_ns, int64_t utc_ns, double value, uint32_t quality)
 {
     mem_grow(&rows->at, &rows->capacity, rows->count + 1, sizeof(*rows->at));
-    rows->at[rows->count++] = (struct row){ mono_ns, utc_ns, value, quality };
+    rows->at[rows->count++] = (struct register_row){ mono_ns, utc_ns, value, quality };
 }
 
 static void on_sample_event(void *arg, const struct sample_event *event)
 {
-    struct replay *r = arg;
+    struct modbus_replay *r = arg;
     add_row(&r->told[event->tag], event->mono_ns, event->utc_ns, event->value, event->quality);
 }
 
 static void *device_main(void *arg)
 {
-    struct replay *r = arg;
+    struct modbus_replay *r = arg;
     struct sim_port port;
     int64_t last_ns = clock_mono_ns();
     bool done = sim_port_open(&port, "127.0.0.1", r->port, sim_modbus_take, &r->sim.devices[0].modbus) != 0;
@@ -81,16 +81,16 @@ static void *device_main(void *arg)
 }
 
 /* The newest value before it, or one that came while it was read. */
-static void check_wire(const struct replay *r, size_t tag)
+static void check_wire(const struct modbus_replay *r, size_t tag)
 {
-    const struct rows *held = &r->held[tag], *told = &r->told[tag];
+    const struct register_rows *held = &r->held[tag], *told = &r->told[tag];
     const struct plant_tag *t = &r->plant->tags[tag];
     /* Half a step of a raw value that is an integer. */
     double step = t->scaling == SCALING_NONE ? 1 : (t->scaled_high - t->scaled_low) / (t->raw_high - t->raw_low);
     double within = t->type == DATA_FLOAT32 ? 0 : 0.501 * step;
     size_t from = 0, good = 0;
     for (size_t i = 0; i < told->count; i++) {
-        const struct row *row = &told->at[i];
+        const struct register_row *row = &told->at[i];
         if (quality_is_bad(row->quality) || row->quality == QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE)
             continue;
         while (from + 1 < held->count && held->at[from + 1].mono_ns < row->mono_ns - 2 * NS_PER_S)
@@ -121,9 +121,10 @@ static double line_at(const struct history_series *series, int64_t t_us, uint32_
 }
 
 /* Within the tag's deviation of everything that was told, and of its quality. */
-static void check_history(const struct replay *r, struct history_reader *reader, const struct history_tag *tag, size_t index, double *worst)
+static void check_history(const struct modbus_replay *r, struct history_reader *reader, const struct history_tag *tag, size_t index,
+                          double *worst)
 {
-    const struct rows *told = &r->told[index];
+    const struct register_rows *told = &r->told[index];
     struct history_series series;
     bool gap = false;
     double most = -INFINITY;
@@ -149,7 +150,7 @@ static void check_history(const struct replay *r, struct history_reader *reader,
     history_series_finish(&series);
 }
 
-static void run(struct replay *r, double seconds)
+static void run(struct modbus_replay *r, double seconds)
 {
     int64_t ms = (int64_t)(seconds * 1000);
     sleep_ns((ms / 4) * NS_PER_MS);
@@ -163,7 +164,7 @@ static void run(struct replay *r, double seconds)
     sleep_ns((ms / 2) * NS_PER_MS);
 }
 
-static void make_plant(struct replay *r)
+static void make_plant(struct modbus_replay *r)
 {
     struct diag diag = { 0 };
     struct sim_map map = { 0 };
@@ -187,7 +188,7 @@ static void make_plant(struct replay *r)
     r->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 }
 
-static void free_replay(struct replay *r)
+static void free_replay(struct modbus_replay *r)
 {
     for (size_t i = 0; i < r->plant->tag_count; i++) {
         mem_free(r->held[i].at);
@@ -204,7 +205,7 @@ static void free_replay(struct replay *r)
 
 TEST(history_gives_back_what_the_device_held)
 {
-    static struct replay r;
+    static struct modbus_replay r;
     if (access(data_path, R_OK) != 0) {
         print_message("# %s is not there\n", data_path);
         skip();

@@ -102,7 +102,7 @@ static int host_of(struct modbus_case *s)
 
 CASE(the_second_host_stands_in)
 {
-    struct device second = { .address = "127.0.0.2", .port = s->device.port };
+    struct modbus_device second = { .address = "127.0.0.2", .port = s->device.port };
     struct plant_source *source = &s->plant->sources[0];
     modbus_case_add_registers(s, 1);
     source->hosts[source->host_count++] = mem_strdup("127.0.0.2");

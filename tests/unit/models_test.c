@@ -9,7 +9,7 @@
 
 /* Triangles that the model's own description counts, and those without area among them; -1: not stated for this part. Pieces that it is in
    at the end; 0: some, what hangs apart does so in the model. */
-static const struct known {
+static const struct known_model {
     const char *plant, *asset;
     int triangles, without_area, pieces;
 } known[] = {

@@ -9,7 +9,7 @@
 #include "views/named_views.h"
 
 enum { NOON_S = 1767268800 };
-struct fixture {
+struct named_views_fixture {
     struct log *log;
     struct plant plant;
     char *folder, *history;
@@ -19,7 +19,7 @@ struct fixture {
 static int set_up(void **state)
 {
     static struct named_view fixed = { .id = "all", .title = "All", .address = "group=t" };
-    struct fixture *f = mem_new(sizeof(*f));
+    struct named_views_fixture *f = mem_new(sizeof(*f));
     f->log = log_create(LOG_ERROR);
     f->plant = (struct plant){ .views = &fixed, .view_count = 1 };
     f->folder = temp_folder_create();
@@ -31,7 +31,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct named_views_fixture *f = *state;
     named_views_close(&f->views);
     temp_folder_destroy(&f->folder);
     mem_free(f->history);
@@ -40,15 +40,15 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct named_views_fixture *f, name, set_up, tear_down)
 
-static void open_again(struct fixture *f)
+static void open_again(struct named_views_fixture *f)
 {
     named_views_close(&f->views);
     f->views = named_views_open(f->log, &f->plant, f->history);
 }
 
-static enum refusal_code save(struct fixture *f, const char *id, const char *title, int at)
+static enum refusal_code save(struct named_views_fixture *f, const char *id, const char *title, int at)
 {
     struct named_view_edit edit = { .at = at, .address = "group=t&show=value" };
     snprintf(edit.id, sizeof(edit.id), "%s", id);
@@ -57,7 +57,7 @@ static enum refusal_code save(struct fixture *f, const char *id, const char *tit
 }
 
 /* The ids in their order, with blanks between them; then compared. */
-static void assert_order(struct fixture *f, const char *expected)
+static void assert_order(struct named_views_fixture *f, const char *expected)
 {
     char found[400] = "";
     json_t *message = named_views_message(f->views, NULL), *list = json_object_get(message, "list");
@@ -68,7 +68,7 @@ static void assert_order(struct fixture *f, const char *expected)
     assert_string_equal(found, expected);
 }
 
-static size_t versions_of(struct fixture *f, const char *id, size_t index)
+static size_t versions_of(struct named_views_fixture *f, const char *id, size_t index)
 {
     json_t *message = named_views_message(f->views, id), *list = json_object_get(message, "list");
     size_t count = json_array_size(json_object_get(json_array_get(list, index), "before"));

@@ -11,7 +11,7 @@
 #define S INT64_C(1000000)
 #define NOON (S * 1767268800)
 
-struct fixture {
+struct notes_fixture {
     struct log *log;
     char *folder, *history, id[NOTE_ID_BYTES];
     struct notes *notes;
@@ -19,7 +19,7 @@ struct fixture {
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct notes_fixture *f = mem_new(sizeof(*f));
     f->log = log_create(LOG_ERROR);
     f->folder = temp_folder_create();
     f->history = mem_printf("%s/history", f->folder);
@@ -30,7 +30,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct notes_fixture *f = *state;
     notes_close(&f->notes);
     temp_folder_destroy(&f->folder);
     mem_free(f->history);
@@ -39,15 +39,15 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct notes_fixture *f, name, set_up, tear_down)
 
-static void open_again(struct fixture *f)
+static void open_again(struct notes_fixture *f)
 {
     notes_close(&f->notes);
     f->notes = notes_open(f->log, f->history);
 }
 
-static enum refusal_code add(struct fixture *f, const char *text, int64_t at_us, int64_t until_us)
+static enum refusal_code add(struct notes_fixture *f, const char *text, int64_t at_us, int64_t until_us)
 {
     return notes_add(f->notes, &(struct note){ .text = text, .tag = "TI-1", .until_us = until_us }, "kim", at_us, f->id);
 }

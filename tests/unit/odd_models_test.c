@@ -33,10 +33,10 @@ enum {
 };
 
 /* What lies at the origin beside a plate far away. */
-enum stray { STRAY_NONE, STRAY_VERTEX, STRAY_NEEDLE, STRAY_TRIANGLE };
+enum expected_stray { STRAY_NONE, STRAY_VERTEX, STRAY_NEEDLE, STRAY_TRIANGLE };
 
 /* Adds a node with one triangle: without area at the origin; from the plate to the origin; or at the origin. */
-static void add_stray(struct maker *maker, enum stray stray, const double at_m[3])
+static void add_stray(struct model_maker *maker, enum expected_stray stray, const double at_m[3])
 {
     static const uint32_t corners[3] = { 0, 1, 2 };
     const double *from_m = stray == STRAY_NEEDLE ? at_m : (const double[3]){ 0, 0, 0 };
@@ -53,9 +53,9 @@ static void add_stray(struct maker *maker, enum stray stray, const double at_m[3
 
 /* model.glb: a plate of squares, `copies` times in one place, and a stray triangle. */
 static void write_plates_and(struct prep_case *c, uint32_t across, uint32_t up, const double size_m[2], uint32_t copies,
-                             const double at_m[3], enum stray stray)
+                             const double at_m[3], enum expected_stray stray)
 {
-    struct maker maker;
+    struct model_maker maker;
     struct text places = { 0 }, corners = { 0 };
     for (uint32_t y = 0; y <= up; y++)
         for (uint32_t x = 0; x <= across; x++) {
@@ -94,16 +94,16 @@ static const double here[3] = { 0, 0, 0 };
 
 /* --- far away --------------------------------------------------------------------------------------------------------------- */
 
-struct row {
+struct distance_row {
     double place_m[3], geodesic_m, euclidean_m;
 };
 
-static size_t read_distances(struct prep_case *c, struct row *rows, size_t most)
+static size_t read_distances(struct prep_case *c, struct distance_row *rows, size_t most)
 {
     size_t count = 0;
     prep_case_expect(c, "distances $PLANT --asset A --sensor T1", 0);
     for (char *line = strchr(c->out.at, '\n') + 1; *line && count < most; line = strchr(line, '\n') + 1, count++) {
-        struct row *r = &rows[count];
+        struct distance_row *r = &rows[count];
         int got = sscanf(line, "%lf,%lf,%lf,%lf,%lf", &r->place_m[0], &r->place_m[1], &r->place_m[2], &r->geodesic_m, &r->euclidean_m);
         assert_int_equal(got, 5);
     }
@@ -113,7 +113,7 @@ static size_t read_distances(struct prep_case *c, struct row *rows, size_t most)
 CASE(where_a_survey_has_it_distances_are_as_at_the_origin)
 {
     static const double far_off_m[3] = { 412345, 5512345, 120 };
-    struct row near[66], far[66], home[66];
+    struct distance_row near[66], far[66], home[66];
     write_plates(c, 10, 5, (double[]){ 2, 1 }, 1, here);
     prep_case_plant(c, PLANT("tag: A"));
     prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,0.5,0.5,0\n");
@@ -136,7 +136,7 @@ CASE(where_a_survey_has_it_distances_are_as_at_the_origin)
 }
 
 /* Returns the row at a vertex of the plate. */
-static const struct row *row_at(const struct row *rows, size_t count, const double place_m[3])
+static const struct distance_row *row_at(const struct distance_row *rows, size_t count, const double place_m[3])
 {
     for (size_t k = 0; k < count; k++)
         if (hypot(place_m[0] - rows[k].place_m[0], place_m[1] - rows[k].place_m[1]) < 0.02)
@@ -147,18 +147,18 @@ static const struct row *row_at(const struct row *rows, size_t count, const doub
 CASE(a_stray_piece_at_the_origin_changes_no_distance)
 {
     static const double far_off_m[3] = { 412345, 5512345, 120 };
-    struct row plain[66], with[72];
+    struct distance_row plain[66], with[72];
     prep_case_plant(c, PLANT("tag: A"));
     prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,412345.5,5512345.5,120\n");
     write_plates(c, 10, 5, (double[]){ 2, 1 }, 1, far_off_m);
     assert_int_equal(read_distances(c, plain, 66), 66);
-    for (enum stray stray = STRAY_VERTEX; stray <= STRAY_TRIANGLE; stray++) {
+    for (enum expected_stray stray = STRAY_VERTEX; stray <= STRAY_TRIANGLE; stray++) {
         write_plates_and(c, 10, 5, (double[]){ 2, 1 }, 1, far_off_m, stray);
         prep_case_expect(c, "$PLANT", 0);
         prep_case_says(&c->out, "(node 'stray')");
         size_t count = read_distances(c, with, 72);
         for (size_t i = 0; i < 66; i++) {
-            const struct row *row = row_at(with, count, plain[i].place_m);
+            const struct distance_row *row = row_at(with, count, plain[i].place_m);
             assert_non_null(row);
             assert_float_equal(plain[i].geodesic_m, row->geodesic_m, 1e-3);
             assert_float_equal(plain[i].euclidean_m, row->euclidean_m, 1e-3);

@@ -14,7 +14,7 @@
 static const char CLAIMS[] = "{\"iss\":\"https://id.example\",\"aud\":\"plant\",\"sub\":\"s1\",\"exp\":1795000300,\"iat\":1794999990,"
                              "\"nonce\":\"n1\",\"preferred_username\":\"kim\",\"groups\":[\"x\",\"ops\"]}";
 
-struct fixture {
+struct openid_fixture {
     cjose_jwk_t *key, *other;
     json_t *jwks;
     struct openid_config config;
@@ -39,7 +39,7 @@ static cjose_jwk_t *make_key(const char *kid)
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct openid_fixture *f = mem_new(sizeof(*f));
     f->key = make_key("k1");
     f->other = make_key("k2");
     f->jwks = json_pack("{s:[o]}", "keys", public_part(f->key));
@@ -57,7 +57,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct openid_fixture *f = *state;
     cjose_jwk_release(f->key);
     cjose_jwk_release(f->other);
     json_decref(f->jwks);
@@ -65,7 +65,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct openid_fixture *f, name, set_up, tear_down)
 
 static char *sign(const cjose_jwk_t *key, const char *alg, const char *kid, const char *claims)
 {
@@ -84,7 +84,7 @@ static char *sign(const cjose_jwk_t *key, const char *alg, const char *kid, cons
 }
 
 /* Takes the token. why: NULL: it is good; else what it is refused for. */
-static enum id_token_fault expect(struct fixture *f, char *token, const char *nonce, const char *sub, const char *why)
+static enum id_token_fault expect(struct openid_fixture *f, char *token, const char *nonce, const char *sub, const char *why)
 {
     const struct id_token_expected expected = { .config = &f->config, .jwks = f->jwks, .nonce = nonce, .sub = sub, .now_s = NOW_S };
     const char *said = NULL;
@@ -103,7 +103,7 @@ static enum id_token_fault expect(struct fixture *f, char *token, const char *no
 }
 
 /* The claims with one changed; value: JSON, NULL: without it. */
-static char *changed(const struct fixture *f, const char *name, const char *value)
+static char *changed(const struct openid_fixture *f, const char *name, const char *value)
 {
     json_t *claims = json_loads(CLAIMS, 0, NULL);
     json_object_del(claims, name);

@@ -16,12 +16,12 @@
 #define T0 (INT64_C(1795000000) * S) /* Wednesday 2026-11-18 11:06:40 UTC */
 enum { TAGS = 6000, OPS = 0, BOSS = 1, AM = 2 };
 
-struct fixture {
+struct outbox_fixture {
     struct plant_case *c;
     struct outbox *outbox;
 };
 
-static void load(struct fixture *f, const char *rules)
+static void load(struct outbox_fixture *f, const char *rules)
 {
     struct text yaml = { 0 }, csv = { 0 };
     text_add(&yaml, "plant: { name: \"Werk Süd\", time_zone: Europe/Berlin }\n"
@@ -47,7 +47,7 @@ static void load(struct fixture *f, const char *rules)
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct outbox_fixture *f = mem_new(sizeof(*f));
     setenv("TZ", "Europe/Berlin", 1);
     tzset();
     *state = f;
@@ -56,18 +56,18 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct outbox_fixture *f = *state;
     outbox_destroy(&f->outbox);
     plant_case_tear_down((void **)&f->c);
     mem_free(f);
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct outbox_fixture *f, name, set_up, tear_down)
 
 enum { LOCAL, DISPLAY };
 
-static struct alarm alarm_of(const struct fixture *f, int tag, int mode, bool active, bool unacknowledged, int64_t raised_us)
+static struct alarm alarm_of(const struct outbox_fixture *f, int tag, int mode, bool active, bool unacknowledged, int64_t raised_us)
 {
     return (struct alarm){ .name = f->c->plant->tags[tag].name,
                            .tag = tag,
@@ -80,14 +80,14 @@ static struct alarm alarm_of(const struct fixture *f, int tag, int mode, bool ac
                            .raised_utc_ns = raised_us * 1000 };
 }
 
-static void put(struct fixture *f, int tag, int mode, bool active, bool unacknowledged, int64_t raised_us, int64_t now_us)
+static void put(struct outbox_fixture *f, int tag, int mode, bool active, bool unacknowledged, int64_t raised_us, int64_t now_us)
 {
     struct alarm alarm = alarm_of(f, tag, mode, active, unacknowledged, raised_us);
     outbox_put(f->outbox, &alarm, false, now_us);
 }
 
 /* How many alarms a message has that is due and then delivered; 0: none is. */
-static size_t deliver(struct fixture *f, int recipient, int64_t now_us)
+static size_t deliver(struct outbox_fixture *f, int recipient, int64_t now_us)
 {
     struct outbox_message message;
     outbox_tick(f->outbox, now_us);
@@ -98,7 +98,7 @@ static size_t deliver(struct fixture *f, int recipient, int64_t now_us)
     return count;
 }
 
-static void restart(struct fixture *f)
+static void restart(struct outbox_fixture *f)
 {
     json_t *saved = outbox_save(f->outbox);
     assert_non_null(saved);
@@ -289,7 +289,7 @@ CASE(what_came_and_went_between_two_looks_is_told)
 
 TEST_WITH(what_is_set_aside_is_not_told, set_up, tear_down)
 {
-    struct fixture *f = *state;
+    struct outbox_fixture *f = *state;
     load(f, "  - { id: all, to: ops }\n");
     struct alarm alarm = alarm_of(f, 0, LOCAL, true, true, T0);
     outbox_put(f->outbox, &alarm, false, T0);

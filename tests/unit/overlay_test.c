@@ -298,7 +298,7 @@ TEST(halves_say_what_they_differ_in)
 }
 
 /* Returns what tells one part of a picture from another. */
-static unsigned sum_of(const struct frame *frame, const struct box *box)
+static unsigned sum_of(const struct frame *frame, const struct label_box *box)
 {
     unsigned sum = 0;
     for (int y = (int)box->y; y < (int)(box->y + box->height); y++)
@@ -310,7 +310,7 @@ static unsigned sum_of(const struct frame *frame, const struct box *box)
 /* Header, captions of both halves, list of alarms, legend, each apart; what a picture of the past says. */
 TEST(all_speaks_the_language)
 {
-    static const struct box parts[] = {
+    static const struct label_box parts[] = {
         { 0, 0, 300, 56 }, { 8, 70, 300, 60 }, { WIDTH / 2 + 8, 10, 300, 60 }, { 0, 500, 300, 220 }, { 1020, 0, 260, HEIGHT }
     };
     enum { PARTS = sizeof(parts) / sizeof(parts[0]) };
@@ -332,7 +332,7 @@ TEST(all_speaks_the_language)
         view.language = (enum language)i;
         view.at_us = 1;
         frame = draw_view(0, false, &view);
-        sums[i][PARTS] = sum_of(frame, &(struct box){ 300, 0, 700, 120 });
+        sums[i][PARTS] = sum_of(frame, &(struct label_box){ 300, 0, 700, 120 });
         frame_unref(&frame);
     }
     stand.snapshot->readings[1].alarm = ALARM_NONE;

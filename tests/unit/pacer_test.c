@@ -123,7 +123,7 @@ TEST(silence_is_a_stall_and_then_the_end)
 }
 
 /* A network of one queue, and a client that decodes one picture after the other. */
-struct world {
+struct pacer_world {
     double bytes_per_s;
     int64_t rtt_ns, decode_ns;
     double pixels; /* decoding and bytes go by them */
@@ -141,7 +141,7 @@ struct world {
     size_t most_bytes;
 };
 
-static void deliver(struct world *world, struct pacer *pacer)
+static void deliver(struct pacer_world *world, struct pacer *pacer)
 {
     struct rung rung = quality_ladder_rung(&pacer->ladder, pacer->ladder.step);
     double area = rung.scale * rung.scale;
@@ -162,7 +162,7 @@ static void deliver(struct world *world, struct pacer *pacer)
     world->frames++;
 }
 
-static void run_world(struct world *world, struct pacer *pacer, double seconds)
+static void run_world(struct pacer_world *world, struct pacer *pacer, double seconds)
 {
     for (int64_t end_ns = world->now_ns + (int64_t)(seconds * 1e9); world->now_ns < end_ns; world->now_ns += MS) {
         while (world->ack_count > 0 && world->acks[0].at_ns <= world->now_ns) {
@@ -178,7 +178,7 @@ static void run_world(struct world *world, struct pacer *pacer, double seconds)
     }
 }
 
-static void measure(struct world *world)
+static void measure(struct pacer_world *world)
 {
     world->frames = 0;
     world->oldest_ns = 0;
@@ -186,7 +186,7 @@ static void measure(struct world *world)
     world->begin_ns = world->now_ns;
 }
 
-static double rate(const struct world *world)
+static double rate(const struct pacer_world *world)
 {
     return world->frames * 1e9 / (double)(world->now_ns - world->begin_ns);
 }
@@ -194,7 +194,7 @@ static double rate(const struct world *world)
 TEST(a_fast_network_gets_the_best)
 {
     struct pacer pacer = fresh();
-    struct world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .decode_ns = 8 * MS, .pixels = 1920 * 1080, .now_ns = NS_PER_S };
+    struct pacer_world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .decode_ns = 8 * MS, .pixels = 1920 * 1080, .now_ns = NS_PER_S };
     run_world(&world, &pacer, 1);
     measure(&world);
     run_world(&world, &pacer, 5);
@@ -205,7 +205,7 @@ TEST(a_fast_network_gets_the_best)
 TEST(a_long_way_does_not_cost_rate)
 {
     struct pacer pacer = fresh();
-    struct world world = { .bytes_per_s = 50e6, .rtt_ns = 200 * MS, .decode_ns = 5 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
+    struct pacer_world world = { .bytes_per_s = 50e6, .rtt_ns = 200 * MS, .decode_ns = 5 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
     run_world(&world, &pacer, 3);
     measure(&world);
     run_world(&world, &pacer, 5);
@@ -217,7 +217,7 @@ TEST(a_long_way_does_not_cost_rate)
 TEST(a_slow_network_gets_small_pictures_in_time)
 {
     struct pacer pacer = fresh();
-    struct world world = { .bytes_per_s = 125e3, .rtt_ns = 200 * MS, .decode_ns = 8 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
+    struct pacer_world world = { .bytes_per_s = 125e3, .rtt_ns = 200 * MS, .decode_ns = 8 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
     run_world(&world, &pacer, 5);
     measure(&world);
     run_world(&world, &pacer, 60);
@@ -230,7 +230,7 @@ TEST(a_slow_network_gets_small_pictures_in_time)
 TEST(a_slow_decoder_gets_fewer_pixels)
 {
     struct pacer pacer = fresh();
-    struct world world = { .bytes_per_s = 100e6, .rtt_ns = 2 * MS, .decode_ns = 150 * MS, .pixels = 1920 * 1080, .now_ns = NS_PER_S };
+    struct pacer_world world = { .bytes_per_s = 100e6, .rtt_ns = 2 * MS, .decode_ns = 150 * MS, .pixels = 1920 * 1080, .now_ns = NS_PER_S };
     run_world(&world, &pacer, 10);
     measure(&world);
     run_world(&world, &pacer, 20);
@@ -241,7 +241,7 @@ TEST(a_slow_decoder_gets_fewer_pixels)
 TEST(what_recovers_gets_its_quality_back)
 {
     struct pacer pacer = fresh();
-    struct world world = { .bytes_per_s = 20e6, .rtt_ns = 20 * MS, .decode_ns = 8 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
+    struct pacer_world world = { .bytes_per_s = 20e6, .rtt_ns = 20 * MS, .decode_ns = 8 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
     run_world(&world, &pacer, 5);
     assert_int_equal(pacer.ladder.step, 0);
     world.bytes_per_s = 200e3;
@@ -255,7 +255,7 @@ TEST(what_recovers_gets_its_quality_back)
     assert_int_equal(pacer.ladder.step, 0);
 }
 
-static void run_busy(struct world *world, struct pacer *pacer, int64_t busy_ns, double seconds)
+static void run_busy(struct pacer_world *world, struct pacer *pacer, int64_t busy_ns, double seconds)
 {
     world->busy_until_ns = world->now_ns + busy_ns;
     run_world(world, pacer, seconds);
@@ -265,7 +265,7 @@ static void run_busy(struct world *world, struct pacer *pacer, int64_t busy_ns, 
 TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
 {
     struct pacer pacer = fresh();
-    struct world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .decode_ns = 4 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
+    struct pacer_world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .decode_ns = 4 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
     channel_on_bytes(&pacer.channel, 1000000, 2500 * MS); /* the first texts, while it begins */
     quality_ladder_begin(&pacer.ladder, &pacer.channel, world.pixels);
     run_busy(&world, &pacer, 700 * MS, 0.75);
@@ -283,7 +283,7 @@ TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
 TEST(a_decoder_that_begins_is_not_slow)
 {
     struct pacer pacer = fresh();
-    struct world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .pixels = 1280 * 720, .draw_ns = 200 * MS };
+    struct pacer_world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .pixels = 1280 * 720, .draw_ns = 200 * MS };
     world.now_ns = NS_PER_S + MS;
     world.decode_ns = 8 * MS;
     run_world(&world, &pacer, 2);
@@ -301,7 +301,7 @@ TEST(steps_do_not_swing)
 {
     for (int kbit_per_s = 500; kbit_per_s <= 64000; kbit_per_s = kbit_per_s * 5 / 4) {
         struct pacer pacer = fresh();
-        struct world world = { .bytes_per_s = kbit_per_s * 125.0, .rtt_ns = 40 * MS, .decode_ns = 5 * MS, .pixels = 1280 * 720 };
+        struct pacer_world world = { .bytes_per_s = kbit_per_s * 125.0, .rtt_ns = 40 * MS, .decode_ns = 5 * MS, .pixels = 1280 * 720 };
         int changes = 0, before;
         world.now_ns = NS_PER_S;
         run_world(&world, &pacer, 20);

@@ -13,7 +13,7 @@
 
 static const struct wall_place ROOM = { "room", "", 2 };
 
-struct fixture {
+struct pairings_fixture {
     struct log *log;
     char *folder;
     struct pairings *pairings;
@@ -21,7 +21,7 @@ struct fixture {
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct pairings_fixture *f = mem_new(sizeof(*f));
     f->log = log_create(LOG_ERROR);
     f->folder = temp_folder_create();
     f->pairings = pairings_open(f->log, f->folder);
@@ -31,7 +31,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct pairings_fixture *f = *state;
     pairings_close(&f->pairings);
     temp_folder_destroy(&f->folder);
     log_destroy(&f->log);
@@ -39,7 +39,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct pairings_fixture *f, name, set_up, tear_down)
 
 static void print_secret(int i, char secret[TOKEN_MAX_CHARS + 1])
 {
@@ -48,7 +48,7 @@ static void print_secret(int i, char secret[TOKEN_MAX_CHARS + 1])
 }
 
 /* By the i-th device, at an address that has eight. */
-static enum pairing ask(struct fixture *f, int i, int64_t now_ns, char digits[PAIRING_DIGITS + 1])
+static enum pairing ask(struct pairings_fixture *f, int i, int64_t now_ns, char digits[PAIRING_DIGITS + 1])
 {
     char secret[TOKEN_MAX_CHARS + 1];
     uint8_t address[16] = { (uint8_t)(i / PAIRINGS_FROM) };
@@ -57,7 +57,7 @@ static enum pairing ask(struct fixture *f, int i, int64_t now_ns, char digits[PA
     return pairings_ask(f->pairings, &(struct pairing_request){ secret, ROOM, address, "10.0.0.5" }, now_ns, digits, &left_s);
 }
 
-static bool is_found(const struct fixture *f, int i)
+static bool is_found(const struct pairings_fixture *f, int i)
 {
     char secret[TOKEN_MAX_CHARS + 1];
     uint8_t hash[TOKEN_HASH_BYTES];
@@ -67,7 +67,7 @@ static bool is_found(const struct fixture *f, int i)
     return pairings_find(f->pairings, hash, &holder);
 }
 
-static enum refusal_code approve(struct fixture *f, const char *digits, int64_t now_ns)
+static enum refusal_code approve(struct pairings_fixture *f, const char *digits, int64_t now_ns)
 {
     char id[TOKEN_NAME_BYTES];
     return pairings_approve(f->pairings, digits, "eve", now_ns, 7, id);
@@ -171,7 +171,7 @@ static enum pairing look(const struct pairings *pairings, int i, int64_t now_ns,
                          &left_s);
 }
 
-static void mirror(const struct fixture *f, struct pairings *renderer, int64_t now_ns)
+static void mirror(const struct pairings_fixture *f, struct pairings *renderer, int64_t now_ns)
 {
     json_t *told = pairings_told(f->pairings, now_ns);
     assert_true(pairings_mirror(renderer, told, now_ns));

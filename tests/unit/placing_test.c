@@ -13,7 +13,7 @@
 #include "value/quality.h"
 
 enum { TAGS = 2 };
-struct fixture {
+struct placing_fixture {
     struct log *log;
     struct workers *workers;
     struct toy *toy;
@@ -28,7 +28,7 @@ struct fixture {
 
 static void notify(void *arg)
 {
-    struct fixture *f = arg;
+    struct placing_fixture *f = arg;
     pthread_mutex_lock(&f->lock);
     f->count++;
     pthread_cond_broadcast(&f->came);
@@ -37,8 +37,8 @@ static void notify(void *arg)
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
-    struct shape shape = { 0 };
+    struct placing_fixture *f = mem_new(sizeof(*f));
+    struct test_shape shape = { 0 };
     pthread_mutex_init(&f->lock, NULL);
     pthread_cond_init(&f->came, NULL);
     f->log = log_create(LOG_ERROR);
@@ -59,7 +59,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct placing_fixture *f = *state;
     place_set_destroy(&f->set);
     placing_destroy(&f->placing);
     workers_destroy(&f->workers);
@@ -73,10 +73,10 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct placing_fixture *f, name, set_up, tear_down)
 
 /* The next answer about gaps; or NULL, once none of the set waits. */
-static struct sensor_coverage_answer *collect(struct fixture *f, bool gaps)
+static struct sensor_coverage_answer *collect(struct placing_fixture *f, bool gaps)
 {
     for (int seen = 0;;) {
         struct sensor_coverage_answer *answer = placing_collect(f->placing);
@@ -94,7 +94,7 @@ static struct sensor_coverage_answer *collect(struct fixture *f, bool gaps)
     }
 }
 
-static bool move(struct fixture *f, const struct place_move *moves, size_t count, enum refusal_code why_not)
+static bool move(struct placing_fixture *f, const struct place_move *moves, size_t count, enum refusal_code why_not)
 {
     struct refusal why;
     bool moved = place_set_moves(f->set, moves, count, &why);
@@ -106,7 +106,7 @@ static bool move(struct fixture *f, const struct place_move *moves, size_t count
 
 TEST_WITH(test_a_move_is_a_trial_at_once_and_a_better_one_later, set_up, tear_down)
 {
-    struct fixture *f = *state;
+    struct placing_fixture *f = *state;
     const struct placed *placed;
     move(f, &(struct place_move){ .tag = 0, .position_m = { 10.5, 0.5, 1.02 } }, 1, REFUSAL_NONE);
     uint32_t first = place_set_trial(f->set);
@@ -135,7 +135,7 @@ TEST_WITH(test_a_move_is_a_trial_at_once_and_a_better_one_later, set_up, tear_do
 
 TEST_WITH(test_what_stays_keeps_its_distances, set_up, tear_down)
 {
-    struct fixture *f = *state;
+    struct placing_fixture *f = *state;
     struct place_move moves[TAGS] = { { .tag = 0, .position_m = { 10.5, 0.5, 1 } }, { .tag = 1, .position_m = { 10.5, 0.5, 0 } } };
     const struct placed *placed;
     move(f, moves, 1, REFUSAL_NONE);

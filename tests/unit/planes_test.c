@@ -11,17 +11,17 @@
 
 static const uint8_t GREY[3] = { 232, 231, 230 }, BLUE[3] = { 230, 130, 69 }; /* b, g, r */
 
-struct encoded_frame {
+struct frame_bytes {
     uint8_t *bgrx, *bytes;
-    struct planes planes;
+    struct yuv_planes planes;
 };
 
-static void picture_init(struct encoded_frame *picture, int width, int height)
+static void picture_init(struct frame_bytes *picture, int width, int height)
 {
     size_t pitch = (size_t)(width + 1) / 2, rows = (size_t)(height + 1) / 2;
-    *picture = (struct encoded_frame){ .bgrx = mem_array((size_t)width * (size_t)height, 4), .bytes = mem_array(pitch * rows, 6) };
-    struct planes *planes = &picture->planes;
-    *planes = (struct planes){ .bgrx = picture->bgrx, .stride_bytes = width * 4, .width_px = width, .height_px = height };
+    *picture = (struct frame_bytes){ .bgrx = mem_array((size_t)width * (size_t)height, 4), .bytes = mem_array(pitch * rows, 6) };
+    struct yuv_planes *planes = &picture->planes;
+    *planes = (struct yuv_planes){ .bgrx = picture->bgrx, .stride_bytes = width * 4, .width_px = width, .height_px = height };
     planes->plane[0] = picture->bytes;
     planes->plane[1] = picture->bytes + pitch * rows * 4;
     planes->plane[2] = picture->bytes + pitch * rows * 5;
@@ -29,26 +29,26 @@ static void picture_init(struct encoded_frame *picture, int width, int height)
     planes->pitch[1] = planes->pitch[2] = (int)pitch;
 }
 
-static void picture_finish(struct encoded_frame *picture)
+static void picture_finish(struct frame_bytes *picture)
 {
     mem_free(picture->bgrx);
     mem_free(picture->bytes);
 }
 
-static void paint(struct encoded_frame *picture, int x, int y, const uint8_t bgr[3])
+static void paint(struct frame_bytes *picture, int x, int y, const uint8_t bgr[3])
 {
     memcpy(picture->bgrx + ((size_t)y * (size_t)picture->planes.width_px + (size_t)x) * 4, bgr, 3);
 }
 
 /* step: bands at once. */
-static void make(struct encoded_frame *picture, size_t step)
+static void make(struct frame_bytes *picture, size_t step)
 {
     size_t bands = planes_bands(picture->planes.height_px);
     for (size_t i = 0; i < bands; i += step)
         planes_convert(&picture->planes, i, i + step < bands ? i + step : bands);
 }
 
-static int sample(const struct encoded_frame *picture, int c, int x, int y)
+static int sample(const struct frame_bytes *picture, int c, int x, int y)
 {
     return picture->planes.plane[1 + c][y / 2 * picture->planes.pitch[1 + c] + x / 2];
 }
@@ -64,7 +64,7 @@ TEST(thin_lines_keep_their_colour)
 {
     for (int turn = 0; turn < 2; turn++)
         for (int at = 30; at < 36; at++) {
-            struct encoded_frame picture;
+            struct frame_bytes picture;
             picture_init(&picture, 77, 71);
             for (int y = 0; y < 71; y++)
                 for (int x = 0; x < 77; x++)
@@ -84,7 +84,7 @@ TEST(thin_lines_keep_their_colour)
 TEST(colours_beside_each_other_stay)
 {
     static const uint8_t amber[3] = { 85, 155, 233 };
-    struct encoded_frame picture;
+    struct frame_bytes picture;
     picture_init(&picture, 64, 48);
     for (int y = 0; y < 48; y++)
         for (int x = 0; x < 64; x++)
@@ -97,9 +97,9 @@ TEST(colours_beside_each_other_stay)
 }
 
 /* Luma, and chroma where nothing is to be mended, are libyuv's. */
-static void plain(const struct encoded_frame *of, uint8_t *bytes)
+static void plain(const struct frame_bytes *of, uint8_t *bytes)
 {
-    const struct planes *p = &of->planes;
+    const struct yuv_planes *p = &of->planes;
     size_t count = (size_t)p->pitch[1] * (size_t)((p->height_px + 1) / 2);
     ARGBToJ420(p->bgrx, p->stride_bytes, bytes, p->pitch[0], bytes + 4 * count, p->pitch[1], bytes + 5 * count, p->pitch[2], p->width_px,
                p->height_px);
@@ -113,7 +113,7 @@ TEST(cuts_make_no_difference)
     for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
         int width = sizes[i][0], height = sizes[i][1];
         size_t count = (size_t)((width + 1) / 2) * (size_t)((height + 1) / 2) * 6, luma = (size_t)width * (size_t)height;
-        struct encoded_frame whole, cut;
+        struct frame_bytes whole, cut;
         uint8_t *mean = mem_array(count, 1);
         picture_init(&whole, width, height);
         picture_init(&cut, width, height);
@@ -135,7 +135,7 @@ TEST(cuts_make_no_difference)
 
 TEST(gentle_colours_are_left_alone)
 {
-    struct encoded_frame picture;
+    struct frame_bytes picture;
     uint8_t *mean = mem_array(320 * 100 * 3 / 2, 1);
     picture_init(&picture, 320, 100);
     for (int y = 0; y < 100; y++)

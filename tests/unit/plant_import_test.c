@@ -12,14 +12,14 @@
 #include "base/mem.h"
 #include "importing/export_folder.h"
 
-struct fixture {
+struct plant_import_fixture {
     char root[64], *plant, *exports;
     struct plant_import *import;
 };
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct plant_import_fixture *f = mem_new(sizeof(*f));
     strcpy(f->root, "/tmp/plantcast-import-XXXXXX");
     assert_non_null(mkdtemp(f->root));
     f->plant = mem_printf("%s/plant.yaml", f->root);
@@ -37,7 +37,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct plant_import_fixture *f = *state;
     char *command = mem_printf("rm -rf '%s'", f->root);
     plant_import_destroy(&f->import);
     plant_import_destroy(&f->import);
@@ -72,7 +72,7 @@ TEST(test_names)
     assert_int_equal(export_kind_of("tags.XLSX"), EXPORT_TAGS);
 }
 
-static int put(const struct fixture *f, const char *name, const char *text, bool whole)
+static int put(const struct plant_import_fixture *f, const char *name, const char *text, bool whole)
 {
     int error;
     struct export_upload *upload = export_upload_begin(f->exports, name, &error);
@@ -88,7 +88,7 @@ static int put(const struct fixture *f, const char *name, const char *text, bool
 
 TEST_WITH(test_uploads, set_up, tear_down)
 {
-    const struct fixture *f = *state;
+    const struct plant_import_fixture *f = *state;
     struct export_list list = { 0 };
     assert_int_equal(put(f, "b.csv", "1", true), 0);
     assert_int_equal(put(f, "a.rvm", "12", true), 0);
@@ -116,7 +116,7 @@ TEST_WITH(test_uploads, set_up, tear_down)
     assert_true(error < 0);
 }
 
-static json_t *told(const struct fixture *f)
+static json_t *told(const struct plant_import_fixture *f)
 {
     char *text = plant_import_text(f->import, &(struct import_source){ .host = "" });
     json_t *object = json_loads(text, 0, NULL);
@@ -125,7 +125,7 @@ static json_t *told(const struct fixture *f)
     return object;
 }
 
-static void check_told(const struct fixture *f, const char *phase, const char *said, const char *failed)
+static void check_told(const struct plant_import_fixture *f, const char *phase, const char *said, const char *failed)
 {
     json_t *object = told(f);
     assert_string_equal(json_string_value(json_object_get(object, "phase")), phase);
@@ -139,7 +139,7 @@ static void check_told(const struct fixture *f, const char *phase, const char *s
 
 TEST_WITH(test_orders, set_up, tear_down)
 {
-    struct fixture *f = *state;
+    struct plant_import_fixture *f = *state;
     struct import_order order = { .models = true, .units = "mm", .up = "z" }, taken;
     assert_true(import_order_good(&order));
     assert_false(import_order_good(&(struct import_order){ .units = "km" }));
@@ -170,7 +170,7 @@ TEST_WITH(test_orders, set_up, tear_down)
     check_told(f, "idle", "", NULL);
 }
 
-static const char *units_told(const struct fixture *f, char out[8])
+static const char *units_told(const struct plant_import_fixture *f, char out[8])
 {
     json_t *object = told(f);
     snprintf(out, 8, "%s/%s", json_string_value(json_object_get(object, "units")), json_string_value(json_object_get(object, "up")));
@@ -180,7 +180,7 @@ static const char *units_told(const struct fixture *f, char out[8])
 
 TEST_WITH(test_units_in_force_are_told_also_after_a_restart, set_up, tear_down)
 {
-    struct fixture *f = *state;
+    struct plant_import_fixture *f = *state;
     char is[8];
     assert_string_equal(units_told(f, is), "/");
     assert_true(plant_import_order(f->import, &(struct import_order){ .models = true, .units = "mm", .up = "z" }));

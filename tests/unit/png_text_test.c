@@ -6,23 +6,23 @@
 #include "base/mem.h"
 #include "provenance/png_text.h"
 
-struct file {
+struct png_bytes {
     uint8_t bytes[4096];
     size_t count;
 };
 
-static struct file picture(void)
+static struct png_bytes picture(void)
 {
     static const uint8_t pixels[8 * 4 * 3] = { 1, 2, 3 };
     png_image image = { .version = PNG_IMAGE_VERSION, .format = PNG_FORMAT_RGB, .width = 8, .height = 4 };
-    struct file file = { .count = sizeof(file.bytes) };
+    struct png_bytes file = { .count = sizeof(file.bytes) };
     assert_true(png_image_write_to_memory(&image, file.bytes, &file.count, 0, pixels, 0, NULL));
     return file;
 }
 
 TEST(a_text_is_found_again)
 {
-    struct file file = picture();
+    struct png_bytes file = picture();
     char long_text[10000];
     memset(long_text, 'x', sizeof(long_text));
     const struct png_text texts[] = { { "One", "first", 5 }, { "Other", long_text, sizeof(long_text) }, { "Empty", "", 0 } };
@@ -50,7 +50,7 @@ TEST(a_text_is_found_again)
 
 TEST(of_two_with_one_keyword_none_is_taken)
 {
-    struct file file = picture();
+    struct png_bytes file = picture();
     const struct png_text texts[] = { { "One", "first", 5 }, { "One", "second", 6 } };
     size_t count, length;
     uint8_t *with = png_text_add(file.bytes, file.count, texts, 2, &count);
@@ -60,7 +60,7 @@ TEST(of_two_with_one_keyword_none_is_taken)
 
 TEST(what_is_cut_or_damaged_is_refused)
 {
-    struct file file = picture();
+    struct png_bytes file = picture();
     const struct png_text text = { "One", "first", 5 };
     size_t count, length;
     char why[PNG_PLAIN_WHY_BYTES];

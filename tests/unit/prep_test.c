@@ -289,7 +289,7 @@ CASE(distances_are_printed)
 CASE(textures_are_read)
 {
     struct prep_case *c = s;
-    struct sheet sheet;
+    struct wavy_sheet sheet;
     struct seed seed = { 0 };
     sheet_init(&sheet, 8, 4);
     for (int i = 0; i < SEED_COUNT && (!seed.name || strcmp(seed.name, "textured.glb") != 0); i++) {

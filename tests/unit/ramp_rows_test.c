@@ -7,33 +7,33 @@
 
 enum { STEPS = 4, MOST = 100 };
 
-struct setup {
+struct ramp_rows_setup {
     size_t count;
     uint32_t *muted, *own, *was_muted, *was_own, *rows;
 };
 
-static void begin(struct setup *s, size_t count)
+static void begin(struct ramp_rows_setup *s, size_t count)
 {
     s->count = count;
     for (uint32_t **at = &s->muted; at <= &s->rows; at++)
         *at = mem_array(count * STEPS, sizeof(**at));
 }
 
-static size_t pack(struct setup *s)
+static size_t pack(struct ramp_rows_setup *s)
 {
     memcpy(s->was_muted, s->muted, s->count * STEPS * sizeof(*s->muted));
     memcpy(s->was_own, s->own, s->count * STEPS * sizeof(*s->own));
     return ramp_rows_pack(s->muted, s->own, s->count, STEPS, MOST, s->rows);
 }
 
-static void end(struct setup *s)
+static void end(struct ramp_rows_setup *s)
 {
     for (uint32_t **at = &s->muted; at <= &s->rows; at++)
         mem_free(*at);
 }
 
 /* The colours of a material, from black to its own; as context it is grey, but for one bit. */
-static void set(struct setup *s, size_t material, uint32_t color, uint32_t grey)
+static void set(struct ramp_rows_setup *s, size_t material, uint32_t color, uint32_t grey)
 {
     for (uint32_t i = 0; i < STEPS; i++) {
         uint32_t *own = &s->own[material * STEPS + i];
@@ -46,7 +46,7 @@ static void set(struct setup *s, size_t material, uint32_t color, uint32_t grey)
 
 TEST(equal_ones_are_kept_once)
 {
-    struct setup s;
+    struct ramp_rows_setup s;
     begin(&s, 5000);
     for (size_t i = 0; i < s.count; i++) {
         uint32_t shade = (uint32_t)(i * 7919 % 50);
@@ -63,7 +63,7 @@ TEST(equal_ones_are_kept_once)
 
 TEST(too_many_share_those_that_are_near)
 {
-    struct setup s;
+    struct ramp_rows_setup s;
     begin(&s, 20000);
     for (size_t i = 0; i < s.count; i++)
         set(&s, i, (uint32_t)i * 2654435761u & 0xffffff, 0x808080);
@@ -79,7 +79,7 @@ TEST(too_many_share_those_that_are_near)
 
 TEST(as_many_as_may_be_are_kept_apart)
 {
-    struct setup s;
+    struct ramp_rows_setup s;
     begin(&s, MOST);
     for (size_t i = 0; i < s.count; i++)
         set(&s, i, (uint32_t)i, 0x808080);

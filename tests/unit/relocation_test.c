@@ -24,21 +24,21 @@
 #define SEEN 1e-5 /* m: from the surface that is seen */
 #define NEAR 0.05 /* m: likewise, for what only coarser levels have */
 
-struct box { /* where a result comes to */
+struct result_box { /* where a result comes to */
     pthread_mutex_t lock;
     pthread_cond_t came;
     struct relocation_result result;
     int count, done_count;
 };
 
-static void box_init(struct box *box)
+static void box_init(struct result_box *box)
 {
-    *box = (struct box){ .lock = PTHREAD_MUTEX_INITIALIZER, .came = PTHREAD_COND_INITIALIZER };
+    *box = (struct result_box){ .lock = PTHREAD_MUTEX_INITIALIZER, .came = PTHREAD_COND_INITIALIZER };
 }
 
 static void put_into_box(void *arg, struct relocation_result *result)
 {
-    struct box *box = arg;
+    struct result_box *box = arg;
     pthread_mutex_lock(&box->lock);
     mem_free(box->result.geodesic_m);
     box->result = *result;
@@ -48,7 +48,7 @@ static void put_into_box(void *arg, struct relocation_result *result)
     pthread_mutex_unlock(&box->lock);
 }
 
-static void wait_for(struct box *box, int count)
+static void wait_for(struct result_box *box, int count)
 {
     pthread_mutex_lock(&box->lock);
     while (box->count < count)
@@ -203,7 +203,7 @@ static void try_sensors(const struct asset *asset, const struct relocation_shape
         const struct asset_sensor *sensor = &asset->view.sensors[s];
         const double point[3] = { (double)sensor->position_m[0], (double)sensor->position_m[1], (double)sensor->position_m[2] };
         struct relocation_place place;
-        struct box box;
+        struct result_box box;
         box_init(&box);
         assert_true(relocation_place(relocation, point, &place, euclidean_m));
         for (int axis = 0; axis < 3; axis++)
@@ -257,7 +257,7 @@ TEST(a_point_that_is_far_away_is_refused)
     struct cad plate = { 0 };
     struct cad_random chance = { 5 };
     struct relocation_place place;
-    struct box box;
+    struct result_box box;
     box_init(&box);
     cad_plate(&plate, &chance, 20, 20, 1, 1, 0);
     struct relocation_shape shape = shape_of(&plate);
@@ -281,7 +281,7 @@ TEST(an_asset_without_surface_is_said_to_be_broken)
                                           { .positions_m = line, .vertex_count = 3, .triangles = flat } };
     struct relocation_place place;
     for (int i = 0; i < 2; i++) {
-        struct box box;
+        struct result_box box;
         box_init(&box);
         struct relocation *relocation = relocation_create(the_log, workers, &shapes[i]);
         uint64_t ticket = relocation_request(relocation, (const double[3]){ 0.5, 0.1, 0 }, put_into_box, &box);
@@ -316,7 +316,7 @@ static void wait_until_warm(struct relocation *relocation)
         sleep_ns(NS_PER_MS);
 }
 
-static void ask_and_wait(struct relocation *relocation, struct box *box)
+static void ask_and_wait(struct relocation *relocation, struct result_box *box)
 {
     box_init(box);
     assert_true(relocation_request(relocation, (const double[3]){ 0.25, 0.5, 0 }, put_into_box, box) > 0);
@@ -328,7 +328,7 @@ static void try_walks_without_memory(struct relocation *relocation, const struct
 {
     int failed = 0;
     for (int n = 1;; n++) {
-        struct box box;
+        struct result_box box;
         atomic_store(&until_fault, n);
         ask_and_wait(relocation, &box);
         bool reached = atomic_exchange(&until_fault, 0) == 0;
@@ -367,7 +367,7 @@ TEST(without_memory_it_says_so_and_goes_on)
         shape.surface_path = kept ? path : NULL;
         shape.surface_key = 7;
         for (bool reached = true; reached;) {
-            struct box box;
+            struct result_box box;
             atomic_store(&until_fault, broken + warm + 1);
             struct relocation *relocation = relocation_create(quiet, workers, &shape);
             wait_until_warm(relocation);
@@ -402,7 +402,7 @@ TEST(what_waits_is_cancelled)
 {
     struct cad plate = { 0 };
     struct cad_random chance = { 6 };
-    struct box kept, cancelled, dropped;
+    struct result_box kept, cancelled, dropped;
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
     box_init(&kept);
     box_init(&cancelled);
@@ -440,15 +440,15 @@ TEST(what_waits_is_cancelled)
     cad_finish(&plate);
 }
 
-struct crowd {
+struct relocation_crowd {
     struct relocation *relocation;
-    struct box *box;
+    struct result_box *box;
     uint64_t seed;
 };
 
 static void *drag(void *arg)
 {
-    struct crowd *crowd = arg;
+    struct relocation_crowd *crowd = arg;
     struct cad_random chance = { crowd->seed };
     for (int i = 0; i < 50; i++) {
         const double point[3] = { cad_random(&chance), cad_random(&chance), 0 };
@@ -464,15 +464,15 @@ TEST(every_ask_is_answered_once)
 {
     struct cad plate = { 0 };
     struct cad_random chance = { 7 };
-    struct box box;
+    struct result_box box;
     pthread_t threads[3];
-    struct crowd crowds[3];
+    struct relocation_crowd crowds[3];
     box_init(&box);
     cad_plate(&plate, &chance, 30, 30, 1, 1, 0);
     struct relocation_shape shape = shape_of(&plate);
     struct relocation *relocation = relocation_create(the_log, workers, &shape);
     for (int i = 0; i < 3; i++) {
-        crowds[i] = (struct crowd){ relocation, &box, 11 + (uint64_t)i };
+        crowds[i] = (struct relocation_crowd){ relocation, &box, 11 + (uint64_t)i };
         assert_int_equal(pthread_create(&threads[i], NULL, drag, &crowds[i]), 0);
     }
     for (int i = 0; i < 3; i++)

@@ -20,7 +20,7 @@ struct event_log {
     _Atomic size_t count;
 };
 
-struct setup {
+struct replay_setup {
     struct plant_case *c;
     struct log *log;
     struct counters *counters;
@@ -31,7 +31,7 @@ struct setup {
 
 static int set_up(void **state)
 {
-    struct setup *s = mem_new(sizeof(*s));
+    struct replay_setup *s = mem_new(sizeof(*s));
     void *c;
     plant_case_set_up(&c);
     s->c = c;
@@ -43,7 +43,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct replay_setup *s = *state;
     void *c = s->c;
     source_stop(&s->source);
     store_destroy(&s->store);
@@ -53,7 +53,7 @@ static int tear_down(void **state)
     return plant_case_tear_down(&c);
 }
 
-#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct replay_setup *s, name, set_up, tear_down)
 
 static void on_sample_event(void *arg, const struct sample_event *event)
 {
@@ -64,7 +64,7 @@ static void on_sample_event(void *arg, const struct sample_event *event)
     all->count++; /* only now may it be looked at */
 }
 
-static void play(struct setup *s, const char *keys, const char *csv, const char *tags)
+static void play(struct replay_setup *s, const char *keys, const char *csv, const char *tags)
 {
     char *yaml = mem_printf("plant: { name: P }\nassets: [{ id: A, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0, max: 9 }]\n"
                             "sources: [{ id: r, type: replay, file: series.csv, %s }]\ntags: tags.csv\n",
@@ -79,14 +79,14 @@ static void play(struct setup *s, const char *keys, const char *csv, const char 
     assert_non_null(s->source);
 }
 
-static void wait_for_heard(struct setup *s, size_t count)
+static void wait_for_heard(struct replay_setup *s, size_t count)
 {
     for (int64_t end_ns = clock_mono_ns() + 10 * NS_PER_S; s->events.count < count && clock_mono_ns() < end_ns;)
         sleep_ns(5 * NS_PER_MS);
     assert_true(s->events.count >= count);
 }
 
-static void wait_for_link(struct setup *s, bool up)
+static void wait_for_link(struct replay_setup *s, bool up)
 {
     for (int64_t end_ns = clock_mono_ns() + 10 * NS_PER_S; store_link_is_up(s->store, 0) != up && clock_mono_ns() < end_ns;)
         sleep_ns(5 * NS_PER_MS);
@@ -94,7 +94,7 @@ static void wait_for_link(struct setup *s, bool up)
 }
 
 /* Of one tag, in the order of hearing. */
-static size_t of_tag(const struct setup *s, int tag, struct sample_event *out, size_t most)
+static size_t of_tag(const struct replay_setup *s, int tag, struct sample_event *out, size_t most)
 {
     size_t count = 0;
     for (size_t i = 0; i < s->events.count && count < most; i++)

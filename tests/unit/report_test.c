@@ -32,7 +32,7 @@ static int set_up(void **state)
                        flat[3][3] = { { 10, 0, 0 }, { 11, 0, 0 }, { 10.5f, 0, 0 } };
     prep_case_set_up(state);
     struct prep_case *c = *state;
-    struct maker maker;
+    struct model_maker maker;
     maker_init(&maker);
     boxes_add(&maker, "gap-1", (const double[3]){ 0, 0, 0 }, (const double[3]){ 1, 1, 1 });
     boxes_add(&maker, "gap-2", (const double[3]){ 1.0002, 0, 0 }, (const double[3]){ 2, 1, 1 });

@@ -33,14 +33,14 @@ static const char tags_text[] = "Tag Name,Group,Asset,Node,X,Y,Z\n"
                                 "c2,t,C,TI-2,,,\n"
                                 "x,t,,,,,\n";
 
-struct fixture {
+struct scene_fixture {
     char *folder, *prepared;
     struct plant *plant;
     struct log *log;
 };
 
 /* A triangle and two sensors, at (1, 2, 3) and at the node TI-2 in (4, 2, 0) of the asset frame; origin (1, 1, 1). */
-static void write_asset(const struct fixture *f, const char *name, double sensor_x_m, const char *node, uint32_t sensor_count)
+static void write_asset(const struct scene_fixture *f, const char *name, double sensor_x_m, const char *node, uint32_t sensor_count)
 {
     const float positions[3][3] = { { -1, 0, 0 }, { 3, 0, 0 }, { 0, 1, 2 } }, normals[3][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 } };
     const uint32_t indices[3] = { 0, 1, 2 };
@@ -79,13 +79,13 @@ static void write_asset(const struct fixture *f, const char *name, double sensor
     free(file);
 }
 
-static void write_manifest(const struct fixture *f, const char *text)
+static void write_manifest(const struct scene_fixture *f, const char *text)
 {
     mem_free(temp_write_text(f->prepared, "manifest.json", text));
 }
 
 /* All assets, last first, from one file. */
-static void write_good_manifest(const struct fixture *f)
+static void write_good_manifest(const struct scene_fixture *f)
 {
     struct text text = { 0 };
     uint64_t model;
@@ -98,7 +98,7 @@ static void write_good_manifest(const struct fixture *f)
     text_finish(&text);
 }
 
-static struct plant *load(const struct fixture *f, const char *more)
+static struct plant *load(const struct scene_fixture *f, const char *more)
 {
     struct diag diag = { 0 };
     char text[1000];
@@ -117,7 +117,7 @@ static struct plant *load(const struct fixture *f, const char *more)
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct scene_fixture *f = mem_new(sizeof(*f));
     f->folder = temp_folder_create();
     f->plant = load(f, "");
     f->prepared = plant_prepared_folder(f->plant);
@@ -130,7 +130,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct scene_fixture *f = *state;
     plant_destroy(&f->plant);
     log_destroy(&f->log);
     mem_free(f->prepared);
@@ -139,7 +139,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct scene_fixture *f, name, set_up, tear_down)
 
 static void assert_point(const double point[3], double x, double y, double z)
 {
@@ -180,7 +180,7 @@ CASE(everything_is_in_its_place)
 }
 
 /* The log goes to stderr; here it goes to a file for a while, and `words` must be in it. */
-static void assert_refused(struct fixture *f, const char *words)
+static void assert_refused(struct scene_fixture *f, const char *words)
 {
     char *path = temp_path(f->folder, "log.txt");
     size_t bytes;

@@ -14,7 +14,7 @@ static const double side_m = 4, sensors[SENSORS][3] = { { 0, 0, 0 }, { 4, 0, 0 }
 static int set_up(void **state)
 {
     struct toy *toy = toy_create();
-    struct shape shape = { 0 };
+    struct test_shape shape = { 0 };
     shape_plate(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ side_m, 0, 0 }, (double[3]){ 0, side_m, 0 }, CELLS);
     toy_add(toy, "PLATE", &shape, (double[3]){ 100, 0, 7 }, sensors, SENSORS);
     shape_plate(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ 1, 0, 0 }, (double[3]){ 0, 1, 0 }, 2);

@@ -14,14 +14,14 @@
 
 enum { EVERY_MS = 500, LIMIT_S = 30 }; /* asked sixty times within the limit */
 
-struct setup {
+struct service_manager_setup {
     char *folder, *path;
     int fd;
 };
 
 static int set_up(void **state)
 {
-    struct setup *s = *state = mem_new(sizeof(*s));
+    struct service_manager_setup *s = *state = mem_new(sizeof(*s));
     struct sockaddr_un address = { .sun_family = AF_UNIX };
     setsid(); /* as a service manager starts it; in a session of many, others' work would count */
     s->folder = temp_folder_create();
@@ -34,7 +34,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct service_manager_setup *s = *state;
     close(s->fd);
     mem_free(s->path);
     temp_folder_destroy(&s->folder);
@@ -42,10 +42,10 @@ static int tear_down(void **state)
     return unsetenv("NOTIFY_SOCKET");
 }
 
-#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct service_manager_setup *s, name, set_up, tear_down)
 
 /* How often it was asked since the last time. */
-static int asked(const struct setup *s)
+static int asked(const struct service_manager_setup *s)
 {
     char line[200];
     int count = 0;

@@ -46,7 +46,7 @@ static const char tags_text[] =
     "contact,100001,Boolean,,,,,,,,1,\n"
     "unit 9,9!40001,Word,,,,,,,,77,\n";
 
-struct setup {
+struct sim_program_setup {
     char folder[40], *plant_path, *tags_path, *model_path;
     int port, control_port, control_fd;
     pid_t pid;
@@ -80,7 +80,7 @@ static pid_t spawn(char *const arguments[], FILE **out)
     return pid;
 }
 
-static int exit_status(struct setup *s)
+static int exit_status(struct sim_program_setup *s)
 {
     int status = 0;
     assert_int_equal(waitpid(s->pid, &status, 0), s->pid);
@@ -90,8 +90,11 @@ static int exit_status(struct setup *s)
 
 static int set_up(void **state)
 {
-    static struct setup s;
-    s = (struct setup){ .folder = "/tmp/plantcast-sim-XX" "XX" "XX", .control_fd = -1 };
+    static struct sim_program_setup s;
+    s = (struct sim_program_setup){ .folder = "/tmp/plantcast-sim-XX"
+                                              "XX"
+                                              "XX",
+                                    .control_fd = -1 };
     assert_non_null(mkdtemp(s.folder));
     s.port = free_port();
     s.control_port = free_port();
@@ -115,7 +118,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct sim_program_setup *s = *state;
     if (s->control_fd >= 0)
         close(s->control_fd);
     if (s->pid > 0) {
@@ -135,9 +138,9 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct sim_program_setup *s, name, set_up, tear_down)
 
-static void start(struct setup *s)
+static void start(struct sim_program_setup *s)
 {
     char control[12], line[200], wanted[200];
     snprintf(control, sizeof(control), "%d", s->control_port);
@@ -157,7 +160,7 @@ static int connect_to(int port)
 }
 
 /* One command, one line back. */
-static const char *control(struct setup *s, const char *command)
+static const char *control(struct sim_program_setup *s, const char *command)
 {
     static char reply[300];
     size_t count = 0;
@@ -177,7 +180,7 @@ static const char *control(struct setup *s, const char *command)
 
 /* --- the daemon's side ------------------------------------------------------------------------------------------------------ */
 
-struct reader {
+struct sim_reader {
     struct log *log;
     struct counters *counters;
     struct store *store;
@@ -185,7 +188,7 @@ struct reader {
     struct source *source;
 };
 
-static void reader_start(struct reader *reader, const struct plant *plant)
+static void reader_start(struct sim_reader *reader, const struct plant *plant)
 {
     reader->log = log_create(LOG_ERROR);
     reader->counters = counters_create();
@@ -195,7 +198,7 @@ static void reader_start(struct reader *reader, const struct plant *plant)
     assert_non_null(reader->source);
 }
 
-static void reader_stop(struct reader *reader)
+static void reader_stop(struct sim_reader *reader)
 {
     source_stop(&reader->source);
     snapshot_destroy(&reader->snapshot);
@@ -204,14 +207,14 @@ static void reader_stop(struct reader *reader)
     log_destroy(&reader->log);
 }
 
-static const struct reading *look(struct reader *reader, int tag)
+static const struct reading *look(struct sim_reader *reader, int tag)
 {
     store_snapshot(reader->store, clock_mono_ns(), clock_utc_ns(), reader->snapshot);
     return &reader->snapshot->readings[tag];
 }
 
 /* Waits for quality and, where it is not NAN, value within 1e-4 of it. */
-static void expect(struct reader *reader, const struct plant *plant, const char *name, uint32_t quality, double value)
+static void expect(struct sim_reader *reader, const struct plant *plant, const char *name, uint32_t quality, double value)
 {
     int64_t end_ns = clock_mono_ns() + 8 * NS_PER_S;
     int tag = plant_find_tag(plant, name);
@@ -229,7 +232,7 @@ static void expect(struct reader *reader, const struct plant *plant, const char 
 
 CASE(every_type_over_the_wire)
 {
-    struct reader reader;
+    struct sim_reader reader;
     start(s);
     reader_start(&reader, s->plant);
     const struct {
@@ -254,7 +257,7 @@ CASE(every_type_over_the_wire)
 
 CASE(process_values_come_near_their_operating_point)
 {
-    struct reader reader;
+    struct sim_reader reader;
     start(s);
     reader_start(&reader, s->plant);
     expect(&reader, s->plant, "float32", QUALITY_GOOD, NAN);
@@ -266,7 +269,7 @@ CASE(process_values_come_near_their_operating_point)
 
 CASE(tests_can_fail_and_pause_it)
 {
-    struct reader reader;
+    struct sim_reader reader;
     start(s);
     reader_start(&reader, s->plant);
     assert_string_equal(control(s, "set float32 42"), "ok");
@@ -372,7 +375,7 @@ CASE(ends_cleanly_on_signals)
     }
 }
 
-static int run(struct setup *s, char *const arguments[], char said[300])
+static int run(struct sim_program_setup *s, char *const arguments[], char said[300])
 {
     s->pid = spawn(arguments, &s->out);
     size_t count = fread(said, 1, 299, s->out);
@@ -412,7 +415,7 @@ CASE(real_plants_are_served)
     }
     for (int i = 0; i < 2; i++) {
         struct diag diag = { 0 };
-        struct reader reader;
+        struct sim_reader reader;
         char port[12];
         struct plant *plant = plant_load(plants[i], &diag);
         assert_non_null(plant);

@@ -10,7 +10,7 @@
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
 
-struct fixture {
+struct site_fixture {
     char root[64], web[80];
 };
 
@@ -23,7 +23,7 @@ static void write_file(const char *folder, const char *name, const char *content
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct site_fixture *f = mem_new(sizeof(*f));
     char *core = NULL, *link = NULL;
     strcpy(f->root, "/tmp/plantcast-site-XXXXXX");
     assert_non_null(mkdtemp(f->root));
@@ -46,7 +46,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct site_fixture *f = *state;
     char *command = mem_printf("rm -rf '%s'", f->root);
     assert_int_equal(system(command), 0);
     mem_free(command);
@@ -54,11 +54,11 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct site_fixture *f, name, set_up, tear_down)
 
-static void expect(const struct fixture *f, const char *path, const char *content, const char *type)
+static void expect(const struct site_fixture *f, const char *path, const char *content, const char *type)
 {
-    struct site *site = site_create(NULL, f->web);
+    struct web_site *site = site_create(NULL, f->web);
     const struct site_file *file = site_find(site, path);
     if (!file)
         fail_msg("%s is not served", path);
@@ -114,7 +114,7 @@ CASE(nothing_else_is)
                                        "/in dex.html",
                                        "/%2e%2e/secret.js",
                                        "/\xc3\xa9.js" };
-    struct site *site = site_create(NULL, f->web), *none = site_create(NULL, NULL), *nowhere = site_create(NULL, "/nonexistent");
+    struct web_site *site = site_create(NULL, f->web), *none = site_create(NULL, NULL), *nowhere = site_create(NULL, "/nonexistent");
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++)
         if (site_find(site, bad[i]))
             fail_msg("'%s' is served", bad[i]);
@@ -128,10 +128,10 @@ CASE(nothing_else_is)
 /* An upgrade replaces the files below a daemon that runs: it serves those that it was started with. */
 CASE(files_stay_as_they_were_at_the_start)
 {
-    struct site *before = site_create(NULL, f->web);
+    struct web_site *before = site_create(NULL, f->web);
     write_file(f->web, "index.html", "<p>more");
     write_file(f->web, "new.js", "1;");
-    struct site *after = site_create(NULL, f->web);
+    struct web_site *after = site_create(NULL, f->web);
     assert_memory_equal(site_find(before, "/")->bytes, "<p>", 3);
     assert_int_equal(site_find(before, "/")->count, 3);
     assert_null(site_find(before, "/new.js"));

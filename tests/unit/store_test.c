@@ -10,7 +10,7 @@
 
 #define S INT64_C(1000000000)
 
-struct setup {
+struct store_setup {
     struct plant *plant; /* tags 0 and 1 of source 0, tag 2 of source 1; stale after 5 s */
     struct store *store;
     struct snapshot *snapshot;
@@ -18,7 +18,7 @@ struct setup {
 
 static int set_up(void **state)
 {
-    static struct setup s;
+    static struct store_setup s;
     s.plant = plant_by_hand_create(3);
     plant_by_hand_source(s.plant, "a", 1);
     plant_by_hand_tag(s.plant, "a0", TABLE_HOLDING, 0, DATA_INT16);
@@ -33,7 +33,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct setup *s = *state;
+    struct store_setup *s = *state;
     snapshot_destroy(&s->snapshot);
     assert_null(s->snapshot);
     store_destroy(&s->store);
@@ -42,14 +42,14 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct setup *s, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct store_setup *s, name, set_up, tear_down)
 
-static void write_one(struct setup *s, int tag, double value, uint32_t quality, int64_t now_ns)
+static void write_one(struct store_setup *s, int tag, double value, uint32_t quality, int64_t now_ns)
 {
     store_write(s->store, &(struct sample){ tag, value, quality }, 1, now_ns, now_ns + 1000 * S);
 }
 
-static const struct reading *look(struct setup *s, int tag, int64_t now_ns)
+static const struct reading *look(struct store_setup *s, int tag, int64_t now_ns)
 {
     store_snapshot(s->store, now_ns, now_ns + 1000 * S, s->snapshot);
     return &s->snapshot->readings[tag];
@@ -215,7 +215,7 @@ CASE(the_newest_sample_wins)
     write_one(s, 0, 7, QUALITY_GOOD, 12 * S);
     write_one(s, 0, 6, QUALITY_GOOD, 11 * S);
     assert_true(look(s, 0, 12 * S)->value == 7);
-    store_link_lost(((struct setup *)s)->store, 0, 11 * S); /* known before the sample came */
+    store_link_lost(((struct store_setup *)s)->store, 0, 11 * S); /* known before the sample came */
     assert_quality(look(s, 0, 12 * S)->quality, QUALITY_GOOD);
 }
 
@@ -312,7 +312,7 @@ TEST(qualities_have_names_and_classes)
     assert_string_equal(quality_class(0xC0000000u), "bad");
 }
 
-static void set_up_again(struct setup *s)
+static void set_up_again(struct store_setup *s)
 {
     store_destroy(&s->store);
     s->store = store_create(s->plant);
@@ -434,7 +434,7 @@ static void count_call(void *arg)
     ++*(int *)arg;
 }
 
-static int64_t take(struct setup *s, int64_t now_ns)
+static int64_t take(struct store_setup *s, int64_t now_ns)
 {
     return store_take(s->store, now_ns, now_ns + 1000 * S, s->snapshot);
 }

@@ -16,7 +16,7 @@
 #define PI 3.14159265358979323846
 #define SENSORS 6
 
-struct body { /* a surface with sensors of two groups, prepared by hand */
+struct prepared_body { /* a surface with sensors of two groups, prepared by hand */
     struct geometry g;
     struct plant plant;
     struct plant_sensor sensors[SENSORS];
@@ -82,7 +82,7 @@ static double along_cylinder(const double a[3], const double b[3])
 }
 
 /* 6 m x 4 m, 9 triangles: a fan of 7 round a point off the middle, one of whose edges has a vertex more. */
-static void make_plate(struct body *body)
+static void make_plate(struct prepared_body *body)
 {
     static const double rim[7][2] = { { 0, 0 }, { 6, 0 }, { 6, 2 }, { 6, 4 }, { 3.5, 4 }, { 0, 4 }, { 0, 2.5 } };
     struct geometry *g = &body->g;
@@ -101,7 +101,7 @@ static void make_plate(struct body *body)
 }
 
 /* Of radius 1, 5 m long, open; vertices at the seam are there twice. */
-static void make_cylinder(struct body *body, uint32_t around, uint32_t rings)
+static void make_cylinder(struct prepared_body *body, uint32_t around, uint32_t rings)
 {
     struct geometry *g = &body->g;
     begin(g, (size_t)(around + 1) * (rings + 1), 2 * (size_t)around * rings);
@@ -119,7 +119,7 @@ static void make_cylinder(struct body *body, uint32_t around, uint32_t rings)
     body->distance = along_cylinder;
 }
 
-static void make_plant(struct body *body)
+static void make_plant(struct prepared_body *body)
 {
     struct plant *plant = &body->plant;
     plant->groups = mem_array(2, sizeof(*plant->groups));
@@ -137,7 +137,7 @@ static void make_plant(struct body *body)
     }
 }
 
-static void finish(struct body *body)
+static void finish(struct prepared_body *body)
 {
     surface_field_finish(&body->field);
     surface_destroy(&body->surface);
@@ -148,7 +148,7 @@ static void finish(struct body *body)
     mem_free(body->plant.tags);
 }
 
-static double nearest(const struct body *body, int group, const double *distance_m)
+static double nearest(const struct prepared_body *body, int group, const double *distance_m)
 {
     double near_m = INFINITY;
     for (int i = 0; i < SENSORS; i++)
@@ -158,7 +158,7 @@ static double nearest(const struct body *body, int group, const double *distance
 }
 
 /* Shepard or Algorithm 1, of sensors that read 0 or 1, from distances. Where none reaches, of the nearest alone. */
-static double field(const struct body *body, int group, bool paper, const double *distance_m, double radius_m, unsigned readings)
+static double field(const struct prepared_body *body, int group, bool paper, const double *distance_m, double radius_m, unsigned readings)
 {
     double value = 0, weight = 0, near_m = nearest(body, group, distance_m), reach_m = body->plant.groups[group].reach_m;
     for (int i = 0; i < SENSORS; i++) {
@@ -177,7 +177,7 @@ static double field(const struct body *body, int group, bool paper, const double
     return value / weight;
 }
 
-static void true_distances(const struct body *body, const double p[3], bool geodesic, double *out)
+static void true_distances(const struct prepared_body *body, const double p[3], bool geodesic, double *out)
 {
     float solved_m[SENSORS];
     struct surface_point hit;
@@ -192,7 +192,7 @@ static void true_distances(const struct body *body, const double p[3], bool geod
     }
 }
 
-static double largest(const struct body *body, int group, bool geodesic)
+static double largest(const struct prepared_body *body, int group, bool geodesic)
 {
     double most = 0;
     for (uint32_t v = 0; v < body->own_vertices; v++) {
@@ -227,7 +227,7 @@ static void take_columns(const struct distance_rows *rows, float *columns)
     mem_free(codes);
 }
 
-static void prepare(struct body *body, const double (*points)[3])
+static void prepare(struct prepared_body *body, const double (*points)[3])
 {
     float(*places)[3] = mem_array(SENSORS, sizeof(*places));
     struct linear_error linear;
@@ -260,20 +260,20 @@ static void prepare(struct body *body, const double (*points)[3])
     }
 }
 
-static void onto_surface(const struct body *body, double p[3])
+static void onto_surface(const struct prepared_body *body, double p[3])
 {
     struct surface_point hit;
     surface_find_point(body->surface, p, NULL, &hit);
     memcpy(p, hit.point_m, sizeof(hit.point_m));
 }
 
-struct showing { /* of a field */
+struct field_shown { /* of a field */
     int group;
     bool paper, geodesic;
     unsigned readings;
 };
 
-static double true_field(const struct body *body, const struct showing *showing, const double p[3])
+static double true_field(const struct prepared_body *body, const struct field_shown *showing, const double p[3])
 {
     double distance_m[SENSORS];
     true_distances(body, p, showing->geodesic, distance_m);
@@ -282,16 +282,16 @@ static double true_field(const struct body *body, const struct showing *showing,
     return field(body, showing->group, showing->paper, distance_m, body->radius_m[showing->group][showing->geodesic], showing->readings);
 }
 
-static void random_showing(struct showing *showing, uint32_t *seed)
+static void random_showing(struct field_shown *showing, uint32_t *seed)
 {
-    *showing = (struct showing){ .group = random_unit(seed) < 0.5,
-                                 .paper = random_unit(seed) < 0.5,
-                                 .geodesic = random_unit(seed) < 0.5,
-                                 .readings = (unsigned)(random_unit(seed) * (1 << SENSORS)) };
+    *showing = (struct field_shown){ .group = random_unit(seed) < 0.5,
+                                     .paper = random_unit(seed) < 0.5,
+                                     .geodesic = random_unit(seed) < 0.5,
+                                     .readings = (unsigned)(random_unit(seed) * (1 << SENSORS)) };
 }
 
 /* What a level shows at a place in one of its triangles, between what it has at the corners. */
-static double shown_field(const struct body *body, const struct showing *showing, const uint32_t v[3], const double w[3])
+static double shown_field(const struct prepared_body *body, const struct field_shown *showing, const uint32_t v[3], const double w[3])
 {
     double shown = 0;
     for (int c = 0; c < 3; c++) {
@@ -307,11 +307,11 @@ static double shown_field(const struct body *body, const struct showing *showing
 }
 
 /* The finest level's error at a random point, which `snap` puts onto the true surface (NULL: the level's own). */
-static double error_somewhere(const struct body *body, const struct level *level, uint32_t *seed, void (*snap)(double p[3]))
+static double error_somewhere(const struct prepared_body *body, const struct level *level, uint32_t *seed, void (*snap)(double p[3]))
 {
     const uint32_t *v = level->indices + 3 * (uint32_t)(random_unit(seed) * (level->index_count / 3));
     double a = random_unit(seed), b = random_unit(seed), p[3] = { 0 };
-    struct showing showing;
+    struct field_shown showing;
     random_showing(&showing, seed);
     if (a + b > 1) {
         a = 1 - a;
@@ -330,14 +330,14 @@ static double error_somewhere(const struct body *body, const struct level *level
 
 /* --- coarser levels, as they are seen ------------------------------------------------------------------------------------------ */
 
-struct seen { /* triangles, to be looked at along rays */
+struct sight_target { /* triangles, to be looked at along rays */
     struct trimesh mesh;
     struct bvh *bvh;
 };
 
-static void seen_init(struct seen *seen, const struct geometry *g, const uint32_t *indices, size_t index_count)
+static void seen_init(struct sight_target *seen, const struct geometry *g, const uint32_t *indices, size_t index_count)
 {
-    *seen = (struct seen){ 0 };
+    *seen = (struct sight_target){ 0 };
     for (size_t v = 0; v < g->vertex_count; v++)
         trimesh_add_point(&seen->mesh,
                           (const double[3]){ (double)g->positions_m[v][0], (double)g->positions_m[v][1], (double)g->positions_m[v][2] });
@@ -346,7 +346,7 @@ static void seen_init(struct seen *seen, const struct geometry *g, const uint32_
     seen->bvh = bvh_create(&seen->mesh);
 }
 
-static void seen_finish(struct seen *seen)
+static void seen_finish(struct sight_target *seen)
 {
     bvh_destroy(&seen->bvh);
     trimesh_finish(&seen->mesh);
@@ -364,7 +364,8 @@ static void keep_first(void *arg, uint32_t tri, double t)
         *hit = (struct first_hit){ tri, t };
 }
 
-static bool look(const struct seen *seen, const double from[3], const double along[3], struct first_hit *hit, double place[3], double w[3])
+static bool look(const struct sight_target *seen, const double from[3], const double along[3], struct first_hit *hit, double place[3],
+                 double w[3])
 {
     *hit = (struct first_hit){ TRIMESH_NONE, INFINITY };
     bvh_ray(seen->bvh, from, along, keep_first, hit);
@@ -378,11 +379,11 @@ static bool look(const struct seen *seen, const double from[3], const double alo
 }
 
 #define OUTLINE 12.0 /* pixels of depth within two across */
-struct camera {      /* far away, of pixels as large as the level's error: nearer by, it is not drawn */
+struct outline_camera { /* far away, of pixels as large as the level's error: nearer by, it is not drawn */
     double along[3], right[3], up[3], pixel_m, back_m;
 };
 
-static void random_camera(struct camera *camera, double pixel_m, double size_m, uint32_t *seed)
+static void random_camera(struct outline_camera *camera, double pixel_m, double size_m, uint32_t *seed)
 {
     double turn = 2 * PI * random_unit(seed), high = 2 * random_unit(seed) - 1, flat = sqrt(1 - high * high);
     const double along[3] = { flat * cos(turn), flat * sin(turn), high }, right[3] = { -sin(turn), cos(turn), 0 };
@@ -398,8 +399,8 @@ struct sighted { /* of the finest level, from side * side eyes within a pixel */
     bool missed;
 };
 
-static struct sighted look_round(const struct body *body, const struct seen *finest, const struct camera *camera,
-                                 const struct showing *showing, const double from[3], int side)
+static struct sighted look_round(const struct prepared_body *body, const struct sight_target *finest, const struct outline_camera *camera,
+                                 const struct field_shown *showing, const double from[3], int side)
 {
     struct sighted sighted = { INFINITY, -INFINITY, INFINITY, -INFINITY, false };
     for (int i = 0; i < side * side; i++) {
@@ -424,12 +425,12 @@ static struct sighted look_round(const struct body *body, const struct seen *fin
 /* How far a pixel of the level is from what a dense reference shows within a pixel of there; NAN: nothing is to be seen there. outline: the
    reference ends there, or so does what is in front: the level may show what is just round the corner. What seems wrong is looked at more
    closely: beside a sensor a far level's pixel is as wide as the field's peak. */
-static double error_as_seen(const struct body *body, const struct seen *level, const struct seen *finest, const struct camera *camera,
-                            uint32_t *seed, bool *outline)
+static double error_as_seen(const struct prepared_body *body, const struct sight_target *level, const struct sight_target *finest,
+                            const struct outline_camera *camera, uint32_t *seed, bool *outline)
 {
     static const int sides[] = { 5, 33 };
     struct first_hit hit;
-    struct showing showing;
+    struct field_shown showing;
     double from[3], place[3], w[3], error = NAN;
     *outline = false;
     random_showing(&showing, seed);
@@ -455,7 +456,7 @@ static int by_size(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-static void say_errors(const struct body *body, size_t level, const char *name, const char *where, double *errors, size_t count)
+static void say_errors(const struct prepared_body *body, size_t level, const char *name, const char *where, double *errors, size_t count)
 {
     if (count == 0)
         return;
@@ -467,7 +468,7 @@ static void say_errors(const struct body *body, size_t level, const char *name, 
 
 #define POINTS sweep(20000, 5000)
 /* On the finest level; 99.5 % within a step of colour, all within `most`. */
-static void assert_field(const struct body *body, const char *name, void (*snap)(double p[3]), double most)
+static void assert_field(const struct prepared_body *body, const char *name, void (*snap)(double p[3]), double most)
 {
     double *errors = mem_array(POINTS, sizeof(*errors));
     uint32_t seed = 11;
@@ -484,12 +485,12 @@ static void assert_field(const struct body *body, const char *name, void (*snap)
    triangles, and 99.5 % within one; at the outline 95 %. What is mostly outline is so few pixels thick that what lies behind its edges is
    no farther than OUTLINE, and beside a sensor a pixel's shift towards the eye, which no eye beside this one makes up for, is much of the
    way to it: there it is 98 %, and where a tenth at most lies within the outline, 95 %: one sensor seen from one side is as many. */
-static void assert_pixels(const struct body *body, size_t number, const char *name, double most)
+static void assert_pixels(const struct prepared_body *body, size_t number, const char *name, double most)
 {
     const struct level *level = &body->levels.at[number];
     double *errors[2] = { mem_array(PIXELS, sizeof(double)), mem_array(PIXELS, sizeof(double)) };
-    struct seen finest, coarse;
-    struct camera camera;
+    struct sight_target finest, coarse;
+    struct outline_camera camera;
     uint32_t seed = 11;
     size_t counts[2] = { 0 };
     seen_init(&finest, &body->g, body->g.indices, body->g.index_count);
@@ -530,7 +531,7 @@ static void onto_cylinder(double p[3])
 }
 
 /* Each edge has as many faces as before it was cut: two, or one at a border; and a border lies on the old border. */
-static void assert_no_cracks(const struct body *body, double border_m)
+static void assert_no_cracks(const struct prepared_body *body, double border_m)
 {
     struct welded_positions places;
     assert_true(welded_init(&places, (const float(*)[3])body->g.positions_m, body->g.vertex_count));
@@ -561,7 +562,7 @@ static void assert_no_cracks(const struct body *body, double border_m)
 }
 
 /* At a sensor's vertex its distance is 0, on both ways. */
-static void assert_sensors(const struct body *body)
+static void assert_sensors(const struct prepared_body *body)
 {
     for (size_t i = 0; i < SENSORS; i++) {
         uint32_t v = body->places[i].nearest_vertex;
@@ -574,7 +575,7 @@ static const double plate_sensors[SENSORS][3] = { { 1, 1, 0 }, { 5, 1.5, 0 }, { 
 
 TEST(nine_triangles_show_the_field)
 {
-    struct body body = { 0 };
+    struct prepared_body body = { 0 };
     make_plate(&body);
     prepare(&body, plate_sensors);
     assert_sensors(&body);
@@ -586,9 +587,9 @@ TEST(nine_triangles_show_the_field)
 
 /* By area: where two sensors' reaches end at once, and the data with them, is a point at which the field jumps, and triangles around it as
    small as they may be. */
-static void assert_plate(const struct body *body)
+static void assert_plate(const struct prepared_body *body)
 {
-    struct seen finest;
+    struct sight_target finest;
     double *errors = mem_array(POINTS, sizeof(*errors));
     size_t count = 0, over = 0;
     uint32_t seed = 11;
@@ -596,7 +597,7 @@ static void assert_plate(const struct body *body)
     for (int i = 0; i < POINTS; i++) {
         const double from[3] = { 6 * random_unit(&seed), 4 * random_unit(&seed), 1 }, down[3] = { 0, 0, -1 };
         double place[3], w[3];
-        struct showing showing;
+        struct field_shown showing;
         struct first_hit hit;
         random_showing(&showing, &seed);
         if (!look(&finest, from, down, &hit, place, w))
@@ -618,7 +619,7 @@ TEST(nine_triangles_show_how_far_sensors_reach)
 {
     static const double reaches_m[][2] = { { 2.2, 3 }, { 3.5, 6 }, { 20, 1.5 } };
     for (size_t i = 0; i < sizeof(reaches_m) / sizeof(*reaches_m); i++) {
-        struct body body = { .as_solved = true, .reach_m = { reaches_m[i][0], reaches_m[i][1] } };
+        struct prepared_body body = { .as_solved = true, .reach_m = { reaches_m[i][0], reaches_m[i][1] } };
         make_plate(&body);
         prepare(&body, plate_sensors);
         assert_sensors(&body);
@@ -629,7 +630,7 @@ TEST(nine_triangles_show_how_far_sensors_reach)
 }
 
 /* A plate of two triangles through a box, whose middle is inside that and seen by nobody: what stands out is as true as anything. */
-static void make_plate_through_box(struct body *body)
+static void make_plate_through_box(struct prepared_body *body)
 {
     static const double rim[4][2] = { { -1.6, -1.3 }, { 1.6, -1.3 }, { 1.6, 1.3 }, { -1.6, 1.3 } };
     static const uint32_t sides[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
@@ -655,7 +656,8 @@ static bool is_in_box(const double p[3])
 }
 
 /* What a level shows at a place of that plate. */
-static double shown_on_plate(const struct body *body, const struct level *level, const struct showing *showing, const double p[3])
+static double shown_on_plate(const struct prepared_body *body, const struct level *level, const struct field_shown *showing,
+                             const double p[3])
 {
     for (uint32_t t = 0; t < level->index_count; t += 3) {
         double corners[3][3], w[3], aside_m = 0;
@@ -674,12 +676,13 @@ static double shown_on_plate(const struct body *body, const struct level *level,
 }
 
 /* At random places of the plate that are not inside the other body; on straight distances, since what leads round that has no formula. */
-static void find_errors_on_plate(const struct body *body, const struct level *level, bool (*is_hidden)(const double p[3]), double *errors)
+static void find_errors_on_plate(const struct prepared_body *body, const struct level *level, bool (*is_hidden)(const double p[3]),
+                                 double *errors)
 {
     uint32_t seed = 11;
     for (int i = 0; i < POINTS;) {
         const double p[3] = { 0, 3.2 * random_unit(&seed) - 1.6, 2.6 * random_unit(&seed) - 1.3 };
-        struct showing showing;
+        struct field_shown showing;
         if (is_hidden(p))
             continue;
         random_showing(&showing, &seed);
@@ -692,7 +695,7 @@ TEST(what_stands_out_of_a_body_shows_the_field)
 {
     static const double points[SENSORS][3] = { { 0, 1.3, 0.2 }, { 0, -1.3, 0.5 },  { 0, 0.1, 1.1 },
                                                { 1, 0.3, 0.2 }, { -1, -0.4, 0.6 }, { 0, -0.2, -1.1 } };
-    struct body body = { .as_solved = true };
+    struct prepared_body body = { .as_solved = true };
     double *errors = mem_array(POINTS, sizeof(*errors));
     make_plate_through_box(&body);
     prepare(&body, points);
@@ -705,7 +708,7 @@ TEST(what_stands_out_of_a_body_shows_the_field)
 }
 
 /* Of radius 1, with a plate through its middle as above. */
-static void make_plate_through_ball(struct body *body)
+static void make_plate_through_ball(struct prepared_body *body)
 {
     enum { AROUND = 64, HIGH = 32 };
     static const double rim[4][2] = { { -1.6, -1.3 }, { 1.6, -1.3 }, { 1.6, 1.3 }, { -1.6, 1.3 } };
@@ -741,7 +744,7 @@ TEST(what_stands_out_is_true_on_coarser_levels_too)
 {
     static const double points[SENSORS][3] = { { 0, 1.3, 0.2 }, { 0, -1.3, 0.5 }, { 0, 0.1, 1.1 },
                                                { 1, 0, 0 },     { -0.8, 0, 0.6 }, { 0, -0.2, -1.1 } };
-    struct body body = { .as_solved = true };
+    struct prepared_body body = { .as_solved = true };
     double *errors = mem_array(POINTS, sizeof(*errors));
     make_plate_through_ball(&body);
     prepare(&body, points);
@@ -759,7 +762,7 @@ TEST(what_stands_out_is_true_on_coarser_levels_too)
 /* A fine plate is left alone but for the sensors' vertices. */
 TEST(straight_edges_are_not_cut)
 {
-    struct body body = { 0 };
+    struct prepared_body body = { 0 };
     struct geometry *g = &body.g;
     const uint32_t n = 120;
     begin(g, 2 * (size_t)(n + 1) * (n + 1), 2 * (size_t)n * n);
@@ -787,7 +790,7 @@ static bool turns_left(const struct geometry *g, uint32_t a, uint32_t b, uint32_
 
 /* A rectangle of shifted cells, sensors anywhere on it. Each cell is cut so that it does not lie over itself: where surfaces do, one place
    has two distances. */
-static void make_random_plate(struct body *body, double points[SENSORS][3], uint32_t *seed)
+static void make_random_plate(struct prepared_body *body, double points[SENSORS][3], uint32_t *seed)
 {
     struct geometry *g = &body->g;
     double width_m = 2 + 7 * random_unit(seed), height_m = 1 + 5 * random_unit(seed);
@@ -817,7 +820,7 @@ TEST(random_plates_show_the_field)
 {
     uint32_t seed = (uint32_t)sweep_seed();
     for (int n = 0; n < 6; n++) {
-        struct body body = { 0 };
+        struct prepared_body body = { 0 };
         double points[SENSORS][3];
         make_random_plate(&body, points, &seed);
         body.as_solved = true;
@@ -834,7 +837,7 @@ TEST(random_plates_show_the_field)
 TEST(a_cylinder_shows_the_field)
 {
     static const double at[SENSORS][2] = { { 0.3, 1 }, { 2.1, 4 }, { 4, 2.5 }, { 5.5, 4.5 }, { 1, 3 }, { 3, 0.5 } };
-    struct body body = { 0 };
+    struct prepared_body body = { 0 };
     double points[SENSORS][3];
     for (int i = 0; i < SENSORS; i++) {
         points[i][0] = cos(at[i][0]);
@@ -851,7 +854,7 @@ TEST(a_cylinder_shows_the_field)
 
 /* A ring of random size whose thickness waves, turned at random; sensors at random vertices, no two at one: there is no field
    where two readings are at one place. */
-static void make_random_ring(struct body *body, double points[SENSORS][3], uint32_t *seed)
+static void make_random_ring(struct prepared_body *body, double points[SENSORS][3], uint32_t *seed)
 {
     struct geometry *g = &body->g;
     uint32_t around = 60 + (uint32_t)(60 * random_unit(seed)), tube = 24 + (uint32_t)(24 * random_unit(seed));
@@ -884,7 +887,7 @@ TEST(random_rings_show_the_field_on_every_level)
 {
     uint32_t seed = (uint32_t)sweep_seed();
     for (int n = 0; n < sweep(3, 1); n++) {
-        struct body body = { .as_solved = true };
+        struct prepared_body body = { .as_solved = true };
         double points[SENSORS][3];
         make_random_ring(&body, points, &seed);
         prepare(&body, (const double(*)[3])points);
@@ -901,7 +904,7 @@ TEST(random_rings_show_the_field_on_every_level)
 TEST(levels_of_many_sensors_have_half_of_the_triangles)
 {
     enum { MANY = 128 };
-    struct body body = { 0 };
+    struct prepared_body body = { 0 };
     struct plant_sensor sensors[MANY] = { 0 };
     struct asset_sensor places[MANY] = { 0 };
     double points[MANY][3];

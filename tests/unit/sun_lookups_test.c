@@ -10,7 +10,7 @@
 
 enum { SIDE_PX = 100, TILES = (SIDE_PX + SUN_TILE_STEP_PX - 1) / SUN_TILE_STEP_PX, ROUNDS = 20000, AREA_PX = 20 };
 
-struct counts {
+struct lookup_counts {
     int told, open, half; /* of places: by bounds, by texels, and of the latter those that are neither lit nor dark */
 };
 
@@ -68,7 +68,7 @@ static void places_at_random(const struct soft_light *light, lanes at[3])
     }
 }
 
-static void compare(const struct soft_light *light, const lanes at[3], lanes_int wanted, struct counts *counts)
+static void compare(const struct soft_light *light, const lanes at[3], lanes_int wanted, struct lookup_counts *counts)
 {
     struct sun_aim aim;
     sun_aim(light, at, wanted, &aim);
@@ -89,7 +89,7 @@ static void compare(const struct soft_light *light, const lanes at[3], lanes_int
 
 TEST(test_bounds_tell_what_texels_tell)
 {
-    struct counts counts = { 0 };
+    struct lookup_counts counts = { 0 };
     srand((unsigned)sweep_seed());
     struct soft_light light = light_create();
     for (int round = 0; round < ROUNDS; round++) {

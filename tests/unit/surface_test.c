@@ -25,7 +25,7 @@ static struct surface *surface_of(const struct cad *cad)
 
 /* --- accuracy: shapes with a formula --------------------------------------------------------------------------------------- */
 
-struct shape {
+struct surface_shape {
     const char *name;
     void (*make)(struct cad *cad, double size[3]);
     double (*distance)(const double size[3], const double a[3], const double b[3]);
@@ -126,7 +126,7 @@ static double slot_distance(const double slot[3], const double a[3], const doubl
     return best;
 }
 
-static const struct shape shapes[] = {
+static const struct surface_shape shapes[] = {
     { "plate", make_plate, plate_distance },
     { "sphere", make_sphere, sphere_distance },
     { "cylinder", make_cylinder, cylinder_distance },
@@ -163,8 +163,8 @@ struct score {
     double mean, worst;
 };
 
-static struct score score_of(const struct shape *shape, const double size[3], const struct cad *clean, const double source[3], double scale,
-                             const float *distances, const uint32_t *vertex_of)
+static struct score score_of(const struct surface_shape *shape, const double size[3], const struct cad *clean, const double source[3],
+                             double scale, const float *distances, const uint32_t *vertex_of)
 {
     struct score score = { 0 };
     double largest = 0;
@@ -179,7 +179,7 @@ static struct score score_of(const struct shape *shape, const double size[3], co
 }
 
 /* By default with every other fault, of each shape others. */
-static void test_shape(const struct shape *shape)
+static void test_shape(const struct surface_shape *shape)
 {
     struct cad clean = { 0 };
     struct cad_place place;

@@ -8,36 +8,36 @@
 #define BAD 0x80050000u
 enum { MAX = 20000 };
 
-struct run {
+struct door_run {
     struct swinging_door door;
     struct swinging_door_params params;
     struct history_point samples[MAX], kept[MAX * 2];
     int sample_count, kept_count;
 };
 
-static struct run *begin(double deadband, double deviation, int64_t override_us)
+static struct door_run *begin(double deadband, double deviation, int64_t override_us)
 {
-    static struct run run;
+    static struct door_run run;
     run.door = (struct swinging_door){ 0 };
     run.params = (struct swinging_door_params){ .deadband = deadband, .deviation = deviation, .override_us = override_us };
     run.sample_count = run.kept_count = 0;
     return &run;
 }
 
-static void put(struct run *run, int64_t t_us, double value, uint32_t quality)
+static void put(struct door_run *run, int64_t t_us, double value, uint32_t quality)
 {
     struct history_point point = { t_us, value, quality };
     run->samples[run->sample_count++] = point;
     run->kept_count += swinging_door_put(&run->door, &run->params, &point, run->kept + run->kept_count);
 }
 
-static void end(struct run *run)
+static void end(struct door_run *run)
 {
     run->kept_count += swinging_door_end(&run->door, &run->params, run->kept + run->kept_count);
 }
 
 /* The value of what was kept, at a time; quality in *quality. */
-static double read_back(const struct run *run, int64_t t_us, uint32_t *quality)
+static double read_back(const struct door_run *run, int64_t t_us, uint32_t *quality)
 {
     int i = 0;
     while (i + 1 < run->kept_count && run->kept[i + 1].t_us <= t_us)
@@ -47,7 +47,7 @@ static double read_back(const struct run *run, int64_t t_us, uint32_t *quality)
     return b && history_point_joined(a, b, run->params.step) ? history_point_between(a, b, t_us) : a->value;
 }
 
-static void assert_near(const struct run *run, double within)
+static void assert_near(const struct door_run *run, double within)
 {
     for (int i = 0; i < run->sample_count; i++) {
         const struct history_point *sample = &run->samples[i];
@@ -73,7 +73,7 @@ TEST(the_line_keeps_its_promise)
     for (unsigned seed = 1; seed <= 300; seed++) {
         srand(seed);
         double deadband = rand() % 3 ? fabs(noise()) : 0, deviation = rand() % 3 ? fabs(noise()) : 0, value = 0, slope = 0;
-        struct run *run = begin(deadband, deviation, (1 + rand() % 600) * S);
+        struct door_run *run = begin(deadband, deviation, (1 + rand() % 600) * S);
         int64_t t_us = 1700000000 * S;
         uint32_t quality = 0;
         for (int i = 0; i < 2000; i++) {
@@ -92,7 +92,7 @@ TEST(the_line_keeps_its_promise)
 
 TEST(a_straight_line_takes_two_points)
 {
-    struct run *run = begin(0, 1e-6, 100000 * S);
+    struct door_run *run = begin(0, 1e-6, 100000 * S);
     for (int i = 0; i < 1000; i++)
         put(run, i * S, 5 + 0.25 * i, 0);
     end(run);
@@ -101,7 +101,7 @@ TEST(a_straight_line_takes_two_points)
 
 TEST(a_spike_is_kept_exactly)
 {
-    struct run *run = begin(0.1, 0.2, 100000 * S);
+    struct door_run *run = begin(0.1, 0.2, 100000 * S);
     for (int i = 0; i < 1000; i++)
         put(run, i * S, i == 500 ? 99.5 : 20 + 0.05 * (i % 2), 0);
     end(run);
@@ -113,7 +113,7 @@ TEST(a_spike_is_kept_exactly)
 
 TEST(the_override_period_forces_a_point)
 {
-    struct run *run = begin(1, 1, 60 * S);
+    struct door_run *run = begin(1, 1, 60 * S);
     for (int i = 0; i <= 600; i++)
         put(run, i * S, 7, 0);
     assert_int_equal(run->kept_count, 11);
@@ -123,7 +123,7 @@ TEST(the_override_period_forces_a_point)
 
 TEST(every_change_of_quality_is_kept)
 {
-    struct run *run = begin(1, 1, 100000 * S);
+    struct door_run *run = begin(1, 1, 100000 * S);
     for (int i = 0; i < 100; i++)
         put(run, i * S, i / 10 % 2 ? NAN : 7, i / 10 % 2 ? BAD : 0);
     end(run);
@@ -133,7 +133,7 @@ TEST(every_change_of_quality_is_kept)
 
 TEST(a_switch_has_steps)
 {
-    struct run *run = begin(0, 0, 100000 * S);
+    struct door_run *run = begin(0, 0, 100000 * S);
     run->params.step = true;
     for (int i = 0; i < 100; i++)
         put(run, i * S, i / 10 % 2, 0);
@@ -145,7 +145,7 @@ TEST(a_switch_has_steps)
 /* Daylight saving does not touch UTC; somebody who sets the clock does. */
 TEST(a_clock_set_back_loses_nothing)
 {
-    struct run *run = begin(0.5, 0.5, 100000 * S);
+    struct door_run *run = begin(0.5, 0.5, 100000 * S);
     put(run, 100 * S, 1, 0);
     put(run, 101 * S, 1.1, 0);
     put(run, 50 * S, 1.2, 0);
@@ -158,7 +158,7 @@ TEST(a_clock_set_back_loses_nothing)
 
 TEST(what_is_held_is_the_newest)
 {
-    struct run *run = begin(0.5, 0.5, 100000 * S);
+    struct door_run *run = begin(0.5, 0.5, 100000 * S);
     struct history_point held;
     assert_false(swinging_door_held(&run->door, &held));
     put(run, 1 * S, 1, 0);
@@ -175,7 +175,7 @@ TEST(what_is_held_is_the_newest)
 TEST(whoever_reads_now_is_promised_the_same)
 {
     srand(20260101);
-    struct run *run = begin(0.25, 0.5, 100000 * S);
+    struct door_run *run = begin(0.25, 0.5, 100000 * S);
     for (int i = 0; i < 1500; i++) {
         struct history_point held;
         double step = rand() % 10 == 0 ? rand() % 21 - 10 : 0, noise = (double)rand() / RAND_MAX * 0.2;

@@ -11,13 +11,13 @@
 #include "tests/support/temp.h"
 
 enum { NOBODY = 65534 };
-struct fixture {
+struct tag_file_fixture {
     char *folder, *path;
 };
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct tag_file_fixture *f = mem_new(sizeof(*f));
     f->folder = temp_folder_create();
     f->path = temp_write_text(f->folder, "tags.csv", "one\n");
     *state = f;
@@ -26,14 +26,14 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct tag_file_fixture *f = *state;
     temp_folder_destroy(&f->folder);
     mem_free(f->path);
     mem_free(f);
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct tag_file_fixture *f, name, set_up, tear_down)
 
 static void expect_text(const char *folder, const char *name, const char *want)
 {
@@ -45,7 +45,7 @@ static void expect_text(const char *folder, const char *name, const char *want)
     mem_free(path);
 }
 
-static bool put(const struct fixture *f, char *before, char *after, char **kept, struct refusal *why)
+static bool put(const struct tag_file_fixture *f, char *before, char *after, char **kept, struct refusal *why)
 {
     struct tag_save save = { .path = f->path, .before = before, .after = after };
     *kept = NULL;

@@ -14,14 +14,14 @@
 
 static const int64_t NOW_NS = 1767225600LL * 1000000000; /* 2026-01-01 */
 
-struct fixture {
+struct tokens_fixture {
     struct log *log;
     char *folder, *path;
 };
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct tokens_fixture *f = mem_new(sizeof(*f));
     f->log = log_create(LOG_ERROR);
     f->folder = temp_folder_create();
     f->path = temp_path(f->folder, "tokens");
@@ -31,7 +31,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct tokens_fixture *f = *state;
     mem_free(f->path);
     temp_folder_destroy(&f->folder);
     log_destroy(&f->log);
@@ -39,7 +39,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct tokens_fixture *f, name, set_up, tear_down)
 
 static void add_line(struct text *text, enum role role, const char *name, const char *token, int64_t until_ns)
 {
@@ -49,13 +49,13 @@ static void add_line(struct text *text, enum role role, const char *name, const 
     tokens_print_line(text, &holder);
 }
 
-static void write_file(struct fixture *f, const char *text, mode_t mode)
+static void write_file(struct tokens_fixture *f, const char *text, mode_t mode)
 {
     assert_int_equal(atomic_file_put(f->path, text, strlen(text)), 0);
     assert_int_equal(chmod(f->path, mode), 0);
 }
 
-static void write_two(struct fixture *f, mode_t mode)
+static void write_two(struct tokens_fixture *f, mode_t mode)
 {
     struct text text = { 0 };
     text_add(&text, "# who may look\n\n");

@@ -11,7 +11,7 @@
 
 enum { VERTICES = 900, SENSORS = 6, MOVED = 2, TO = 400 };
 
-struct fixture {
+struct trials_fixture {
     struct synthetic *plant;
     struct workers *workers;
     struct field *field;
@@ -21,7 +21,7 @@ struct fixture {
 
 static int setup(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct trials_fixture *f = mem_new(sizeof(*f));
     f->plant = synthetic_create(.vertices = VERTICES, .sensors = SENSORS, .assets = 2, .seed = sweep_seed());
     f->workers = workers_create(2);
     f->field = field_create(f->workers, &f->plant->scene);
@@ -34,7 +34,7 @@ static int setup(void **state)
 
 static int teardown(void **state)
 {
-    struct fixture *f = *state;
+    struct trials_fixture *f = *state;
     field_destroy(&f->field);
     trials_destroy(&f->trials);
     workers_destroy(&f->workers);
@@ -43,10 +43,10 @@ static int teardown(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, setup, teardown)
+#define CASE(name) TEST_ON(struct trials_fixture *f, name, setup, teardown)
 
 /* Along the surface from vertex `to`, as the synthetic plant has it: the sum of the ways along the axes. */
-static float *along(const struct fixture *f, size_t to)
+static float *along(const struct trials_fixture *f, size_t to)
 {
     const float(*at)[3] = f->plant->file.view.positions_m;
     float *distance_m = mem_array(VERTICES, sizeof(*distance_m));
@@ -56,7 +56,7 @@ static float *along(const struct fixture *f, size_t to)
     return distance_m;
 }
 
-static struct trial_sensor sensor_at(const struct fixture *f, int tag, int asset, size_t vertex, bool known)
+static struct trial_sensor sensor_at(const struct trials_fixture *f, int tag, int asset, size_t vertex, bool known)
 {
     struct trial_sensor sensor = { .tag = tag, .asset = asset, .vertex = (uint32_t)vertex };
     memcpy(sensor.surface_m, f->plant->file.view.positions_m[vertex], sizeof(sensor.surface_m));
@@ -64,14 +64,14 @@ static struct trial_sensor sensor_at(const struct fixture *f, int tag, int asset
     return sensor;
 }
 
-static uint32_t put(struct fixture *f, struct trial_sensor sensor)
+static uint32_t put(struct trials_fixture *f, struct trial_sensor sensor)
 {
     uint32_t id = trials_put(f->trials, &sensor, 1);
     trial_reach_unref(&sensor.reach);
     return id;
 }
 
-static struct scalar *copy_of(struct fixture *f, int asset, uint32_t trial)
+static struct scalar *copy_of(struct trials_fixture *f, int asset, uint32_t trial)
 {
     struct field_params params = f->params;
     params.trial = trial;
@@ -84,7 +84,7 @@ static struct scalar *copy_of(struct fixture *f, int asset, uint32_t trial)
 }
 
 /* What a plant would show that has the sensor there: the plain sum, in double precision. */
-static double truth(const struct fixture *f, const float *moved_m, size_t vertex)
+static double truth(const struct trials_fixture *f, const float *moved_m, size_t vertex)
 {
     double sum = 0, total = 0;
     for (size_t i = 0; i < SENSORS; i++) {

@@ -49,7 +49,7 @@ static void make_bent_plate(struct cad *plate, struct cad_random *random)
 
 static void write_model(const struct prep_case *c, const struct cad *cad)
 {
-    struct maker maker;
+    struct model_maker maker;
     size_t size;
     maker_init(&maker);
     int positions = maker_numbers(&maker, cad->positions, cad->vertex_count * sizeof(*cad->positions), FLOAT, cad->vertex_count, "VEC3");

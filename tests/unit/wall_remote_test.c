@@ -8,7 +8,7 @@
 #include "tests/support/temp.h"
 #include "views/wall_remote.h"
 
-struct fixture {
+struct wall_remote_fixture {
     struct log *log;
     struct plant plant;
     struct wall wall;
@@ -19,7 +19,7 @@ struct fixture {
 
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
+    struct wall_remote_fixture *f = mem_new(sizeof(*f));
     f->log = log_create(LOG_ERROR);
     f->display.panes[0] = (struct wall_pane){ .area = "main", .kind = PANE_VIEWS };
     f->display.panes[1] = (struct wall_pane){ .area = "side", .kind = PANE_ALARMS };
@@ -34,7 +34,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
+    struct wall_remote_fixture *f = *state;
     wall_remote_close(&f->remote);
     temp_folder_destroy(&f->folder);
     log_destroy(&f->log);
@@ -42,11 +42,11 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define CASE(name) TEST_ON(struct fixture *f, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct wall_remote_fixture *f, name, set_up, tear_down)
 
 static const struct wall_place MAIN = { "room", "main", 1 };
 
-static enum refusal_code order(struct fixture *f, const char *view, bool held)
+static enum refusal_code order(struct wall_remote_fixture *f, const char *view, bool held)
 {
     return wall_remote_order(f->remote, &(struct wall_order){ MAIN, view, "Title", held, "Desk 2" }, "kim", 7);
 }

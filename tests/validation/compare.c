@@ -27,7 +27,7 @@ struct solution {
     bool *outside;  /* by triangle */
 };
 
-struct truth { /* by vertex of the asset file */
+struct heat_truth { /* by vertex of the asset file */
     double *values, *area_m2, *outside_m2;
     size_t count;
 };
@@ -81,7 +81,7 @@ static double triangle_m2(const float a[3], const float b[3], const float c[3])
 }
 
 /* Brings the solution to the asset's vertices; an asset's triangle is outside if the skin's nearest to its middle is. */
-static void find_truth(const struct solution *solution, const struct asset_view *view, struct truth *truth)
+static void find_truth(const struct solution *solution, const struct asset_view *view, struct heat_truth *truth)
 {
     struct bvh *bvh = bvh_create(&solution->skin);
     struct bvh_place place;
@@ -115,7 +115,7 @@ static void find_truth(const struct solution *solution, const struct asset_view 
     bvh_destroy(&bvh);
 }
 
-static void finish_truth(struct truth *truth)
+static void finish_truth(struct heat_truth *truth)
 {
     mem_free(truth->values);
     mem_free(truth->area_m2);
@@ -129,7 +129,7 @@ static int by_error(const void *a, const void *b)
 }
 
 /* Mean, 95th percentile and worst error, and the share of the area where the field says that it does not know. */
-static void print_errors(const char *where, const struct scalars *scalars, const struct truth *truth, const double *area_m2)
+static void print_errors(const char *where, const struct scalars *scalars, const struct heat_truth *truth, const double *area_m2)
 {
     struct error *errors = mem_try_array(truth->count, sizeof(*errors));
     double known_m2 = 0, all_m2 = 0, sum = 0, within_m2 = 0, p95 = 0;
@@ -166,7 +166,7 @@ static bool print_numbers(char **words, const struct solution *solution)
     bool good = field && values_read(plant, words[2], snapshot, &diag);
     diag_print(&diag, stderr);
     if (good) {
-        struct truth truth = { 0 };
+        struct heat_truth truth = { 0 };
         struct field_params params;
         find_truth(solution, &scene->assets[0].file->view, &truth);
         for (const struct name *name = names_interpolation; name->text; name++) {
@@ -207,7 +207,7 @@ static bool print_numbers(char **words, const struct solution *solution)
 enum paint { PAINT_FIELD, PAINT_SOLUTION, PAINT_ERROR };
 static struct {
     enum paint paint;
-    struct truth truth;
+    struct heat_truth truth;
     struct scalar *at;
     struct scalars scalars;
 } painted;

@@ -20,10 +20,12 @@ test('what is not added to git yet is checked', () => {
         assert.equal(spawnSync('git', ['init', '-q', tree]).status, 0);
         write('.gitignore', '/build/\n');
         write('build/made.c', '');
-        write('server/value/new.c', '#include <GL/gl.h>\n');
+        write('server/value/new.c', '#include <GL/gl.h>\nstruct search {\n};\n');
+        write('tests/unit/new_test.c', 'struct search {\n};\n');
         write('server/value/README.md', 'Begin with `no_such_name`, [a file](gone.md), [no](#gone), [a](#a).\n\n## A\n');
         assert.match(said('tests/style'), /^server\/value\/new\.c:1: no licence line$/m);
         assert.match(said('tests/layers'), /^server\/value\/new\.c: only gpu\/ and render\/ include GL$/m);
+        assert.match(said('tests/layers'), /^search is defined in 2 files: server\/value\/new\.c, tests\/unit\/new_test\.c$/m);
         assert.match(said('tests/maps'), /^server\/value\/README\.md: nothing is called `no_such_name`$/m);
         assert.match(said('tests/maps'), /the link gone\.md leads to no file\n.*the link #gone leads to no heading\n(?!.*#a leads)/);
         assert.doesNotMatch(said('tests/style'), /made\.c/);

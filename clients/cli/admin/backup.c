@@ -31,7 +31,7 @@
 #define PLANT_FILE "plant.yaml"
 enum { MANIFEST_VERSION = 1, MANIFEST_MAX = 1 << 20 };
 
-struct job {
+struct backup_job {
     struct log *log;
     const char *folder;  /* of the backup */
     const char *history; /* --history */
@@ -65,7 +65,7 @@ static bool say(const char *what, const char *why)
     return false;
 }
 
-static char *history_folder(const struct job *job, const struct plant *plant)
+static char *history_folder(const struct backup_job *job, const struct plant *plant)
 {
     return job->history ? mem_strdup(job->history) : plant_history_folder(plant);
 }
@@ -99,7 +99,7 @@ static bool is_ours(const char *name)
 
 typedef bool copier(struct log *log, const char *from, const char *to);
 
-static bool add(struct job *job, copier *copy, const char *from, const char *name)
+static bool add(struct backup_job *job, copier *copy, const char *from, const char *name)
 {
     char *to = mem_printf("%s/%s", job->folder, name), hash[COPY_HASH_BYTES];
     long long bytes;
@@ -111,7 +111,7 @@ static bool add(struct job *job, copier *copy, const char *from, const char *nam
 }
 
 /* The newest month last: what is written meanwhile is in there. */
-static bool add_history(struct job *job, const char *folder)
+static bool add_history(struct backup_job *job, const char *folder)
 {
     size_t count;
     int *months = month_list(folder, &count);
@@ -145,7 +145,7 @@ static const char *history_name(const struct plant *plant)
     return plant->history.folder ? as_written(plant, plant->history.folder) : NULL;
 }
 
-static bool write_manifest(struct job *job, const struct plant *plant)
+static bool write_manifest(struct backup_job *job, const struct plant *plant)
 {
     char now[TIMESTAMP_BYTES];
     timestamp_print(clock_utc_ns() / 1000, now);
@@ -186,7 +186,7 @@ static void leave_stamp(const char *history)
 }
 
 /* The folder has its name once all is in it. */
-static bool back_up(struct job *job, const struct plant *plant, const char *out)
+static bool back_up(struct backup_job *job, const struct plant *plant, const char *out)
 {
     const char *tags = text_base_name(plant->tags_path);
     char *history = history_folder(job, plant), *part = mem_printf("%s.part", out);
@@ -242,7 +242,7 @@ static bool is_plain(const char *name)
     return name && *name && *name != '.' && !strchr(name, '/');
 }
 
-static bool is_whole(struct job *job)
+static bool is_whole(struct backup_job *job)
 {
     bool good = true;
     size_t i;
@@ -292,7 +292,7 @@ static bool make_folder(const char *path)
     return good || say(path, "is no folder, and cannot be made one");
 }
 
-static bool each_file(struct job *job, const char *plant_path, const char *history, const char *tags, bool put)
+static bool each_file(struct backup_job *job, const char *plant_path, const char *history, const char *tags, bool put)
 {
     size_t i;
     json_t *file;
@@ -309,7 +309,7 @@ static bool each_file(struct job *job, const char *plant_path, const char *histo
 }
 
 /* Where the plant file, in its new place, will look for it. */
-static char *future_history(const struct job *job, const json_t *manifest, const char *plant_path)
+static char *future_history(const struct backup_job *job, const json_t *manifest, const char *plant_path)
 {
     const char *name = json_string_value(json_object_get(manifest, "history")), *slash = strrchr(plant_path, '/');
     const char *file = slash ? slash + 1 : plant_path, *dot = strrchr(file, '.');
@@ -320,7 +320,7 @@ static char *future_history(const struct job *job, const json_t *manifest, const
     return mem_printf("%.*s.history", (int)(dot ? dot - plant_path : (long)strlen(plant_path)), plant_path);
 }
 
-static bool restore(struct job *job, const char *plant_path)
+static bool restore(struct backup_job *job, const char *plant_path)
 {
     json_t *manifest = read_manifest(job->folder);
     job->files = json_object_get(manifest, "files");
@@ -344,7 +344,7 @@ static bool is_database(const char *name)
 }
 
 /* Copying a database reads all of it, and checks the copy. */
-static bool each_restored(struct job *job, const char *plant_path, const char *history)
+static bool each_restored(struct backup_job *job, const char *plant_path, const char *history)
 {
     size_t i;
     json_t *file;
@@ -365,7 +365,7 @@ static bool each_restored(struct job *job, const char *plant_path, const char *h
     return good;
 }
 
-static void say_span(struct job *job, const char *history)
+static void say_span(struct backup_job *job, const char *history)
 {
     struct history_reader *reader = history_reader_create(job->log, history);
     int64_t first_us, last_us;
@@ -378,7 +378,7 @@ static void say_span(struct job *job, const char *history)
     history_reader_destroy(&reader);
 }
 
-static bool verify_in(struct job *job, const char *aside)
+static bool verify_in(struct backup_job *job, const char *aside)
 {
     char *plant_path = mem_printf("%s/" PLANT_FILE, aside), *history = mem_printf("%s/history", aside);
     bool good = make_folder(history) && each_file(job, plant_path, history, NULL, true) && each_restored(job, plant_path, history);
@@ -391,7 +391,7 @@ static bool verify_in(struct job *job, const char *aside)
     return good;
 }
 
-static bool verify(struct job *job)
+static bool verify(struct backup_job *job)
 {
     json_t *manifest = read_manifest(job->folder);
     job->files = json_object_get(manifest, "files");
@@ -408,7 +408,7 @@ static bool verify(struct job *job)
 /* --- the command line ------------------------------------------------------------------------------------------------------------ */
 
 /* -1: go on; else the exit code. */
-static int parse(int argc, char **argv, struct job *job, const char **out, bool *drill)
+static int parse(int argc, char **argv, struct backup_job *job, const char **out, bool *drill)
 {
     static const struct option options[] = { { "history", required_argument, NULL, 'd' },
                                              { "out", required_argument, NULL, 'o' },
@@ -429,7 +429,7 @@ static int parse(int argc, char **argv, struct job *job, const char **out, bool 
 
 int cmd_backup(int argc, char **argv)
 {
-    struct job job = { 0 };
+    struct backup_job job = { 0 };
     const char *out = NULL;
     bool drill = false;
     int code = parse(argc, argv, &job, &out, &drill);
@@ -462,7 +462,7 @@ int cmd_backup(int argc, char **argv)
 
 int cmd_restore(int argc, char **argv)
 {
-    struct job job = { 0 };
+    struct backup_job job = { 0 };
     const char *out = NULL;
     bool drill = false;
     int code = parse(argc, argv, &job, &out, &drill);

@@ -18,13 +18,13 @@
 
 enum { PORT = 8090, HEADER_BYTES = 2048, CHUNK = 16384, NAME_BYTES = 256 };
 
-struct site {
+struct fleet_site {
     struct fleet_poll *poll;
     const struct fleet_file *file;
     const char *host; /* a name that it is reached by besides local ones; NULL: none */
 };
 
-struct answer { /* of one connection */
+struct fleet_answer { /* of one connection */
     char *body;
     size_t bytes, sent;
 };
@@ -57,7 +57,7 @@ static const struct page_file {
 };
 
 /* Returns the body (mem_free), and its type; NULL: there is no such thing. */
-static char *answer_to(const struct site *site, const char *path, size_t *bytes, const char **type)
+static char *answer_to(const struct fleet_site *site, const char *path, size_t *bytes, const char **type)
 {
     static const char pictures[] = "/picture/";
     struct text text = { 0 };
@@ -93,7 +93,7 @@ static bool add_header(struct lws *wsi, const char *name, const char *value, uns
     return !lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value, (int)strlen(value), at, end);
 }
 
-static int begin_answer(struct lws *wsi, struct answer *answer, int status, const char *type)
+static int begin_answer(struct lws *wsi, struct fleet_answer *answer, int status, const char *type)
 {
     unsigned char buffer[LWS_PRE + HEADER_BYTES], *start = buffer + LWS_PRE, *at = start, *end = buffer + sizeof(buffer) - 1;
     if (lws_add_http_common_headers(wsi, (unsigned)status, type, answer->bytes, &at, end) ||
@@ -107,7 +107,7 @@ static int begin_answer(struct lws *wsi, struct answer *answer, int status, cons
 }
 
 /* A page of a foreign name that leads here (DNS rebinding) may not ask. */
-static bool is_for_us(const struct site *site, struct lws *wsi)
+static bool is_for_us(const struct fleet_site *site, struct lws *wsi)
 {
     char host[NAME_BYTES], name[NAME_BYTES];
     if (lws_hdr_copy(wsi, host, sizeof(host), WSI_TOKEN_HOST) <= 0 || !access_host_name(host, name, sizeof(name)))
@@ -115,13 +115,13 @@ static bool is_for_us(const struct site *site, struct lws *wsi)
     return access_name_is_local(name) || (site->host && !strcasecmp(site->host, name));
 }
 
-static int on_request(struct lws *wsi, struct answer *answer, const char *path)
+static int on_request(struct lws *wsi, struct fleet_answer *answer, const char *path)
 {
-    const struct site *site = lws_context_user(lws_get_context(wsi));
+    const struct fleet_site *site = lws_context_user(lws_get_context(wsi));
     const char *type = "text/plain; charset=utf-8";
     bool may = is_for_us(site, wsi), gets = lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0;
     mem_free(answer->body);
-    *answer = (struct answer){ 0 };
+    *answer = (struct fleet_answer){ 0 };
     char *body = may && gets ? answer_to(site, path, &answer->bytes, &type) : NULL;
     int status = body ? HTTP_STATUS_OK : may ? HTTP_STATUS_NOT_FOUND : HTTP_STATUS_FORBIDDEN;
     if (!body) {
@@ -135,7 +135,7 @@ static int on_request(struct lws *wsi, struct answer *answer, const char *path)
     return begin_answer(wsi, answer, status, type);
 }
 
-static int write_on(struct lws *wsi, struct answer *answer)
+static int write_on(struct lws *wsi, struct fleet_answer *answer)
 {
     size_t left = answer->bytes - answer->sent, now = left < CHUNK ? left : CHUNK;
     bool last = now == left;
@@ -156,7 +156,7 @@ static int write_on(struct lws *wsi, struct answer *answer)
 
 static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t length)
 {
-    struct answer *answer = user;
+    struct fleet_answer *answer = user;
     switch (reason) {
     case LWS_CALLBACK_HTTP: return on_request(wsi, answer, in);
     case LWS_CALLBACK_HTTP_WRITEABLE: return write_on(wsi, answer);
@@ -185,8 +185,8 @@ static void on_signal(int number)
 
 static int serve(const struct fleet_file *file, const char *address, int port, const char *host)
 {
-    static const struct lws_protocols protocols[] = { { "http", on_event, sizeof(struct answer), 0, 0, NULL, 0 }, { 0 } };
-    struct site site = { fleet_poll_start(file), file, host };
+    static const struct lws_protocols protocols[] = { { "http", on_event, sizeof(struct fleet_answer), 0, 0, NULL, 0 }, { 0 } };
+    struct fleet_site site = { fleet_poll_start(file), file, host };
     struct lws_context_creation_info info = { .port = port,
                                               .iface = address,
                                               .protocols = protocols,

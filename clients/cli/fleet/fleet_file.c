@@ -84,14 +84,15 @@ static void check_new(struct yaml_reader *reader, const struct yaml_map *map, co
 
 static void read_one(struct yaml_reader *reader, yaml_node_t *node, struct fleet_file *file)
 {
-    static const struct key keys[] = { { "id", KEY_NAME, true, offsetof(struct fleet_plant, id), 0, 0, NULL, NULL },
-                                       { "name", KEY_NAME, false, offsetof(struct fleet_plant, name), 0, 0, NULL, NULL },
-                                       { "url", KEY_NAME, true, offsetof(struct fleet_plant, url), 0, 0, NULL, NULL },
-                                       { "token_file", KEY_NAME, false, offsetof(struct fleet_plant, token_file), 0, 0, NULL, NULL },
-                                       { "ca_file", KEY_NAME, false, offsetof(struct fleet_plant, ca_file), 0, 0, NULL, NULL },
-                                       { "poll_s", KEY_NUMBER, false, offsetof(struct fleet_plant, poll_s), 1, 86400, NULL, NULL },
-                                       { "picture_s", KEY_NUMBER, false, offsetof(struct fleet_plant, picture_s), 0, 86400, NULL, NULL },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { { "id", KEY_NAME, true, offsetof(struct fleet_plant, id), 0, 0, NULL, NULL },
+                                            { "name", KEY_NAME, false, offsetof(struct fleet_plant, name), 0, 0, NULL, NULL },
+                                            { "url", KEY_NAME, true, offsetof(struct fleet_plant, url), 0, 0, NULL, NULL },
+                                            { "token_file", KEY_NAME, false, offsetof(struct fleet_plant, token_file), 0, 0, NULL, NULL },
+                                            { "ca_file", KEY_NAME, false, offsetof(struct fleet_plant, ca_file), 0, 0, NULL, NULL },
+                                            { "poll_s", KEY_NUMBER, false, offsetof(struct fleet_plant, poll_s), 1, 86400, NULL, NULL },
+                                            { "picture_s", KEY_NUMBER, false, offsetof(struct fleet_plant, picture_s), 0, 86400, NULL,
+                                              NULL },
+                                            { 0 } };
     struct fleet_plant *plant = &file->plants[file->count++];
     struct yaml_map map;
     *plant = (struct fleet_plant){ .poll_s = file->poll_s, .picture_s = file->picture_s, .line = yaml_place(node).line };
@@ -131,11 +132,12 @@ static void read_plants(struct yaml_reader *reader, yaml_node_t *node, void *rec
 
 struct fleet_file *fleet_file_read(const char *path, struct diag *diag)
 {
-    static const struct key keys[] = { { "name", KEY_NAME, false, offsetof(struct fleet_file, name), 0, 0, NULL, NULL },
-                                       { "poll_s", KEY_NUMBER, false, offsetof(struct fleet_file, poll_s), 1, 86400, NULL, NULL },
-                                       { "picture_s", KEY_NUMBER, false, offsetof(struct fleet_file, picture_s), 0, 86400, NULL, NULL },
-                                       { "plants", KEY_CUSTOM, true, 0, 0, 0, NULL, read_plants },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { { "name", KEY_NAME, false, offsetof(struct fleet_file, name), 0, 0, NULL, NULL },
+                                            { "poll_s", KEY_NUMBER, false, offsetof(struct fleet_file, poll_s), 1, 86400, NULL, NULL },
+                                            { "picture_s", KEY_NUMBER, false, offsetof(struct fleet_file, picture_s), 0, 86400, NULL,
+                                              NULL },
+                                            { "plants", KEY_CUSTOM, true, 0, 0, 0, NULL, read_plants },
+                                            { 0 } };
     struct fleet_file *file = mem_new(sizeof(*file));
     const char *slash = strrchr(path, '/');
     struct yaml_reader reader;

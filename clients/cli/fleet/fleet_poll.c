@@ -15,12 +15,12 @@
 enum { METRICS_BYTES = 4 << 20, PICTURE_BYTES = 2 << 20, TIMEOUT_S = 15, PICTURE_TIMEOUT_S = 60, AT_ONCE = 16 };
 #define PICTURE_PATH "snapshot.png?width=320&height=180"
 
-enum kind { METRICS, PICTURE, KINDS };
+enum fleet_question { METRICS, PICTURE, KINDS };
 
-struct request {
+struct fleet_request {
     struct http_request http; /* kept from one request to the next, with its connection */
     int plant;
-    enum kind kind;
+    enum fleet_question kind;
     int64_t due_ns;
     bool running;
 };
@@ -37,7 +37,7 @@ struct fleet_poll {
     bool started;
     _Atomic bool stopping;
     CURLM *multi;
-    struct request *requests; /* KINDS for each plant */
+    struct fleet_request *requests; /* KINDS for each plant */
     int running;
     pthread_mutex_t lock;
     /* --- below: under lock */
@@ -47,7 +47,7 @@ struct fleet_poll {
 
 /* --- one request ------------------------------------------------------------------------------------------------------------ */
 
-static bool set_token(struct request *request, const struct fleet_plant *plant)
+static bool set_token(struct fleet_request *request, const struct fleet_plant *plant)
 {
     char *why = NULL, *token = plant->token_file ? secret_read(plant->token_file, &why) : NULL;
     http_request_authorize(&request->http, "Bearer ", token);
@@ -58,7 +58,7 @@ static bool set_token(struct request *request, const struct fleet_plant *plant)
     return token || !plant->token_file;
 }
 
-static bool make_request(const struct fleet_plant *plant, struct request *request)
+static bool make_request(const struct fleet_plant *plant, struct fleet_request *request)
 {
     bool metrics = request->kind == METRICS;
     request->http.most_bytes = metrics ? METRICS_BYTES : PICTURE_BYTES;
@@ -77,7 +77,7 @@ static bool make_request(const struct fleet_plant *plant, struct request *reques
 }
 
 /* Returns NULL, or what is wrong with an answer that came whole. */
-static const char *note_answer(struct fleet_poll *poll, struct request *request)
+static const char *note_answer(struct fleet_poll *poll, struct fleet_request *request)
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
     struct picture *picture = &poll->pictures[request->plant];
@@ -101,7 +101,7 @@ static const char *note_answer(struct fleet_poll *poll, struct request *request)
     return NULL;
 }
 
-static void note_failure(struct fleet_poll *poll, const struct request *request, const char *why)
+static void note_failure(struct fleet_poll *poll, const struct fleet_request *request, const char *why)
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
     struct picture *picture = &poll->pictures[request->plant];
@@ -118,7 +118,7 @@ static void note_failure(struct fleet_poll *poll, const struct request *request,
 }
 
 /* A server that is busy says when to come again. */
-static int64_t pause_ns(const struct fleet_poll *poll, const struct request *request)
+static int64_t pause_ns(const struct fleet_poll *poll, const struct fleet_request *request)
 {
     const struct fleet_plant *plant = &poll->file->plants[request->plant];
     curl_off_t later_s = 0;
@@ -128,7 +128,7 @@ static int64_t pause_ns(const struct fleet_poll *poll, const struct request *req
     return (int64_t)(s * 1e9);
 }
 
-static void on_end(struct fleet_poll *poll, struct request *request, CURLcode code)
+static void on_end(struct fleet_poll *poll, struct fleet_request *request, CURLcode code)
 {
     const char *why = code == CURLE_OK ? NULL : http_request_why(&request->http, code);
     pthread_mutex_lock(&poll->lock);
@@ -143,7 +143,7 @@ static void on_end(struct fleet_poll *poll, struct request *request, CURLcode co
     poll->running--;
 }
 
-static void begin(struct fleet_poll *poll, struct request *request)
+static void begin(struct fleet_poll *poll, struct fleet_request *request)
 {
     const struct fleet_plant *plant = &poll->file->plants[request->plant];
     request->http.error[0] = 0;
@@ -167,7 +167,7 @@ static int64_t begin_due(struct fleet_poll *poll, int64_t now_ns)
 {
     int64_t next_ns = now_ns + NS_PER_S;
     for (size_t i = 0; i < poll->file->count * KINDS; i++) {
-        struct request *request = &poll->requests[i];
+        struct fleet_request *request = &poll->requests[i];
         if (request->running || (request->kind == PICTURE && !poll->file->plants[request->plant].picture_s))
             continue;
         if (request->kind == PICTURE && !poll->states[request->plant].answers)
@@ -190,7 +190,7 @@ static void *run(void *arg)
         curl_multi_poll(poll->multi, NULL, 0, (int)((next_ns - now_ns) / NS_PER_MS) + 1, NULL);
         curl_multi_perform(poll->multi, &running);
         for (CURLMsg *message; (message = curl_multi_info_read(poll->multi, &left));) {
-            struct request *request = NULL;
+            struct fleet_request *request = NULL;
             if (message->msg != CURLMSG_DONE)
                 continue;
             CURLcode code = message->data.result;
@@ -214,9 +214,9 @@ struct fleet_poll *fleet_poll_start(const struct fleet_file *file)
     poll->pictures = mem_array(file->count, sizeof(*poll->pictures));
     poll->requests = mem_array(file->count * KINDS, sizeof(*poll->requests));
     for (size_t i = 0; i < file->count * KINDS; i++) {
-        struct request *request = &poll->requests[i];
+        struct fleet_request *request = &poll->requests[i];
         request->plant = (int)(i / KINDS);
-        request->kind = (enum kind)(i % KINDS);
+        request->kind = (enum fleet_question)(i % KINDS);
         /* spread over a few seconds, so that they do not come all at once for ever */
         request->due_ns = now_ns + (int64_t)(i / KINDS) * 5 * NS_PER_S / (int64_t)file->count;
     }
@@ -242,7 +242,7 @@ void fleet_poll_stop(struct fleet_poll **pointer)
         pthread_join(poll->thread, NULL);
     }
     for (size_t i = 0; i < poll->file->count * KINDS; i++) {
-        struct request *request = &poll->requests[i];
+        struct fleet_request *request = &poll->requests[i];
         if (request->running)
             curl_multi_remove_handle(poll->multi, request->http.handle);
         http_request_finish(&request->http);

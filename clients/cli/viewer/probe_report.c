@@ -19,7 +19,7 @@ static int ascending(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-static void append(struct samples *all, const struct samples *some)
+static void append(struct latency_samples *all, const struct latency_samples *some)
 {
     mem_grow(&all->at, &all->capacity, all->count + some->count, sizeof(*all->at));
     if (some->count)
@@ -28,14 +28,14 @@ static void append(struct samples *all, const struct samples *some)
 }
 
 /* of: sorted. NaN: none. */
-static double percentile(const struct samples *of, double p)
+static double percentile(const struct latency_samples *of, double p)
 {
     if (!of->count)
         return NAN;
     return of->at[(size_t)ceil(p / 100 * (double)of->count) - (p > 0)];
 }
 
-static void sort(struct samples *samples)
+static void sort(struct latency_samples *samples)
 {
     if (samples->count)
         qsort(samples->at, samples->count, sizeof(*samples->at), ascending);
@@ -45,7 +45,7 @@ struct summary {
     int frames, still_frames, signed_frames, errors, failed, given_up;
     double fps, fps_lowest; /* mean and least over the sessions */
     double kb_per_frame, mbit_per_s, steady_kbit_per_s;
-    struct samples input, sensor, behind, first, stages[STAGE_COUNT];
+    struct latency_samples input, sensor, behind, first, stages[STAGE_COUNT];
 };
 
 static double fps_of(const struct viewer_result *result)
@@ -102,7 +102,7 @@ static void summary_finish(struct summary *sum)
 
 /* --- what is printed ---------------------------------------------------------------------------------------------------------- */
 
-static void print_row(const char *name, const struct samples *samples)
+static void print_row(const char *name, const struct latency_samples *samples)
 {
     if (samples->count)
         printf("  %-16s %8.1f %8.1f %8.1f %8.1f   ms\n", name, percentile(samples, 50), percentile(samples, 95), percentile(samples, 99),
@@ -142,7 +142,7 @@ static void print_table(const struct probe *probe, const struct summary *sum)
     print_row("first frame", &sum->first);
 }
 
-static json_t *samples_json(const struct samples *samples)
+static json_t *samples_json(const struct latency_samples *samples)
 {
     if (!samples->count)
         return json_null();

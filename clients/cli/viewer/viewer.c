@@ -13,7 +13,7 @@
 enum { MAX_MESSAGE_BYTES = WIRE_MAX_PAYLOAD_BYTES + WIRE_FRAME_HEADER_BYTES };
 static const int64_t PATIENCE_NS = 20 * NS_PER_S; /* for the first frame, and between frames of an orbit */
 
-static void add(struct samples *samples, double ms)
+static void add(struct latency_samples *samples, double ms)
 {
     mem_grow(&samples->at, &samples->capacity, samples->count + 1, sizeof(*samples->at));
     samples->at[samples->count++] = ms;

@@ -43,7 +43,7 @@ struct viewer_params {
     bool follows;        /* else it leads */
 };
 
-struct samples { /* milliseconds */
+struct latency_samples { /* milliseconds */
     double *at;
     size_t count, capacity;
 };
@@ -55,11 +55,11 @@ struct viewer_result {
     int given_up;                     /* frames that the server did not send to their end */
     int64_t text_bytes, steady_bytes; /* steady: of all messages but pongs, once VIEWER_SETTLES_S have gone by since the first frame */
     int64_t bytes, first_ns, last_ns; /* of frames; monotonic */
-    struct samples input;             /* from sending a camera to its frame decoded */
-    struct samples sensor;            /* from a reading that changed, in the server, to its frame decoded */
-    struct samples behind;            /* of a follower: from its leader's sending a camera to its frame decoded */
-    struct samples first;             /* from connecting to the first frame decoded: one */
-    struct samples stages[STAGE_COUNT];
+    struct latency_samples input;     /* from sending a camera to its frame decoded */
+    struct latency_samples sensor;    /* from a reading that changed, in the server, to its frame decoded */
+    struct latency_samples behind;    /* of a follower: from its leader's sending a camera to its frame decoded */
+    struct latency_samples first;     /* from connecting to the first frame decoded: one */
+    struct latency_samples stages[STAGE_COUNT];
     char failure[200]; /* "": went well */
 };
 

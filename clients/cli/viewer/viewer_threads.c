@@ -10,14 +10,14 @@
 
 enum { MAX_THREADS = 64, MAX_FILES = 8192, MAX_WAITING = 64 };
 
-struct worker {
+struct viewer_thread {
     pthread_t thread;
     struct lws_context *context;
     struct viewer **viewers; /* every `stride`-th, from the first on */
     int count, stride;
 };
 
-static bool all_done(const struct worker *worker)
+static bool all_done(const struct viewer_thread *worker)
 {
     for (int i = 0; i < worker->count; i += worker->stride)
         if (!viewer_done(worker->viewers[i]))
@@ -27,7 +27,7 @@ static bool all_done(const struct worker *worker)
 
 /* libwebsockets waits for whole milliseconds only: what is left of one before the next timer fires it would spend on asking again and
    again, which takes the processor from a daemon on the same machine. */
-static void wait_for_timer(const struct worker *worker)
+static void wait_for_timer(const struct viewer_thread *worker)
 {
     struct pollfd sockets[MAX_WAITING];
     int64_t until_ns = INT64_MAX, now_ns = clock_mono_ns();
@@ -47,7 +47,7 @@ static void wait_for_timer(const struct worker *worker)
 
 static void *worker_main(void *arg)
 {
-    struct worker *worker = arg;
+    struct viewer_thread *worker = arg;
     for (int i = 0; i < worker->count; i += worker->stride)
         viewer_connect(worker->viewers[i], worker->context);
     while (!all_done(worker)) {
@@ -60,7 +60,7 @@ static void *worker_main(void *arg)
 
 /* All before the first thread connects: libwebsockets keeps one number for all contexts by which a TLS connection finds its own, and each
    new context changes it. */
-static bool worker_prepare(struct worker *worker)
+static bool worker_prepare(struct viewer_thread *worker)
 {
     struct lws_context_creation_info info = {
         .port = CONTEXT_PORT_NO_LISTEN,
@@ -85,12 +85,12 @@ void viewer_threads_raise_file_limit(void)
 
 bool viewer_threads_run(struct viewer **viewers, int count)
 {
-    struct worker workers[MAX_THREADS];
+    struct viewer_thread workers[MAX_THREADS];
     int threads = count < MAX_THREADS ? count : MAX_THREADS, prepared = 0, started = 0;
     lws_set_log_level(0, NULL);
     viewer_threads_raise_file_limit();
     for (; prepared < threads; prepared++) {
-        workers[prepared] = (struct worker){ .viewers = viewers + prepared, .count = count - prepared, .stride = threads };
+        workers[prepared] = (struct viewer_thread){ .viewers = viewers + prepared, .count = count - prepared, .stride = threads };
         if (!worker_prepare(&workers[prepared]))
             break;
     }

@@ -41,7 +41,7 @@ struct format {
 const format formats[] = { { ".obj", nullptr, nullptr, true }, { ".stl", nullptr, nullptr, false }, { ".ply", nullptr, nullptr, true },
                            { ".fbx", "cm", "y", true },        { ".dae", "m", "y", true },          { ".3ds", nullptr, "y", true } };
 
-struct reader {
+struct assimp_reader {
     const aiScene *scene;
     struct glb_scene *out;
     text_encoding encoding;                      /* of names that Assimp hands over as they are in the file */
@@ -263,7 +263,7 @@ void root_matrix(const aiScene *scene, const format &from, const char *units, co
 
 /* --- meshes ---------------------------------------------------------------------------------------------------- */
 
-int material_of(reader *r, unsigned number)
+int material_of(assimp_reader *r, unsigned number)
 {
     if (number >= r->materials.size())
         return -1;
@@ -289,7 +289,7 @@ bool finite(const aiVector3D &v)
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-std::vector<uint32_t> corners_of(reader *r, const aiMesh *mesh)
+std::vector<uint32_t> corners_of(assimp_reader *r, const aiMesh *mesh)
 {
     std::vector<uint32_t> corners;
     for (unsigned i = 0; i < mesh->mNumFaces; i++) {
@@ -305,7 +305,7 @@ std::vector<uint32_t> corners_of(reader *r, const aiMesh *mesh)
     return corners;
 }
 
-void add_primitive(reader *r, int to, const aiMesh *mesh, const std::vector<uint32_t> &corners)
+void add_primitive(assimp_reader *r, int to, const aiMesh *mesh, const std::vector<uint32_t> &corners)
 {
     std::vector<float> positions, normals;
     for (unsigned i = 0; i < mesh->mNumVertices; i++) {
@@ -326,7 +326,7 @@ void add_primitive(reader *r, int to, const aiMesh *mesh, const std::vector<uint
 }
 
 /* What Assimp makes up has angle brackets, as <STL_BINARY>. */
-std::string name_of(const reader *r, const aiString &from)
+std::string name_of(const assimp_reader *r, const aiString &from)
 {
     std::string name = from.C_Str()[0] == '<' ? "" : r->encoding.utf8(from.C_Str());
     for (char &c : name)
@@ -335,7 +335,7 @@ std::string name_of(const reader *r, const aiString &from)
 }
 
 /* Returns -1 for a node that shows nothing. */
-int mesh_of(reader *r, const aiNode *node)
+int mesh_of(assimp_reader *r, const aiNode *node)
 {
     std::vector<unsigned> parts(node->mMeshes, node->mMeshes + node->mNumMeshes);
     auto known = r->meshes.find(parts);
@@ -357,7 +357,7 @@ int mesh_of(reader *r, const aiNode *node)
 
 /* --- nodes ---------------------------------------------------------------------------------------------------- */
 
-void add_properties(reader *r, int to, const aiMetadata *data)
+void add_properties(assimp_reader *r, int to, const aiMetadata *data)
 {
     for (unsigned i = 0; data && i < data->mNumProperties; i++) {
         const aiMetadataEntry &entry = data->mValues[i];
@@ -416,7 +416,7 @@ bool is_step(const aiNode *node)
     return strstr(node->mName.C_Str(), "_$AssimpFbx$_") != nullptr;
 }
 
-void add(reader *r, const aiNode *node, const transform &steps, int parent, int depth)
+void add(assimp_reader *r, const aiNode *node, const transform &steps, int parent, int depth)
 {
     double matrix[16];
     bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity(); /* the node around all others */
@@ -497,7 +497,7 @@ void convert(const char *input, const char *output, const char *units, const cha
     Assimp::DefaultLogger::kill();
     for (const auto &entry : logged)
         printf("error\t%zu\tAssimp: %.300s\n", entry.second, entry.first.c_str());
-    reader r = {};
+    assimp_reader r = {};
     r.scene = scene;
     if (of_file.choice.ascii) {
         std::string names;

@@ -54,7 +54,9 @@ constexpr int SHIFT = 9;
 class step_writer
 {
   public:
-    explicit step_writer(const model &of) : in(of) {}
+    explicit step_writer(const ifc_model &of) : in(of)
+    {
+    }
 
     std::string whole(int root)
     {
@@ -78,7 +80,7 @@ class step_writer
     size_t faces = 0;
 
   private:
-    const model &in;
+    const ifc_model &in;
     std::ostringstream out;
     std::set<int> done;
     int made = 0; /* statements that have no counterpart in the file, numbered downwards from the largest */
@@ -219,7 +221,7 @@ class step_writer
 
 } // namespace
 
-TopoDS_Shape brep_of(const model &in, const entity &item)
+TopoDS_Shape brep_of(const ifc_model &in, const entity &item)
 {
     step_writer writer(in);
     std::istringstream text(writer.whole(item.id));

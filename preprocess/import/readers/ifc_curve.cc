@@ -34,9 +34,9 @@ namespace
 constexpr double SHORTEST_MM = 1e-4; /* shorter pieces are left out: sweeps along them fail */
 constexpr double JOINT_MM = 1; /* ends of neighbouring pieces that are nearer are meant to meet */
 
-std::vector<piece> pieces_within(const model &in, const entity &curve, int depth);
+std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve, int depth);
 
-gp_Pnt coordinates_of(const model &in, const value &from)
+gp_Pnt coordinates_of(const ifc_model &in, const value &from)
 {
     double at[3] = { 0, 0, 0 };
     for (size_t i = 0; i < 3 && i < from.list.size(); i++)
@@ -44,7 +44,7 @@ gp_Pnt coordinates_of(const model &in, const value &from)
     return { at[0], at[1], at[2] };
 }
 
-bool straight(const gp_Pnt &from, const gp_Pnt &to, double span, std::vector<piece> *out)
+bool straight(const gp_Pnt &from, const gp_Pnt &to, double span, std::vector<curve_piece> *out)
 {
     double length = from.Distance(to);
     if (length < Precision::Confusion())
@@ -53,7 +53,7 @@ bool straight(const gp_Pnt &from, const gp_Pnt &to, double span, std::vector<pie
     return true;
 }
 
-void add_arc(const gp_Pnt &from, const gp_Pnt &through, const gp_Pnt &to, std::vector<piece> *out)
+void add_arc(const gp_Pnt &from, const gp_Pnt &through, const gp_Pnt &to, std::vector<curve_piece> *out)
 {
     GC_MakeArcOfCircle arc(from, through, to);
     if (!arc.IsDone()) { /* the three are in line */
@@ -63,18 +63,18 @@ void add_arc(const gp_Pnt &from, const gp_Pnt &through, const gp_Pnt &to, std::v
     out->push_back({ arc.Value()->BasisCurve(), arc.Value()->FirstParameter(), arc.Value()->LastParameter(), 1 });
 }
 
-std::vector<piece> polyline(const model &in, const value &points)
+std::vector<curve_piece> polyline(const ifc_model &in, const value &points)
 {
-    std::vector<piece> out;
+    std::vector<curve_piece> out;
     for (size_t i = 0; i + 1 < points.list.size(); i++)
         straight(point_of(in, points.list[i]), point_of(in, points.list[i + 1]), 1, &out);
     return out;
 }
 
-std::vector<piece> indexed(const model &in, const entity &curve)
+std::vector<curve_piece> indexed(const ifc_model &in, const entity &curve)
 {
     std::vector<gp_Pnt> points = points_of(in, curve[0]);
-    std::vector<piece> out;
+    std::vector<curve_piece> out;
     for (size_t i = 0; curve[1].absent() && i + 1 < points.size(); i++)
         straight(points[i], points[i + 1], 1, &out);
     for (const value &segment : curve[1].list) {
@@ -96,7 +96,7 @@ std::vector<piece> indexed(const model &in, const entity &curve)
 }
 
 /* Returns the parameter of an IfcTrimmingSelect, in the units of the curve: a parameter or a point, of which the file prefers one. */
-double trim_at(const model &in, const piece &basis, const value &select, bool by_point, double per_unit)
+double trim_at(const ifc_model &in, const curve_piece &basis, const value &select, bool by_point, double per_unit)
 {
     const value *parameter = nullptr, *point = nullptr;
     for (const value &one : select.list)
@@ -113,9 +113,9 @@ double trim_at(const model &in, const piece &basis, const value &select, bool by
 }
 
 /* Returns the one curve that a basis curve is, whole. */
-piece basis_of(const model &in, const entity &curve);
+curve_piece basis_of(const ifc_model &in, const entity &curve);
 
-std::vector<piece> trimmed_curve(const model &in, const entity &curve, int depth)
+std::vector<curve_piece> trimmed_curve(const ifc_model &in, const entity &curve, int depth)
 {
     entity from = in.statements.get(curve[0]);
     bool same = !curve[3].is(".F."), by_point = curve[4].is(".CARTESIAN.");
@@ -123,13 +123,13 @@ std::vector<piece> trimmed_curve(const model &in, const entity &curve, int depth
         bool whole = false;
         if (curve[1].list.empty() || curve[2].list.empty())
             throw unsupported("a curve is trimmed by nothing");
-        std::vector<piece> out =
+        std::vector<curve_piece> out =
             trimmed(pieces_within(in, from, depth + 1), curve[1].list[0], curve[2].list[0], &whole);
         if (whole || !same)
             throw unsupported("a trimmed " + from.type);
         return out;
     }
-    piece basis = basis_of(in, from);
+    curve_piece basis = basis_of(in, from);
     double per_unit = 1;
     if (from.is("IFCLINE"))
         per_unit = basis.last / basis.span;
@@ -148,16 +148,16 @@ std::vector<piece> trimmed_curve(const model &in, const entity &curve, int depth
     return { { basis.curve, first, last, std::fabs(last - first) / per_unit } };
 }
 
-std::vector<piece> composite(const model &in, const entity &curve, int depth)
+std::vector<curve_piece> composite(const ifc_model &in, const entity &curve, int depth)
 {
-    std::vector<piece> out;
+    std::vector<curve_piece> out;
     for (const value &reference : curve[0].list) {
         entity segment = in.statements.get(reference);
         if (segment.type.compare(0, 24, "IFCCOMPOSITECURVESEGMENT") != 0 && !segment.is("IFCREPARAMETRISEDCOMPOSITECURVESEGMENT"))
             throw unsupported(segment.type);
-        std::vector<piece> parts = pieces_within(in, in.statements.get(segment[2]), depth + 1);
+        std::vector<curve_piece> parts = pieces_within(in, in.statements.get(segment[2]), depth + 1);
         if (segment[1].is(".F.")) {
-            for (piece &part : parts)
+            for (curve_piece &part : parts)
                 std::swap(part.first, part.last);
             parts.assign(parts.rbegin(), parts.rend());
         }
@@ -166,7 +166,7 @@ std::vector<piece> composite(const model &in, const entity &curve, int depth)
     return out;
 }
 
-Handle(Geom_Curve) spline(const model &in, const entity &curve)
+Handle(Geom_Curve) spline(const ifc_model &in, const entity &curve)
 {
     const std::vector<value> &points = curve[1].list, &counts = curve[5].list, &knots = curve[6].list;
     if (points.size() < 2 || counts.size() < 2 || counts.size() != knots.size())
@@ -186,7 +186,7 @@ Handle(Geom_Curve) spline(const model &in, const entity &curve)
     return new Geom_BSplineCurve(poles, weights, at, multiplicities, static_cast<int>(file::number(curve[0])));
 }
 
-piece basis_of(const model &in, const entity &curve)
+curve_piece basis_of(const ifc_model &in, const entity &curve)
 {
     const double turn = 2 * M_PI;
     if (curve.is("IFCLINE")) {
@@ -214,7 +214,7 @@ piece basis_of(const model &in, const entity &curve)
     throw unsupported(curve.type);
 }
 
-std::vector<piece> pieces_within(const model &in, const entity &curve, int depth)
+std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve, int depth)
 {
     if (depth > MAX_CHAIN)
         throw unsupported("its curves refer to each other in a circle");
@@ -231,15 +231,15 @@ std::vector<piece> pieces_within(const model &in, const entity &curve, int depth
 
 } // namespace
 
-double length_of(const piece &part)
+double length_of(const curve_piece &part)
 {
     return GCPnts_AbscissaPoint::Length(GeomAdaptor_Curve(part.curve), std::fmin(part.first, part.last), std::fmax(part.first, part.last));
 }
 
-gp_Pnt piece::start() const { return curve->Value(first); }
-gp_Pnt piece::end() const { return curve->Value(last); }
+gp_Pnt curve_piece::start() const { return curve->Value(first); }
+gp_Pnt curve_piece::end() const { return curve->Value(last); }
 
-gp_Vec piece::tangent(bool at_end) const
+gp_Vec curve_piece::tangent(bool at_end) const
 {
     gp_Pnt at;
     gp_Vec along;
@@ -251,7 +251,7 @@ gp_Vec piece::tangent(bool at_end) const
     return first > last ? -along.Normalized() : along.Normalized();
 }
 
-gp_Pnt point_of(const model &in, const value &reference)
+gp_Pnt point_of(const ifc_model &in, const value &reference)
 {
     entity point = in.statements.get(reference);
     if (!point.is("IFCCARTESIANPOINT"))
@@ -259,7 +259,7 @@ gp_Pnt point_of(const model &in, const value &reference)
     return coordinates_of(in, point[0]);
 }
 
-std::vector<gp_Pnt> points_of(const model &in, const value &reference)
+std::vector<gp_Pnt> points_of(const ifc_model &in, const value &reference)
 {
     std::vector<gp_Pnt> out;
     entity list = in.statements.get(reference);
@@ -268,7 +268,7 @@ std::vector<gp_Pnt> points_of(const model &in, const value &reference)
     return out;
 }
 
-gp_Dir direction_of(const model &in, const value &reference, const gp_Dir &otherwise)
+gp_Dir direction_of(const ifc_model &in, const value &reference, const gp_Dir &otherwise)
 {
     double at[3] = { 0, 0, 0 };
     if (reference.absent())
@@ -287,7 +287,7 @@ static gp_Ax3 frame_of(const gp_Pnt &origin, const gp_Dir &z, const gp_Dir &x)
     return z.IsParallel(x, 1e-9) ? gp_Ax3(origin, z) : gp_Ax3(origin, z, x);
 }
 
-gp_Trsf placement_of(const model &in, const value &reference)
+gp_Trsf placement_of(const ifc_model &in, const value &reference)
 {
     gp_Trsf out;
     if (reference.absent())
@@ -301,7 +301,7 @@ gp_Trsf placement_of(const model &in, const value &reference)
     return out;
 }
 
-gp_GTrsf operator_of(const model &in, const entity &from)
+gp_GTrsf operator_of(const ifc_model &in, const entity &from)
 {
     bool flat = from.type.find("OPERATOR2D") != std::string::npos;
     gp_Dir x = direction_of(in, from[0], gp::DX()), z = flat ? gp::DZ() : direction_of(in, from[4], gp::DZ());
@@ -323,10 +323,10 @@ gp_GTrsf operator_of(const model &in, const entity &from)
     return out;
 }
 
-std::vector<piece> pieces_of(const model &in, const entity &curve)
+std::vector<curve_piece> pieces_of(const ifc_model &in, const entity &curve)
 {
-    std::vector<piece> out;
-    for (const piece &part : pieces_within(in, curve, 0))
+    std::vector<curve_piece> out;
+    for (const curve_piece &part : pieces_within(in, curve, 0))
         if (length_of(part) > SHORTEST_MM)
             out.push_back(part);
     if (out.empty())
@@ -334,10 +334,10 @@ std::vector<piece> pieces_of(const model &in, const entity &curve)
     return out;
 }
 
-std::vector<piece> trimmed(const std::vector<piece> &pieces, const value &from, const value &to, bool *whole)
+std::vector<curve_piece> trimmed(const std::vector<curve_piece> &pieces, const value &from, const value &to, bool *whole)
 {
     double total = 0;
-    for (const piece &part : pieces)
+    for (const curve_piece &part : pieces)
         total += part.span;
     double first = file::number(from, 0), last = file::number(to, total), slack = 1e-5 * total;
     if (std::fabs(first) <= slack && std::fabs(last - total) <= slack)
@@ -346,9 +346,9 @@ std::vector<piece> trimmed(const std::vector<piece> &pieces, const value &from, 
         *whole = true;
         return pieces;
     }
-    std::vector<piece> out;
+    std::vector<curve_piece> out;
     double at = 0;
-    for (const piece &part : pieces) {
+    for (const curve_piece &part : pieces) {
         double low = std::fmax(0, (first - at) / part.span), high = std::fmin(1, (last - at) / part.span);
         at += part.span;
         if (high - low < 1e-9)
@@ -359,9 +359,9 @@ std::vector<piece> trimmed(const std::vector<piece> &pieces, const value &from, 
     return out;
 }
 
-std::vector<piece> rounded(const std::vector<gp_Pnt> &points, const std::vector<double> &radii, bool closed)
+std::vector<curve_piece> rounded(const std::vector<gp_Pnt> &points, const std::vector<double> &radii, bool closed)
 {
-    std::vector<piece> out;
+    std::vector<curve_piece> out;
     size_t count = points.size();
     std::vector<gp_Pnt> before = points, after = points; /* each corner: where its arc begins and ends */
     for (size_t i = closed ? 0 : 1; i + (closed ? 0 : 1) < count; i++) {
@@ -386,10 +386,10 @@ std::vector<piece> rounded(const std::vector<gp_Pnt> &points, const std::vector<
     return out;
 }
 
-TopoDS_Wire wire_of(const std::vector<piece> &pieces)
+TopoDS_Wire wire_of(const std::vector<curve_piece> &pieces)
 {
     Handle(ShapeExtend_WireData) data = new ShapeExtend_WireData;
-    for (const piece &part : pieces) {
+    for (const curve_piece &part : pieces) {
         double low = std::fmin(part.first, part.last), high = std::fmax(part.first, part.last);
         BRepBuilderAPI_MakeEdge edge(part.curve, low, high);
         if (!edge.IsDone())

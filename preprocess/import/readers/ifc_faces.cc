@@ -96,7 +96,7 @@ TopoDS_Shape joined(const std::vector<flat_face> &faces)
 
 /* --- loops of points */
 
-polygon loop_of(const model &in, const entity &bound)
+polygon loop_of(const ifc_model &in, const entity &bound)
 {
     entity loop = in.statements.get(bound[0]);
     polygon out;
@@ -110,7 +110,7 @@ polygon loop_of(const model &in, const entity &bound)
 }
 
 /* A face whose outer bounds are several becomes several faces; where none is said to be the outer one, it is the largest. */
-void take_face(const model &in, const entity &face, std::vector<flat_face> *out)
+void take_face(const ifc_model &in, const entity &face, std::vector<flat_face> *out)
 {
     std::vector<polygon> inner;
     size_t first = out->size(), largest = 0;
@@ -133,7 +133,7 @@ void take_face(const model &in, const entity &face, std::vector<flat_face> *out)
         (*out)[first].holes = inner;
 }
 
-void take_shell(const model &in, const entity &shell, std::vector<flat_face> *out)
+void take_shell(const ifc_model &in, const entity &shell, std::vector<flat_face> *out)
 {
     for (const value &reference : shell[0].list)
         take_face(in, in.statements.get(reference), out);
@@ -158,7 +158,7 @@ polygon picked(const polygon &points, const value &indices, const value &renumbe
     return out;
 }
 
-void take_face_set(const model &in, const entity &item, std::vector<flat_face> *out)
+void take_face_set(const ifc_model &in, const entity &item, std::vector<flat_face> *out)
 {
     polygon points = points_of(in, item[0]);
     if (item.is("IFCTRIANGULATEDFACESET")) {
@@ -182,7 +182,7 @@ bool has_flat_faces(const std::string &type)
            type == "IFCSHELLBASEDSURFACEMODEL" || type == "IFCTRIANGULATEDFACESET" || type == "IFCPOLYGONALFACESET";
 }
 
-bool has_edges(const model &in, const entity &item)
+bool has_edges(const ifc_model &in, const entity &item)
 {
     if (item.type.find("SURFACEMODEL") == std::string::npos)
         return false;
@@ -190,7 +190,7 @@ bool has_edges(const model &in, const entity &item)
     return in.statements.get(in.statements.get(face[0].list.at(0))[0]).is("IFCEDGELOOP");
 }
 
-TopoDS_Shape flat_faces_of(const model &in, const entity &item)
+TopoDS_Shape flat_faces_of(const ifc_model &in, const entity &item)
 {
     std::vector<flat_face> faces;
     if (item.type.find("FACESET") != std::string::npos) {

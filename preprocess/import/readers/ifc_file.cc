@@ -28,7 +28,7 @@ size_t skip_one(const std::string &bytes, size_t at)
     return end == std::string::npos ? bytes.size() : end + (bytes[at] == '\'' ? 1 : 2);
 }
 
-struct parser {
+struct ifc_parser {
     const std::string &bytes;
     size_t at;
 
@@ -147,7 +147,7 @@ file::file(const char *path)
     bool begins = true; /* a statement: after the last one's semicolon */
     for (size_t at = 0; at < bytes.size();) {
         if (begins && bytes[at] == '#') {
-            parser p = { bytes, at + 1 };
+            ifc_parser p = { bytes, at + 1 };
             int id = atoi(p.word().c_str());
             if (id > 0 && p.next() == '=') {
                 p.at++;
@@ -173,7 +173,7 @@ entity file::get(int id) const
     auto found = places.find(id);
     if (found == places.end())
         throw unsupported("#" + std::to_string(id) + " is missing");
-    parser p = { bytes, found->second.at };
+    ifc_parser p = { bytes, found->second.at };
     entity out;
     out.id = id;
     out.type = found->second.type;
@@ -211,7 +211,7 @@ void file::each(const std::function<void(int, const std::string &)> &f) const
 bool file::is_rooted(int id) const
 {
     auto found = places.find(id);
-    parser p = { bytes, found == places.end() ? bytes.size() : found->second.at + 1 };
+    ifc_parser p = { bytes, found == places.end() ? bytes.size() : found->second.at + 1 };
     return p.next() == '\'';
 }
 

@@ -56,12 +56,12 @@ class file
     bool is_rooted(int id) const;
 
   private:
-    struct place {
+    struct statement_place {
         std::string type;
         size_t at; /* of its opening bracket */
     };
     std::string bytes;
-    std::map<int, place> places;
+    std::map<int, statement_place> places;
 };
 
 } // namespace ifc

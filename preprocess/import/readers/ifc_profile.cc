@@ -24,15 +24,15 @@ namespace
 {
 
 /* A corner of an outline, rounded by `radius`. */
-struct corner {
+struct outline_corner {
     double x, y, radius;
 };
 
-TopoDS_Wire outline(const std::vector<corner> &corners)
+TopoDS_Wire outline(const std::vector<outline_corner> &corners)
 {
     std::vector<gp_Pnt> points;
     std::vector<double> radii;
-    for (const corner &at : corners) {
+    for (const outline_corner &at : corners) {
         points.emplace_back(at.x, at.y, 0);
         radii.push_back(at.radius);
     }
@@ -150,10 +150,10 @@ std::vector<TopoDS_Face> parametric(const std::string &type, const lengths &d)
 }
 
 /* Returns points along pieces, no chord further than chord_mm from the curve. */
-std::vector<gp_Pnt> points_along(const std::vector<piece> &pieces, double chord_mm)
+std::vector<gp_Pnt> points_along(const std::vector<curve_piece> &pieces, double chord_mm)
 {
     std::vector<gp_Pnt> out = { pieces.front().start() };
-    for (const piece &part : pieces) {
+    for (const curve_piece &part : pieces) {
         double low = std::fmin(part.first, part.last), high = std::fmax(part.first, part.last);
         GCPnts_QuasiUniformDeflection along(GeomAdaptor_Curve(part.curve), chord_mm, low, high);
         for (int i = 2; along.IsDone() && i <= along.NbPoints(); i++)
@@ -163,10 +163,10 @@ std::vector<gp_Pnt> points_along(const std::vector<piece> &pieces, double chord_
 }
 
 /* The outline of a centre line in XY with a thickness; corners are mitred, ends are square to the line. */
-TopoDS_Wire thickened(const std::vector<piece> &pieces, double thickness, double chord_mm)
+TopoDS_Wire thickened(const std::vector<curve_piece> &pieces, double thickness, double chord_mm)
 {
     std::vector<gp_Pnt> line = points_along(pieces, chord_mm), right;
-    std::vector<corner> out;
+    std::vector<outline_corner> out;
     for (size_t i = 0; i < line.size(); i++) {
         size_t before = i > 0 ? i - 1 : 0, after = i + 1 < line.size() ? i : i - 1;
         gp_Vec in(line[before], line[before + 1]), on(line[after], line[after + 1]);
@@ -182,10 +182,10 @@ TopoDS_Wire thickened(const std::vector<piece> &pieces, double thickness, double
     return outline(out);
 }
 
-std::vector<TopoDS_Face> profile_within(const model &in, const entity &profile, int depth);
+std::vector<TopoDS_Face> profile_within(const ifc_model &in, const entity &profile, int depth);
 
 /* Of parts that are moved, or of several profiles. */
-std::vector<TopoDS_Face> assembled(const model &in, const entity &profile, int depth)
+std::vector<TopoDS_Face> assembled(const ifc_model &in, const entity &profile, int depth)
 {
     std::vector<TopoDS_Face> out;
     if (profile.is("IFCCOMPOSITEPROFILEDEF")) {
@@ -206,7 +206,7 @@ std::vector<TopoDS_Face> assembled(const model &in, const entity &profile, int d
     return out;
 }
 
-std::vector<TopoDS_Face> profile_within(const model &in, const entity &profile, int depth)
+std::vector<TopoDS_Face> profile_within(const ifc_model &in, const entity &profile, int depth)
 {
     if (depth > MAX_CHAIN)
         throw unsupported("its profiles refer to each other in a circle");
@@ -232,12 +232,12 @@ std::vector<TopoDS_Face> profile_within(const model &in, const entity &profile, 
 
 } // namespace
 
-std::vector<TopoDS_Face> profile_of(const model &in, const entity &profile)
+std::vector<TopoDS_Face> profile_of(const ifc_model &in, const entity &profile)
 {
     return profile_within(in, profile, 0);
 }
 
-std::vector<TopoDS_Shape> profile_shapes_of(const model &in, const entity &profile)
+std::vector<TopoDS_Shape> profile_shapes_of(const ifc_model &in, const entity &profile)
 {
     if (profile.is("IFCARBITRARYOPENPROFILEDEF"))
         return { wire_of(pieces_of(in, in.statements.get(profile[2]))) };

@@ -44,7 +44,7 @@ std::vector<TopoDS_Wire> wires_of(const TopoDS_Face &face)
 
 /* --- sections at their own places */
 
-TopoDS_Shape spine_of(const model &in, const entity &item)
+TopoDS_Shape spine_of(const ifc_model &in, const entity &item)
 {
     const std::vector<value> &sections = item[1].list, &places = item[2].list;
     std::vector<TopoDS_Face> faces;
@@ -64,11 +64,11 @@ struct station {
 };
 
 /* Returns the place of a section: X to the left, Y up. */
-gp_Trsf upright(const std::vector<piece> &pieces, const station &at)
+gp_Trsf upright(const std::vector<curve_piece> &pieces, const station &at)
 {
     double left_mm = at.along_mm;
-    const piece *part = &pieces.front();
-    for (const piece &one : pieces) {
+    const curve_piece *part = &pieces.front();
+    for (const curve_piece &one : pieces) {
         part = &one;
         if (left_mm <= length_of(one) + 1e-6 || &one == &pieces.back())
             break;
@@ -92,7 +92,7 @@ gp_Trsf upright(const std::vector<piece> &pieces, const station &at)
     return out;
 }
 
-station station_of(const model &in, const value &reference, const value &profile)
+station station_of(const ifc_model &in, const value &reference, const value &profile)
 {
     entity place = in.statements.get(reference), at = place;
     if (place.is("IFCAXIS2PLACEMENTLINEAR")) {
@@ -107,10 +107,10 @@ station station_of(const model &in, const value &reference, const value &profile
 }
 
 /* Adds stations between two of the same profile where the curve between them is not straight. */
-void add_between(const model &in, const std::vector<piece> &pieces, station from, const station &to, std::vector<station> *out)
+void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, station from, const station &to, std::vector<station> *out)
 {
     double at = 0;
-    for (const piece &part : pieces) {
+    for (const curve_piece &part : pieces) {
         double length = length_of(part), low = std::fmax(at, from.along_mm), high = std::fmin(at + length, to.along_mm);
         bool straight = part.curve->IsKind(STANDARD_TYPE(Geom_Line));
         at += length;
@@ -131,9 +131,9 @@ void add_between(const model &in, const std::vector<piece> &pieces, station from
     }
 }
 
-TopoDS_Shape horizontal_of(const model &in, const entity &item)
+TopoDS_Shape horizontal_of(const ifc_model &in, const entity &item)
 {
-    std::vector<piece> pieces = pieces_of(in, in.statements.get(item[0]));
+    std::vector<curve_piece> pieces = pieces_of(in, in.statements.get(item[0]));
     const std::vector<value> &sections = item[1].list, &places = item[2].list;
     std::vector<station> stations;
     std::vector<TopoDS_Face> faces;
@@ -175,7 +175,7 @@ TopoDS_Face moved(const TopoDS_Face &face, const gp_Trsf &place)
     return TopoDS::Face(BRepBuilderAPI_Transform(face, place, Standard_True).Shape());
 }
 
-TopoDS_Shape sections_of(const model &in, const entity &item)
+TopoDS_Shape sections_of(const ifc_model &in, const entity &item)
 {
     return item.is("IFCSECTIONEDSPINE") ? spine_of(in, item) : horizontal_of(in, item);
 }

@@ -43,9 +43,9 @@ double unit_of(const file &in, const entity &unit, int depth)
     return file::number(factor[0]) * unit_of(in, in.get(factor[1]), depth + 1);
 }
 
-model model_of(const file &in, double chord_mm)
+ifc_model model_of(const file &in, double chord_mm)
 {
-    model out = { in, 1e3, 1, chord_mm };
+    ifc_model out = { in, 1e3, 1, chord_mm };
     in.each([&](int id, const std::string &type) {
         if (type != "IFCPROJECT")
             return;
@@ -65,21 +65,21 @@ model model_of(const file &in, double chord_mm)
 
 /* --- meshes */
 
-struct part {
+struct ifc_part {
     int mesh;
     double origin[3]; /* of its vertices, in mm, so that an item far from its element's origin keeps its precision */
 };
 
-struct writer {
-    const model &in;
+struct ifc_writer {
+    const ifc_model &in;
     struct glb_scene *scene;
-    std::map<int, part> parts;      /* by item */
+    std::map<int, ifc_part> parts;      /* by item */
     std::map<int, std::string> failed; /* items and elements that are left to web-ifc, and why */
     std::set<int> asked; /* elements of which web-ifc builds nothing, or not all */
     size_t elements = 0;
 };
 
-part add_mesh(writer *w, const TopoDS_Shape &shape, int id)
+ifc_part add_mesh(ifc_writer *w, const TopoDS_Shape &shape, int id)
 {
     triangles all = triangles_of(w->in, shape);
     if (volume_of(all) < 0) { /* turned inside out */
@@ -88,7 +88,7 @@ part add_mesh(writer *w, const TopoDS_Shape &shape, int id)
         for (gp_Vec &normal : all.normals)
             normal.Reverse();
     }
-    part out = { -1, { 0, 0, 0 } };
+    ifc_part out = { -1, { 0, 0, 0 } };
     for (int axis = 0; axis < 3; axis++)
         out.origin[axis] = std::round(all.points[0].Coord(axis + 1));
     std::vector<float> positions, normals;
@@ -110,7 +110,7 @@ part add_mesh(writer *w, const TopoDS_Shape &shape, int id)
 }
 
 /* Tessellates an item once. Returns false if it could not be built, which is said once. */
-bool build(writer *w, const entity &item)
+bool build(ifc_writer *w, const entity &item)
 {
     std::string why;
     if (w->parts.count(item.id) > 0 || w->failed.count(item.id) > 0)
@@ -132,7 +132,7 @@ bool build(writer *w, const entity &item)
 /* --- elements */
 
 /* Whether an item, or a solid that a boolean operation takes, is one of those to build. */
-bool wanted(const model &in, const entity &item, int depth)
+bool wanted(const ifc_model &in, const entity &item, int depth)
 {
     if (depth > MAX_CHAIN)
         return false;
@@ -148,10 +148,10 @@ struct placed_item {
 
 /* Collects the items of a representation, and of those that it maps. Clears *whole if one of them is left to web-ifc.
  * all: items of every type are built. */
-void collect(writer *w, const entity &representation, const gp_GTrsf &above, int depth, bool all, std::vector<placed_item> *out,
+void collect(ifc_writer *w, const entity &representation, const gp_GTrsf &above, int depth, bool all, std::vector<placed_item> *out,
              bool *whole)
 {
-    const model &in = w->in;
+    const ifc_model &in = w->in;
     if (depth > MAX_CHAIN)
         throw unsupported("its representations map each other in a circle");
     for (const value &reference : representation[3].list) {
@@ -168,7 +168,7 @@ void collect(writer *w, const entity &representation, const gp_GTrsf &above, int
     }
 }
 
-gp_Trsf object_placement(const model &in, const value &reference, int depth)
+gp_Trsf object_placement(const ifc_model &in, const value &reference, int depth)
 {
     if (reference.absent())
         return gp_Trsf();
@@ -207,7 +207,7 @@ bool is_body(const entity &representation)
     return representation.is("IFCSHAPEREPRESENTATION");
 }
 
-void add_element(writer *w, const entity &product)
+void add_element(ifc_writer *w, const entity &product)
 {
     static const double zero[3] = { 0, 0, 0 };
     std::vector<placed_item> items;
@@ -226,7 +226,7 @@ void add_element(writer *w, const entity &product)
     if (whole)
         glb_scene_set_property(w->scene, node, "whole", "yes");
     for (const placed_item &item : items) {
-        const part &from = w->parts[item.id];
+        const ifc_part &from = w->parts[item.id];
         matrix_of(item.place, 1, false, from.origin, matrix);
         glb_scene_add_node(w->scene, node, ("#" + std::to_string(item.id)).c_str(), from.mesh, matrix);
     }
@@ -260,8 +260,8 @@ void ifc_shapes_write(const char *input, const char *output, double chord_mm, co
     std::set<int> elements = numbers_in(asked);
     if (elements.empty() && !ifc::has_any(statements))
         return;
-    ifc::model in = ifc::model_of(statements, chord_mm);
-    ifc::writer w = { in, glb_scene_create("plantcast-import, Open CASCADE"), {}, {}, elements };
+    ifc::ifc_model in = ifc::model_of(statements, chord_mm);
+    ifc::ifc_writer w = { in, glb_scene_create("plantcast-import, Open CASCADE"), {}, {}, elements };
     statements.each([&](int id, const std::string &) {
         try {
             if (!statements.is_rooted(id))

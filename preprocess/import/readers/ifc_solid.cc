@@ -47,12 +47,12 @@ template <typename builder> TopoDS_Shape each(const std::vector<TopoDS_Shape> &f
     return out;
 }
 
-TopoDS_Shape placed(const model &in, const value &at, const TopoDS_Shape &shape)
+TopoDS_Shape placed(const ifc_model &in, const value &at, const TopoDS_Shape &shape)
 {
     return shape.Moved(TopLoc_Location(placement_of(in, at)));
 }
 
-TopoDS_Shape extruded(const model &in, const entity &item)
+TopoDS_Shape extruded(const ifc_model &in, const entity &item)
 {
     entity profile = in.statements.get(item[0]);
     gp_Vec along = gp_Vec(direction_of(in, item[2], gp::DZ())) * (in.length * file::number(item[3]));
@@ -67,7 +67,7 @@ TopoDS_Shape extruded(const model &in, const entity &item)
     return placed(in, item[1], out);
 }
 
-TopoDS_Shape revolved(const model &in, const entity &item)
+TopoDS_Shape revolved(const ifc_model &in, const entity &item)
 {
     std::vector<TopoDS_Shape> faces = profile_shapes_of(in, in.statements.get(item[0]));
     entity axis = in.statements.get(item[2]);
@@ -87,7 +87,7 @@ struct trihedron {
 };
 
 /* X is normal to the surface. Surfaces that a straight line generates keep that line's direction along the curve. */
-trihedron on_surface(const model &in, const entity &surface, const piece &first)
+trihedron on_surface(const ifc_model &in, const entity &surface, const curve_piece &first)
 {
     gp_Trsf place = placement_of(in, surface[surface.is("IFCSURFACEOFLINEAREXTRUSION") ? 1 : 0]);
     gp_Dir z = gp::DZ().Transformed(place);
@@ -104,10 +104,10 @@ trihedron on_surface(const model &in, const entity &surface, const piece &first)
 }
 
 /* Along a curve, with the profile's X towards a fixed direction, or normal to a surface. */
-TopoDS_Shape along_curve(const model &in, const entity &item)
+TopoDS_Shape along_curve(const ifc_model &in, const entity &item)
 {
     bool whole = false;
-    std::vector<piece> pieces = trimmed(pieces_of(in, in.statements.get(item[2])), item[3], item[4], &whole);
+    std::vector<curve_piece> pieces = trimmed(pieces_of(in, in.statements.get(item[2])), item[3], item[4], &whole);
     trihedron frame = { gp::DX(), gp::DX() };
     if (item.is("IFCFIXEDREFERENCESWEPTAREASOLID"))
         frame.x = frame.up = direction_of(in, item[5], gp::DX());
@@ -130,7 +130,7 @@ TopoDS_Shape pyramid(double x, double y, double height)
 }
 
 /* A primitive, or a null shape for another type. */
-TopoDS_Shape primitive(const model &in, const entity &item)
+TopoDS_Shape primitive(const ifc_model &in, const entity &item)
 {
     TopoDS_Shape out;
     auto length = [&](size_t at) { return in.length * file::number(item[at]); };
@@ -149,7 +149,7 @@ TopoDS_Shape primitive(const model &in, const entity &item)
     return placed(in, item[0], out);
 }
 
-TopoDS_Shape half_space(const model &in, const entity &item)
+TopoDS_Shape half_space(const ifc_model &in, const entity &item)
 {
     entity surface = in.statements.get(item[0]);
     if (!surface.is("IFCPLANE"))
@@ -168,7 +168,7 @@ TopoDS_Shape half_space(const model &in, const entity &item)
     return BRepAlgoAPI_Common(placed(in, item[2], prism), out).Shape();
 }
 
-TopoDS_Shape boolean(const model &in, const entity &item, int depth)
+TopoDS_Shape boolean(const ifc_model &in, const entity &item, int depth)
 {
     TopoDS_Shape first = solid_of(in, in.statements.get(item[1]), depth + 1), second = solid_of(in, in.statements.get(item[2]), depth + 1);
     TopoDS_Shape out;
@@ -209,7 +209,7 @@ bool is_built(const std::string &type)
     return false;
 }
 
-TopoDS_Shape solid_of(const model &in, const entity &item, int depth)
+TopoDS_Shape solid_of(const ifc_model &in, const entity &item, int depth)
 {
     if (depth > MAX_CHAIN)
         throw unsupported("its solids refer to each other in a circle");

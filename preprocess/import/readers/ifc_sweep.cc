@@ -48,7 +48,7 @@ TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, co
 }
 
 /* Returns the placement of the XY plane square to the first piece. */
-gp_Trsf start_of(const std::vector<piece> &pieces, const gp_Dir *up)
+gp_Trsf start_of(const std::vector<curve_piece> &pieces, const gp_Dir *up)
 {
     gp_Dir along(pieces.front().tangent(false));
     gp_Trsf out;
@@ -57,7 +57,7 @@ gp_Trsf start_of(const std::vector<piece> &pieces, const gp_Dir *up)
     return out;
 }
 
-TopoDS_Shape along(const TopoDS_Face &face, const std::vector<piece> &pieces, const gp_Dir *x, const gp_Dir *up)
+TopoDS_Shape along(const TopoDS_Face &face, const std::vector<curve_piece> &pieces, const gp_Dir *x, const gp_Dir *up)
 {
     TopoDS_Face placed = TopoDS::Face(BRepBuilderAPI_Transform(face, start_of(pieces, x), Standard_True).Shape());
     TopoDS_Wire spine = wire_of(pieces), outer = BRepTools::OuterWire(placed);
@@ -73,7 +73,7 @@ TopoDS_Shape along(const TopoDS_Face &face, const std::vector<piece> &pieces, co
 }
 
 /* Sweeps a disk along one piece: exactly, where it is a line or an arc. */
-TopoDS_Shape along_piece(const TopoDS_Face &face, const piece &part)
+TopoDS_Shape along_piece(const TopoDS_Face &face, const curve_piece &part)
 {
     TopoDS_Face placed = TopoDS::Face(BRepBuilderAPI_Transform(face, start_of({ part }, nullptr), Standard_True).Shape());
     Handle(Geom_Circle) circle = Handle(Geom_Circle)::DownCast(part.curve);
@@ -86,23 +86,23 @@ TopoDS_Shape along_piece(const TopoDS_Face &face, const piece &part)
     return angle > 2 * M_PI - 1e-9 ? BRepPrimAPI_MakeRevol(placed, axis).Shape() : BRepPrimAPI_MakeRevol(placed, axis, angle).Shape();
 }
 
-TopoDS_Shape disks_along(const TopoDS_Face &face, const std::vector<piece> &pieces)
+TopoDS_Shape disks_along(const TopoDS_Face &face, const std::vector<curve_piece> &pieces)
 {
     TopoDS_Compound out;
     BRep_Builder builder;
     builder.MakeCompound(out);
-    for (const piece &part : pieces)
+    for (const curve_piece &part : pieces)
         builder.Add(out, along_piece(face, part));
     return out;
 }
 
-TopoDS_Shape pipe(const TopoDS_Face &face, const std::vector<piece> &pieces)
+TopoDS_Shape pipe(const TopoDS_Face &face, const std::vector<curve_piece> &pieces)
 {
     TopoDS_Face placed = TopoDS::Face(BRepBuilderAPI_Transform(face, start_of(pieces, nullptr), Standard_True).Shape());
     return BRepOffsetAPI_MakePipe(wire_of(pieces), placed).Shape();
 }
 
-TopoDS_Shape mitred(const TopoDS_Face &face, const std::vector<piece> &pieces)
+TopoDS_Shape mitred(const TopoDS_Face &face, const std::vector<curve_piece> &pieces)
 {
     return along(face, pieces, nullptr, nullptr);
 }
@@ -110,11 +110,11 @@ TopoDS_Shape mitred(const TopoDS_Face &face, const std::vector<piece> &pieces)
 /* Sweeps a disk along all pieces. What the volume must be is known: area times length. Where a way of sweeping leaves another one, corners
  * or whole stretches of its triangles are wrong, and the next way is tried. The last one sweeps each piece by itself, with closed ends and
  * corners that are not mitred. */
-TopoDS_Shape disk_along(const model &in, const TopoDS_Face &face, double area, const std::vector<piece> &pieces)
+TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double area, const std::vector<curve_piece> &pieces)
 {
-    using way = TopoDS_Shape (*)(const TopoDS_Face &, const std::vector<piece> &);
+    using way = TopoDS_Shape (*)(const TopoDS_Face &, const std::vector<curve_piece> &);
     double expected = 0;
-    for (const piece &part : pieces)
+    for (const curve_piece &part : pieces)
         expected += area * length_of(part);
     for (way sweep : { way(pipe), way(mitred), way(disks_along) })
         try {
@@ -143,7 +143,7 @@ TopoDS_Face disk(double radius, double hole)
 
 } // namespace
 
-TopoDS_Shape swept(const std::vector<TopoDS_Face> &faces, const std::vector<piece> &pieces, const gp_Dir &x, const gp_Dir &up)
+TopoDS_Shape swept(const std::vector<TopoDS_Face> &faces, const std::vector<curve_piece> &pieces, const gp_Dir &x, const gp_Dir &up)
 {
     if (faces.size() == 1)
         return along(faces[0], pieces, &x, &up);
@@ -155,19 +155,19 @@ TopoDS_Shape swept(const std::vector<TopoDS_Face> &faces, const std::vector<piec
     return out;
 }
 
-TopoDS_Shape disk_of(const model &in, const entity &item)
+TopoDS_Shape disk_of(const ifc_model &in, const entity &item)
 {
     double radius = in.length * file::number(item[1]), hole = in.length * file::number(item[2], 0);
     double fillet = item.is("IFCSWEPTDISKSOLIDPOLYGONAL") ? in.length * file::number(item[5], 0) : 0;
     bool whole = false;
     if (radius <= 0 || hole >= radius)
         throw unsupported("a pipe without a wall");
-    std::vector<piece> pieces = trimmed(pieces_of(in, in.statements.get(item[0])), item[3], item[4], &whole);
+    std::vector<curve_piece> pieces = trimmed(pieces_of(in, in.statements.get(item[0])), item[3], item[4], &whole);
     if (whole)
         printf("error\t1\tOpen CASCADE: #%d: its parameters are outside of its curve: the whole curve is taken\n", item.id);
     if (fillet > 0) {
         std::vector<gp_Pnt> points = { pieces.front().start() };
-        for (const piece &part : pieces)
+        for (const curve_piece &part : pieces)
             points.push_back(part.end());
         pieces = rounded(points, { fillet }, false);
     }

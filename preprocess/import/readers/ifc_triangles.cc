@@ -45,7 +45,7 @@ void take_face(const TopoDS_Face &face, triangles *to)
 
 } // namespace
 
-triangles triangles_of(const model &in, const TopoDS_Shape &shape)
+triangles triangles_of(const ifc_model &in, const TopoDS_Shape &shape)
 {
     triangles out;
     BRepMesh_IncrementalMesh(shape, in.chord_mm, Standard_False, ANGLE_RAD, Standard_False);

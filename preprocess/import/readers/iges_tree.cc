@@ -44,7 +44,7 @@ namespace
 
 using entity = Handle(IGESData_IGESEntity);
 
-struct tree {
+struct iges_tree {
     Handle(XCAFDoc_ShapeTool) shapes;
     Handle(XCAFDoc_ColorTool) colors;
     Handle(XCAFDoc_LayerTool) layers;
@@ -140,23 +140,23 @@ double scale_of(const entity &from)
     return place.IsNull() || !place->HasScaleFactor() || !(place->ScaleFactor() > 0) ? 1 : place->ScaleFactor();
 }
 
-TopoDS_Shape shape_of(const tree &t, const entity &from)
+TopoDS_Shape shape_of(const iges_tree &t, const entity &from)
 {
     Handle(Transfer_Binder) binder = from.IsNull() ? Handle(Transfer_Binder)() : t.process->Find(from);
     return binder.IsNull() ? TopoDS_Shape() : TransferBRep::ShapeResult(binder);
 }
 
 /* An entity, and the shape that Open CASCADE made of it, in its place. */
-struct item {
+struct iges_item {
     entity from;
     TopoDS_Shape shape;
 };
 
 /* The shape of a group holds those of its members, in their places; what is remembered of a surface by itself may lack its own. Members of
  * which nothing came are not in it; an instance that has another size is one of these. */
-std::vector<item> items_of(const tree &t, const item &group)
+std::vector<iges_item> items_of(const iges_tree &t, const iges_item &group)
 {
-    std::vector<item> out;
+    std::vector<iges_item> out;
     std::vector<TopoDS_Shape> shapes;
     for (TopoDS_Iterator child(group.shape, Standard_False, Standard_False); child.More(); child.Next())
         shapes.push_back(child.Value());
@@ -173,14 +173,14 @@ std::vector<item> items_of(const tree &t, const item &group)
 
 /* --- labels ------------------------------------------------------------------------------------------------------------------------- */
 
-void describe_layer(const tree &t, const TDF_Label &label, const std::string &layer)
+void describe_layer(const iges_tree &t, const TDF_Label &label, const std::string &layer)
 {
     if (!layer.empty())
         t.layers->SetLayer(label, TCollection_ExtendedString(t.encoding->utf8(layer).c_str(), Standard_True));
 }
 
 /* What it does not say stays as it is. */
-void describe(const tree &t, const TDF_Label &label, const entity &from)
+void describe(const iges_tree &t, const TDF_Label &label, const entity &from)
 {
     Quantity_Color color;
     std::string name = name_of(from);
@@ -196,28 +196,28 @@ bool has_faces(const TopoDS_Shape &shape)
     return !shape.IsNull() && TopExp_Explorer(shape, TopAbs_FACE).More();
 }
 
-enum class kind { nothing, surface, part };
+enum class shape_kind { nothing, surface, part };
 
 /* Surfaces of a group are one part together; solids and groups are parts of their own. */
-kind kind_of(const item &what)
+shape_kind kind_of(const iges_item &what)
 {
     if (!has_faces(what.shape))
-        return kind::nothing;
-    return is_group(product_of(what.from)) || what.shape.ShapeType() <= TopAbs_SOLID ? kind::part : kind::surface;
+        return shape_kind::nothing;
+    return is_group(product_of(what.from)) || what.shape.ShapeType() <= TopAbs_SOLID ? shape_kind::part : shape_kind::surface;
 }
 
-TDF_Label add_surfaces(const tree &t, const std::vector<item> &surfaces)
+TDF_Label add_surfaces(const iges_tree &t, const std::vector<iges_item> &surfaces)
 {
     BRep_Builder builder;
     TopoDS_Compound all;
     builder.MakeCompound(all);
-    for (const item &each : surfaces)
+    for (const iges_item &each : surfaces)
         builder.Add(all, each.shape);
     ShapeFix_Shape fix(all);
     fix.Perform();
     TDF_Label label = t.shapes->AddShape(fix.Shape(), Standard_False, Standard_False);
     TDataStd_Name::Set(label, TCollection_ExtendedString());
-    for (const item &each : surfaces) {
+    for (const iges_item &each : surfaces) {
         Quantity_Color color;
         TDF_Label side;
         if (color_of(each.from, &color) && t.shapes->AddSubShape(label, fix.Context()->Apply(each.shape), side))
@@ -227,15 +227,15 @@ TDF_Label add_surfaces(const tree &t, const std::vector<item> &surfaces)
 }
 
 /* Loose ones: a part for each layer. */
-std::map<std::string, std::vector<item>> by_layer(const std::vector<item> &loose)
+std::map<std::string, std::vector<iges_item>> by_layer(const std::vector<iges_item> &loose)
 {
-    std::map<std::string, std::vector<item>> out;
-    for (const item &each : loose)
+    std::map<std::string, std::vector<iges_item>> out;
+    for (const iges_item &each : loose)
         out[layer_of(each.from)].push_back(each);
     return out;
 }
 
-TDF_Label add_whole(const tree &t, const TopoDS_Shape &shape)
+TDF_Label add_whole(const iges_tree &t, const TopoDS_Shape &shape)
 {
     ShapeFix_Shape fix(shape);
     fix.Perform();
@@ -244,17 +244,17 @@ TDF_Label add_whole(const tree &t, const TopoDS_Shape &shape)
     return label;
 }
 
-TDF_Label label_of(tree *t, const item &what, int depth);
+TDF_Label label_of(iges_tree *t, const iges_item &what, int depth);
 
 /* A place cannot have another size: one part of its own. */
-TDF_Label add_scaled(tree *t, const item &what)
+TDF_Label add_scaled(iges_tree *t, const iges_item &what)
 {
     gp_Trsf larger;
     larger.SetScaleFactor(scale_of(what.from));
     return add_whole(*t, BRepBuilderAPI_Transform(what.shape, larger, Standard_True).Shape());
 }
 
-void add_component(tree *t, const TDF_Label &to, const item &what, int depth)
+void add_component(iges_tree *t, const TDF_Label &to, const iges_item &what, int depth)
 {
     const entity product = product_of(what.from);
     bool scaled = scale_of(what.from) != 1;
@@ -273,11 +273,11 @@ void add_component(tree *t, const TDF_Label &to, const item &what, int depth)
 }
 
 /* A group of one thing that has neither name nor place of its own is that thing. */
-item without_wrappings(const tree &t, item what)
+iges_item without_wrappings(const iges_tree &t, iges_item what)
 {
     for (int depth = 0; depth < MAX_DEPTH && is_group(what.from); depth++) {
-        std::vector<item> items = items_of(t, what);
-        if (items.size() != 1 || kind_of(items[0]) != kind::part || product_of(items[0].from) != items[0].from ||
+        std::vector<iges_item> items = items_of(t, what);
+        if (items.size() != 1 || kind_of(items[0]) != shape_kind::part || product_of(items[0].from) != items[0].from ||
             !name_of(items[0].from).empty() || !items[0].shape.Location().IsIdentity())
             break;
         what = items[0];
@@ -285,20 +285,20 @@ item without_wrappings(const tree &t, item what)
     return what;
 }
 
-TDF_Label add_group(tree *t, const item &group, int depth)
+TDF_Label add_group(iges_tree *t, const iges_item &group, int depth)
 {
-    std::vector<item> parts, loose;
-    for (const item &each : items_of(*t, group))
+    std::vector<iges_item> parts, loose;
+    for (const iges_item &each : items_of(*t, group))
         switch (kind_of(each)) {
-        case kind::part: parts.push_back(each); break;
-        case kind::surface: loose.push_back(each); break;
-        case kind::nothing: break;
+        case shape_kind::part: parts.push_back(each); break;
+        case shape_kind::surface: loose.push_back(each); break;
+        case shape_kind::nothing: break;
         }
     if (parts.empty())
         return add_surfaces(*t, loose);
     TDF_Label label = t->shapes->NewShape();
     TDataStd_Name::Set(label, TCollection_ExtendedString());
-    for (const item &each : parts)
+    for (const iges_item &each : parts)
         add_component(t, label, each, depth + 1);
     for (const auto &entry : by_layer(loose)) {
         TDF_Label part = add_surfaces(*t, entry.second);
@@ -309,14 +309,14 @@ TDF_Label add_group(tree *t, const item &group, int depth)
 }
 
 /* Of a thing without its place: the same for all its places. */
-TDF_Label label_of(tree *t, const item &what, int depth)
+TDF_Label label_of(iges_tree *t, const iges_item &what, int depth)
 {
     if (depth > MAX_DEPTH)
         refuse("its groups are nested deeper than %d levels, or in a circle", MAX_DEPTH);
     auto known = t->made.find(what.from.get());
     if (known != t->made.end())
         return known->second;
-    item inner = without_wrappings(*t, { what.from, what.shape.Located(TopLoc_Location()) });
+    iges_item inner = without_wrappings(*t, { what.from, what.shape.Located(TopLoc_Location()) });
     TDF_Label label = is_group(inner.from) ? add_group(t, inner, depth) : add_whole(*t, inner.shape);
     describe(*t, label, inner.from);
     if (inner.from != what.from)
@@ -326,7 +326,7 @@ TDF_Label label_of(tree *t, const item &what, int depth)
 }
 
 /* What is free has no place. */
-void add_root(tree *t, const item &root)
+void add_root(iges_tree *t, const iges_item &root)
 {
     if (product_of(root.from) == root.from && root.shape.Location().IsIdentity()) {
         label_of(t, root, 0);
@@ -341,8 +341,8 @@ void add_root(tree *t, const item &root)
 
 void iges_tree_add(IGESControl_Reader &iges, const Handle(TDocStd_Document) & document, const struct text_encoding &encoding)
 {
-    tree t;
-    std::vector<item> loose;
+    iges_tree t;
+    std::vector<iges_item> loose;
     Handle(IGESData_IGESModel) model = Handle(IGESData_IGESModel)::DownCast(iges.WS()->Model());
     t.shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
     t.colors = XCAFDoc_DocumentTool::ColorTool(document->Main());
@@ -351,13 +351,13 @@ void iges_tree_add(IGESControl_Reader &iges, const Handle(TDocStd_Document) & do
     t.process = iges.WS()->TransferReader()->TransientProcess();
     t.unit_mm = model->GlobalSection().UnitValue();
     for (int i = 1; i <= iges.NbRootsForTransfer(); i++) {
-        item root = { entity::DownCast(iges.RootForTransfer(i)), TopoDS_Shape() };
+        iges_item root = { entity::DownCast(iges.RootForTransfer(i)), TopoDS_Shape() };
         if (!root.from.IsNull() && iges.TransferOneRoot(i))
             root.shape = iges.Shape(iges.NbShapes());
         switch (kind_of(root)) {
-        case kind::part: add_root(&t, root); break;
-        case kind::surface: loose.push_back(root); break;
-        case kind::nothing: break;
+        case shape_kind::part: add_root(&t, root); break;
+        case shape_kind::surface: loose.push_back(root); break;
+        case shape_kind::nothing: break;
         }
     }
     for (const auto &entry : by_layer(loose)) {

@@ -108,37 +108,37 @@ void matrix_of(const TopLoc_Location &location, const double shift[3], double ou
 
 /* --- parts ---------------------------------------------------------------------------------------------------------------------------- */
 
-struct part { /* a shape, tessellated */
+struct occt_part { /* a shape, tessellated */
     int mesh;
     double origin[3]; /* of its vertices, so that a part far from its own origin keeps its precision */
 };
 
-struct group { /* triangles of one colour */
+struct color_group { /* triangles of one colour */
     std::vector<gp_Pnt> points;
     std::vector<gp_Dir> normals;
     std::vector<uint32_t> corners;
 };
 
-struct reader {
+struct occt_reader {
     Handle(XCAFDoc_ShapeTool) shapes;
     Handle(XCAFDoc_ColorTool) colors;
     Handle(XCAFDoc_LayerTool) layers;
     struct glb_scene *scene;
     double chord_mm;
-    std::map<std::string, part> parts; /* by label and inherited colour */
+    std::map<std::string, occt_part> parts; /* by label and inherited colour */
     size_t nodes = 0, places = 0, skipped_faces = 0, empty_parts = 0;
 };
 
 using key = std::array<double, 4>;
 
-void take_face(reader *r, RWMesh_FaceIterator &face, std::map<key, group> *groups)
+void take_face(occt_reader *r, RWMesh_FaceIterator &face, std::map<key, color_group> *groups)
 {
     key color = { PLAIN[0], PLAIN[1], PLAIN[2], PLAIN[3] };
     if (face.HasFaceColor()) {
         const Quantity_ColorRGBA &rgba = face.FaceColor();
         color = { rgba.GetRGB().Red(), rgba.GetRGB().Green(), rgba.GetRGB().Blue(), static_cast<double>(rgba.Alpha()) };
     }
-    group *to = &(*groups)[color];
+    color_group *to = &(*groups)[color];
     uint32_t first = static_cast<uint32_t>(to->points.size());
     for (int i = face.NodeLower(); i <= face.NodeUpper(); i++) {
         gp_Pnt point = face.NodeTransformed(i);
@@ -158,7 +158,7 @@ void take_face(reader *r, RWMesh_FaceIterator &face, std::map<key, group> *group
     }
 }
 
-void find_origin(const std::map<key, group> &groups, double origin[3])
+void find_origin(const std::map<key, color_group> &groups, double origin[3])
 {
     double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
     for (const auto &entry : groups)
@@ -171,10 +171,10 @@ void find_origin(const std::map<key, group> &groups, double origin[3])
         origin[axis] = std::round((low[axis] + high[axis]) / 2);
 }
 
-void write_groups(reader *r, const std::map<key, group> &groups, const part &to)
+void write_groups(occt_reader *r, const std::map<key, color_group> &groups, const occt_part &to)
 {
     for (const auto &entry : groups) {
-        const group &from = entry.second;
+        const color_group &from = entry.second;
         if (from.corners.empty())
             continue;
         std::vector<float> positions, normals;
@@ -194,7 +194,7 @@ void write_groups(reader *r, const std::map<key, group> &groups, const part &to)
 }
 
 /* Tessellates a simple shape, once for each colour that it inherits. mesh -1: it has no faces. */
-part part_of(reader *r, const TDF_Label &label, const XCAFPrs_Style &style)
+occt_part part_of(occt_reader *r, const TDF_Label &label, const XCAFPrs_Style &style)
 {
     TCollection_AsciiString entry;
     TDF_Tool::Entry(label, entry);
@@ -204,8 +204,8 @@ part part_of(reader *r, const TDF_Label &label, const XCAFPrs_Style &style)
     auto known = r->parts.find(id);
     if (known != r->parts.end())
         return known->second;
-    part made = { -1, { 0, 0, 0 } };
-    std::map<key, group> groups;
+    occt_part made = { -1, { 0, 0, 0 } };
+    std::map<key, color_group> groups;
     TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
     bool shown = false;
     if (!shape.IsNull()) {
@@ -237,7 +237,7 @@ part part_of(reader *r, const TDF_Label &label, const XCAFPrs_Style &style)
 
 /* --- the assembly ------------------------------------------------------------------------------------------------------------------- */
 
-void add(reader *r, const TDF_Label &label, int parent, XCAFPrs_Style style, int depth)
+void add(occt_reader *r, const TDF_Label &label, int parent, XCAFPrs_Style style, int depth)
 {
     static const double zero[3] = { 0, 0, 0 };
     TDF_Label product = label;
@@ -250,7 +250,7 @@ void add(reader *r, const TDF_Label &label, int parent, XCAFPrs_Style style, int
     take_color(r->colors, label, &style);
     std::string own = name_of(label), name = own.empty() ? name_of(product) : own;
     bool assembly = XCAFDoc_ShapeTool::IsAssembly(product);
-    part shown = { -1, { 0, 0, 0 } };
+    occt_part shown = { -1, { 0, 0, 0 } };
     if (assembly)
         take_color(r->colors, product, &style);
     else
@@ -399,7 +399,7 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
     remove(copy.c_str());
     const char *slash = strrchr(input, '/'), *base = slash ? slash + 1 : input;
     std::string stem(base, strrchr(base, '.') ? static_cast<size_t>(strrchr(base, '.') - base) : strlen(base));
-    reader r = {};
+    occt_reader r = {};
     r.shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
     r.colors = XCAFDoc_DocumentTool::ColorTool(document->Main());
     r.layers = XCAFDoc_DocumentTool::LayerTool(document->Main());

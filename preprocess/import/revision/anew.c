@@ -21,7 +21,7 @@ struct one_text {
     char *kept;           /* the version of before; NULL: none is kept */
 };
 
-struct making {
+struct revision_making {
     const struct revise_params *params;
     struct revision_file *files;
     size_t file_count;
@@ -35,7 +35,7 @@ static int fail_at(const char *path, const char *why)
 }
 
 /* Takes the text. versioned: somebody may have written the one of before. */
-static int add_text(struct making *making, struct one_text *one, const char *name, char *after, bool versioned)
+static int add_text(struct revision_making *making, struct one_text *one, const char *name, char *after, bool versioned)
 {
     char *path = mem_printf("%s/%s", making->params->folder, name);
     struct refusal why = { .code = REFUSAL_NONE };
@@ -65,7 +65,7 @@ static int add_text(struct making *making, struct one_text *one, const char *nam
     return status;
 }
 
-static int add_texts(struct making *making, const struct plant_draft *draft, size_t *assets)
+static int add_texts(struct revision_making *making, const struct plant_draft *draft, size_t *assets)
 {
     char *plant = mem_printf("%s/plant.yaml", making->params->folder), *tags = mem_printf("%s/tags.csv", making->params->folder);
     bool new_list = draft->anew || access(tags, F_OK) != 0;
@@ -79,7 +79,7 @@ static int add_texts(struct making *making, const struct plant_draft *draft, siz
     return status;
 }
 
-static int apply(const struct making *making)
+static int apply(const struct revision_making *making)
 {
     const char *folder = making->params->folder, *changed;
     int status = revision_files_apply(folder, making->params->work, making->files, making->file_count, &changed);
@@ -94,7 +94,7 @@ static int apply(const struct making *making)
 
 int import_anew(const struct revise_params *params, const struct plant_draft *draft)
 {
-    struct making making = { .params = params, .files = mem_array(params->count + TEXTS, sizeof(*making.files)) };
+    struct revision_making making = { .params = params, .files = mem_array(params->count + TEXTS, sizeof(*making.files)) };
     size_t assets = 0;
     for (size_t i = 0; i < params->count; i++)
         making.files[making.file_count++] =

@@ -69,17 +69,17 @@ void model_states_finish(struct model_states *states)
 
 /* --- parts: each primitive of each instance ------------------------------------------------------------------------------------- */
 
-struct part {
+struct state_part {
     const struct gltf_primitive *primitive;
     const double *world;
 };
 
-struct parts {
-    struct part *at;
+struct state_parts {
+    struct state_part *at;
     size_t count, capacity;
 };
 
-static void add_parts(const struct model_state *state, int node, struct parts *out)
+static void add_parts(const struct model_state *state, int node, struct state_parts *out)
 {
     const struct gltf_model *model = &state->model;
     uint32_t number = state->outline.header.nodes[node].number, first = state->first[node];
@@ -90,19 +90,19 @@ static void add_parts(const struct model_state *state, int node, struct parts *o
         const struct gltf_mesh *mesh = &model->meshes[at->mesh];
         for (uint32_t k = 0; k < mesh->primitive_count; k++) {
             mem_grow(&out->at, &out->capacity, out->count + 1, sizeof(*out->at));
-            out->at[out->count++] = (struct part){ &model->primitives[mesh->first_primitive + k], at->world };
+            out->at[out->count++] = (struct state_part){ &model->primitives[mesh->first_primitive + k], at->world };
         }
     }
 }
 
-static void vertex_of(const struct part *part, uint32_t vertex, double out[3])
+static void vertex_of(const struct state_part *part, uint32_t vertex, double out[3])
 {
     const float *at = part->primitive->positions[vertex];
     transform_point(part->world, (const double[3]){ (double)at[0], (double)at[1], (double)at[2] }, out);
 }
 
 /* Whether the parts from these on have as many vertices and corners each. */
-static bool alike(const struct parts *a, size_t a_first, const struct parts *b, size_t b_first)
+static bool alike(const struct state_parts *a, size_t a_first, const struct state_parts *b, size_t b_first)
 {
     bool same = a->count - a_first == b->count - b_first;
     for (size_t i = 0; same && a_first + i < a->count; i++) {
@@ -130,7 +130,7 @@ static bool find_shift(const double (*from)[3], const double (*to)[3], size_t co
     return true;
 }
 
-static void fit(const struct parts *before, const struct parts *after, double tolerance, double motion[16])
+static void fit(const struct state_parts *before, const struct state_parts *after, double tolerance, double motion[16])
 {
     size_t count = 0;
     double(*from)[3] = mem_array(before->count * SAMPLES, sizeof(*from)), (*to)[3] = mem_array(before->count * SAMPLES, sizeof(*to));
@@ -148,7 +148,8 @@ static void fit(const struct parts *before, const struct parts *after, double to
 }
 
 /* Whether the motion takes every vertex to where it is now; how far it takes them at most. */
-static bool takes(const double motion[16], const struct parts *before, const struct parts *after, double tolerance, double *moved)
+static bool takes(const double motion[16], const struct state_parts *before, const struct state_parts *after, double tolerance,
+                  double *moved)
 {
     *moved = 0;
     for (size_t i = 0; i < before->count; i++)
@@ -184,7 +185,7 @@ static void box_motion(const struct model_box *before, const struct model_box *a
 struct states_motion model_states_motion(const struct model_states *states, const bool *taken, double tolerance)
 {
     struct states_motion out = { .change = STATES_CHANGED };
-    struct parts before = { 0 }, after = { 0 };
+    struct state_parts before = { 0 }, after = { 0 };
     struct model_box old_box = model_box_empty, new_box = model_box_empty;
     memcpy(out.motion, transform_identity, sizeof(transform_identity));
     for (size_t i = 0; i < states->before.outline.header.count; i++) {
@@ -218,7 +219,7 @@ struct states_motion model_states_motion(const struct model_states *states, cons
 
 /* --- the nearest part ------------------------------------------------------------------------------------------------------------- */
 
-static double distance_to(const struct part *part, const double point[3], double best)
+static double distance_to(const struct state_part *part, const double point[3], double best)
 {
     const struct gltf_primitive *primitive = part->primitive;
     for (uint32_t i = 0; i + 2 < primitive->index_count; i += 3) {
@@ -248,7 +249,7 @@ int model_states_nearest(const struct model_states *states, const bool *taken, c
 {
     double best = INFINITY;
     int found = -1;
-    struct parts parts = { 0 };
+    struct state_parts parts = { 0 };
     for (size_t i = 0; i < states->before.outline.header.count; i++) {
         const struct model_box *box = &states->before.outline.header.boxes[i];
         if (!taken[i] || (box->low[0] <= box->high[0] && distance_to_box(box, point) >= best))

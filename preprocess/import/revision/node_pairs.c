@@ -9,14 +9,14 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-struct pairing {
+struct node_pairing {
     const struct model_outline *old_outline, *new_outline;
     struct node_pairs *pairs;
     int *olds, *news; /* room for all nodes: those that are being compared */
     size_t old_count, new_count;
 };
 
-static void pair(struct pairing *p, int old_node, int new_node)
+static void pair(struct node_pairing *p, int old_node, int new_node)
 {
     p->pairs->to_new[old_node] = new_node;
     p->pairs->to_old[new_node] = old_node;
@@ -76,13 +76,13 @@ static size_t children_of(const struct model_outline *outline, const int *paired
     return count;
 }
 
-static void take_children(struct pairing *p, int old_parent, int new_parent)
+static void take_children(struct node_pairing *p, int old_parent, int new_parent)
 {
     p->old_count = children_of(p->old_outline, p->pairs->to_new, old_parent, p->olds);
     p->new_count = children_of(p->new_outline, p->pairs->to_old, new_parent, p->news);
 }
 
-static void take_unpaired(struct pairing *p)
+static void take_unpaired(struct node_pairing *p)
 {
     p->old_count = p->new_count = 0;
     for (size_t i = 0; i < p->old_outline->header.count; i++)
@@ -101,7 +101,7 @@ enum run_rule {
     RUN_ORDERED /* one and one; those in the same place; as many others as there are, as they come */
 };
 
-static void pair_placed(struct pairing *p, const int *olds, size_t old_count, const int *news, size_t new_count)
+static void pair_placed(struct node_pairing *p, const int *olds, size_t old_count, const int *news, size_t new_count)
 {
     for (size_t i = 0; i < old_count; i++)
         for (size_t k = 0; k < new_count && p->pairs->to_new[olds[i]] < 0; k++)
@@ -109,7 +109,7 @@ static void pair_placed(struct pairing *p, const int *olds, size_t old_count, co
                 pair(p, olds[i], news[k]);
 }
 
-static void pair_in_order(struct pairing *p, const int *olds, size_t old_count, const int *news, size_t new_count)
+static void pair_in_order(struct node_pairing *p, const int *olds, size_t old_count, const int *news, size_t new_count)
 {
     size_t left = 0, k = 0;
     for (size_t i = 0; i < old_count; i++)
@@ -125,7 +125,7 @@ static void pair_in_order(struct pairing *p, const int *olds, size_t old_count, 
     }
 }
 
-static void pair_run(struct pairing *p, const int *olds, size_t old_count, const int *news, size_t new_count, enum run_rule rule)
+static void pair_run(struct node_pairing *p, const int *olds, size_t old_count, const int *news, size_t new_count, enum run_rule rule)
 {
     if (rule != RUN_PLACED && old_count == 1 && new_count == 1) {
         pair(p, olds[0], news[0]);
@@ -138,7 +138,7 @@ static void pair_run(struct pairing *p, const int *olds, size_t old_count, const
 }
 
 /* Goes through two sorted lists, run by run of equal ones. */
-static void pair_runs(struct pairing *p, int (*compare)(const struct pairing *p, int old_node, int new_node), enum run_rule rule)
+static void pair_runs(struct node_pairing *p, int (*compare)(const struct node_pairing *p, int old_node, int new_node), enum run_rule rule)
 {
     for (size_t i = 0, k = 0; i < p->old_count && k < p->new_count;) {
         int order = compare(p, p->olds[i], p->news[k]);
@@ -161,18 +161,18 @@ static void pair_runs(struct pairing *p, int (*compare)(const struct pairing *p,
     }
 }
 
-static int compare_names(const struct pairing *p, int old_node, int new_node)
+static int compare_names(const struct node_pairing *p, int old_node, int new_node)
 {
     return strcmp(p->old_outline->nodes[old_node].name, p->new_outline->nodes[new_node].name);
 }
 
-static int compare_sizes(const struct pairing *p, int old_node, int new_node)
+static int compare_sizes(const struct node_pairing *p, int old_node, int new_node)
 {
     size_t old_size = size_of(p->old_outline, old_node), new_size = size_of(p->new_outline, new_node);
     return (old_size > new_size) - (old_size < new_size);
 }
 
-static void pair_by_name(struct pairing *p, enum run_rule rule)
+static void pair_by_name(struct node_pairing *p, enum run_rule rule)
 {
     qsort_r(p->olds, p->old_count, sizeof(*p->olds), by_name, (void *)(uintptr_t)p->old_outline);
     qsort_r(p->news, p->new_count, sizeof(*p->news), by_name, (void *)(uintptr_t)p->new_outline);
@@ -188,7 +188,7 @@ static size_t only_shown(const struct model_outline *outline, int *nodes, size_t
     return kept;
 }
 
-static void pair_by_size(struct pairing *p, enum run_rule rule)
+static void pair_by_size(struct node_pairing *p, enum run_rule rule)
 {
     p->old_count = only_shown(p->old_outline, p->olds, p->old_count);
     p->new_count = only_shown(p->new_outline, p->news, p->new_count);
@@ -210,7 +210,7 @@ static json_t *guids_of(const struct model_outline *outline)
     return found;
 }
 
-static void pair_by_guid(struct pairing *p)
+static void pair_by_guid(struct node_pairing *p)
 {
     json_t *olds = guids_of(p->old_outline), *news = guids_of(p->new_outline), *value;
     const char *guid;
@@ -225,7 +225,7 @@ static void pair_by_guid(struct pairing *p)
 }
 
 /* From the roots down: a child comes after its parent. */
-static void pair_down_by_name(struct pairing *p)
+static void pair_down_by_name(struct node_pairing *p)
 {
     take_children(p, -1, -1);
     pair_by_name(p, RUN_ORDERED);
@@ -237,7 +237,7 @@ static void pair_down_by_name(struct pairing *p)
 }
 
 /* Below a parent that was renamed itself, parts are called after it. */
-static void pair_down_by_size(struct pairing *p)
+static void pair_down_by_size(struct node_pairing *p)
 {
     take_children(p, -1, -1);
     pair_by_size(p, RUN_PLACED);
@@ -258,11 +258,11 @@ void node_pairs_find(struct node_pairs *pairs, const struct model_outline *old_o
     *pairs = (struct node_pairs){ mem_array(olds + 1, sizeof(*pairs->to_new)), mem_array(news + 1, sizeof(*pairs->to_old)) };
     memset(pairs->to_new, 0xff, olds * sizeof(*pairs->to_new));
     memset(pairs->to_old, 0xff, news * sizeof(*pairs->to_old));
-    struct pairing p = { .old_outline = old_outline,
-                         .new_outline = new_outline,
-                         .pairs = pairs,
-                         .olds = mem_array(olds + 1, sizeof(*p.olds)),
-                         .news = mem_array(news + 1, sizeof(*p.news)) };
+    struct node_pairing p = { .old_outline = old_outline,
+                              .new_outline = new_outline,
+                              .pairs = pairs,
+                              .olds = mem_array(olds + 1, sizeof(*p.olds)),
+                              .news = mem_array(news + 1, sizeof(*p.news)) };
     pair_by_guid(&p);
     pair_down_by_name(&p);
     take_unpaired(&p);

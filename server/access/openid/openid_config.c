@@ -28,10 +28,12 @@ static bool is_unsafe(const char *url)
 
 static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct openid_group *group)
 {
-    static const struct choice roles[] = { { "viewer", ROLE_VIEWER }, { "operator", ROLE_OPERATOR }, { "engineer", ROLE_ENGINEER }, { 0 } };
-    static const struct key keys[] = { { "group", KEY_NAME, true, offsetof(struct openid_group, group), 0, 0, NULL, NULL },
-                                       { "role", KEY_CHOICE, true, offsetof(struct openid_group, role), 0, 0, roles, NULL },
-                                       { 0 } };
+    static const struct yaml_choice roles[] = {
+        { "viewer", ROLE_VIEWER }, { "operator", ROLE_OPERATOR }, { "engineer", ROLE_ENGINEER }, { 0 }
+    };
+    static const struct yaml_key keys[] = { { "group", KEY_NAME, true, offsetof(struct openid_group, group), 0, 0, NULL, NULL },
+                                            { "role", KEY_CHOICE, true, offsetof(struct openid_group, role), 0, 0, roles, NULL },
+                                            { 0 } };
     struct yaml_map map;
     yaml_map_read(reader, node, "a group", keys, group, &map);
 }
@@ -100,20 +102,20 @@ struct openid_config *openid_config_read(struct log *log, const char *path)
     {                                                                                                                                      \
 #name, KEY_NAME, required, offsetof(struct openid_config, name), 0, 0, NULL, NULL                                                  \
     }
-    static const struct key keys[] = { TEXT(issuer, true),
-                                       TEXT(client_id, true),
-                                       TEXT(client_secret_file, false),
-                                       TEXT(url, true),
-                                       TEXT(ca_file, false),
-                                       TEXT(scope, false),
-                                       TEXT(prompt, false),
-                                       TEXT(label, false),
-                                       TEXT(name_claim, false),
-                                       TEXT(groups_claim, false),
-                                       { "roles", KEY_CUSTOM, true, 0, 0, 0, NULL, read_groups },
-                                       { "check_s", KEY_NUMBER, false, offsetof(struct openid_config, check_s), 1, 45, NULL, NULL },
-                                       { "hours", KEY_NUMBER, false, offsetof(struct openid_config, hours), 0.01, 168, NULL, NULL },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { TEXT(issuer, true),
+                                            TEXT(client_id, true),
+                                            TEXT(client_secret_file, false),
+                                            TEXT(url, true),
+                                            TEXT(ca_file, false),
+                                            TEXT(scope, false),
+                                            TEXT(prompt, false),
+                                            TEXT(label, false),
+                                            TEXT(name_claim, false),
+                                            TEXT(groups_claim, false),
+                                            { "roles", KEY_CUSTOM, true, 0, 0, 0, NULL, read_groups },
+                                            { "check_s", KEY_NUMBER, false, offsetof(struct openid_config, check_s), 1, 45, NULL, NULL },
+                                            { "hours", KEY_NUMBER, false, offsetof(struct openid_config, hours), 0.01, 168, NULL, NULL },
+                                            { 0 } };
 #undef TEXT
     struct openid_config *config = mem_new(sizeof(*config));
     struct diag diag = { 0 };

@@ -13,7 +13,7 @@
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
 
-struct head {
+struct cache_head {
     char magic[8];
     uint64_t key, count;
     uint64_t checksum; /* XXH3-64 of the bytes, seeded with the key */
@@ -21,7 +21,7 @@ struct head {
 
 static bool is_good(const struct cache_file *file, const char *magic, uint64_t key)
 {
-    const struct head *head = file->map;
+    const struct cache_head *head = file->map;
     return file->map_bytes >= sizeof(*head) && memcmp(head->magic, magic, sizeof(head->magic)) == 0 && head->key == key &&
            head->count == file->map_bytes - sizeof(*head) && head->checksum == XXH3_64bits_withSeed(head + 1, head->count, key);
 }
@@ -42,8 +42,8 @@ bool cache_file_open(struct cache_file *file, const char *path, const char *magi
         cache_file_close(file);
         return false;
     }
-    file->bytes = (const char *)file->map + sizeof(struct head);
-    file->count = file->map_bytes - sizeof(struct head);
+    file->bytes = (const char *)file->map + sizeof(struct cache_head);
+    file->count = file->map_bytes - sizeof(struct cache_head);
     return true;
 }
 
@@ -57,7 +57,7 @@ void cache_file_close(struct cache_file *file)
 /* Not put together first: there may be tens of megabytes. */
 int cache_file_write_parts(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count)
 {
-    struct head head = { .key = key };
+    struct cache_head head = { .key = key };
     struct atomic_file_part *all = mem_array(part_count + 1, sizeof(*all));
     XXH3_state_t state;
     XXH3_INITSTATE(&state);

@@ -9,7 +9,7 @@
 
 #define ALIGN 8
 
-struct head {
+struct array_head {
     uint64_t count, bytes_each;
 };
 
@@ -20,7 +20,7 @@ static size_t padding_of(size_t bytes)
 
 void pack_array(struct text *to, const void *array, size_t count, size_t bytes_each)
 {
-    const struct head head = { count, bytes_each };
+    const struct array_head head = { count, bytes_each };
     static const char zeros[ALIGN];
     text_add_bytes(to, &head, sizeof(head));
     if (count)
@@ -31,7 +31,7 @@ void pack_array(struct text *to, const void *array, size_t count, size_t bytes_e
 /* The array's bytes, of which there are that many; NULL: it is not there. */
 static const char *take(struct unpack *from, size_t *count, size_t bytes_each)
 {
-    struct head head = { 0 };
+    struct array_head head = { 0 };
     if (!from->bad && from->left >= sizeof(head))
         memcpy(&head, from->at, sizeof(head));
     from->bad |= head.bytes_each != bytes_each || head.count > (from->left - sizeof(head)) / bytes_each;

@@ -13,7 +13,7 @@ static const double SMALL_SHARE = 0.02;             /* of the area: small pieces
 static const double SMALL_GAP = 1, LARGE_GAP = 100; /* sizes of the main part: gaps behind which small and large pieces are left out */
 static const double ONE_PLACE = 1e-3;               /* sizes of the main part: farther apart, two corners are at two places */
 
-struct part {
+struct tri_range {
     struct gap_tri *tris;
     size_t count;
 };
@@ -41,7 +41,7 @@ static double size_of(const struct gap_tri *tris, size_t count)
 }
 
 /* Finds the widest gap along an axis. Returns its length; 0: there is none. */
-static double find_gap(const struct part *part, int axis, double min_m, double max_m, double *from_m, double *to_m)
+static double find_gap(const struct tri_range *part, int axis, double min_m, double max_m, double *from_m, double *to_m)
 {
     struct {
         double low_m, high_m;
@@ -79,7 +79,7 @@ static void swap(struct gap_tri *a, struct gap_tri *b)
 }
 
 /* Moves triangles of the side (below or above the gap) to the front. Returns how many lie there whole. */
-static size_t gather(struct part *part, int axis, double from_m, double to_m, bool above, double *area_m2)
+static size_t gather(struct tri_range *part, int axis, double from_m, double to_m, bool above, double *area_m2)
 {
     size_t count = 0;
     *area_m2 = 0;
@@ -112,7 +112,7 @@ static bool reach_several_places(const struct gap_tri *tris, size_t count, int a
 }
 
 /* Leaves out what is behind a gap. Returns whether there was one. */
-static bool split(struct part *part, double all_m2)
+static bool split(struct tri_range *part, double all_m2)
 {
     double min_m[3], max_m[3];
     box_of(part->tris, part->count, min_m, max_m);
@@ -141,7 +141,7 @@ static bool split(struct part *part, double all_m2)
 
 size_t gap_split(struct gap_tri *tris, size_t count, struct extent *main)
 {
-    struct part part = { tris, count };
+    struct tri_range part = { tris, count };
     double all_m2 = 0;
     int splits = 0;
     for (size_t t = 0; t < count; t++)

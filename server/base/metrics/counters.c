@@ -9,18 +9,18 @@
 
 #include "base/mem.h"
 
-struct entry {
+struct counter_entry {
     char *name, *type, *help;
     counter value;
     bool microseconds;           /* printed in seconds */
     struct histogram *histogram; /* NULL: a single value */
-    struct entry *next;
+    struct counter_entry *next;
 };
 
 struct counters {
     pthread_mutex_t lock;
     /* --- below: under lock; entries are only ever added */
-    struct entry *first, **last;
+    struct counter_entry *first, **last;
 };
 
 struct counters *counters_create(void)
@@ -35,7 +35,7 @@ void counters_destroy(struct counters **counters)
 {
     if (!*counters)
         return;
-    for (struct entry *e = (*counters)->first, *next; e; e = next) {
+    for (struct counter_entry *e = (*counters)->first, *next; e; e = next) {
         next = e->next;
         mem_free(e->name);
         mem_free(e->type);
@@ -48,11 +48,11 @@ void counters_destroy(struct counters **counters)
     *counters = NULL;
 }
 
-static struct entry *find_or_add(struct counters *counters, const char *name, const char *type, const char *help)
+static struct counter_entry *find_or_add(struct counters *counters, const char *name, const char *type, const char *help)
 {
     bool distribution = !strcmp(type, "histogram");
     pthread_mutex_lock(&counters->lock);
-    struct entry *e = counters->first;
+    struct counter_entry *e = counters->first;
     while (e && strcmp(e->name, name) != 0)
         e = e->next;
     if (!e) {
@@ -80,7 +80,7 @@ struct histogram *counters_add_histogram(struct counters *counters, const char *
 
 counter *counters_add_seconds(struct counters *counters, const char *name, const char *type, const char *help)
 {
-    struct entry *e = find_or_add(counters, name, type, help);
+    struct counter_entry *e = find_or_add(counters, name, type, help);
     e->microseconds = true;
     return &e->value;
 }
@@ -90,13 +90,13 @@ static size_t family_length(const char *name)
     return strcspn(name, "{");
 }
 
-static bool same_family(const struct entry *a, const struct entry *b)
+static bool same_family(const struct counter_entry *a, const struct counter_entry *b)
 {
     size_t n = family_length(a->name);
     return n == family_length(b->name) && !strncmp(a->name, b->name, n);
 }
 
-static bool family_printed(const struct entry *first, const struct entry *e)
+static bool family_printed(const struct counter_entry *first, const struct counter_entry *e)
 {
     for (; first != e; first = first->next)
         if (same_family(first, e))
@@ -104,7 +104,7 @@ static bool family_printed(const struct entry *first, const struct entry *e)
     return false;
 }
 
-static void print_entry(struct entry *e, struct text *out)
+static void print_entry(struct counter_entry *e, struct text *out)
 {
     int64_t value = atomic_load_explicit(&e->value, memory_order_relaxed);
     if (e->histogram)
@@ -118,12 +118,12 @@ static void print_entry(struct entry *e, struct text *out)
 void counters_print(struct counters *counters, struct text *out)
 {
     pthread_mutex_lock(&counters->lock);
-    for (struct entry *e = counters->first; e; e = e->next) {
+    for (struct counter_entry *e = counters->first; e; e = e->next) {
         if (family_printed(counters->first, e))
             continue;
         int n = (int)family_length(e->name);
         text_add(out, "# HELP %.*s %s\n# TYPE %.*s %s\n", n, e->name, e->help, n, e->name, e->type);
-        for (struct entry *f = e; f; f = f->next)
+        for (struct counter_entry *f = e; f; f = f->next)
             if (same_family(e, f))
                 print_entry(f, out);
     }

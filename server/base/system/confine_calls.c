@@ -34,7 +34,7 @@ enum { MAX_INSTRUCTIONS = 1024, FIRST_NEWER_CALL = 451 /* cachestat, Linux 6.5; 
 #define SYS_landlock_restrict_self 446
 #endif
 
-struct program {
+struct filter_program {
     struct sock_filter at[MAX_INSTRUCTIONS];
     unsigned short count;
 };
@@ -82,22 +82,22 @@ static const int command_calls[] = {
 #endif
 };
 
-static void add(struct program *program, unsigned code, uint32_t value, unsigned if_true, unsigned if_false)
+static void add(struct filter_program *program, unsigned code, uint32_t value, unsigned if_true, unsigned if_false)
 {
     program->at[program->count++] = (struct sock_filter){ (uint16_t)code, (uint8_t)if_true, (uint8_t)if_false, value };
 }
 
-static void answer(struct program *program, uint32_t value)
+static void answer(struct filter_program *program, uint32_t value)
 {
     add(program, BPF_RET | BPF_K, value, 0, 0);
 }
 
-static void refuse(struct program *program)
+static void refuse(struct filter_program *program)
 {
     answer(program, SECCOMP_RET_ERRNO | EPERM);
 }
 
-static void allow(struct program *program, const int *calls, size_t count)
+static void allow(struct filter_program *program, const int *calls, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         add(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)calls[i], 0, 1);
@@ -107,7 +107,7 @@ static void allow(struct program *program, const int *calls, size_t count)
 
 /* Compares the lower half of an argument, all that the kernel uses of an int, with values. `test` is BPF_JEQ, or BPF_JSET for any bit of a
  * value. A match is allowed and anything else refused, or the other way round. Both processors are little-endian. */
-static void decide(struct program *program, int call, int argument, unsigned test, const struct values *values, bool allowed)
+static void decide(struct filter_program *program, int call, int argument, unsigned test, const struct values *values, bool allowed)
 {
     add(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, (unsigned)(2 + 2 * values->count));
     add(program, BPF_LD | BPF_W | BPF_ABS, (uint32_t)(offsetof(struct seccomp_data, args) + 8 * (size_t)argument), 0, 0);
@@ -119,7 +119,7 @@ static void decide(struct program *program, int call, int argument, unsigned tes
 }
 
 /* Refuses to empty a file that is opened for reading only, which Landlock allows before ABI 3. */
-static void refuse_emptying(struct program *program, int call, int flags_argument)
+static void refuse_emptying(struct filter_program *program, int call, int flags_argument)
 {
     add(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, 5);
     add(program, BPF_LD | BPF_W | BPF_ABS, (uint32_t)(offsetof(struct seccomp_data, args) + 8 * (size_t)flags_argument), 0, 0);
@@ -129,7 +129,7 @@ static void refuse_emptying(struct program *program, int call, int flags_argumen
     answer(program, SECCOMP_RET_ALLOW);
 }
 
-static void decide_by_arguments(struct program *program, enum confine_role role, bool notifies)
+static void decide_by_arguments(struct filter_program *program, enum confine_role role, bool notifies)
 {
     /* no injection of input into a terminal (TIOCSTI), no device controls */
     static const struct values ioctls = { { TCGETS, TIOCGWINSZ, TIOCGPGRP, FIONREAD, FIONBIO, FIOCLEX, FIONCLEX }, 7 };
@@ -160,7 +160,7 @@ static void decide_by_arguments(struct program *program, enum confine_role role,
 
 int confine_calls(enum confine_role role, bool notifies)
 {
-    struct program program = { .count = 0 };
+    struct filter_program program = { .count = 0 };
     add(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, arch), 0, 0);
     add(&program, BPF_JMP | BPF_JEQ | BPF_K, OWN_ARCH, 1, 0);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);

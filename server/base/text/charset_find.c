@@ -177,11 +177,11 @@ static const struct narrow_model narrow_models[] = {
     { "Macintosh", western, western_upper, "", -5, true },
 };
 
-enum kind { ASCII_OTHER, ASCII_LOWER, ASCII_UPPER, HIGH_LOWER, HIGH_UPPER, HIGH_SIGN, HIGH_NONE };
+enum byte_kind { ASCII_OTHER, ASCII_LOWER, ASCII_UPPER, HIGH_LOWER, HIGH_UPPER, HIGH_SIGN, HIGH_NONE };
 
 struct narrow_table {
     double rate[256]; /* the logarithm of the probability of a byte; ASCII: 0 */
-    enum kind kind[256];
+    enum byte_kind kind[256];
 };
 
 typedef void take_encoded(void *data, const unsigned char *bytes, size_t count, int rank);
@@ -204,7 +204,7 @@ static void each_encoded(const char *utf8, const char *encoding, take_encoded *e
 struct rates {
     struct narrow_table *table;
     double most, slope;
-    enum kind kind;
+    enum byte_kind kind;
 };
 
 static void set_rate(void *data, const unsigned char *bytes, size_t count, int rank)
@@ -229,7 +229,7 @@ static void make_table(struct narrow_table *table, const struct narrow_model *mo
     each_encoded(model->rare, model->name, set_rate, &(struct rates){ table, -7, 0.1, HIGH_LOWER });
 }
 
-static bool is_letter(enum kind kind)
+static bool is_letter(enum byte_kind kind)
 {
     return kind != ASCII_OTHER && kind != HIGH_SIGN && kind != HIGH_NONE;
 }
@@ -238,8 +238,8 @@ static bool is_letter(enum kind kind)
 static double rate_around(const struct narrow_table *table, bool latin, const unsigned char *at, const unsigned char *from,
                           const unsigned char *to)
 {
-    enum kind before = at > from ? table->kind[at[-1]] : ASCII_OTHER, kind = table->kind[*at],
-              after = at + 1 < to ? table->kind[at[1]] : ASCII_OTHER;
+    enum byte_kind before = at > from ? table->kind[at[-1]] : ASCII_OTHER, kind = table->kind[*at],
+                   after = at + 1 < to ? table->kind[at[1]] : ASCII_OTHER;
     bool ascii_before = before == ASCII_LOWER || before == ASCII_UPPER, ascii_after = after == ASCII_LOWER || after == ASCII_UPPER;
     double rate = 0;
     if (kind == HIGH_SIGN) {

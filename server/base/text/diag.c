@@ -86,24 +86,25 @@ static void print_item(const struct diag_item *item, FILE *out)
     fprintf(out, ": %s: %s", item->severity == DIAG_ERROR ? "error" : "warning", item->text);
 }
 
-struct group { /* of those that are alike */
+struct finding_group { /* of those that are alike */
     size_t first, count, shown;
 };
 
-static struct group *find_group(struct group *groups, size_t *group_count, const struct diag_item *const *sorted, size_t item)
+static struct finding_group *find_group(struct finding_group *groups, size_t *group_count, const struct diag_item *const *sorted,
+                                        size_t item)
 {
     size_t g = 0;
     while (g < *group_count && !is_alike(sorted[groups[g].first], sorted[item]))
         g++;
     if (g == *group_count)
-        groups[(*group_count)++] = (struct group){ .first = item };
+        groups[(*group_count)++] = (struct finding_group){ .first = item };
     return &groups[g];
 }
 
 void diag_print(const struct diag *diag, FILE *out)
 {
     const struct diag_item **sorted = mem_array(diag->count, sizeof(struct diag_item *));
-    struct group *groups = mem_array(diag->count, sizeof(*groups));
+    struct finding_group *groups = mem_array(diag->count, sizeof(*groups));
     size_t group_count = 0;
     for (size_t i = 0; i < diag->count; i++)
         sorted[i] = &diag->items[i];
@@ -111,7 +112,7 @@ void diag_print(const struct diag *diag, FILE *out)
     for (size_t i = 0; i < diag->count; i++)
         find_group(groups, &group_count, sorted, i)->count++;
     for (size_t i = 0; i < diag->count; i++) {
-        struct group *group = find_group(groups, &group_count, sorted, i);
+        struct finding_group *group = find_group(groups, &group_count, sorted, i);
         bool is_error = sorted[i]->severity == DIAG_ERROR, is_many = group->count > most_alike[sorted[i]->severity];
         size_t most = is_error ? most_alike[DIAG_ERROR] : 1;
         if (is_many && group->shown == most)

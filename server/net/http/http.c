@@ -14,13 +14,13 @@
 #include "net/core_end.h"
 #include "net/renderers.h"
 
-static int alive(struct server_context *server, struct request *request)
+static int alive(struct server_context *server, struct http_exchange *request)
 {
     (void)server;
     return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
 }
 
-static int ready(struct server_context *server, struct request *request)
+static int ready(struct server_context *server, struct http_exchange *request)
 {
     if (server->params.keeper && !core_end_leads(server))
         return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "it stands by: another core leads, or none yet\n");
@@ -62,7 +62,7 @@ static const char *last_refusal(const struct server_context *server, const char 
     return NULL;
 }
 
-static int stream_without_upgrade(struct server_context *server, struct request *request)
+static int stream_without_upgrade(struct server_context *server, struct http_exchange *request)
 {
     static const char text[] = "426 Upgrade Required: /stream is a WebSocket with the subprotocol " WIRE_SUBPROTOCOL
                                ", and this request came without `Upgrade: websocket`. If a browser or a program asked, a proxy on the way "
@@ -75,7 +75,7 @@ static int stream_without_upgrade(struct server_context *server, struct request 
     return request_answer(request, 426, HTTP_TEXT, body, strlen(body), "upgrade:", "websocket");
 }
 
-static int file(struct server_context *server, struct request *request, const char *path)
+static int file(struct server_context *server, struct http_exchange *request, const char *path)
 {
     const struct site_file *found = site_find(server->site, path);
     char seen[64] = "";
@@ -93,7 +93,7 @@ enum { VIEWS = 1, DISPLAY = 2, NODE = 4 };
 
 static const struct {
     const char *path;
-    int (*serve)(struct server_context *server, struct request *request);
+    int (*serve)(struct server_context *server, struct http_exchange *request);
     enum role least;
     unsigned narrowed; /* which tokens may ask that are good for some views, for one display, or for a renderer only */
 } routes[] = {
@@ -129,7 +129,7 @@ static const struct {
 };
 static const char RELOAD_PATH[] = "/api/v1/reload", LOGOUT_PATH[] = "/logout"; /* POST */
 
-static int refuse(struct request *request, const struct http_refusal *refusal)
+static int refuse(struct http_exchange *request, const struct http_refusal *refusal)
 {
     bool whose = refusal->status == HTTP_STATUS_UNAUTHORIZED, held = refusal->status == 429 || refusal->status == 503;
     request->close |= refusal->status == HTTP_STATUS_SERVICE_UNAVAILABLE;
@@ -154,12 +154,12 @@ static const struct http_refusal NOT_ON_DISPLAY = { HTTP_STATUS_FORBIDDEN, "this
 static const struct http_refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other sites do not get this\n" };
 
 /* Refuses somebody who is no engineer. */
-static int refuse_others(struct request *request, enum role role)
+static int refuse_others(struct http_exchange *request, enum role role)
 {
     return role == ROLE_NOBODY ? refuse(request, &NEED_TOKEN) : request_refuse(request, HTTP_STATUS_FORBIDDEN, REFUSAL_ROLE_ENGINEER);
 }
 
-static int serve_route(struct server_context *server, struct request *request, size_t i)
+static int serve_route(struct server_context *server, struct http_exchange *request, size_t i)
 {
     enum role role = connection_of(request->wsi)->role;
     const struct token_holder *holder = &connection_of(request->wsi)->holder;
@@ -180,7 +180,7 @@ static int serve_route(struct server_context *server, struct request *request, s
     return routes[i].serve(server, request);
 }
 
-static int serve_post(struct server_context *server, struct request *request, const char *path)
+static int serve_post(struct server_context *server, struct http_exchange *request, const char *path)
 {
     enum role role = connection_of(request->wsi)->role;
     request->close = true; /* there may be a body that nobody reads */
@@ -195,7 +195,7 @@ static int serve_post(struct server_context *server, struct request *request, co
     return import_post(server, request, path);
 }
 
-static int serve(struct server_context *server, struct request *request, const char *path)
+static int serve(struct server_context *server, struct http_exchange *request, const char *path)
 {
     bool post = lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0 &&
                 (!strcmp(path, RELOAD_PATH) || !strcmp(path, LOGOUT_PATH) || import_takes_post(server, path));
@@ -227,7 +227,7 @@ static int serve(struct server_context *server, struct request *request, const c
     return file(server, request, path);
 }
 
-static int on_writeable(struct server_context *server, struct request *request)
+static int on_writeable(struct server_context *server, struct http_exchange *request)
 {
     if (request->pieces)
         return chunked_write(server, request);
@@ -244,7 +244,7 @@ static int on_writeable(struct server_context *server, struct request *request)
     return 0;
 }
 
-static struct request *request_of(struct lws *wsi, struct request **slot)
+static struct http_exchange *request_of(struct lws *wsi, struct http_exchange **slot)
 {
     if (!*slot) {
         *slot = mem_new(sizeof(**slot));
@@ -253,7 +253,7 @@ static struct request *request_of(struct lws *wsi, struct request **slot)
     return *slot;
 }
 
-static void request_end(struct server_context *server, struct request **slot)
+static void request_end(struct server_context *server, struct http_exchange **slot)
 {
     if (!slot || !*slot)
         return;
@@ -285,7 +285,7 @@ static bool on_connection(struct lws *wsi, enum lws_callback_reasons reason, voi
 
 int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
 {
-    struct request **slot = user;
+    struct http_exchange **slot = user;
     int result;
     if (on_connection(wsi, reason, user, in, &result))
         return result;

@@ -23,7 +23,7 @@ static bool add_header(struct lws *wsi, const char *name, const char *value, uns
 }
 
 /* What comes in pieces has a length that nobody knows yet. */
-static bool add_first(struct request *request, int status, const char *type, unsigned char **p, unsigned char *end)
+static bool add_first(struct http_exchange *request, int status, const char *type, unsigned char **p, unsigned char *end)
 {
     struct lws *wsi = request->wsi;
     lws_filepos_t count = request->pieces == PIECES_TO_END ? LWS_ILLEGAL_HTTP_CONTENT_LEN : request->count;
@@ -34,7 +34,7 @@ static bool add_first(struct request *request, int status, const char *type, uns
 }
 
 /* A sandboxed document has an opaque origin, so that even its own script comes from another one. */
-static bool add_policies(struct request *request, const char *content_policy, unsigned char **p, unsigned char *end)
+static bool add_policies(struct http_exchange *request, const char *content_policy, unsigned char **p, unsigned char *end)
 {
     const char *resource_policy = request->sandboxed ? "cross-origin" : "same-origin";
     char *sandbox = request->sandboxed ? mem_printf("%s; sandbox allow-scripts allow-top-navigation", content_policy) : NULL;
@@ -55,7 +55,7 @@ static bool add_refusal(const struct refusal *refusal, struct lws *wsi, unsigned
     return added;
 }
 
-bool request_write_head(struct request *request, int status, const char *type, const char *extra_name, const char *extra)
+bool request_write_head(struct http_exchange *request, int status, const char *type, const char *extra_name, const char *extra)
 {
     unsigned char buffer[LWS_PRE + HEAD_BYTES], *start = buffer + LWS_PRE, *p = start, *end = buffer + sizeof(buffer) - 1;
     struct lws *wsi = request->wsi;
@@ -81,7 +81,7 @@ bool request_write_head(struct request *request, int status, const char *type, c
     return lws_finalize_write_http_header(wsi, start, &p, end) == 0;
 }
 
-void request_hold(struct request *request, char *body, size_t count)
+void request_hold(struct http_exchange *request, char *body, size_t count)
 {
     struct server_context *server = server_context_of(request->wsi);
     if (request->holder) {
@@ -100,7 +100,7 @@ void request_hold(struct request *request, char *body, size_t count)
 }
 
 /* A large answer waits for whoever asked for it to read it, for as long as he takes. */
-static bool may_hold(const struct request *request, size_t count)
+static bool may_hold(const struct http_exchange *request, size_t count)
 {
     const struct server_context *server = server_context_of(request->wsi);
     const struct connection *connection = connection_of(request->wsi);
@@ -108,7 +108,7 @@ static bool may_hold(const struct request *request, size_t count)
     return count <= SMALL_BYTES || !connection->client || (room && address_limits_may_hold(server->limits, connection->client, count));
 }
 
-int request_done(struct request *request)
+int request_done(struct http_exchange *request)
 {
     request_hold(request, NULL, 0);
     request->pieces = PIECES_NONE;
@@ -118,7 +118,7 @@ int request_done(struct request *request)
 }
 
 /* Takes body. The rest happens as the socket takes it. */
-int request_answer(struct request *request, int status, const char *type, char *body, size_t count, const char *extra_name,
+int request_answer(struct http_exchange *request, int status, const char *type, char *body, size_t count, const char *extra_name,
                    const char *extra)
 {
     if (!may_hold(request, count)) {
@@ -134,17 +134,17 @@ int request_answer(struct request *request, int status, const char *type, char *
     return 0;
 }
 
-int request_answer_text(struct request *request, int status, const char *text)
+int request_answer_text(struct http_exchange *request, int status, const char *text)
 {
     return request_answer(request, status, HTTP_TEXT, mem_strdup(text), strlen(text), NULL, NULL);
 }
 
-int request_answer_later(struct request *request, const char *why)
+int request_answer_later(struct http_exchange *request, const char *why)
 {
     return request_answer(request, HTTP_STATUS_SERVICE_UNAVAILABLE, HTTP_TEXT, mem_strdup(why), strlen(why), "retry-after:", "2");
 }
 
-int request_refuse(struct request *request, int status, enum refusal_code code)
+int request_refuse(struct http_exchange *request, int status, enum refusal_code code)
 {
     char *text = mem_printf("%s\n", refusal_words(code));
     bool later = status == HTTP_STATUS_SERVICE_UNAVAILABLE;
@@ -152,19 +152,19 @@ int request_refuse(struct request *request, int status, enum refusal_code code)
     return request_answer(request, status, HTTP_TEXT, text, strlen(text), later ? "retry-after:" : NULL, later ? "2" : NULL);
 }
 
-int request_answer_unreadable(const struct server_context *server, struct request *request)
+int request_answer_unreadable(const struct server_context *server, struct http_exchange *request)
 {
     if (server->params.plant.core_link && !server->params.plant.history_folder)
         return request_refuse(request, HTTP_STATUS_SERVICE_UNAVAILABLE, REFUSAL_CORELESS);
     return request_refuse(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, REFUSAL_UNREADABLE);
 }
 
-int request_answer_json(struct request *request, char *text)
+int request_answer_json(struct http_exchange *request, char *text)
 {
     return request_answer(request, HTTP_STATUS_OK, "application/json", text, strlen(text), NULL, NULL);
 }
 
-int request_answer_error(struct request *request, const struct message_error *error)
+int request_answer_error(struct http_exchange *request, const struct message_error *error)
 {
     char *text = mem_printf("%s\n", error->text);
     request->refusal = error->refusal;
@@ -174,7 +174,7 @@ int request_answer_error(struct request *request, const struct message_error *er
 
 int http_answer(struct lws *wsi, int status, const char *text)
 {
-    struct request request = { .wsi = wsi, .count = strlen(text) };
+    struct http_exchange request = { .wsi = wsi, .count = strlen(text) };
     if (!request_write_head(&request, status, HTTP_TEXT, NULL, NULL))
         return -1;
     return lws_write(wsi, (unsigned char *)text, strlen(text), LWS_WRITE_HTTP_FINAL) < 0 ? -1 : 0;
@@ -203,7 +203,7 @@ const char *arg_of(const struct args *args, const char *name)
     return NULL;
 }
 
-void request_await(struct server_context *server, struct request *request)
+void request_await(struct server_context *server, struct http_exchange *request)
 {
     request->client = server->next_client++;
     request->next = server->snapshots;
@@ -216,7 +216,7 @@ void request_await(struct server_context *server, struct request *request)
 
 void http_on_tick(struct server_context *server, int64_t now_ns)
 {
-    for (struct request *request = server->snapshots, *next; request; request = next) {
+    for (struct http_exchange *request = server->snapshots, *next; request; request = next) {
         next = request->next;
         if (now_ns < request->until_ns || request->pieces != PIECES_NONE)
             continue;
@@ -229,17 +229,17 @@ void http_on_tick(struct server_context *server, int64_t now_ns)
     }
 }
 
-struct request *request_find(const struct server_context *server, uint64_t client)
+struct http_exchange *request_find(const struct server_context *server, uint64_t client)
 {
-    struct request *request = server->snapshots;
+    struct http_exchange *request = server->snapshots;
     while (request && request->client != client)
         request = request->next;
     return request;
 }
 
-void request_forget(struct server_context *server, struct request *request)
+void request_forget(struct server_context *server, struct http_exchange *request)
 {
-    struct request **at = &server->snapshots;
+    struct http_exchange **at = &server->snapshots;
     while (*at && *at != request)
         at = &(*at)->next;
     if (!*at)
@@ -260,7 +260,7 @@ void request_forget(struct server_context *server, struct request *request)
     asked_free(&request->asked);
 }
 
-void request_answered(struct request *request, int result)
+void request_answered(struct http_exchange *request, int result)
 {
     if (result < 0)
         lws_set_timeout(request->wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);

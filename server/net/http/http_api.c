@@ -14,7 +14,7 @@
 #include "message/views_message.h"
 #include "session/reply/reply.h"
 
-static int await_history(struct server_context *server, struct request *request, struct history_query *query)
+static int await_history(struct server_context *server, struct http_exchange *request, struct history_query *query)
 {
     struct address_usage *usage = connection_of(request->wsi)->client;
     query->client = server->next_client;
@@ -30,7 +30,7 @@ static int await_history(struct server_context *server, struct request *request,
 }
 
 /* A paired device reads what its display draws as trends. */
-static bool may_read(const struct server_context *server, const struct request *request, const struct history_query *query)
+static bool may_read(const struct server_context *server, const struct http_exchange *request, const struct history_query *query)
 {
     const struct token_holder *holder = &connection_of(request->wsi)->holder;
     const struct plant *plant = server->params.plant.scene->plant;
@@ -41,7 +41,7 @@ static bool may_read(const struct server_context *server, const struct request *
     return true;
 }
 
-static int ask_recorded(struct server_context *server, struct request *request, bool gaps)
+static int ask_recorded(struct server_context *server, struct http_exchange *request, bool gaps)
 {
     struct history_query query;
     struct message_error error = { 0 };
@@ -58,17 +58,17 @@ static int ask_recorded(struct server_context *server, struct request *request, 
     return await_history(server, request, &query);
 }
 
-int ask_history(struct server_context *server, struct request *request)
+int ask_history(struct server_context *server, struct http_exchange *request)
 {
     return ask_recorded(server, request, false);
 }
 
-int ask_gaps(struct server_context *server, struct request *request)
+int ask_gaps(struct server_context *server, struct http_exchange *request)
 {
     return ask_recorded(server, request, true);
 }
 
-int ask_drift(struct server_context *server, struct request *request)
+int ask_drift(struct server_context *server, struct http_exchange *request)
 {
     struct history_query query;
     struct message_error error = { 0 };
@@ -81,7 +81,7 @@ int ask_drift(struct server_context *server, struct request *request)
     return await_history(server, request, &query);
 }
 
-static bool read_alarm_query(struct server_context *server, struct request *request, bool journal, struct alarm_query *query,
+static bool read_alarm_query(struct server_context *server, struct http_exchange *request, bool journal, struct alarm_query *query,
                              struct message_error *error)
 {
     struct args args;
@@ -89,7 +89,7 @@ static bool read_alarm_query(struct server_context *server, struct request *requ
            alarm_query_parse(server->params.plant.scene->plant, journal, args.list, args.count, clock_plant_ns() / 1000, query, error);
 }
 
-int api_alarms(struct server_context *server, struct request *request)
+int api_alarms(struct server_context *server, struct http_exchange *request)
 {
     struct alarm_query query;
     struct message_error error = { 0 };
@@ -102,7 +102,7 @@ int api_alarms(struct server_context *server, struct request *request)
                      : request_answer_json(request, text);
 }
 
-int ask_journal(struct server_context *server, struct request *request)
+int ask_journal(struct server_context *server, struct http_exchange *request)
 {
     struct history_query query = { .journal = true };
     struct message_error error = { 0 };
@@ -114,7 +114,7 @@ int ask_journal(struct server_context *server, struct request *request)
 }
 
 /* The first piece of several, or one that follows. */
-static int take_piece(struct request *request, struct history_answer *piece, const char *type)
+static int take_piece(struct http_exchange *request, struct history_answer *piece, const char *type)
 {
     if (piece->first && chunked_begin(request, type) < 0)
         return -1;
@@ -123,7 +123,7 @@ static int take_piece(struct request *request, struct history_answer *piece, con
     return 0;
 }
 
-static int answer_whole(struct request *request, struct history_answer *answer, const char *type)
+static int answer_whole(struct http_exchange *request, struct history_answer *answer, const char *type)
 {
     char *text = answer->text;
     answer->text = NULL;
@@ -132,7 +132,7 @@ static int answer_whole(struct request *request, struct history_answer *answer, 
 
 void http_on_history_answer(struct server_context *server, struct history_answer *answer)
 {
-    struct request *request = request_find(server, answer->client);
+    struct http_exchange *request = request_find(server, answer->client);
     const char *type = answer->csv ? "text/csv; charset=utf-8" : "application/json";
     bool whole = answer->first && answer->last;
     if (!request)
@@ -158,7 +158,7 @@ static void count_memory(struct server_context *server)
     counter_set(counters_add(counters, "plantcast_heap_bytes", "gauge", "Memory that malloc has handed out."), (int64_t)use.allocated);
 }
 
-int metrics(struct server_context *server, struct request *request)
+int metrics(struct server_context *server, struct http_exchange *request)
 {
     struct text text = { 0 };
     count_memory(server);
@@ -167,7 +167,7 @@ int metrics(struct server_context *server, struct request *request)
     return request_answer(request, HTTP_STATUS_OK, "text/plain; version=0.0.4; charset=utf-8", text.at, text.length, NULL, NULL);
 }
 
-int api_plant(struct server_context *server, struct request *request)
+int api_plant(struct server_context *server, struct http_exchange *request)
 {
     return request_answer_json(request, reply_api_plant_text(&server->session_context));
 }
@@ -190,7 +190,7 @@ static bool read_page(const struct args *args, size_t *first, size_t *count)
     return *count >= 1 && *count <= TAGS_PAGE_MAX;
 }
 
-int api_tags(struct server_context *server, struct request *request)
+int api_tags(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
     struct args args;
@@ -202,7 +202,7 @@ int api_tags(struct server_context *server, struct request *request)
 }
 
 /* What the others say of each sensor of a group; with tag=NAME of that one alone. */
-int api_neighbours(struct server_context *server, struct request *request)
+int api_neighbours(struct server_context *server, struct http_exchange *request)
 {
     const struct plant *plant = server->session_context.plant;
     struct message_error error = { 0 };
@@ -222,7 +222,7 @@ int api_neighbours(struct server_context *server, struct request *request)
 }
 
 /* All views; with the query id=ID also the earlier versions of that one. */
-int api_views(struct server_context *server, struct request *request)
+int api_views(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
     struct args args;
@@ -232,7 +232,7 @@ int api_views(struct server_context *server, struct request *request)
 }
 
 /* Those in force between `from` and `to`; by default in the last hour, and now. */
-int api_notes(struct server_context *server, struct request *request)
+int api_notes(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
     struct args args;
@@ -254,7 +254,7 @@ static bool sees_view(const void *holder, const char *view)
     return tokens_may_see(holder, view);
 }
 
-int api_walls(struct server_context *server, struct request *request)
+int api_walls(struct server_context *server, struct http_exchange *request)
 {
     const struct token_holder *holder = &connection_of(request->wsi)->holder;
     const struct walls_reader reader = { .wall = holder->display ? holder->wall : NULL,
@@ -277,7 +277,7 @@ static enum pairing ask_core(struct server_context *server, const struct pairing
 }
 
 /* A display that has a secret of its own asks whether it was let in; it shows the digits meanwhile. */
-static int pair(struct server_context *server, struct request *request, const struct pairing_request *asked)
+static int pair(struct server_context *server, struct http_exchange *request, const struct pairing_request *asked)
 {
     char digits[PAIRING_DIGITS + 1];
     int left_s;
@@ -293,7 +293,7 @@ static int pair(struct server_context *server, struct request *request, const st
     return request_answer_json(request, mem_printf("{\"paired\":false,\"digits\":\"%s\",\"left_s\":%d}", digits, left_s));
 }
 
-int api_pair(struct server_context *server, struct request *request)
+int api_pair(struct server_context *server, struct http_exchange *request)
 {
     const struct connection *connection = connection_of(request->wsi);
     struct message_error error = { 0 };
@@ -322,14 +322,14 @@ int api_pair(struct server_context *server, struct request *request)
                     .secret = secret + 8, .place = place, .address = connection->client->address, .from = connection->address });
 }
 
-int api_devices(struct server_context *server, struct request *request)
+int api_devices(struct server_context *server, struct http_exchange *request)
 {
     if (!server->tokens)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "displays are not let in by digits here\n");
     return request_answer_json(request, pairings_text(server->params.plant.pairings));
 }
 
-int api_loop_checks(struct server_context *server, struct request *request)
+int api_loop_checks(struct server_context *server, struct http_exchange *request)
 {
     struct text text = { 0 };
     if (!server->params.plant.loop_checks)

@@ -9,7 +9,7 @@ static const char END[] = "0\r\n\r\n";
 enum { ROOM_BYTES = 16, PATIENCE_S = 20, MAKING_S = 60 }; /* around a chunk; for a write, and for the next piece */
 
 /* HTTP/1.0 has no chunks: the connection's end is the body's. */
-int chunked_begin(struct request *request, const char *type)
+int chunked_begin(struct http_exchange *request, const char *type)
 {
     char version[16] = "";
     lws_hdr_copy(request->wsi, version, sizeof(version), WSI_TOKEN_HTTP);
@@ -21,7 +21,7 @@ int chunked_begin(struct request *request, const char *type)
     return request->head ? request_done(request) : 0;
 }
 
-void chunked_append(struct request *request, char *body, size_t count, bool last)
+void chunked_append(struct http_exchange *request, char *body, size_t count, bool last)
 {
     request_hold(request, body, count);
     request->last_piece = last;
@@ -29,7 +29,7 @@ void chunked_append(struct request *request, char *body, size_t count, bool last
     lws_callback_on_writable(request->wsi);
 }
 
-static bool write_chunk(struct server_context *server, struct request *request, size_t count, bool end)
+static bool write_chunk(struct server_context *server, struct http_exchange *request, size_t count, bool end)
 {
     char *out = (char *)server->out + LWS_PRE;
     size_t n = 0;
@@ -49,7 +49,7 @@ static bool write_chunk(struct server_context *server, struct request *request, 
     return lws_write(request->wsi, (unsigned char *)out, n, end ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) >= (int)n;
 }
 
-int chunked_write(struct server_context *server, struct request *request)
+int chunked_write(struct server_context *server, struct http_exchange *request)
 {
     size_t left = request->count - request->sent, most = SLICE_BYTES - 2 * ROOM_BYTES, slice = left < most ? left : most;
     if (!request->body)

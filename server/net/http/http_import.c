@@ -16,7 +16,7 @@ static const int64_t most_bytes = (int64_t)2 << 30, most_in_all = (int64_t)8 << 
 enum { MOST_FILES = 64, MATCHES_BYTES = 32 << 20, MOST_UPLOADS = 4, SLOW_S = 20, SLOWEST_BPS = 10000 };
 static const char BUSY[] = "another import is under way; wait for its end, or cancel it\n";
 
-struct body {
+struct upload_body {
     struct export_upload *upload;
     int64_t left, bytes; /* bytes still to come; size of the whole file */
     int64_t begun_ns;
@@ -25,7 +25,7 @@ struct body {
 };
 
 /* In the audit trail. The order itself is told of by the reload thread, at its end. */
-static void record_file(struct request *request, const char *file, const char *result, const char *why)
+static void record_file(struct http_exchange *request, const char *file, const char *result, const char *why)
 {
     char *line = why ? mem_printf("%.*s", (int)strcspn(why, "\n"), why) : NULL;
     char *what = mem_printf("%s%s%s", request->step, *file ? " " : "", file);
@@ -34,19 +34,19 @@ static void record_file(struct request *request, const char *file, const char *r
     mem_free(line);
 }
 
-static void record(struct request *request, const char *result, const char *why)
+static void record(struct http_exchange *request, const char *result, const char *why)
 {
     record_file(request, "", result, why);
 }
 
-static int refuse_with(struct request *request, int status, const char *text)
+static int refuse_with(struct http_exchange *request, int status, const char *text)
 {
     record(request, status == HTTP_STATUS_FORBIDDEN ? "refused" : "failed", text);
     request->close = true;
     return request_answer_text(request, status, text);
 }
 
-static int fail_with(struct request *request, const char *what, int error)
+static int fail_with(struct http_exchange *request, const char *what, int error)
 {
     char *text = mem_printf("%s: %s\n", what, strerror(-error));
     int result = refuse_with(request, error == -ENOSPC ? 507 : HTTP_STATUS_INTERNAL_SERVER_ERROR, text);
@@ -54,13 +54,13 @@ static int fail_with(struct request *request, const char *what, int error)
     return result;
 }
 
-static int answer_empty(struct request *request)
+static int answer_empty(struct http_exchange *request)
 {
     return request_answer(request, HTTP_STATUS_OK, "application/json", mem_strdup("{}"), 2, NULL, NULL);
 }
 
 /* file: of which it is done; "": of none. */
-static int answer_done(struct request *request, const char *file)
+static int answer_done(struct http_exchange *request, const char *file)
 {
     record_file(request, file, "done", NULL);
     return answer_empty(request);
@@ -68,7 +68,7 @@ static int answer_done(struct request *request, const char *file)
 
 /* --- what is told ----------------------------------------------------------------------------------------------------- */
 
-int api_import(struct server_context *server, struct request *request)
+int api_import(struct server_context *server, struct http_exchange *request)
 {
     if (!server->params.import)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "plants are not brought in here\n");
@@ -77,7 +77,7 @@ int api_import(struct server_context *server, struct request *request)
 }
 
 /* path NULL: there is no import. missing: the answer while there is no such file. */
-static int answer_file(struct request *request, const char *path, const char *type, const char *missing)
+static int answer_file(struct http_exchange *request, const char *path, const char *type, const char *missing)
 {
     size_t bytes;
     char *text = path ? text_read_file(path, MATCHES_BYTES, &bytes) : NULL;
@@ -86,13 +86,13 @@ static int answer_file(struct request *request, const char *path, const char *ty
     return request_answer(request, HTTP_STATUS_OK, type, text, bytes, NULL, NULL);
 }
 
-int api_import_matches(struct server_context *server, struct request *request)
+int api_import_matches(struct server_context *server, struct http_exchange *request)
 {
     const struct plant_import *import = server->params.import;
     return answer_file(request, import ? plant_import_matches(import) : NULL, "text/csv; charset=utf-8", "no tags were matched yet\n");
 }
 
-int api_import_report(struct server_context *server, struct request *request)
+int api_import_report(struct server_context *server, struct http_exchange *request)
 {
     const struct plant_import *import = server->params.import;
     return answer_file(request, import ? plant_import_report(import) : NULL, "application/json", "no models were read yet\n");
@@ -100,7 +100,7 @@ int api_import_report(struct server_context *server, struct request *request)
 
 /* --- orders ----------------------------------------------------------------------------------------------------------- */
 
-static int order(struct server_context *server, struct request *request, const struct import_order *order)
+static int order(struct server_context *server, struct http_exchange *request, const struct import_order *order)
 {
     if (!plant_import_order(server->params.import, order))
         return refuse_with(request, HTTP_STATUS_CONFLICT, BUSY);
@@ -124,7 +124,7 @@ static bool take_argument(const struct args *args, const char *name, char *out, 
 }
 
 /* what=tags: the models stay as they are; anew: nothing of the plant before stays. */
-static int order_all(struct server_context *server, struct request *request, const struct args *args)
+static int order_all(struct server_context *server, struct http_exchange *request, const struct args *args)
 {
     struct import_order wanted = { 0 };
     char what[8];
@@ -141,7 +141,7 @@ static int order_all(struct server_context *server, struct request *request, con
 }
 
 /* Tags are read from there. */
-static int order_source(struct server_context *server, struct request *request, const struct args *args)
+static int order_source(struct server_context *server, struct http_exchange *request, const struct args *args)
 {
     struct import_order wanted = { 0 };
     struct import_source *source = &wanted.source;
@@ -156,14 +156,14 @@ static int order_source(struct server_context *server, struct request *request, 
     return order(server, request, &wanted);
 }
 
-static int cancel(struct server_context *server, struct request *request, const struct args *args)
+static int cancel(struct server_context *server, struct http_exchange *request, const struct args *args)
 {
     (void)args;
     plant_import_cancel(server->params.import);
     return answer_done(request, "");
 }
 
-static int remove_file(struct server_context *server, struct request *request, const struct args *args)
+static int remove_file(struct server_context *server, struct http_exchange *request, const struct args *args)
 {
     char name[256];
     if (!take_argument(args, "name", name, sizeof(name)) || !export_name_good(name))
@@ -191,7 +191,7 @@ static bool has_room(const struct server_context *server, const char *folder, co
     return others < MOST_FILES && all <= most_in_all;
 }
 
-static int begin_body(struct server_context *server, struct request *request, const char *name, bool decides)
+static int begin_body(struct server_context *server, struct http_exchange *request, const char *name, bool decides)
 {
     char length[32];
     const char *folder = plant_import_exports(server->params.import), *why;
@@ -209,14 +209,15 @@ static int begin_body(struct server_context *server, struct request *request, co
     if (!upload)
         return fail_with(request, name, error);
     request->body_in = mem_new(sizeof(*request->body_in));
-    *request->body_in = (struct body){ .upload = upload, .left = bytes, .bytes = bytes, .begun_ns = clock_mono_ns(), .decides = decides };
+    *request->body_in =
+        (struct upload_body){ .upload = upload, .left = bytes, .bytes = bytes, .begun_ns = clock_mono_ns(), .decides = decides };
     server->uploads++;
     server->upload_bytes += bytes;
     snprintf(request->body_in->name, sizeof(request->body_in->name), "%s", name);
     return 0;
 }
 
-static int begin_upload(struct server_context *server, struct request *request, const struct args *args)
+static int begin_upload(struct server_context *server, struct http_exchange *request, const struct args *args)
 {
     char name[256];
     if (!take_argument(args, "name", name, sizeof(name)) || !export_name_good(name))
@@ -225,23 +226,23 @@ static int begin_upload(struct server_context *server, struct request *request, 
     return begin_body(server, request, name, false);
 }
 
-static int begin_decisions(struct server_context *server, struct request *request, const struct args *args)
+static int begin_decisions(struct server_context *server, struct http_exchange *request, const struct args *args)
 {
     (void)args;
     return begin_body(server, request, plant_import_decisions(), true);
 }
 
 /* Returns whether an upload is slower than any real link, so that it would hold its place for ever. lws closes one that stalls. */
-static bool drips(const struct body *body)
+static bool drips(const struct upload_body *body)
 {
     int64_t taken_s = (clock_mono_ns() - body->begun_ns) / NS_PER_S;
     return taken_s >= SLOW_S && body->left > 0 && body->bytes - body->left < taken_s * SLOWEST_BPS;
 }
 
-int import_take_body(struct server_context *server, struct request *request, const void *bytes, size_t count)
+int import_take_body(struct server_context *server, struct http_exchange *request, const void *bytes, size_t count)
 {
     (void)server;
-    struct body *body = request->body_in;
+    struct upload_body *body = request->body_in;
     if (!body)
         return 0; /* it was refused */
     body->left -= (int64_t)count;
@@ -257,9 +258,9 @@ int import_take_body(struct server_context *server, struct request *request, con
     return fail_with(request, name, error);
 }
 
-int import_end_body(struct server_context *server, struct request *request)
+int import_end_body(struct server_context *server, struct http_exchange *request)
 {
-    struct body *body = request->body_in;
+    struct upload_body *body = request->body_in;
     if (!body)
         return 0;
     const char *folder = plant_import_exports(server->params.import);
@@ -281,7 +282,7 @@ int import_end_body(struct server_context *server, struct request *request)
     return answer_done(request, name);
 }
 
-void import_abandon_body(struct request *request)
+void import_abandon_body(struct http_exchange *request)
 {
     struct server_context *server = server_context_of(request->wsi);
     if (!request->body_in)
@@ -297,7 +298,7 @@ void import_abandon_body(struct request *request)
 
 static const struct {
     const char *path;
-    int (*take)(struct server_context *server, struct request *request, const struct args *args);
+    int (*take)(struct server_context *server, struct http_exchange *request, const struct args *args);
     bool always; /* also while an order is carried out */
 } posts[] = {
     { "/api/v1/import/upload", begin_upload, false }, { "/api/v1/import/remove", remove_file, false },
@@ -319,7 +320,7 @@ bool import_takes_post(const struct server_context *server, const char *path)
     return server->params.import && find_post(path) < POSTS;
 }
 
-int import_post(struct server_context *server, struct request *request, const char *path)
+int import_post(struct server_context *server, struct http_exchange *request, const char *path)
 {
     struct message_error error = { 0 };
     struct args args;

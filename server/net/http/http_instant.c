@@ -8,7 +8,7 @@
 
 static const char BINARY[] = "application/octet-stream";
 
-static int answer(struct server_context *server, struct request *request, const struct snapshot *snapshot)
+static int answer(struct server_context *server, struct http_exchange *request, const struct snapshot *snapshot)
 {
     struct text text = { 0 };
     core_instant_write(&text, history_loader_first_us(server->history_loader), snapshot);
@@ -16,7 +16,7 @@ static int answer(struct server_context *server, struct request *request, const 
 }
 
 /* at_us=0: only where history begins. */
-int ask_instant(struct server_context *server, struct request *request)
+int ask_instant(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
     struct args args;
@@ -42,7 +42,7 @@ int ask_instant(struct server_context *server, struct request *request)
     return 0;
 }
 
-void answer_instant(struct server_context *server, struct request *request, const struct history_loader_answer *loaded)
+void answer_instant(struct server_context *server, struct http_exchange *request, const struct history_loader_answer *loaded)
 {
     struct snapshot_cache *cache = server->params.plant.snapshot_cache;
     const struct historical_snapshot *historical = loaded->good ? snapshot_cache_take(cache, loaded->at_us) : NULL;

@@ -10,7 +10,7 @@
 #include "views/other_plants.h"
 
 /* An index, or -1. A paired device asks for what its display shows. */
-static int find(const struct server_context *server, const struct request *request, const char *id)
+static int find(const struct server_context *server, const struct http_exchange *request, const char *id)
 {
     const struct plant *plant = server->params.plant.scene->plant;
     const struct token_holder *holder = &connection_of(request->wsi)->holder;
@@ -19,13 +19,13 @@ static int find(const struct server_context *server, const struct request *reque
     return other_plant_find(plant, id);
 }
 
-static int refuse_unknown(struct request *request)
+static int refuse_unknown(struct http_exchange *request)
 {
     return request_answer_text(request, HTTP_STATUS_NOT_FOUND,
                                "the plant file has no such plant in `other_plants`, or this display none\n");
 }
 
-int api_other_plants(struct server_context *server, struct request *request)
+int api_other_plants(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
     struct args args;
@@ -45,7 +45,7 @@ int api_other_plants(struct server_context *server, struct request *request)
     return request_answer_json(request, other_plants_text(server->params.plant.other_plants, which, count, clock_mono_ns()));
 }
 
-int ask_other_picture(struct server_context *server, struct request *request)
+int ask_other_picture(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
     struct args args;

@@ -6,7 +6,7 @@
 #include "net/http/http_impl.h"
 #include "net/connection.h"
 
-bool request_may_change(struct server_context *server, struct request *request)
+bool request_may_change(struct server_context *server, struct http_exchange *request)
 {
     char origin[256], host[256];
     struct lws *wsi = request->wsi;
@@ -14,7 +14,7 @@ bool request_may_change(struct server_context *server, struct request *request)
            access_origin(&server->params.access, origin, host, server->tls != NULL);
 }
 
-int ask_reload(struct server_context *server, struct request *request)
+int ask_reload(struct server_context *server, struct http_exchange *request)
 {
     request->close = true; /* there may be a body that nobody reads */
     if (!request_may_change(server, request))
@@ -29,7 +29,7 @@ int ask_reload(struct server_context *server, struct request *request)
 
 static void answer_all(struct server_context *server, bool reloads, int status, const char *type, const char *text)
 {
-    for (struct request *request = server->snapshots, *next; request; request = next) {
+    for (struct http_exchange *request = server->snapshots, *next; request; request = next) {
         next = request->next;
         if (request->reloads != reloads)
             continue;

@@ -12,14 +12,15 @@
 
 enum { COOKIE_S = 600 }; /* as long as a log-in waits */
 
-static int answer_redirect(struct request *request, const char *to)
+static int answer_redirect(struct http_exchange *request, const char *to)
 {
     return request_answer(request, HTTP_STATUS_SEE_OTHER, HTTP_TEXT, NULL, 0, "location:", to);
 }
 
 /* ending: "" for the session, "-b" for the browser that begins a log-in, whose cookie comes back with the provider's redirection and so is
    not strict. seconds 0: it is removed. */
-static void set_cookie(const struct openid_config *config, struct request *request, const char *ending, const char *value, int seconds)
+static void set_cookie(const struct openid_config *config, struct http_exchange *request, const char *ending, const char *value,
+                       int seconds)
 {
     mem_free(request->set_cookie);
     request->set_cookie = mem_printf("%s%s=%s; Path=/; Max-Age=%d; HttpOnly; SameSite=%s%s", config->cookie, ending, value, seconds,
@@ -28,7 +29,7 @@ static void set_cookie(const struct openid_config *config, struct request *reque
 
 static const char NOT_HERE[] = "nobody signs in by OpenID Connect here\n";
 
-int ask_login(struct server_context *server, struct request *request)
+int ask_login(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
     struct args args;
@@ -52,7 +53,7 @@ int ask_login(struct server_context *server, struct request *request)
 
 /* An answer that nobody waits for can be no guess at a secret of 256 bits, and another site's page can have a browser send it: it is
    counted, and neither recorded nor held against the address. */
-static int refuse_unasked(struct server_context *server, struct request *request, enum openid_finish why)
+static int refuse_unasked(struct server_context *server, struct http_exchange *request, enum openid_finish why)
 {
     server->unasked++;
     return why == OPENID_FULL ? request_answer_later(request, "too many sign in at this moment; sign in again from the page\n")
@@ -60,14 +61,14 @@ static int refuse_unasked(struct server_context *server, struct request *request
                                                     "no log-in of this browser waits for this answer; sign in again from the page\n");
 }
 
-static int refuse_held(struct server_context *server, struct request *request)
+static int refuse_held(struct server_context *server, struct http_exchange *request)
 {
     server->logins_held++;
     counter_inc(server->counters.logins_held, 1);
     return request_answer_text(request, 429, "too many wrong answers came from this address; try again later\n");
 }
 
-int ask_login_callback(struct server_context *server, struct request *request)
+int ask_login_callback(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
     const struct connection *connection = connection_of(request->wsi);
@@ -111,7 +112,7 @@ static void count_refused(struct server_context *server, const struct openid_ans
                                      "for a minute", LOGIN_WAIT_S);
 }
 
-static void answer_sign_in(struct server_context *server, struct request *request, const struct openid_answer *answer)
+static void answer_sign_in(struct server_context *server, struct http_exchange *request, const struct openid_answer *answer)
 {
     const struct openid_config *config = openid_config_of(server->openid);
     request_forget(server, request);
@@ -131,7 +132,7 @@ void http_on_sign_ins(struct server_context *server)
     if (server->openid && openid_take_changed(server->openid))
         streams_check_tokens(server, clock_utc_ns());
     for (struct openid_answer *next; answer; answer = next) {
-        struct request *request = request_find(server, answer->request);
+        struct http_exchange *request = request_find(server, answer->request);
         next = answer->next;
         count_refused(server, answer);
         if (request)
@@ -140,7 +141,7 @@ void http_on_sign_ins(struct server_context *server)
     }
 }
 
-int ask_logout(struct server_context *server, struct request *request)
+int ask_logout(struct server_context *server, struct http_exchange *request)
 {
     char cookie[64];
     size_t size = sizeof(cookie);
@@ -158,7 +159,7 @@ int ask_logout(struct server_context *server, struct request *request)
     return result;
 }
 
-int api_me(struct server_context *server, struct request *request)
+int api_me(struct server_context *server, struct http_exchange *request)
 {
     const struct connection *connection = connection_of(request->wsi);
     const struct token_holder *holder = &connection->holder;

@@ -102,7 +102,7 @@ static struct view *asked_view(struct asked *asked)
 }
 
 /* Of now at once; of an instant when it was read. */
-static void begin(struct server_context *server, struct request *request)
+static void begin(struct server_context *server, struct http_exchange *request)
 {
     struct asked *asked = request->asked;
     if (asked_view(asked)->at_us && !asked->historical) {
@@ -116,7 +116,7 @@ static void begin(struct server_context *server, struct request *request)
 }
 
 /* Whether it may be, before it waits; if not, *result is what came of the answer. */
-static bool may_ask(struct server_context *server, struct request *request, const struct view *view, int *result)
+static bool may_ask(struct server_context *server, struct http_exchange *request, const struct view *view, int *result)
 {
     if (view->at_us && !server->history_loader) {
         *result = request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_UNRECORDED);
@@ -131,7 +131,7 @@ static bool may_ask(struct server_context *server, struct request *request, cons
     return !why;
 }
 
-static struct asked *await_picture(struct server_context *server, struct request *request)
+static struct asked *await_picture(struct server_context *server, struct http_exchange *request)
 {
     request_await(server, request);
     request->asked = mem_new(sizeof(*request->asked));
@@ -140,7 +140,7 @@ static struct asked *await_picture(struct server_context *server, struct request
     return request->asked;
 }
 
-static int draw_picture(struct server_context *server, struct request *request, struct frame_request *frame_request,
+static int draw_picture(struct server_context *server, struct http_exchange *request, struct frame_request *frame_request,
                         const char *const *args, size_t arg_count)
 {
     int result;
@@ -158,7 +158,7 @@ static int draw_picture(struct server_context *server, struct request *request, 
     return 0;
 }
 
-int ask_snapshot(struct server_context *server, struct request *request)
+int ask_snapshot(struct server_context *server, struct http_exchange *request)
 {
     struct frame_request frame_request = { .codec = WIRE_CODEC_PNG, .quality = LOSSLESS, .urgency = URGENCY_SNAPSHOT, .always = true };
     struct message_error error = { 0 };
@@ -192,7 +192,7 @@ static void say_values(const struct frame *frame, struct text *out)
 }
 
 /* For who may know it; a name that is longer than this is nobody's title. */
-static void say_plant(const struct server_context *server, const struct request *request, struct text *out)
+static void say_plant(const struct server_context *server, const struct http_exchange *request, struct text *out)
 {
     const char *name = server->params.plant.scene->plant->name;
     if (connection_of(request->wsi)->role == ROLE_OPEN || strlen(name) > NAME_BYTES)
@@ -202,7 +202,7 @@ static void say_plant(const struct server_context *server, const struct request 
 }
 
 /* packet: NULL: it cannot be made. */
-static void answer_picture(struct server_context *server, struct request *request, const struct packet *packet)
+static void answer_picture(struct server_context *server, struct http_exchange *request, const struct packet *packet)
 {
     char *body = packet ? memcpy(mem_array(packet->count, 1), packet->bytes, packet->count) : NULL;
     struct text values = { 0 };
@@ -232,7 +232,7 @@ static void sign(struct server_context *server, const struct asked *asked, struc
 
 void http_on_frame(struct server_context *server, struct encoded_frame *encoded)
 {
-    struct request *request = request_find(server, encoded->client);
+    struct http_exchange *request = request_find(server, encoded->client);
     const struct packet *packet = encoded->packet;
     if (request && packet && packet->frame->record) {
         sign(server, request->asked, encoded);
@@ -245,12 +245,12 @@ void http_on_frame(struct server_context *server, struct encoded_frame *encoded)
 
 void http_on_signed(struct server_context *server, struct signing *signing)
 {
-    struct request *request = request_find(server, signing->encoded->client);
+    struct http_exchange *request = request_find(server, signing->encoded->client);
     if (request)
         answer_picture(server, request, signing->good ? signing->encoded->packet : NULL);
 }
 
-int ask_pick(struct server_context *server, struct request *request)
+int ask_pick(struct server_context *server, struct http_exchange *request)
 {
     struct pick_query query = { 0 };
     struct message_error error = { 0 };
@@ -275,7 +275,7 @@ int ask_pick(struct server_context *server, struct request *request)
 
 void http_on_pick(struct server_context *server, const struct pick_answer *pick)
 {
-    struct request *request = request_find(server, pick->query.client);
+    struct http_exchange *request = request_find(server, pick->query.client);
     if (!request)
         return;
     request_forget(server, request);
@@ -284,7 +284,7 @@ void http_on_pick(struct server_context *server, const struct pick_answer *pick)
 
 void http_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *history_loader)
 {
-    struct request *request = request_find(server, history_loader->client);
+    struct http_exchange *request = request_find(server, history_loader->client);
     if (!request)
         return;
     if (request->asks_instant) {

@@ -89,13 +89,13 @@ static size_t drop_comments(char *bytes, size_t count)
     return out;
 }
 
-struct site {
+struct web_site {
     char *folder;
     struct site_file *files; /* by path, ascending */
     size_t count, capacity;
 };
 
-static void add_file(struct site *site, struct log *log, const char *full, const char *path)
+static void add_file(struct web_site *site, struct log *log, const char *full, const char *path)
 {
     struct site_file file = { .type = type_of(path) };
     if (!file.type || !path_harmless(path) || !inside(site->folder, full))
@@ -114,7 +114,7 @@ static void add_file(struct site *site, struct log *log, const char *full, const
 }
 
 /* path: of the folder in the site, without a slash at its end. */
-static void add_folder(struct site *site, struct log *log, const char *path)
+static void add_folder(struct web_site *site, struct log *log, const char *path)
 {
     char *full = mem_printf("%s%s", site->folder, path);
     DIR *folder = opendir(full);
@@ -138,9 +138,9 @@ static int by_path(const void *a, const void *b)
     return strcmp(((const struct site_file *)a)->path, ((const struct site_file *)b)->path);
 }
 
-struct site *site_create(struct log *log, const char *folder)
+struct web_site *site_create(struct log *log, const char *folder)
 {
-    struct site *site = mem_new(sizeof(*site));
+    struct web_site *site = mem_new(sizeof(*site));
     if (!folder)
         return site;
     site->folder = mem_strdup(folder);
@@ -150,9 +150,9 @@ struct site *site_create(struct log *log, const char *folder)
     return site;
 }
 
-void site_destroy(struct site **pointer)
+void site_destroy(struct web_site **pointer)
 {
-    struct site *site = *pointer;
+    struct web_site *site = *pointer;
     if (!site)
         return;
     for (size_t i = 0; i < site->count; i++) {
@@ -165,7 +165,7 @@ void site_destroy(struct site **pointer)
     *pointer = NULL;
 }
 
-const struct site_file *site_find(const struct site *site, const char *path)
+const struct site_file *site_find(const struct web_site *site, const char *path)
 {
     size_t length = strlen(path);
     char *whole = length && path[length - 1] == '/' ? mem_printf("%sindex.html", path) : NULL;

@@ -16,11 +16,11 @@ struct site_file {
     char etag[24];    /* with its quotes */
 };
 
-struct site;
+struct web_site;
 /* Reads all files of known types below the folder; scripts of the page without their comment lines. folder NULL: a site without files. */
-struct site *site_create(struct log *log, const char *folder);
-void site_destroy(struct site **site); /* &NULL is fine; leaves NULL */
+struct web_site *site_create(struct log *log, const char *folder);
+void site_destroy(struct web_site **site); /* &NULL is fine; leaves NULL */
 /* Returns the file of a path, which is decoded and starts with '/', or NULL. It lives as long as the site. */
-const struct site_file *site_find(const struct site *site, const char *path);
+const struct site_file *site_find(const struct web_site *site, const char *path);
 
 #endif

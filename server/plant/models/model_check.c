@@ -18,7 +18,7 @@ enum { WHY_BYTES = 400, SHOWN_NODES = 6 };
 /* What serving takes, as measured with 20 million triangles in 3,040 assets: 3.1 GB. */
 enum { TRIANGLE_BYTES = 150, BASE_BYTES = 350 << 20 };
 
-struct check {
+struct plant_models_check {
     const struct plant *plant;
     struct diag *diag;
     struct model_header header; /* of the model that is looked at */
@@ -92,7 +92,7 @@ static bool find_better(const struct plant_asset *asset, const struct model_box 
     return best > within;
 }
 
-static void check_places(struct check *check, size_t asset_index, const struct model_box *box)
+static void check_places(struct plant_models_check *check, size_t asset_index, const struct model_box *box)
 {
     const struct plant_asset *asset = &check->plant->assets[asset_index];
     struct plant_sensor *sensors;
@@ -123,7 +123,7 @@ static void place_of(const struct model_header *header, uint32_t node, double ou
 }
 
 /* Where several nodes have that name, those of the asset before others; they may stand in one place. */
-static bool is_one_place(const struct check *check, const struct plant_asset *asset, size_t *count)
+static bool is_one_place(const struct plant_models_check *check, const struct plant_asset *asset, size_t *count)
 {
     size_t own = 0;
     double first[3], other[3];
@@ -141,7 +141,7 @@ static bool is_one_place(const struct check *check, const struct plant_asset *as
     return true;
 }
 
-static void check_node(struct check *check, const struct plant_asset *asset, const struct plant_tag *tag)
+static void check_node(struct plant_models_check *check, const struct plant_asset *asset, const struct plant_tag *tag)
 {
     char why[WHY_BYTES], numbers[120] = "";
     size_t count = nodes_find(tag->node, check->header.nodes, check->header.count, check->found, why, sizeof(why));
@@ -162,7 +162,7 @@ static void check_node(struct check *check, const struct plant_asset *asset, con
 /* --- assets --------------------------------------------------------------------------------------------------------------------- */
 
 /* False: it has no size that is known. */
-static bool check_asset(struct check *check, size_t index, double size_m[3])
+static bool check_asset(struct plant_models_check *check, size_t index, double size_m[3])
 {
     const struct plant_asset *asset = &check->plant->assets[index];
     const struct plant *plant = check->plant;
@@ -194,7 +194,7 @@ static bool check_asset(struct check *check, size_t index, double size_m[3])
 }
 
 /* All assets of one model, the first of which is this. */
-static void check_model(struct check *check, size_t first, bool *done, double (*sizes_m)[3])
+static void check_model(struct plant_models_check *check, size_t first, bool *done, double (*sizes_m)[3])
 {
     const struct plant *plant = check->plant;
     const char *path = plant->assets[first].model;
@@ -219,7 +219,7 @@ static void check_model(struct check *check, size_t first, bool *done, double (*
         model_header_finish(&check->header);
 }
 
-static void check_sizes(const struct check *check, const double (*sizes_m)[3], FILE *out)
+static void check_sizes(const struct plant_models_check *check, const double (*sizes_m)[3], FILE *out)
 {
     const struct plant *plant = check->plant;
     double *longest_m = mem_array(plant->asset_count, sizeof(*longest_m));
@@ -240,7 +240,7 @@ static void check_sizes(const struct check *check, const double (*sizes_m)[3], F
     mem_free(longest_m);
 }
 
-static bool check_memory(const struct check *check, size_t machine)
+static bool check_memory(const struct plant_models_check *check, size_t machine)
 {
     uint64_t most = machine > BASE_BYTES ? (machine - BASE_BYTES) / TRIANGLE_BYTES : 0;
     if (check->triangles <= most)
@@ -254,7 +254,7 @@ static bool check_memory(const struct check *check, size_t machine)
 
 bool models_check(const struct plant *plant, size_t memory_bytes, struct diag *diag, FILE *out)
 {
-    struct check check = { .plant = plant, .diag = diag };
+    struct plant_models_check check = { .plant = plant, .diag = diag };
     bool *done = mem_array(plant->asset_count, sizeof(*done));
     double(*sizes_m)[3] = mem_array(plant->asset_count, sizeof(*sizes_m));
     for (size_t i = 0; i < plant->asset_count; i++)

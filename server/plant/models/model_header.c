@@ -17,7 +17,7 @@ enum { MAX_JSON_BYTES = 512 << 20, MAX_DEPTH = 512, GLB_HEAD_BYTES = 20 };
 
 const struct model_box model_box_empty = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
 
-struct walk {
+struct header_walk {
     struct model_header *header;
     const json_t *nodes, *meshes, *accessors;
     bool *seen;
@@ -143,7 +143,7 @@ static void add_corners(struct model_box *box, const struct model_box *range, co
     }
 }
 
-static struct model_box box_of_mesh(const struct walk *walk, const json_t *mesh, const double world[16])
+static struct model_box box_of_mesh(const struct header_walk *walk, const json_t *mesh, const double world[16])
 {
     struct model_box box = model_box_empty, range;
     const json_t *primitives = json_object_get(mesh, "primitives");
@@ -189,7 +189,7 @@ static const char *name_of(const json_t *object)
     return name ? name : "";
 }
 
-static bool walk_node(struct walk *walk, const json_t *reference, int parent, const double parent_world[16], int depth)
+static bool walk_node(struct header_walk *walk, const json_t *reference, int parent, const double parent_world[16], int depth)
 {
     struct model_header *header = walk->header;
     size_t number = (size_t)json_integer_value(reference), self = header->count;
@@ -215,7 +215,7 @@ static bool walk_node(struct walk *walk, const json_t *reference, int parent, co
     return true;
 }
 
-static bool walk_roots(struct walk *walk, const json_t *root)
+static bool walk_roots(struct header_walk *walk, const json_t *root)
 {
     const json_t *scenes = json_object_get(root, "scenes"), *chosen = json_object_get(root, "scene");
     const json_t *roots = json_object_get(json_array_get(scenes, chosen ? (size_t)json_integer_value(chosen) : 0), "nodes");
@@ -250,12 +250,12 @@ bool model_header_read(struct model_header *header, const char *path, char *why,
         return false;
     header->json = root;
     const char *version = json_string_value(json_object_get(json_object_get(root, "asset"), "version"));
-    struct walk walk = { .header = header,
-                         .nodes = json_object_get(root, "nodes"),
-                         .meshes = json_object_get(root, "meshes"),
-                         .accessors = json_object_get(root, "accessors"),
-                         .why = why,
-                         .why_bytes = why_bytes };
+    struct header_walk walk = { .header = header,
+                                .nodes = json_object_get(root, "nodes"),
+                                .meshes = json_object_get(root, "meshes"),
+                                .accessors = json_object_get(root, "accessors"),
+                                .why = why,
+                                .why_bytes = why_bytes };
     bool good = version && version[0] == '2';
     if (!good)
         snprintf(why, why_bytes, "is no glTF 2.0: its asset.version is '%.20s'", version ? version : "");

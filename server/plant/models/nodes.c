@@ -13,10 +13,10 @@
 #define MESH_PREFIX "mesh:"
 enum { SEGMENTS_MAX = 64 };
 
-enum kind { NAME, GLOB, NUMBER, MESH, PATH };
+enum pattern_kind { NAME, GLOB, NUMBER, MESH, PATH };
 
 struct pattern {
-    enum kind kind;
+    enum pattern_kind kind;
     bool excludes;
     char *text; /* without ! and mesh:; of a PATH, cut into segments */
     uint64_t number;
@@ -25,12 +25,12 @@ struct pattern {
     size_t segment_count;
 };
 
-struct model {
+struct node_list {
     const struct model_node *nodes;
     size_t count;
 };
 
-static bool any_named(const struct model *model, const char *name)
+static bool any_named(const struct node_list *model, const char *name)
 {
     for (size_t i = 0; i < model->count; i++)
         if (strcmp(name, model->nodes[i].name) == 0)
@@ -38,7 +38,7 @@ static bool any_named(const struct model *model, const char *name)
     return false;
 }
 
-static bool any_like(const struct model *model, const char *glob)
+static bool any_like(const struct node_list *model, const char *glob)
 {
     for (size_t i = 0; i < model->count; i++)
         if (fnmatch(glob, model->nodes[i].name, 0) == 0)
@@ -66,7 +66,7 @@ static void cut_path(struct pattern *pattern)
 }
 
 /* What a text means depends on the model: a name that is there as it stands is meant so, whatever signs it has. */
-static void pattern_init(struct pattern *pattern, const char *text, const struct model *model)
+static void pattern_init(struct pattern *pattern, const char *text, const struct node_list *model)
 {
     bool named = any_named(model, text);
     *pattern = (struct pattern){ .excludes = !named && *text == '!' };
@@ -132,7 +132,7 @@ static bool matches(const struct pattern *pattern, const struct model_node *node
 
 /* --- what does not match ------------------------------------------------------------------------------------------------------ */
 
-static const char *near_mesh(const char *text, const struct model *model)
+static const char *near_mesh(const char *text, const struct node_list *model)
 {
     const char **names = mem_array(model->count, sizeof(*names)), *near;
     for (size_t i = 0; i < model->count; i++)
@@ -142,7 +142,7 @@ static const char *near_mesh(const char *text, const struct model *model)
     return near;
 }
 
-static bool is_mesh(const char *text, const struct model *model)
+static bool is_mesh(const char *text, const struct node_list *model)
 {
     for (size_t i = 0; i < model->count; i++)
         if (strcmp(text, model->nodes[i].mesh) == 0)
@@ -151,7 +151,7 @@ static bool is_mesh(const char *text, const struct model *model)
 }
 
 /* ": did you mean ...?", or nothing. */
-static void suggest(const struct pattern *pattern, const struct model *model, char *out, size_t bytes)
+static void suggest(const struct pattern *pattern, const struct node_list *model, char *out, size_t bytes)
 {
     const char *text = pattern->kind == PATH ? pattern->segments[pattern->segment_count - 1] : pattern->text;
     bool by_mesh = pattern->kind == MESH || (pattern->kind == GLOB && is_mesh(text, model));
@@ -165,7 +165,7 @@ static void suggest(const struct pattern *pattern, const struct model *model, ch
         snprintf(out, bytes, ": did you mean '%s%.120s'?", by_mesh ? MESH_PREFIX : "", near);
 }
 
-static void say_none(const struct pattern *pattern, const char *text, const struct model *model, char *why, size_t bytes)
+static void say_none(const struct pattern *pattern, const char *text, const struct node_list *model, char *why, size_t bytes)
 {
     static const char *const forms[] = { [NAME] = "no node's name matches '%.120s'%s",
                                          [GLOB] = "no node's name matches '%.120s'%s",
@@ -180,7 +180,7 @@ static void say_none(const struct pattern *pattern, const char *text, const stru
 /* --- taking ------------------------------------------------------------------------------------------------------------------- */
 
 /* False: there is none. */
-static bool mark(const struct pattern *pattern, const struct model *model, bool *marks, bool value)
+static bool mark(const struct pattern *pattern, const struct node_list *model, bool *marks, bool value)
 {
     bool any = false;
     for (size_t i = 0; i < model->count;) {
@@ -196,7 +196,7 @@ static bool mark(const struct pattern *pattern, const struct model *model, bool 
 }
 
 /* One pass: all that include, or all that exclude. */
-static bool mark_all(const char *patterns, bool excludes, const struct model *model, bool *taken, size_t *done, char *why, size_t bytes)
+static bool mark_all(const char *patterns, bool excludes, const struct node_list *model, bool *taken, size_t *done, char *why, size_t bytes)
 {
     bool good = true;
     char *copy = mem_strdup(patterns), *next = copy;
@@ -217,7 +217,7 @@ static bool mark_all(const char *patterns, bool excludes, const struct model *mo
 
 bool nodes_take(const char *patterns, const struct model_node *nodes, size_t count, bool *taken, char *why, size_t why_bytes)
 {
-    const struct model model = { nodes, count };
+    const struct node_list model = { nodes, count };
     size_t including = 0, excluding = 0;
     memset(taken, 0, count * sizeof(*taken));
     bool good = !patterns || mark_all(patterns, false, &model, taken, &including, why, why_bytes);
@@ -228,7 +228,7 @@ bool nodes_take(const char *patterns, const struct model_node *nodes, size_t cou
 
 size_t nodes_find(const char *pattern, const struct model_node *nodes, size_t count, uint32_t *found, char *why, size_t why_bytes)
 {
-    const struct model model = { nodes, count };
+    const struct node_list model = { nodes, count };
     struct pattern one;
     size_t found_count = 0;
     pattern_init(&one, pattern, &model);

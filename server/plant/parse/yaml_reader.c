@@ -16,12 +16,12 @@
 
 /* --- the document ----------------------------------------------------------------------------------------------------------- */
 
-static struct place place_of_byte(const char *text, size_t offset)
+static struct text_position place_of_byte(const char *text, size_t offset)
 {
-    struct place place = { 1, 1 };
+    struct text_position place = { 1, 1 };
     for (size_t i = 0; i < offset && text[i]; i++) {
         if (text[i] == '\n')
-            place = (struct place){ place.line + 1, 1 };
+            place = (struct text_position){ place.line + 1, 1 };
         else if (((unsigned char)text[i] & 0xC0) != 0x80)
             place.column++;
     }
@@ -36,7 +36,7 @@ static bool report_tabs(struct yaml_reader *reader, const char *text)
     for (const char *p = text; *p; line++) {
         size_t blanks = strspn(p, " "), all = strspn(p, " \t");
         if (all > blanks && !strchr("\r\n#", p[all])) {
-            yaml_error(reader, (struct place){ line, (int)blanks + 1 }, "tab in the indentation; YAML wants spaces");
+            yaml_error(reader, (struct text_position){ line, (int)blanks + 1 }, "tab in the indentation; YAML wants spaces");
             any = true;
         }
         p += strcspn(p, "\n");
@@ -47,7 +47,7 @@ static bool report_tabs(struct yaml_reader *reader, const char *text)
 
 static void report_syntax(struct yaml_reader *reader, const yaml_parser_t *parser, const char *text)
 {
-    struct place place = { (int)parser->problem_mark.line + 1, (int)parser->problem_mark.column + 1 };
+    struct text_position place = { (int)parser->problem_mark.line + 1, (int)parser->problem_mark.column + 1 };
     if (parser->error == YAML_READER_ERROR)
         place = place_of_byte(text, parser->problem_offset);
     else if (report_tabs(reader, text))
@@ -118,12 +118,12 @@ void yaml_reader_close(struct yaml_reader *reader)
 
 /* --- nodes ------------------------------------------------------------------------------------------------------------------ */
 
-struct place yaml_place(const yaml_node_t *node)
+struct text_position yaml_place(const yaml_node_t *node)
 {
-    return (struct place){ (int)node->start_mark.line + 1, (int)node->start_mark.column + 1 };
+    return (struct text_position){ (int)node->start_mark.line + 1, (int)node->start_mark.column + 1 };
 }
 
-void yaml_error(struct yaml_reader *reader, struct place place, const char *fmt, ...)
+void yaml_error(struct yaml_reader *reader, struct text_position place, const char *fmt, ...)
 {
     struct text text = { 0 };
     va_list ap;
@@ -154,7 +154,7 @@ bool yaml_is_null(const yaml_node_t *node)
 
 void yaml_expected(struct yaml_reader *reader, const yaml_node_t *node, const char *name, const char *expected)
 {
-    struct place place = yaml_place(node);
+    struct text_position place = yaml_place(node);
     const char *text = yaml_text(node);
     if (!text)
         yaml_error(reader, place, "%s: expected %s, found a %s", name, expected, node->type == YAML_SEQUENCE_NODE ? "list" : "mapping");
@@ -190,7 +190,7 @@ bool yaml_number(struct yaml_reader *reader, const yaml_node_t *node, const char
 
 /* --- mappings --------------------------------------------------------------------------------------------------------------- */
 
-static void read_text(struct yaml_reader *reader, const yaml_node_t *node, const struct key *key, char **out)
+static void read_text(struct yaml_reader *reader, const yaml_node_t *node, const struct yaml_key *key, char **out)
 {
     const char *text = yaml_text(node);
     if (!text || (key->kind == KEY_NAME && !*text)) {
@@ -205,7 +205,7 @@ static void read_text(struct yaml_reader *reader, const yaml_node_t *node, const
     *out = mem_strdup(text);
 }
 
-static void read_int(struct yaml_reader *reader, const yaml_node_t *node, const struct key *key, int *out)
+static void read_int(struct yaml_reader *reader, const yaml_node_t *node, const struct yaml_key *key, int *out)
 {
     double value;
     bool good = is_plain(node) && number_parse(yaml_text(node), &value) == NUMBER_GOOD && value == floor(value);
@@ -215,10 +215,10 @@ static void read_int(struct yaml_reader *reader, const yaml_node_t *node, const 
         expected_number(reader, node, key->name, "whole number", key->low, key->high);
 }
 
-static const struct choice *read_choice(struct yaml_reader *reader, const yaml_node_t *node, const struct key *key)
+static const struct yaml_choice *read_choice(struct yaml_reader *reader, const yaml_node_t *node, const struct yaml_key *key)
 {
     const char *text = yaml_text(node);
-    const struct choice *choice = key->choices;
+    const struct yaml_choice *choice = key->choices;
     while (choice->name && (!text || strcmp(choice->name, text) != 0))
         choice++;
     if (choice->name)
@@ -231,7 +231,7 @@ static const struct choice *read_choice(struct yaml_reader *reader, const yaml_n
     return NULL;
 }
 
-static void read_point(struct yaml_reader *reader, const yaml_node_t *node, const struct key *key, double *out)
+static void read_point(struct yaml_reader *reader, const yaml_node_t *node, const struct yaml_key *key, double *out)
 {
     double point[3];
     if (node->type != YAML_SEQUENCE_NODE || node->data.sequence.items.top - node->data.sequence.items.start != 3) {
@@ -245,10 +245,10 @@ static void read_point(struct yaml_reader *reader, const yaml_node_t *node, cons
         memcpy(out, point, sizeof(point));
 }
 
-static void read_value(struct yaml_reader *reader, yaml_node_t *node, const struct key *key, void *record)
+static void read_value(struct yaml_reader *reader, yaml_node_t *node, const struct yaml_key *key, void *record)
 {
     char *out = (char *)record + key->offset;
-    const struct choice *choice;
+    const struct yaml_choice *choice;
     switch (key->kind) {
     case KEY_TEXT:
     case KEY_NAME:
@@ -284,7 +284,7 @@ static void read_value(struct yaml_reader *reader, yaml_node_t *node, const stru
     }
 }
 
-static size_t count_keys(const struct key *keys)
+static size_t count_keys(const struct yaml_key *keys)
 {
     size_t count = 0;
     while (keys[count].name)
@@ -293,7 +293,7 @@ static size_t count_keys(const struct key *keys)
     return count;
 }
 
-static size_t find_key(const struct key *keys, const char *name)
+static size_t find_key(const struct yaml_key *keys, const char *name)
 {
     size_t i = 0;
     while (keys[i].name && strcmp(keys[i].name, name) != 0)
@@ -301,7 +301,7 @@ static size_t find_key(const struct key *keys, const char *name)
     return i;
 }
 
-static void report_unknown(struct yaml_reader *reader, const yaml_node_t *node, const char *what, const struct key *keys)
+static void report_unknown(struct yaml_reader *reader, const yaml_node_t *node, const char *what, const struct yaml_key *keys)
 {
     const char *near = suggest_nearest(yaml_text(node), keys, count_keys(keys), sizeof(*keys));
     if (near) {
@@ -309,7 +309,7 @@ static void report_unknown(struct yaml_reader *reader, const yaml_node_t *node, 
         return;
     }
     struct text known = { 0 };
-    for (const struct key *key = keys; key->name; key++)
+    for (const struct yaml_key *key = keys; key->name; key++)
         text_add(&known, "%s%s", key == keys ? "" : ", ", key->name);
     yaml_error(reader, yaml_place(node), "unknown key '%.60s' in %s; expected one of: %s", yaml_text(node), what, known.at);
     text_finish(&known);
@@ -322,8 +322,8 @@ static void read_pair(struct yaml_reader *reader, const yaml_node_pair_t *pair, 
         yaml_expected(reader, name, what, "the name of a key");
         return;
     }
-    const struct key *key = &map->keys[find_key(map->keys, yaml_text(name))];
-    struct place *place = &map->values[key - map->keys];
+    const struct yaml_key *key = &map->keys[find_key(map->keys, yaml_text(name))];
+    struct text_position *place = &map->values[key - map->keys];
     if (!key->name) {
         report_unknown(reader, name, what, map->keys);
     } else if (place->line) {
@@ -339,7 +339,7 @@ static void read_pair(struct yaml_reader *reader, const yaml_node_pair_t *pair, 
     }
 }
 
-bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct key *keys, void *record,
+bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct yaml_key *keys, void *record,
                    struct yaml_map *map)
 {
     *map = (struct yaml_map){ .keys = keys, .place = yaml_place(node) };
@@ -365,9 +365,9 @@ bool yaml_map_has(const struct yaml_map *map, const char *name)
     return map->values[find_key(map->keys, name)].line != 0;
 }
 
-struct place yaml_map_place(const struct yaml_map *map, const char *name)
+struct text_position yaml_map_place(const struct yaml_map *map, const char *name)
 {
-    struct place place = map->values[find_key(map->keys, name)];
+    struct text_position place = map->values[find_key(map->keys, name)];
     return place.line ? place : map->place;
 }
 

@@ -14,11 +14,11 @@ struct yaml_reader {
     yaml_document_t doc;
 };
 
-struct place {
+struct text_position {
     int line, column; /* from 1 */
 };
 
-struct choice { /* a table of these ends with { 0 } */
+struct yaml_choice { /* a table of these ends with { 0 } */
     const char *name;
     double value;
 };
@@ -35,21 +35,21 @@ enum key_kind {
     KEY_CUSTOM   /* by read */
 };
 
-struct key { /* one key of a mapping; a table of these ends with { 0 } */
+struct yaml_key { /* one key of a mapping; a table of these ends with { 0 } */
     const char *name;
     enum key_kind kind;
     bool required;
     size_t offset;                /* in the record */
     double low, high;             /* of numbers, inclusive; both 0: any that is finite */
-    const struct choice *choices;
+    const struct yaml_choice *choices;
     void (*read)(struct yaml_reader *reader, yaml_node_t *value, void *record);
 };
 
 #define YAML_MAP_MAX_KEYS 56
 struct yaml_map { /* where things were, and whether they were good */
-    const struct key *keys;
-    struct place place;
-    struct place values[YAML_MAP_MAX_KEYS];
+    const struct yaml_key *keys;
+    struct text_position place;
+    struct text_position values[YAML_MAP_MAX_KEYS];
     bool good[YAML_MAP_MAX_KEYS]; /* given, and read without an error */
 };
 
@@ -58,8 +58,8 @@ struct yaml_map { /* where things were, and whether they were good */
 bool yaml_reader_open(struct yaml_reader *reader, const char *path, struct diag *diag);
 void yaml_reader_close(struct yaml_reader *reader);
 
-struct place yaml_place(const yaml_node_t *node);
-void yaml_error(struct yaml_reader *reader, struct place place, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+struct text_position yaml_place(const yaml_node_t *node);
+void yaml_error(struct yaml_reader *reader, struct text_position place, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 /* Reports `name: expected ..., found ...` at a node. */
 void yaml_expected(struct yaml_reader *reader, const yaml_node_t *node, const char *name, const char *expected);
 /* Returns whether a node is null: an empty plain scalar, `~` or `null` in lower case. The pointer must not be NULL. */
@@ -71,12 +71,12 @@ bool yaml_number(struct yaml_reader *reader, const yaml_node_t *node, const char
 
 /* Reads a mapping into record; members whose key is absent or null stay unchanged. what names the mapping in messages ("a group"). Returns
    false if it is no mapping. */
-bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct key *keys, void *record,
+bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct yaml_key *keys, void *record,
                    struct yaml_map *map);
 bool yaml_map_good(const struct yaml_map *map, const char *name); /* returns whether the key was given and read without an error */
 bool yaml_map_has(const struct yaml_map *map, const char *name); /* returns whether the key is present, whatever its value */
 /* Returns the place of a value; of the mapping if the key is absent. */
-struct place yaml_map_place(const struct yaml_map *map, const char *name);
+struct text_position yaml_map_place(const struct yaml_map *map, const char *name);
 
 /* Returns the number of items; -1 if it is no list (reported). */
 int yaml_list_count(struct yaml_reader *reader, const yaml_node_t *node, const char *name);

@@ -33,8 +33,8 @@ void plant_alarms_read_mode(struct yaml_reader *reader, yaml_node_t *node, struc
 
 void plant_alarms_read_group(struct yaml_reader *reader, yaml_node_t *node, void *group)
 {
-    static const struct choice latch_choices[] = { { "no", 0 }, { "yes", 1 }, { 0 } };
-    static const struct key keys[] = {
+    static const struct yaml_choice latch_choices[] = { { "no", 0 }, { "yes", 1 }, { 0 } };
+    static const struct yaml_key keys[] = {
         { "deadband", KEY_NUMBER, false, offsetof(struct plant_alarm_settings, deadband), 0, PLANT_MAX_VALUE, NULL, NULL },
         { "on_delay_s", KEY_NUMBER, false, offsetof(struct plant_alarm_settings, on_delay_s), 0, MAX_DELAY_S, NULL, NULL },
         { "off_delay_s", KEY_NUMBER, false, offsetof(struct plant_alarm_settings, off_delay_s), 0, MAX_DELAY_S, NULL, NULL },
@@ -46,7 +46,7 @@ void plant_alarms_read_group(struct yaml_reader *reader, yaml_node_t *node, void
     yaml_map_read(reader, node, "alarm", keys, &((struct plant_group *)group)->alarm_settings, &map);
 }
 
-void plant_alarms_check(struct yaml_reader *reader, struct place place, const struct plant *plant)
+void plant_alarms_check(struct yaml_reader *reader, struct text_position place, const struct plant *plant)
 {
     if (plant->alarms == ALARMS_LOCAL && plant->history.off)
         yaml_error(reader, place, "alarms: local needs `record: yes` in `history`: what becomes of alarms is written there");

@@ -13,7 +13,7 @@ struct alarm_references {
 
 void plant_alarms_read_mode(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 void plant_alarms_read_group(struct yaml_reader *reader, yaml_node_t *node, void *group); /* its key `alarm` */
-void plant_alarms_check(struct yaml_reader *reader, struct place place, const struct plant *plant);
+void plant_alarms_check(struct yaml_reader *reader, struct text_position place, const struct plant *plant);
 void plant_alarms_read_row(struct tag_columns *columns, struct plant *plant, struct plant_tag *tag, struct alarm_references *references);
 /* Resolves the names that alarm cells refer to, once all rows are read and the plant's names are sorted; reports unknown ones. Frees the
    references. */

@@ -22,7 +22,7 @@ static bool is_taken(const struct plant *plant, const char *name)
 }
 
 static void read_image(struct yaml_reader *reader, const struct plant *plant, struct plant_colormap *map, const char *image,
-                       struct place place)
+                       struct text_position place)
 {
     char why[IMAGE_WHY_BYTES], *path = *image == '/' ? mem_strdup(image) : mem_printf("%s/%s", plant->folder, image);
     if (!image_ramp(path, map->rgb, why))
@@ -32,7 +32,7 @@ static void read_image(struct yaml_reader *reader, const struct plant *plant, st
 
 static void read_colormap(struct yaml_reader *reader, yaml_node_t *node, const struct plant *plant, struct plant_colormap *map)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "name", KEY_NAME, true, offsetof(struct record, name), 0, 0, NULL, NULL },
         { "image", KEY_NAME, true, offsetof(struct record, image), 0, 0, NULL, NULL },
         { 0 }

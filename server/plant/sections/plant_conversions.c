@@ -18,12 +18,12 @@ static void check(struct yaml_reader *reader, const struct yaml_map *map, const 
 
 void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
 {
-    static const struct key keys[] = { { "model", KEY_NAME, true, offsetof(struct plant_conversion, model), 0, 0, NULL, NULL },
-                                       { "from", KEY_NAME, true, offsetof(struct plant_conversion, from), 0, 0, NULL, NULL },
-                                       { "command", KEY_NAME, true, offsetof(struct plant_conversion, command), 0, 0, NULL, NULL },
-                                       { "timeout_s", KEY_NUMBER, false, offsetof(struct plant_conversion, timeout_s), 1, 86400, NULL,
-                                         NULL },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { { "model", KEY_NAME, true, offsetof(struct plant_conversion, model), 0, 0, NULL, NULL },
+                                            { "from", KEY_NAME, true, offsetof(struct plant_conversion, from), 0, 0, NULL, NULL },
+                                            { "command", KEY_NAME, true, offsetof(struct plant_conversion, command), 0, 0, NULL, NULL },
+                                            { "timeout_s", KEY_NUMBER, false, offsetof(struct plant_conversion, timeout_s), 1, 86400, NULL,
+                                              NULL },
+                                            { 0 } };
     int count;
     plant->conversions = plant_list_make(reader, node, "convert", 0, sizeof(*plant->conversions), &count);
     for (int i = 0; i < count; i++) {

@@ -23,23 +23,23 @@ struct plant_file {
     char *tags;
 };
 
-static const struct choice up_choices[] = { { "z", AXIS_Z }, { "y", AXIS_Y }, { 0 } };
-static const struct choice show_choices[] = { { "value", PLANT_SHOW_VALUE }, { "operator", PLANT_SHOW_OPERATOR }, { 0 } };
-static const struct choice start_choices[] = {
+static const struct yaml_choice up_choices[] = { { "z", AXIS_Z }, { "y", AXIS_Y }, { 0 } };
+static const struct yaml_choice show_choices[] = { { "value", PLANT_SHOW_VALUE }, { "operator", PLANT_SHOW_OPERATOR }, { 0 } };
+static const struct yaml_choice start_choices[] = {
     { "shown", PLANT_START_SHOWN }, { "ghost", PLANT_START_GHOST }, { "hidden", PLANT_START_HIDDEN }, { 0 }
 };
-static const struct choice unit_choices[] = { { "m", 1 }, { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { 0 } };
-static const struct choice frame_choices[] = { { "plant", 0 }, { "asset", 1 }, { 0 } };
-static const struct choice interpolation_choices[] = {
+static const struct yaml_choice unit_choices[] = { { "m", 1 }, { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { 0 } };
+static const struct yaml_choice frame_choices[] = { { "plant", 0 }, { "asset", 1 }, { 0 } };
+static const struct yaml_choice interpolation_choices[] = {
     { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { "harmonic", INTERPOLATION_HARMONIC },
     { "fin", INTERPOLATION_FIN },         { "gp", INTERPOLATION_GP },       { 0 }
 };
-static const struct choice geodesic_choices[] = { { "exact", false }, { "heat", true }, { 0 } };
-static const struct choice distance_choices[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { 0 } };
-static const struct choice fill_choices[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { 0 } };
-static const struct choice units_choices[] = { { "convert", 0 }, { "as-written", 1 }, { 0 } };
-static const struct choice singles_choices[] = { { "whole", 0 }, { "cut", 1 }, { 0 } };
-static const struct choice scale_choices[] = { { "linear", 0 }, { "log", 1 }, { 0 } };
+static const struct yaml_choice geodesic_choices[] = { { "exact", false }, { "heat", true }, { 0 } };
+static const struct yaml_choice distance_choices[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { 0 } };
+static const struct yaml_choice fill_choices[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { 0 } };
+static const struct yaml_choice units_choices[] = { { "convert", 0 }, { "as-written", 1 }, { 0 } };
+static const struct yaml_choice singles_choices[] = { { "whole", 0 }, { "cut", 1 }, { 0 } };
+static const struct yaml_choice scale_choices[] = { { "linear", 0 }, { "log", 1 }, { 0 } };
 
 /* --- plant ------------------------------------------------------------------------------------------------------------------ */
 
@@ -61,7 +61,7 @@ static bool zone_known(const char *zone)
 
 static void read_view(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "eye", KEY_POINT, true, offsetof(struct plant_view, eye_m), -PLANT_MAX_M, PLANT_MAX_M, NULL, NULL },
         { "target", KEY_POINT, true, offsetof(struct plant_view, target_m), -PLANT_MAX_M, PLANT_MAX_M, NULL, NULL },
         { "fov", KEY_NUMBER, false, offsetof(struct plant_view, fov_deg), 1, 120, NULL, NULL },
@@ -79,12 +79,12 @@ static void read_view(struct yaml_reader *reader, yaml_node_t *node, void *recor
 
 static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = { { "name", KEY_NAME, true, offsetof(struct plant, name), 0, 0, NULL, NULL },
-                                       { "time_zone", KEY_NAME, false, offsetof(struct plant, time_zone), 0, 0, NULL, NULL },
-                                       { "up", KEY_CHOICE, false, offsetof(struct plant, up), 0, 0, up_choices, NULL },
-                                       { "view", KEY_CUSTOM, false, 0, 0, 0, NULL, read_view },
-                                       { "show", KEY_CHOICE, false, offsetof(struct plant, show), 0, 0, show_choices, NULL },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { { "name", KEY_NAME, true, offsetof(struct plant, name), 0, 0, NULL, NULL },
+                                            { "time_zone", KEY_NAME, false, offsetof(struct plant, time_zone), 0, 0, NULL, NULL },
+                                            { "up", KEY_CHOICE, false, offsetof(struct plant, up), 0, 0, up_choices, NULL },
+                                            { "view", KEY_CUSTOM, false, 0, 0, 0, NULL, read_view },
+                                            { "show", KEY_CHOICE, false, offsetof(struct plant, show), 0, 0, show_choices, NULL },
+                                            { 0 } };
     struct plant *plant = ((struct plant_file *)record)->plant;
     struct yaml_map map;
     if (yaml_map_read(reader, node, "plant", keys, plant, &map) && yaml_map_good(&map, "time_zone") && !zone_known(plant->time_zone))
@@ -133,7 +133,7 @@ struct asset_record {
 
 static void read_placement(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "translate", KEY_POINT, false, offsetof(struct asset_record, translate_m), -PLANT_MAX_M, PLANT_MAX_M, NULL, NULL },
         { "rotate_deg", KEY_POINT, false, offsetof(struct asset_record, rotate_deg), -36000, 36000, NULL, NULL },
         { "scale", KEY_NUMBER, false, offsetof(struct asset_record, scale), 1e-6, 1e6, NULL, NULL },
@@ -187,7 +187,7 @@ static void read_nodes(struct yaml_reader *reader, yaml_node_t *node, void *reco
 /* An unquoted `nodes: #12` is a comment to YAML, and `nodes: !base` a type without a value: the whole model, silently. */
 static void check_nodes(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_asset *asset, int errors)
 {
-    struct place at = yaml_map_place(map, "nodes");
+    struct text_position at = yaml_map_place(map, "nodes");
     if (yaml_map_has(map, "nodes") && !asset->nodes && reader->diag->errors == errors)
         diag_warning(reader->diag, reader->path, at.line, at.column,
                      "nodes: has no value, so the whole model is taken; patterns with # or ! stand in quotes, such as \"#12\"");
@@ -195,7 +195,7 @@ static void check_nodes(struct yaml_reader *reader, const struct yaml_map *map, 
 
 static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct plant_asset *asset)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "id", KEY_NAME, true, offsetof(struct asset_record, asset.id), 0, 0, NULL, NULL },
         { "tag", KEY_TEXT, false, offsetof(struct asset_record, asset.tag), 0, 0, NULL, NULL },
         { "description", KEY_TEXT, false, offsetof(struct asset_record, asset.description), 0, 0, NULL, NULL },
@@ -282,7 +282,7 @@ bool plant_limits_wrong(const double limits[LIMIT_COUNT], int *lower, int *upper
 
 static void read_limits(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "LL", KEY_NUMBER, false, LIMIT_LL * sizeof(double), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
         { "L", KEY_NUMBER, false, LIMIT_L * sizeof(double), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
         { "H", KEY_NUMBER, false, LIMIT_H * sizeof(double), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
@@ -343,7 +343,7 @@ static void read_isolines(struct yaml_reader *reader, yaml_node_t *node, void *r
 
 static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct plant_group *group)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "id", KEY_NAME, true, offsetof(struct plant_group, id), 0, 0, NULL, NULL },
         { "quantity", KEY_TEXT, false, offsetof(struct plant_group, quantity), 0, 0, NULL, NULL },
         { "unit", KEY_TEXT, true, offsetof(struct plant_group, unit), 0, 0, NULL, NULL },
@@ -458,8 +458,8 @@ static void read_alarms(struct yaml_reader *reader, yaml_node_t *node, void *rec
 
 static void read_history(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct choice record_choices[] = { { "yes", 0 }, { "no", 1 }, { 0 } };
-    static const struct key keys[] = {
+    static const struct yaml_choice record_choices[] = { { "yes", 0 }, { "no", 1 }, { 0 } };
+    static const struct yaml_key keys[] = {
         { "record", KEY_FLAG, false, offsetof(struct plant_history, off), 0, 0, record_choices, NULL },
         { "folder", KEY_NAME, false, offsetof(struct plant_history, folder), 0, 0, NULL, NULL },
         { "keep_days", KEY_NUMBER, false, offsetof(struct plant_history, keep_days), 1, 36500, NULL, NULL },
@@ -510,24 +510,24 @@ static void read_publish(struct yaml_reader *reader, yaml_node_t *node, void *re
 
 void plant_file_read(struct plant *plant, struct diag *diag)
 {
-    static const struct key keys[] = { { "plant", KEY_CUSTOM, true, 0, 0, 0, NULL, read_plant },
-                                       { "assets", KEY_CUSTOM, true, 0, 0, 0, NULL, read_assets },
-                                       { "groups", KEY_CUSTOM, true, 0, 0, 0, NULL, read_groups },
-                                       { "sources", KEY_CUSTOM, false, 0, 0, 0, NULL, read_sources },
-                                       { "colormaps", KEY_CUSTOM, false, 0, 0, 0, NULL, read_colormaps },
-                                       { "environment", KEY_CUSTOM, false, 0, 0, 0, NULL, read_environment },
-                                       { "convert", KEY_CUSTOM, false, 0, 0, 0, NULL, skip_conversions },
-                                       { "links", KEY_CUSTOM, false, 0, 0, 0, NULL, read_links },
-                                       { "history", KEY_CUSTOM, false, 0, 0, 0, NULL, read_history },
-                                       { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
-                                       { "notify", KEY_CUSTOM, false, 0, 0, 0, NULL, read_notify },
-                                       { "publish", KEY_CUSTOM, false, 0, 0, 0, NULL, read_publish },
-                                       { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_views },
-                                       { "tours", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tours },
-                                       { "other_plants", KEY_CUSTOM, false, 0, 0, 0, NULL, read_other_plants },
-                                       { "walls", KEY_CUSTOM, false, 0, 0, 0, NULL, read_walls },
-                                       { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { { "plant", KEY_CUSTOM, true, 0, 0, 0, NULL, read_plant },
+                                            { "assets", KEY_CUSTOM, true, 0, 0, 0, NULL, read_assets },
+                                            { "groups", KEY_CUSTOM, true, 0, 0, 0, NULL, read_groups },
+                                            { "sources", KEY_CUSTOM, false, 0, 0, 0, NULL, read_sources },
+                                            { "colormaps", KEY_CUSTOM, false, 0, 0, 0, NULL, read_colormaps },
+                                            { "environment", KEY_CUSTOM, false, 0, 0, 0, NULL, read_environment },
+                                            { "convert", KEY_CUSTOM, false, 0, 0, 0, NULL, skip_conversions },
+                                            { "links", KEY_CUSTOM, false, 0, 0, 0, NULL, read_links },
+                                            { "history", KEY_CUSTOM, false, 0, 0, 0, NULL, read_history },
+                                            { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
+                                            { "notify", KEY_CUSTOM, false, 0, 0, 0, NULL, read_notify },
+                                            { "publish", KEY_CUSTOM, false, 0, 0, 0, NULL, read_publish },
+                                            { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_views },
+                                            { "tours", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tours },
+                                            { "other_plants", KEY_CUSTOM, false, 0, 0, 0, NULL, read_other_plants },
+                                            { "walls", KEY_CUSTOM, false, 0, 0, 0, NULL, read_walls },
+                                            { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
+                                            { 0 } };
     struct plant_file file = { .plant = plant };
     struct yaml_reader reader;
     struct yaml_map map;

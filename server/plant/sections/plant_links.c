@@ -5,7 +5,7 @@
 
 #include "plant/plant_impl.h"
 
-static const struct choice of_choices[] = { { "asset", 0 }, { "tag", 1 }, { 0 } };
+static const struct yaml_choice of_choices[] = { { "asset", 0 }, { "tag", 1 }, { 0 } };
 
 static size_t scheme_length(const char *url)
 {
@@ -40,7 +40,7 @@ static const char *wrong_with(const char *url, bool of_tags)
 
 void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "name", KEY_NAME, true, offsetof(struct plant_link, name), 0, 0, NULL, NULL },
         { "url", KEY_NAME, true, offsetof(struct plant_link, url), 0, 0, NULL, NULL },
         { "of", KEY_FLAG, false, offsetof(struct plant_link, of_tags), 0, 0, of_choices, NULL },

@@ -25,7 +25,7 @@ static bool is_mail_address(const char *text)
     return true;
 }
 
-static void check_mail_address(struct yaml_reader *reader, struct place place, const char *name, const char *text)
+static void check_mail_address(struct yaml_reader *reader, struct text_position place, const char *name, const char *text)
 {
     if (!is_mail_address(text))
         yaml_error(reader, place, "%s: expected an address such as control-room@example.org, found '%.100s'", name, text);
@@ -35,7 +35,7 @@ static void check_mail_address(struct yaml_reader *reader, struct place place, c
 
 /* One text, or a list of them. */
 static void read_texts(struct yaml_reader *reader, yaml_node_t *node, const char *name, struct notify_list *list,
-                       void (*check)(struct yaml_reader *reader, struct place place, const char *name, const char *text))
+                       void (*check)(struct yaml_reader *reader, struct text_position place, const char *name, const char *text))
 {
     bool one = node->type == YAML_SCALAR_NODE;
     int count = one ? 1 : yaml_list_count(reader, node, name);
@@ -75,7 +75,7 @@ static void free_list(struct notify_list *list)
 
 static void read_mail(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "server", KEY_NAME, true, offsetof(struct notify_mail, server), 0, 0, NULL, NULL },
         { "from", KEY_NAME, true, offsetof(struct notify_mail, from), 0, 0, NULL, NULL },
         { "user", KEY_NAME, false, offsetof(struct notify_mail, user), 0, 0, NULL, NULL },
@@ -112,7 +112,7 @@ static void check_token(struct yaml_reader *reader, const struct yaml_map *map, 
 
 static void read_recipient(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct notify_recipient *recipient)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "id", KEY_NAME, true, offsetof(struct recipient_record, recipient.id), 0, 0, NULL, NULL },
         { "email", KEY_CUSTOM, false, 0, 0, 0, NULL, read_email },
         { "webhook", KEY_NAME, false, offsetof(struct recipient_record, webhook), 0, 0, NULL, NULL },
@@ -202,10 +202,10 @@ static void read_step_to(struct yaml_reader *reader, yaml_node_t *node, void *re
 
 static void read_escalation(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = { { "after_min", KEY_NUMBER, true, offsetof(struct step_record, step.after_min), 1. / 60, 7 * 24 * 60,
-                                         NULL, NULL },
-                                       { "to", KEY_CUSTOM, true, 0, 0, 0, NULL, read_step_to },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { { "after_min", KEY_NUMBER, true, offsetof(struct step_record, step.after_min), 1. / 60,
+                                              7 * 24 * 60, NULL, NULL },
+                                            { "to", KEY_CUSTOM, true, 0, 0, 0, NULL, read_step_to },
+                                            { 0 } };
     struct rule_record *rule = record;
     int count = yaml_list_count(reader, node, "escalate");
     if (count >= NOTIFY_STEPS)
@@ -244,7 +244,7 @@ static unsigned days_of(const char *text)
     return days;
 }
 
-static void check_days(struct yaml_reader *reader, struct place place, const char *name, const char *text)
+static void check_days(struct yaml_reader *reader, struct text_position place, const char *name, const char *text)
 {
     if (!days_of(text))
         yaml_error(reader, place, "%s: expected mon, tue, wed, thu, fri, sat, sun or a span such as mon-fri, found '%.40s'", name, text);
@@ -294,7 +294,7 @@ static void read_hours(struct yaml_reader *reader, yaml_node_t *node, void *reco
 
 static void read_rule(struct yaml_reader *reader, yaml_node_t *node, struct plant_notify *notify, struct notify_rule *rule)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "id", KEY_NAME, true, offsetof(struct rule_record, rule.id), 0, 0, NULL, NULL },
         { "priority", KEY_INT, false, offsetof(struct rule_record, rule.priority), 1, ALARM_PRIORITIES, NULL, NULL },
         { "areas", KEY_CUSTOM, false, 0, 0, 0, NULL, read_areas },
@@ -351,7 +351,7 @@ static void read_later(struct yaml_reader *reader, yaml_node_t *node, void *reco
 
 static void read_scalars(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "link", KEY_NAME, false, offsetof(struct plant_notify, link), 0, 0, NULL, NULL },
         { "gather_s", KEY_NUMBER, false, offsetof(struct plant_notify, gather_s), 0, 600, NULL, NULL },
         { "pause_s", KEY_NUMBER, false, offsetof(struct plant_notify, pause_s), 0, 86400, NULL, NULL },

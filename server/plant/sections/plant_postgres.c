@@ -26,7 +26,7 @@ static bool has_password(const char *url)
 
 static void check_url(struct yaml_reader *reader, const struct yaml_map *map, const char *url)
 {
-    struct place place = yaml_map_place(map, "url");
+    struct text_position place = yaml_map_place(map, "url");
     if (strncmp(url, "postgresql://", 13) != 0 && strncmp(url, "postgres://", 11) != 0)
         yaml_error(reader, place, "url: expected postgresql://HOST/DATABASE, found '%.60s'", url);
     else if (has_password(url))
@@ -35,12 +35,12 @@ static void check_url(struct yaml_reader *reader, const struct yaml_map *map, co
 
 void plant_postgres_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = { { "url", KEY_NAME, true, offsetof(struct plant_postgres, url), 0, 0, NULL, NULL },
-                                       { "login", KEY_NAME, false, offsetof(struct plant_postgres, login), 0, 0, NULL, NULL },
-                                       { "schema", KEY_NAME, false, offsetof(struct plant_postgres, schema), 0, 0, NULL, NULL },
-                                       { "spool_points", KEY_NUMBER, false, offsetof(struct plant_postgres, spool_points), 1000, 1e9, NULL,
-                                         NULL },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { { "url", KEY_NAME, true, offsetof(struct plant_postgres, url), 0, 0, NULL, NULL },
+                                            { "login", KEY_NAME, false, offsetof(struct plant_postgres, login), 0, 0, NULL, NULL },
+                                            { "schema", KEY_NAME, false, offsetof(struct plant_postgres, schema), 0, 0, NULL, NULL },
+                                            { "spool_points", KEY_NUMBER, false, offsetof(struct plant_postgres, spool_points), 1000, 1e9,
+                                              NULL, NULL },
+                                            { 0 } };
     struct plant_postgres *postgres = &((struct plant_history *)record)->postgres;
     struct yaml_map map;
     postgres->spool_points = 2e7;
@@ -58,7 +58,7 @@ void plant_postgres_read(struct yaml_reader *reader, yaml_node_t *node, void *re
 void plant_postgres_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant,
                           struct plant_postgres *postgres)
 {
-    struct place place = yaml_map_place(map, "postgres");
+    struct text_position place = yaml_map_place(map, "postgres");
     plant_resolve_path(plant, &postgres->login);
     if (postgres->url && plant->history.off)
         yaml_error(reader, place, "postgres needs `record: yes`: what it is sent is what was recorded");

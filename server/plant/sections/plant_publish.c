@@ -17,8 +17,8 @@ static void check_prefix(struct yaml_reader *reader, const struct yaml_map *map,
 
 void plant_publish_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
 {
-    static const struct choice protocol_choices[] = { { "5", 5 }, { "3.1.1", 4 }, { 0 } };
-    static const struct key keys[] = {
+    static const struct yaml_choice protocol_choices[] = { { "5", 5 }, { "3.1.1", 4 }, { 0 } };
+    static const struct yaml_key keys[] = {
         { "host", KEY_NAME, true, offsetof(struct plant_publish, broker.hosts[0]), 0, 0, NULL, NULL },
         { "port", KEY_INT, false, offsetof(struct plant_publish, broker.port), 1, 65535, NULL, NULL },
         { "protocol", KEY_CHOICE, false, offsetof(struct plant_publish, broker.mqtt.protocol), 0, 0, protocol_choices, NULL },

@@ -9,13 +9,13 @@
 #include "base/text/text.h"
 #include "plant/sources/json_path.h"
 
-enum field { FIELD_TAG, FIELD_ASSET, FIELD_GROUP, FIELD_ADDRESS, FIELD_COUNT };
+enum address_field { FIELD_TAG, FIELD_ASSET, FIELD_GROUP, FIELD_ADDRESS, FIELD_COUNT };
 static const char *const field_names[FIELD_COUNT] = { "{tag}", "{asset}", "{group}", "{address}" };
 
 /* The field that text begins with, or FIELD_COUNT. */
-static enum field field_at(const char *text)
+static enum address_field field_at(const char *text)
 {
-    enum field field = FIELD_TAG;
+    enum address_field field = FIELD_TAG;
     while (field < FIELD_COUNT && strncmp(text, field_names[field], strlen(field_names[field])) != 0)
         field++;
     return field;
@@ -36,7 +36,7 @@ bool mqtt_template_check(const char *text, char why[200])
 }
 
 /* What stands for a field, NULL where the tag has none. address: what stands before the #. */
-static const char *field_text(const struct plant *plant, const struct plant_tag *tag, const char *address, enum field field)
+static const char *field_text(const struct plant *plant, const struct plant_tag *tag, const char *address, enum address_field field)
 {
     switch (field) {
     case FIELD_TAG: return tag->name;
@@ -49,7 +49,7 @@ static const char *field_text(const struct plant *plant, const struct plant_tag 
 static bool fill_template(const struct plant *plant, const struct plant_tag *tag, const char *address, struct text *out, char why[200])
 {
     for (const char *at = plant->sources[tag->source].mqtt.topic; *at;) {
-        enum field field = field_at(at);
+        enum address_field field = field_at(at);
         if (field == FIELD_COUNT) {
             text_add(out, "%c", *at++);
             continue;

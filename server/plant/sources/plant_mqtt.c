@@ -12,7 +12,7 @@ static const char WILL_PREFIX[] = "plantcast/";
 
 void plant_mqtt_read_tls(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "ca", KEY_NAME, true, offsetof(struct plant_source, mqtt.ca), 0, 0, NULL, NULL },
         { "certificate", KEY_NAME, false, offsetof(struct plant_source, mqtt.certificate), 0, 0, NULL, NULL },
         { "key", KEY_NAME, false, offsetof(struct plant_source, mqtt.key), 0, 0, NULL, NULL },

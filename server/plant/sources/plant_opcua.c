@@ -7,15 +7,15 @@
 
 enum { PORT = 4840 };
 
-static const struct choice policies[] = { { "best", OPCUA_BEST },
-                                          { "Aes256_Sha256_RsaPss", OPCUA_AES256 },
-                                          { "Basic256Sha256", OPCUA_BASIC256 },
-                                          { "Aes128_Sha256_RsaOaep", OPCUA_AES128 },
-                                          { 0 } };
+static const struct yaml_choice policies[] = { { "best", OPCUA_BEST },
+                                               { "Aes256_Sha256_RsaPss", OPCUA_AES256 },
+                                               { "Basic256Sha256", OPCUA_BASIC256 },
+                                               { "Aes128_Sha256_RsaOaep", OPCUA_AES128 },
+                                               { 0 } };
 
 void plant_opcua_read_security(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "policy", KEY_CHOICE, false, offsetof(struct plant_source, opcua.policy), 0, 0, policies, NULL },
         { "certificate", KEY_NAME, true, offsetof(struct plant_source, opcua.certificate), 0, 0, NULL, NULL },
         { "key", KEY_NAME, true, offsetof(struct plant_source, opcua.key), 0, 0, NULL, NULL },

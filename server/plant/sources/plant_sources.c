@@ -9,16 +9,19 @@
 
 enum { BY_SOCKET = 1, BY_LINE = 2, MODBUS = BY_SOCKET | BY_LINE, REPLAY = 4, MQTT = 8, OPCUA = 16, BY_HOST = BY_SOCKET | MQTT | OPCUA };
 
-static const struct choice order_choices[] = { { "ABCD", BYTE_ORDER_ABCD }, { "CDAB", BYTE_ORDER_CDAB }, { "BADC", BYTE_ORDER_BADC },
-                                               { "DCBA", BYTE_ORDER_DCBA }, { 0 } };
-static const struct choice transport_choices[] = { { "tcp", TRANSPORT_TCP }, { "rtu-over-tcp", TRANSPORT_RTU_TCP },
-                                                   { "rtu", TRANSPORT_RTU }, { 0 } };
-static const struct choice parity_choices[] = { { "none", 'N' }, { "even", 'E' }, { "odd", 'O' }, { 0 } };
-static const struct choice payload_choices[] = { { "number", MQTT_NUMBER }, { "json", MQTT_JSON }, { "sparkplug", MQTT_SPARKPLUG },
-                                                 { 0 } };
-static const struct choice protocol_choices[] = { { "3.1.1", 4 }, { "5", 5 }, { 0 } };
-static const struct choice session_choices[] = { { "clean", false }, { "persistent", true }, { 0 } };
-static const struct choice yes_choices[] = { { "yes", 1 }, { "no", 0 }, { 0 } };
+static const struct yaml_choice order_choices[] = {
+    { "ABCD", BYTE_ORDER_ABCD }, { "CDAB", BYTE_ORDER_CDAB }, { "BADC", BYTE_ORDER_BADC }, { "DCBA", BYTE_ORDER_DCBA }, { 0 }
+};
+static const struct yaml_choice transport_choices[] = {
+    { "tcp", TRANSPORT_TCP }, { "rtu-over-tcp", TRANSPORT_RTU_TCP }, { "rtu", TRANSPORT_RTU }, { 0 }
+};
+static const struct yaml_choice parity_choices[] = { { "none", 'N' }, { "even", 'E' }, { "odd", 'O' }, { 0 } };
+static const struct yaml_choice payload_choices[] = {
+    { "number", MQTT_NUMBER }, { "json", MQTT_JSON }, { "sparkplug", MQTT_SPARKPLUG }, { 0 }
+};
+static const struct yaml_choice protocol_choices[] = { { "3.1.1", 4 }, { "5", 5 }, { 0 } };
+static const struct yaml_choice session_choices[] = { { "clean", false }, { "persistent", true }, { 0 } };
+static const struct yaml_choice yes_choices[] = { { "yes", 1 }, { "no", 0 }, { 0 } };
 
 static void read_kind(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
@@ -61,7 +64,7 @@ static void read_hosts(struct yaml_reader *reader, yaml_node_t *node, void *reco
 
 static void read_heartbeat(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "tag", KEY_NAME, true, offsetof(struct plant_source, heartbeat), 0, 0, NULL, NULL },
         { "longest_s", KEY_NUMBER, true, offsetof(struct plant_source, heartbeat_s), 0.1, 86400, NULL, NULL },
         { 0 }
@@ -70,7 +73,7 @@ static void read_heartbeat(struct yaml_reader *reader, yaml_node_t *node, void *
     yaml_map_read(reader, node, "heartbeat", keys, record, &map);
 }
 
-static const struct key source_keys[] = {
+static const struct yaml_key source_keys[] = {
     { "id", KEY_NAME, true, offsetof(struct plant_source, id), 0, 0, NULL, NULL },
     { "type", KEY_CUSTOM, true, 0, 0, 0, NULL, read_kind },
     { "simulated", KEY_FLAG, false, offsetof(struct plant_source, simulated), 0, 0, yes_choices, NULL },
@@ -179,7 +182,7 @@ static void check_way(struct yaml_reader *reader, const struct yaml_map *map, co
 
 void plant_secret_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const char *key, char **path)
 {
-    struct place place = yaml_map_place(map, key);
+    struct text_position place = yaml_map_place(map, key);
     plant_resolve_path(plant, path);
     if (*path && access(*path, R_OK) != 0)
         diag_warning(reader->diag, reader->path, place.line, place.column, "%s: '%s' cannot be read: %s", key, *path, strerror(errno));

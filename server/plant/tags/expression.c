@@ -15,14 +15,14 @@ enum { MAX_STEPS = 256, MAX_DEPTH = 32, MAX_ARGUMENTS = 64 };
 
 enum operation { OP_NUMBER, OP_INPUT, OP_ADD, OP_SUBTRACT, OP_MULTIPLY, OP_DIVIDE, OP_POWER, OP_NEGATE, OP_FUNCTION };
 
-struct step {
+struct expression_step {
     enum operation operation;
     double number;
     int index, arguments; /* of the input, or of the function */
 };
 
 struct expression {
-    struct step steps[MAX_STEPS];
+    struct expression_step steps[MAX_STEPS];
     size_t count;
     int inputs[EXPRESSION_INPUTS];
     size_t input_count;
@@ -107,7 +107,7 @@ enum { FUNCTIONS = sizeof(functions) / sizeof(*functions) };
 
 /* --- parsing ---------------------------------------------------------------------------------------------------------------- */
 
-struct parser {
+struct expression_parser {
     const char *text, *p;
     struct expression *out;
     int (*find)(const void *arg, const char *name);
@@ -116,20 +116,20 @@ struct parser {
     int depth;
 };
 
-static bool fail(struct parser *parser, const char *why, const char *what)
+static bool fail(struct expression_parser *parser, const char *why, const char *what)
 {
     snprintf(parser->why, 200, why, what);
     return false;
 }
 
-static char peek(struct parser *parser)
+static char peek(struct expression_parser *parser)
 {
     while (*parser->p == ' ' || *parser->p == '\t')
         parser->p++;
     return *parser->p;
 }
 
-static bool add(struct parser *parser, struct step step)
+static bool add(struct expression_parser *parser, struct expression_step step)
 {
     if (parser->out->count == MAX_STEPS)
         return fail(parser, "expected a shorter expression%s", "");
@@ -137,9 +137,9 @@ static bool add(struct parser *parser, struct step step)
     return true;
 }
 
-static bool parse_sum(struct parser *parser);
+static bool parse_sum(struct expression_parser *parser);
 
-static bool parse_number(struct parser *parser)
+static bool parse_number(struct expression_parser *parser)
 {
     size_t length = strspn(parser->p, "0123456789.");
     if ((parser->p[length] | 32) == 'e') {
@@ -153,10 +153,10 @@ static bool parse_number(struct parser *parser)
     if (!good)
         return fail(parser, "expected a number such as 1.5%s", "");
     parser->p += length;
-    return add(parser, (struct step){ .operation = OP_NUMBER, .number = number });
+    return add(parser, (struct expression_step){ .operation = OP_NUMBER, .number = number });
 }
 
-static bool add_input(struct parser *parser, int found)
+static bool add_input(struct expression_parser *parser, int found)
 {
     struct expression *out = parser->out;
     size_t i = 0;
@@ -166,10 +166,10 @@ static bool add_input(struct parser *parser, int found)
         return fail(parser, "expected fewer tags%s", "");
     if (i == out->input_count)
         out->inputs[out->input_count++] = found;
-    return add(parser, (struct step){ .operation = OP_INPUT, .index = (int)i });
+    return add(parser, (struct expression_step){ .operation = OP_INPUT, .index = (int)i });
 }
 
-static bool parse_name(struct parser *parser)
+static bool parse_name(struct expression_parser *parser)
 {
     const char *end = strchr(parser->p, ']');
     if (!end)
@@ -185,7 +185,7 @@ static bool parse_name(struct parser *parser)
     return true;
 }
 
-static bool parse_arguments(struct parser *parser, int function)
+static bool parse_arguments(struct expression_parser *parser, int function)
 {
     int count = 0;
     char next;
@@ -201,10 +201,10 @@ static bool parse_arguments(struct parser *parser, int function)
     if (count < functions[function].least || count > functions[function].most)
         return fail(parser, "another number of arguments is expected for %s", functions[function].name);
     parser->p++;
-    return add(parser, (struct step){ .operation = OP_FUNCTION, .index = function, .arguments = count });
+    return add(parser, (struct expression_step){ .operation = OP_FUNCTION, .index = function, .arguments = count });
 }
 
-static bool parse_call(struct parser *parser)
+static bool parse_call(struct expression_parser *parser)
 {
     size_t length = 0;
     while (isalnum((unsigned char)parser->p[length]) || parser->p[length] == '_')
@@ -218,7 +218,7 @@ static bool parse_call(struct parser *parser)
     return peek(parser) == '(' ? parse_arguments(parser, i) : fail(parser, "expected ( after %s", functions[i].name);
 }
 
-static bool parse_primary(struct parser *parser)
+static bool parse_primary(struct expression_parser *parser)
 {
     char next = peek(parser);
     if (next == '[')
@@ -236,46 +236,46 @@ static bool parse_primary(struct parser *parser)
     return true;
 }
 
-static bool parse_signed(struct parser *parser);
+static bool parse_signed(struct expression_parser *parser);
 
-static bool parse_power(struct parser *parser)
+static bool parse_power(struct expression_parser *parser)
 {
     if (!parse_primary(parser))
         return false;
     if (peek(parser) != '^')
         return true;
     parser->p++;
-    return parse_signed(parser) && add(parser, (struct step){ .operation = OP_POWER });
+    return parse_signed(parser) && add(parser, (struct expression_step){ .operation = OP_POWER });
 }
 
-static bool parse_signed(struct parser *parser)
+static bool parse_signed(struct expression_parser *parser)
 {
     if (++parser->depth > MAX_DEPTH)
         return fail(parser, "expected fewer brackets within brackets%s", "");
     bool negative = peek(parser) == '-', good;
     if (negative)
         parser->p++;
-    good = negative ? parse_signed(parser) && add(parser, (struct step){ .operation = OP_NEGATE }) : parse_power(parser);
+    good = negative ? parse_signed(parser) && add(parser, (struct expression_step){ .operation = OP_NEGATE }) : parse_power(parser);
     parser->depth--;
     return good;
 }
 
-static bool parse_product(struct parser *parser)
+static bool parse_product(struct expression_parser *parser)
 {
     bool good = parse_signed(parser);
     for (char next; good && ((next = peek(parser)) == '*' || next == '/');) {
         parser->p++;
-        good = parse_signed(parser) && add(parser, (struct step){ .operation = next == '*' ? OP_MULTIPLY : OP_DIVIDE });
+        good = parse_signed(parser) && add(parser, (struct expression_step){ .operation = next == '*' ? OP_MULTIPLY : OP_DIVIDE });
     }
     return good;
 }
 
-static bool parse_sum(struct parser *parser)
+static bool parse_sum(struct expression_parser *parser)
 {
     bool good = parse_product(parser);
     for (char next; good && ((next = peek(parser)) == '+' || next == '-');) {
         parser->p++;
-        good = parse_product(parser) && add(parser, (struct step){ .operation = next == '+' ? OP_ADD : OP_SUBTRACT });
+        good = parse_product(parser) && add(parser, (struct expression_step){ .operation = next == '+' ? OP_ADD : OP_SUBTRACT });
     }
     return good;
 }
@@ -283,7 +283,9 @@ static bool parse_sum(struct parser *parser)
 struct expression *expression_parse(const char *text, int (*find)(const void *arg, const char *name), const void *arg, char why[200],
                                     size_t *at)
 {
-    struct parser parser = { .text = text, .p = text, .out = mem_new(sizeof(*parser.out)), .find = find, .arg = arg, .why = why };
+    struct expression_parser parser = {
+        .text = text, .p = text, .out = mem_new(sizeof(*parser.out)), .find = find, .arg = arg, .why = why
+    };
     bool good = parse_sum(&parser);
     if (good && peek(&parser))
         good = fail(&parser, "expected + - * / ^ or the end, found '%.20s'", parser.p);
@@ -323,7 +325,7 @@ double expression_value(const struct expression *expression, const double *value
     double stack[MAX_STEPS];
     size_t top = 0;
     for (size_t i = 0; i < expression->count; i++) {
-        const struct step *step = &expression->steps[i];
+        const struct expression_step *step = &expression->steps[i];
         if (step->operation == OP_NUMBER) {
             stack[top++] = step->number;
         } else if (step->operation == OP_INPUT) {

@@ -8,7 +8,7 @@
 
 enum mark { UNSEEN, OPEN, DONE };
 
-struct walk {
+struct derived_walk {
     struct plant *plant;
     char *marks; /* enum mark, by tag */
 };
@@ -49,7 +49,7 @@ static void check_units(const struct tag_link *link, const struct plant *plant, 
 }
 
 /* Depth first: what a tag needs comes before it. A tag is stale where it says so, else no sooner than what it needs. */
-static bool visit(struct walk *walk, int index)
+static bool visit(struct derived_walk *walk, int index)
 {
     struct plant_tag *tag = &walk->plant->tags[index];
     const int *inputs;
@@ -72,7 +72,7 @@ static bool visit(struct walk *walk, int index)
 
 void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, struct diag *diag)
 {
-    struct walk walk = { .plant = plant, .marks = mem_array(plant->tag_count, 1) };
+    struct derived_walk walk = { .plant = plant, .marks = mem_array(plant->tag_count, 1) };
     size_t good = 0;
     for (size_t i = 0; i < derived->count; i++) {
         if (!parse(&derived->at[i], plant, diag))

@@ -14,20 +14,20 @@
 enum edited { EDIT_NAME, EDIT_ASSET, EDIT_GROUP, EDIT_NODE, EDIT_PLACE, EDIT_X, EDIT_Y, EDIT_Z, EDIT_COLUMNS };
 static const char *const names[EDIT_COLUMNS] = { "Tag Name", "Asset", "Group", "Node", "Place", "X", "Y", "Z" };
 
-struct span { /* a cell as it stands, quotes and blanks taken in */
+struct cell_span { /* a cell as it stands, quotes and blanks taken in */
     const char *begin, *end;
 };
 
-struct row {
-    struct span *cells;
+struct tag_row {
+    struct cell_span *cells;
     size_t count, capacity;
     const char *end; /* of its text, before the line's end */
 };
 
-struct list {
+struct tag_text {
     char separator;
     const char *at;
-    struct row row;
+    struct tag_row row;
     int column[EDIT_COLUMNS]; /* -1: the header has none */
     size_t width;             /* columns of the header */
 };
@@ -57,16 +57,16 @@ static const char *cell_end(const char *at, char separator)
 }
 
 /* False: there is no more. */
-static bool next_row(struct list *list)
+static bool next_row(struct tag_text *list)
 {
-    struct row *row = &list->row;
+    struct tag_row *row = &list->row;
     row->count = 0;
     if (!*list->at)
         return false;
     for (const char *at = list->at;;) {
         const char *end = cell_end(at, list->separator);
         mem_grow(&row->cells, &row->capacity, row->count + 1, sizeof(*row->cells));
-        row->cells[row->count++] = (struct span){ at, end };
+        row->cells[row->count++] = (struct cell_span){ at, end };
         if (ends(*end)) {
             row->end = end;
             list->at = end + (*end == '\r' && end[1] == '\n') + (*end != 0);
@@ -77,7 +77,7 @@ static bool next_row(struct list *list)
 }
 
 /* What is in the cell, into a buffer. */
-static void read_cell(struct span span, char *out, size_t size)
+static void read_cell(struct cell_span span, char *out, size_t size)
 {
     size_t n = 0;
     while (span.begin < span.end && blank(*span.begin))
@@ -94,7 +94,7 @@ static void read_cell(struct span span, char *out, size_t size)
     out[n] = 0;
 }
 
-static bool row_is_blank(const struct row *row)
+static bool row_is_blank(const struct tag_row *row)
 {
     char text[8];
     for (size_t i = 0; i < row->count; i++) {
@@ -105,7 +105,7 @@ static bool row_is_blank(const struct row *row)
     return true;
 }
 
-static bool read_header(struct list *list)
+static bool read_header(struct tag_text *list)
 {
     char text[64];
     for (int i = 0; i < EDIT_COLUMNS; i++)
@@ -149,7 +149,7 @@ static void print_metres(double metres, char out[32])
 }
 
 /* What the edit puts into a column of the file. False: nothing, it stays. */
-static bool wanted(const struct list *list, const struct tag_edit *edit, size_t column, char number[32], const char **out)
+static bool wanted(const struct tag_text *list, const struct tag_edit *edit, size_t column, char number[32], const char **out)
 {
     if (edit->place_only) {
         *out = "";
@@ -171,9 +171,9 @@ static bool wanted(const struct list *list, const struct tag_edit *edit, size_t 
     return *out != NULL;
 }
 
-static void write_row(const struct list *list, const struct tag_edit *edit, struct text *out)
+static void write_row(const struct tag_text *list, const struct tag_edit *edit, struct text *out)
 {
-    const struct row *row = &list->row;
+    const struct tag_row *row = &list->row;
     size_t count = row->count > list->width ? row->count : list->width, last = 0;
     char number[32], old[128];
     const char *text;
@@ -181,7 +181,7 @@ static void write_row(const struct list *list, const struct tag_edit *edit, stru
         if (c < row->count || (wanted(list, edit, c, number, &text) && text[0]))
             last = c;
     for (size_t c = 0; c <= last; c++) {
-        struct span span = c < row->count ? row->cells[c] : (struct span){ "", "" };
+        struct cell_span span = c < row->count ? row->cells[c] : (struct cell_span){ "", "" };
         if (c > 0)
             text_add_bytes(out, &list->separator, 1);
         old[0] = 0;
@@ -194,7 +194,7 @@ static void write_row(const struct list *list, const struct tag_edit *edit, stru
     }
 }
 
-static const struct tag_edit *edit_of(const struct list *list, const struct tag_edit *edits, size_t count, bool *done)
+static const struct tag_edit *edit_of(const struct tag_text *list, const struct tag_edit *edits, size_t count, bool *done)
 {
     char name[256];
     size_t column = (size_t)list->column[EDIT_NAME];
@@ -210,7 +210,7 @@ static const struct tag_edit *edit_of(const struct list *list, const struct tag_
 }
 
 /* Columns that the edits need, at the end of the header's line. */
-static void widen(struct list *list, const struct tag_edit *edits, size_t count, struct text *out)
+static void widen(struct tag_text *list, const struct tag_edit *edits, size_t count, struct text *out)
 {
     bool needed[EDIT_COLUMNS] = { 0 };
     for (size_t i = 0; i < count; i++) {
@@ -229,7 +229,7 @@ static void widen(struct list *list, const struct tag_edit *edits, size_t count,
     }
 }
 
-static char *all_rows(struct list *list, const char *text, const struct tag_edit *edits, size_t count, bool *done)
+static char *all_rows(struct tag_text *list, const char *text, const struct tag_edit *edits, size_t count, bool *done)
 {
     struct text out = { 0 };
     text_add_bytes(&out, text, (size_t)(list->row.end - text));
@@ -252,7 +252,7 @@ static char *all_rows(struct list *list, const char *text, const struct tag_edit
 char *tag_edit(const char *text, const struct tag_edit *edits, size_t count, struct refusal *why)
 {
     const char *begin = strncmp(text, "\xEF\xBB\xBF", 3) ? text : text + 3;
-    struct list list = { .separator = csv_separator(begin), .at = begin };
+    struct tag_text list = { .separator = csv_separator(begin), .at = begin };
     bool *done = mem_array(count + 1, sizeof(*done));
     char *out = NULL;
     if (read_header(&list))
@@ -272,33 +272,33 @@ char *tag_edit(const char *text, const struct tag_edit *edits, size_t count, str
 
 /* --- what differs ------------------------------------------------------------------------------------------------------------- */
 
-struct lines {
-    struct span *at;
+struct text_lines {
+    struct cell_span *at;
     size_t count, capacity;
 };
 
-static void split(const char *text, struct lines *out)
+static void split(const char *text, struct text_lines *out)
 {
     while (*text) {
         const char *end = text + strcspn(text, "\r\n");
         mem_grow(&out->at, &out->capacity, out->count + 1, sizeof(*out->at));
-        out->at[out->count++] = (struct span){ text, end };
+        out->at[out->count++] = (struct cell_span){ text, end };
         text = end + (*end == '\r' && end[1] == '\n') + (*end != 0);
     }
 }
 
-static bool same(struct span a, struct span b)
+static bool same(struct cell_span a, struct cell_span b)
 {
     size_t n = (size_t)(a.end - a.begin);
     return n == (size_t)(b.end - b.begin) && memcmp(a.begin, b.begin, n) == 0;
 }
 
-static char *copy_of(struct span span)
+static char *copy_of(struct cell_span span)
 {
     return mem_printf("%.*s", (int)(span.end - span.begin), span.begin);
 }
 
-static void say(struct tag_lines *out, int line, const struct span *before, const struct span *after)
+static void say(struct tag_lines *out, int line, const struct cell_span *before, const struct cell_span *after)
 {
     if (out->count == TAG_LINES) {
         out->more++;
@@ -309,7 +309,7 @@ static void say(struct tag_lines *out, int line, const struct span *before, cons
 }
 
 /* Lines of the middle, where both texts differ: one by one while there are as many, else what went and then what came. */
-static void say_middle(const struct lines *a, const struct lines *b, size_t head, size_t tail, struct tag_lines *out)
+static void say_middle(const struct text_lines *a, const struct text_lines *b, size_t head, size_t tail, struct tag_lines *out)
 {
     bool even = a->count == b->count;
     for (size_t i = head; i + tail < a->count; i++)
@@ -323,7 +323,7 @@ static void say_middle(const struct lines *a, const struct lines *b, size_t head
 
 void tag_lines(const char *before, const char *after, struct tag_lines *out)
 {
-    struct lines a = { 0 }, b = { 0 };
+    struct text_lines a = { 0 }, b = { 0 };
     size_t head = 0, tail = 0;
     split(before, &a);
     split(after, &b);

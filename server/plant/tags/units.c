@@ -11,7 +11,7 @@
 
 enum { NAME_BYTES = 48 };
 
-enum kind {
+enum quantity_kind {
     UNKNOWN, TEMPERATURE, TEMPERATURE_DIFFERENCE, PRESSURE, PRESSURE_ABSOLUTE, PRESSURE_GAUGE, VOLUME_FLOW, FLOW_AT_0_C, FLOW_AT_15_C,
     FLOW_AT_60_F, MASS_FLOW, LENGTH, VELOCITY, VELOCITY_RMS, VELOCITY_PEAK, ACCELERATION, POWER, APPARENT_POWER, REACTIVE_POWER, RATIO,
     PARTS, VOLUME, MASS, DENSITY, TIME, FREQUENCY, SPEED_OF_ROTATION, CURRENT, VOLTAGE, RESISTANCE, ENERGY, CONDUCTIVITY, FORCE, ANGLE
@@ -68,13 +68,13 @@ static const char *const kind_names[] = {
 #define HOUR 3600.0
 #define DAY 86400.0
 
-struct unit {
+struct unit_entry {
     const char *names;     /* as normalise() leaves them, the first for messages; | between */
-    enum kind kind;
+    enum quantity_kind kind;
     double factor, offset; /* SI = value * factor + offset */
 };
 
-static const struct unit units[] = {
+static const struct unit_entry units[] = {
     { "K|kelvin", TEMPERATURE, 1, 0 },
     { "degC|C|Cel|celsius", TEMPERATURE, 1, 273.15 },
     { "degF|F|fahrenheit", TEMPERATURE, 5 / 9.0, 459.67 * 5 / 9 },
@@ -288,7 +288,7 @@ static void normalise(const char *name, char out[NAME_BYTES])
 }
 
 /* One name of the list, with or without regard to case. */
-static bool has_name(const struct unit *unit, const char *name, bool exact)
+static bool has_name(const struct unit_entry *unit, const char *name, bool exact)
 {
     size_t bytes = strlen(name);
     for (const char *at = unit->names; at; at = strchr(at, '|') ? strchr(at, '|') + 1 : NULL)
@@ -298,9 +298,9 @@ static bool has_name(const struct unit *unit, const char *name, bool exact)
 }
 
 /* Without regard to case only where one unit alone is meant: MPA may be two. */
-static const struct unit *look_up(const char *name)
+static const struct unit_entry *look_up(const char *name)
 {
-    const struct unit *found = NULL;
+    const struct unit_entry *found = NULL;
     for (size_t i = 0; i < UNIT_COUNT; i++)
         if (has_name(&units[i], name, true))
             return &units[i];
@@ -324,7 +324,7 @@ static bool take_end(char *name, const char *end)
 }
 
 /* A known unit with something said of it: psia, bar(g), kPa abs. */
-static bool find_pressure(const char *name, struct unit *out)
+static bool find_pressure(const char *name, struct unit_entry *out)
 {
     static const char *const absolute[] = { "absolute", "abs", "a" }, *const gauge[] = { "gauge", "gage", "g" };
     for (int kind = PRESSURE_ABSOLUTE; kind <= PRESSURE_GAUGE; kind++)
@@ -333,20 +333,20 @@ static bool find_pressure(const char *name, struct unit *out)
             strcpy(base, name);
             if (!take_end(base, (kind == PRESSURE_GAUGE ? gauge : absolute)[i]))
                 continue;
-            const struct unit *unit = look_up(base);
+            const struct unit_entry *unit = look_up(base);
             if (!unit || unit->kind != PRESSURE)
                 continue;
             *out = *unit;
-            out->kind = (enum kind)kind;
+            out->kind = (enum quantity_kind)kind;
             return true;
         }
     return false;
 }
 
 /* Among differences, no zero counts. */
-static bool find_difference(const char *name, struct unit *out)
+static bool find_difference(const char *name, struct unit_entry *out)
 {
-    const struct unit *unit = strncasecmp(name, "delta", 5) == 0 ? look_up(name + 5) : NULL;
+    const struct unit_entry *unit = strncasecmp(name, "delta", 5) == 0 ? look_up(name + 5) : NULL;
     if (!unit || unit->kind != TEMPERATURE)
         return false;
     *out = *unit;
@@ -355,9 +355,9 @@ static bool find_difference(const char *name, struct unit *out)
     return true;
 }
 
-static bool find(const char *name, struct unit *out)
+static bool find(const char *name, struct unit_entry *out)
 {
-    const struct unit *unit = look_up(name);
+    const struct unit_entry *unit = look_up(name);
     if (unit)
         *out = *unit;
     return unit || find_pressure(name, out) || find_difference(name, out);
@@ -374,7 +374,7 @@ static bool written_alike(const char *a, const char *b)
 enum unit_match units_compare(const char *from, const char *to, struct unit_change *change)
 {
     char from_name[NAME_BYTES], to_name[NAME_BYTES];
-    struct unit a, b;
+    struct unit_entry a, b;
     normalise(from, from_name);
     normalise(to, to_name);
     *change = (struct unit_change){ 0 };
@@ -394,7 +394,7 @@ enum unit_match units_compare(const char *from, const char *to, struct unit_chan
 const char *unit_kind(const char *name)
 {
     char normal[NAME_BYTES];
-    struct unit unit;
+    struct unit_entry unit;
     normalise(name, normal);
     return find(normal, &unit) ? kind_names[unit.kind] : NULL;
 }

@@ -23,15 +23,15 @@ static void check(struct yaml_reader *reader, const struct yaml_map *map, const 
 
 void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
 {
-    static const struct key keys[] = { { "id", KEY_NAME, true, offsetof(struct other_plant, id), 0, 0, NULL, NULL },
-                                       { "url", KEY_NAME, true, offsetof(struct other_plant, url), 0, 0, NULL, NULL },
-                                       { "token_file", KEY_NAME, false, offsetof(struct other_plant, token_file), 0, 0, NULL, NULL },
-                                       { "ca_file", KEY_NAME, false, offsetof(struct other_plant, ca_file), 0, 0, NULL, NULL },
-                                       { "view", KEY_NAME, false, offsetof(struct other_plant, view), 0, 0, NULL, NULL },
-                                       { "every_s", KEY_NUMBER, false, offsetof(struct other_plant, every_s), 2, 3600, NULL, NULL },
-                                       { "width", KEY_INT, false, offsetof(struct other_plant, width_px), 256, 3840, NULL, NULL },
-                                       { "height", KEY_INT, false, offsetof(struct other_plant, height_px), 144, 2160, NULL, NULL },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { { "id", KEY_NAME, true, offsetof(struct other_plant, id), 0, 0, NULL, NULL },
+                                            { "url", KEY_NAME, true, offsetof(struct other_plant, url), 0, 0, NULL, NULL },
+                                            { "token_file", KEY_NAME, false, offsetof(struct other_plant, token_file), 0, 0, NULL, NULL },
+                                            { "ca_file", KEY_NAME, false, offsetof(struct other_plant, ca_file), 0, 0, NULL, NULL },
+                                            { "view", KEY_NAME, false, offsetof(struct other_plant, view), 0, 0, NULL, NULL },
+                                            { "every_s", KEY_NUMBER, false, offsetof(struct other_plant, every_s), 2, 3600, NULL, NULL },
+                                            { "width", KEY_INT, false, offsetof(struct other_plant, width_px), 256, 3840, NULL, NULL },
+                                            { "height", KEY_INT, false, offsetof(struct other_plant, height_px), 144, 2160, NULL, NULL },
+                                            { 0 } };
     int count;
     plant->other_plants = plant_list_make(reader, node, "other_plants", 0, sizeof(*plant->other_plants), &count);
     if (count > OTHER_PLANTS)

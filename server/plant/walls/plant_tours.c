@@ -9,10 +9,10 @@
 
 static void read_stop(struct yaml_reader *reader, yaml_node_t *node, struct tour_stop *stop)
 {
-    static const struct key keys[] = { { "view", KEY_NAME, true, offsetof(struct tour_stop, view), 0, 0, NULL, NULL },
-                                       { "dwell_s", KEY_NUMBER, false, offsetof(struct tour_stop, dwell_s), 1, 3600, NULL, NULL },
-                                       { "text", KEY_NAME, false, offsetof(struct tour_stop, text), 0, 0, NULL, NULL },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { { "view", KEY_NAME, true, offsetof(struct tour_stop, view), 0, 0, NULL, NULL },
+                                            { "dwell_s", KEY_NUMBER, false, offsetof(struct tour_stop, dwell_s), 1, 3600, NULL, NULL },
+                                            { "text", KEY_NAME, false, offsetof(struct tour_stop, text), 0, 0, NULL, NULL },
+                                            { 0 } };
     struct yaml_map map;
     *stop = (struct tour_stop){ .dwell_s = 15 };
     if (!yaml_map_read(reader, node, "a stop", keys, stop, &map))
@@ -36,9 +36,9 @@ static void read_stops(struct yaml_reader *reader, yaml_node_t *node, void *reco
 
 void plant_tours_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
 {
-    static const struct key keys[] = { { "id", KEY_NAME, true, offsetof(struct tour, id), 0, 0, NULL, NULL },
-                                       { "stops", KEY_CUSTOM, true, 0, 0, 0, NULL, read_stops },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { { "id", KEY_NAME, true, offsetof(struct tour, id), 0, 0, NULL, NULL },
+                                            { "stops", KEY_CUSTOM, true, 0, 0, 0, NULL, read_stops },
+                                            { 0 } };
     int count;
     plant->tours = plant_list_make(reader, node, "tours", 0, sizeof(*plant->tours), &count);
     if (count > TOURS)

@@ -33,7 +33,7 @@ const char *named_view_address_wrong(const char *address)
 
 static void read_view(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct named_view *view)
 {
-    static const struct key keys[] = {
+    static const struct yaml_key keys[] = {
         { "id", KEY_NAME, true, offsetof(struct named_view, id), 0, 0, NULL, NULL },
         { "title", KEY_NAME, false, offsetof(struct named_view, title), 0, 0, NULL, NULL },
         { "view", KEY_NAME, true, offsetof(struct named_view, address), 0, 0, NULL, NULL },

@@ -16,7 +16,7 @@ static const double BEZEL_MOST_MM = 200;
 
 static void add_item(struct wall_pane *pane, const yaml_node_t *node)
 {
-    struct place place = yaml_place(node);
+    struct text_position place = yaml_place(node);
     pane->item_lines[pane->item_count] = place.line;
     pane->item_columns[pane->item_count] = place.column;
     pane->items[pane->item_count++] = mem_strdup(yaml_text(node));
@@ -123,7 +123,7 @@ static bool is_first(const struct wall_display *display, size_t row, int column,
     return !(length == 1 && *word == '.');
 }
 
-static void check_grid(struct yaml_reader *reader, struct place place, const struct wall_display *display)
+static void check_grid(struct yaml_reader *reader, struct text_position place, const struct wall_display *display)
 {
     int columns = display->row_count ? word_count(display->rows[0]) : 0;
     for (size_t i = 0; i < display->row_count; i++)
@@ -143,8 +143,8 @@ static void check_grid(struct yaml_reader *reader, struct place place, const str
 
 static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall_display *display, struct wall_pane *pane)
 {
-    static const struct choice yes[] = { { "no", 0 }, { "yes", 1 }, { 0 } };
-    static const struct key keys[] = {
+    static const struct yaml_choice yes[] = { { "no", 0 }, { "yes", 1 }, { 0 } };
+    static const struct yaml_key keys[] = {
         { "area", KEY_NAME, true, offsetof(struct wall_pane, area), 0, 0, NULL, NULL },
         { "title", KEY_NAME, false, offsetof(struct wall_pane, title), 0, 0, NULL, NULL },
         { "every_s", KEY_NUMBER, false, offsetof(struct wall_pane, every_s), 5, 86400, NULL, NULL },
@@ -242,8 +242,8 @@ READ_TILE_AS(read_tile_tour, read_tour)
 
 static void read_tile(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct choice yes[] = { { "no", 0 }, { "yes", 1 }, { 0 } };
-    static const struct key keys[] = {
+    static const struct yaml_choice yes[] = { { "no", 0 }, { "yes", 1 }, { 0 } };
+    static const struct yaml_key keys[] = {
         { "columns", KEY_INT, true, offsetof(struct wall_tile, columns), 1, WALL_DISPLAYS, NULL, NULL },
         { "rows", KEY_INT, true, offsetof(struct wall_tile, rows), 1, WALL_DISPLAYS, NULL, NULL },
         { "bezel_mm", KEY_CUSTOM, false, 0, 0, 0, NULL, read_bezel },
@@ -278,9 +278,9 @@ static void read_tile(struct yaml_reader *reader, yaml_node_t *node, void *recor
 
 static void read_displays(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = { { "grid", KEY_CUSTOM, true, 0, 0, 0, NULL, read_grid },
-                                       { "panes", KEY_CUSTOM, true, 0, 0, 0, NULL, read_panes },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { { "grid", KEY_CUSTOM, true, 0, 0, 0, NULL, read_grid },
+                                            { "panes", KEY_CUSTOM, true, 0, 0, 0, NULL, read_panes },
+                                            { 0 } };
     struct wall *wall = record;
     int count;
     wall->displays = plant_list_make(reader, node, "displays", 1, sizeof(*wall->displays), &count);
@@ -334,14 +334,14 @@ static void add_tiles(struct yaml_reader *reader, const struct yaml_map *map, st
 
 void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
 {
-    static const struct key keys[] = { { "id", KEY_NAME, true, offsetof(struct wall, id), 0, 0, NULL, NULL },
-                                       { "inches", KEY_NUMBER, false, offsetof(struct wall, inches), 10, 400, NULL, NULL },
-                                       { "distance_m", KEY_NUMBER, false, offsetof(struct wall, metres), 0.5, 50, NULL, NULL },
-                                       { "dim_hours", KEY_CUSTOM, false, 0, 0, 0, NULL, read_dim },
-                                       { "dim_percent", KEY_NUMBER, false, offsetof(struct wall, dim_percent), 20, 100, NULL, NULL },
-                                       { "tile", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tile },
-                                       { "displays", KEY_CUSTOM, false, 0, 0, 0, NULL, read_displays },
-                                       { 0 } };
+    static const struct yaml_key keys[] = { { "id", KEY_NAME, true, offsetof(struct wall, id), 0, 0, NULL, NULL },
+                                            { "inches", KEY_NUMBER, false, offsetof(struct wall, inches), 10, 400, NULL, NULL },
+                                            { "distance_m", KEY_NUMBER, false, offsetof(struct wall, metres), 0.5, 50, NULL, NULL },
+                                            { "dim_hours", KEY_CUSTOM, false, 0, 0, 0, NULL, read_dim },
+                                            { "dim_percent", KEY_NUMBER, false, offsetof(struct wall, dim_percent), 20, 100, NULL, NULL },
+                                            { "tile", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tile },
+                                            { "displays", KEY_CUSTOM, false, 0, 0, 0, NULL, read_displays },
+                                            { 0 } };
     int count;
     plant->walls = plant_list_make(reader, node, "walls", 0, sizeof(*plant->walls), &count);
     if (count > WALLS)

@@ -17,7 +17,7 @@ struct draw_instance {   /* as in shaders/instance.glsl */
 
 struct draw_batch_state {
     GLuint program;
-    const struct model *model;
+    const struct gl_model *model;
     const struct pool_page *light, *field; /* field NULL: the asset has no data or no field */
     int front;                             /* as scene_asset.front */
     int material;                          /* -1: the program does not use it */

@@ -14,7 +14,7 @@ enum gl_pass { GL_SURFACES, GL_EDGES, GL_PASSES }; /* of what is drawn tile by t
 
 struct gl_backend {
     struct surface_pass surface_pass;
-    struct lines lines;
+    struct gl_lines lines;
     struct ghosts ghosts;
     struct section_caps section_caps;
     struct frames_in_flight frames_in_flight;

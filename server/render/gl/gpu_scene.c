@@ -10,7 +10,7 @@
 #include "render/gl/materials.h"
 #include "render/matrix.h"
 
-static struct model *find_model(struct gpu_scene *gpu_scene, const struct asset *file)
+static struct gl_model *find_model(struct gpu_scene *gpu_scene, const struct asset *file)
 {
     for (size_t i = 0; i < gpu_scene->model_count; i++)
         if (gpu_scene->models[i].file == file)
@@ -44,7 +44,8 @@ static bool make_depth_programs(struct gpu_scene *gpu_scene)
 }
 
 /* False: logged. */
-static bool add_model(const struct gpu_scene *gpu_scene, struct model *model, const struct asset *file, const struct environment_light *sky)
+static bool add_model(const struct gpu_scene *gpu_scene, struct gl_model *model, const struct asset *file,
+                      const struct environment_light *sky)
 {
     struct gl *gl = gpu_scene->gl;
     if (model_init(model, gl, file) && materials_upload(model, gl, sky, gpu_scene->up))
@@ -62,7 +63,7 @@ bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct sce
     bool good = make_depth_programs(gpu_scene);
     find_ball(gpu_scene);
     for (size_t i = 0; i < scene->asset_count && good; i++) {
-        struct model *model = find_model(gpu_scene, scene->assets[i].file);
+        struct gl_model *model = find_model(gpu_scene, scene->assets[i].file);
         if (!model) {
             model = &gpu_scene->models[gpu_scene->model_count++];
             good = add_model(gpu_scene, model, scene->assets[i].file, sky);
@@ -127,7 +128,7 @@ static void set_planes(const double clip_from_plant[16], const struct clip *clip
     glUniform4fv(PLANES, CLIP_MAX_PLANES, planes[0]);
 }
 
-static bool has_holes(const struct model *model, const struct model_submesh *submesh)
+static bool has_holes(const struct gl_model *model, const struct model_submesh *submesh)
 {
     const struct model_material *material = &model->materials[submesh->material];
     return material->masked && material->maps[MODEL_BASE_COLOR];
@@ -136,7 +137,7 @@ static bool has_holes(const struct model *model, const struct model_submesh *sub
 void gpu_scene_draw_depth(const struct gpu_scene *gpu_scene, const double clip_from_plant[16], const struct clip *clip, int asset,
                           double error_m, bool blended)
 {
-    const struct model *model = gpu_scene->of_asset[asset];
+    const struct gl_model *model = gpu_scene->of_asset[asset];
     const struct model_level *level = model_level(model, error_m);
     bool cut = clip->plane_count > 0;
     GLuint bound = 0;

@@ -11,9 +11,9 @@
 struct gpu_scene {
     struct gl *gl;
     const struct scene *scene;
-    struct model *models;
+    struct gl_model *models;
     size_t model_count;
-    const struct model **of_asset; /* by index in scene->assets: the asset's model */
+    const struct gl_model **of_asset; /* by index in scene->assets: the asset's model */
     double middle_m[3], radius_m;  /* a sphere that encloses the scene; plant frame */
     double up[3];
     GLuint depth_programs[2][2]; /* [clip planes][alpha-masked textures] */

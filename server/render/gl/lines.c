@@ -6,7 +6,7 @@
 
 #include "gpu/program.h"
 
-bool lines_init(struct lines *lines, struct log *log)
+bool lines_init(struct gl_lines *lines, struct log *log)
 {
     lines->edge_program = program_create(log, program_params(.vertex = "screen.vert", .fragment = "edges.frag"));
     lines->outline_program = program_create(log, program_params(.vertex = "screen.vert", .fragment = "outline.frag"));
@@ -14,7 +14,7 @@ bool lines_init(struct lines *lines, struct log *log)
     return lines->edge_program && lines->outline_program;
 }
 
-void lines_finish(struct lines *lines)
+void lines_finish(struct gl_lines *lines)
 {
     render_texture_finish(&lines->mask);
     program_destroy(&lines->edge_program);
@@ -23,7 +23,7 @@ void lines_finish(struct lines *lines)
 }
 
 /* Draws over the resolved picture, blended. */
-static void draw_over(const struct lines *lines, const struct frame_context *context, GLuint program)
+static void draw_over(const struct gl_lines *lines, const struct frame_context *context, GLuint program)
 {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, context->target->over_framebuffer);
     glDisable(GL_DEPTH_TEST);
@@ -37,7 +37,7 @@ static void draw_over(const struct lines *lines, const struct frame_context *con
     glDepthMask(GL_TRUE);
 }
 
-void lines_draw_edges(const struct lines *lines, const struct frame_context *context)
+void lines_draw_edges(const struct gl_lines *lines, const struct frame_context *context)
 {
     gl_pass_enter("edges");
     glBindTextureUnit(0, context->target->resolved_depth);
@@ -50,7 +50,7 @@ double lines_outline_px(const struct view *view)
     return fmax(1.5, view->height_px / 600.0);
 }
 
-void lines_draw_outline(struct lines *lines, const struct frame_context *context)
+void lines_draw_outline(struct gl_lines *lines, const struct frame_context *context)
 {
     int asset = context->view->selected_asset;
     if (asset < 0 || visibility_of(&context->view->visibility, asset) == ASSET_HIDDEN ||

@@ -6,19 +6,19 @@
 #include "gpu/target.h"
 #include "render/frame_context.h"
 
-struct lines {
+struct gl_lines {
     GLuint edge_program, outline_program, vao;
     struct render_texture mask;
 };
 
 /* Compiles the programs. Returns false if that fails; it is logged. */
-bool lines_init(struct lines *lines, struct log *log);
-void lines_finish(struct lines *lines);
+bool lines_init(struct gl_lines *lines, struct log *log);
+void lines_finish(struct gl_lines *lines);
 /* Darkens the picture where depth or normal jump. */
-void lines_draw_edges(const struct lines *lines, const struct frame_context *context);
+void lines_draw_edges(const struct gl_lines *lines, const struct frame_context *context);
 /* Returns the width in pixels of the outline's dark line; the light line beside it is as wide. Pure. */
 double lines_outline_px(const struct view *view);
 /* Draws the outline of view->selected_asset, also where other surfaces hide it. */
-void lines_draw_outline(struct lines *lines, const struct frame_context *context);
+void lines_draw_outline(struct gl_lines *lines, const struct frame_context *context);
 
 #endif

@@ -84,7 +84,7 @@ static void fill_block(struct material_block *block, const struct asset_material
     block->emissive[3] = material->alpha == ASSET_ALPHA_MASK ? material->alpha_cutoff : 0;
 }
 
-static void find_maps(struct model_material *out, const struct model *model, const struct asset_material *material)
+static void find_maps(struct model_material *out, const struct gl_model *model, const struct asset_material *material)
 {
     const uint32_t maps[MODEL_MAPS] = { material->base_color_texture, material->metallic_roughness_texture, material->normal_texture,
                                         material->occlusion_texture, material->emissive_texture };
@@ -97,7 +97,7 @@ static void find_maps(struct model_material *out, const struct model *model, con
         }
 }
 
-static void make_ramps(struct model *model, const struct environment_light *sky, const double up[3])
+static void make_ramps(struct gl_model *model, const struct environment_light *sky, const double up[3])
 {
     const struct asset_view *view = &model->file->view;
     for (int kind = 0; kind < MODEL_RAMPS; kind++) {
@@ -118,7 +118,7 @@ static void make_ramps(struct model *model, const struct environment_light *sky,
     }
 }
 
-bool materials_upload(struct model *model, struct gl *gl, const struct environment_light *sky, const double up[3])
+bool materials_upload(struct gl_model *model, struct gl *gl, const struct environment_light *sky, const double up[3])
 {
     const struct asset_view *view = &model->file->view;
     model->texture_count = view->header->texture_count;
@@ -141,7 +141,7 @@ bool materials_upload(struct model *model, struct gl *gl, const struct environme
     return true;
 }
 
-void materials_finish(struct model *model)
+void materials_finish(struct gl_model *model)
 {
     if (model->textures)
         glDeleteTextures((GLsizei)model->texture_count, model->textures);

@@ -7,8 +7,8 @@
 #include "render/light/environments.h"
 
 /* Uploads materials and textures of a model that model_init() made. up: of the plant. Returns false if the GPU is out of memory. */
-bool materials_upload(struct model *model, struct gl *gl, const struct environment_light *sky, const double up[3]);
+bool materials_upload(struct gl_model *model, struct gl *gl, const struct environment_light *sky, const double up[3]);
 /* Deletes what materials_upload() made; before model_finish(). */
-void materials_finish(struct model *model);
+void materials_finish(struct gl_model *model);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 
-static bool make_mesh(struct model *model, struct gl *gl)
+static bool make_mesh(struct gl_model *model, struct gl *gl)
 {
     const struct asset_view *view = &model->file->view;
     struct mesh_params params = {
@@ -73,10 +73,10 @@ static void find_clusters(struct model_level *level, const struct asset_view *vi
         level->first_cluster++;
 }
 
-bool model_init(struct model *model, struct gl *gl, const struct asset *file)
+bool model_init(struct gl_model *model, struct gl *gl, const struct asset *file)
 {
     const struct asset_header *header = file->view.header;
-    *model = (struct model){ .file = file };
+    *model = (struct gl_model){ .file = file };
     if (!make_mesh(model, gl))
         return false;
     model->levels = mem_array(header->level_count, sizeof(*model->levels));
@@ -88,7 +88,7 @@ bool model_init(struct model *model, struct gl *gl, const struct asset *file)
     return true;
 }
 
-void model_finish(struct model *model)
+void model_finish(struct gl_model *model)
 {
     for (size_t i = 0; i < model->level_count; i++) {
         for (size_t b = 0; b < model->levels[i].submesh_count; b++) {
@@ -99,10 +99,10 @@ void model_finish(struct model *model)
     }
     mem_free(model->levels);
     mesh_finish(&model->mesh);
-    *model = (struct model){ 0 };
+    *model = (struct gl_model){ 0 };
 }
 
-const struct model_level *model_level(const struct model *model, double error_m)
+const struct model_level *model_level(const struct gl_model *model, double error_m)
 {
     size_t best = 0;
     for (size_t i = 1; i < model->level_count && model->levels[i].error_m <= error_m; i++)
@@ -133,7 +133,7 @@ static size_t add_draw(struct model_draws *draws, size_t count, uint32_t first_i
     return count + 1;
 }
 
-void model_draw_closed(struct model_draws *draws, const struct model *model, const struct model_level *level)
+void model_draw_closed(struct model_draws *draws, const struct gl_model *model, const struct model_level *level)
 {
     const struct closed_bodies *closed = asset_closed(model->file, (uint32_t)(level - model->levels));
     size_t count = 0;

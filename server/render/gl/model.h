@@ -36,9 +36,9 @@ struct model_material {
     bool masked;             /* alpha of the base colour cuts holes (glTF alphaMode MASK) */
 };
 
-struct model {
+struct gl_model {
     const struct asset *file;
-    struct mesh mesh;
+    struct gpu_mesh mesh;
     struct model_level *levels;
     struct model_material *materials;
     GLuint *textures;
@@ -57,13 +57,13 @@ void model_draws_finish(struct model_draws *draws);
 
 /* Uploads the geometry of an asset file; materials_upload() does the rest. Returns false if the GPU is out of memory; model_finish() must
    still be called. */
-bool model_init(struct model *model, struct gl *gl, const struct asset *file);
-void model_finish(struct model *model);
+bool model_init(struct gl_model *model, struct gl *gl, const struct asset *file);
+void model_finish(struct gl_model *model);
 /* Returns the coarsest level with an error of at most error_m. */
-const struct model_level *model_level(const struct model *model, double error_m);
+const struct model_level *model_level(const struct gl_model *model, double error_m);
 /* Draws one submesh; the model's mesh must be bound. */
 void model_draw_submesh(const struct model_submesh *submesh);
 /* Draws the closed bodies of a level (scene/closed_bodies.h) and nothing else. */
-void model_draw_closed(struct model_draws *draws, const struct model *model, const struct model_level *level);
+void model_draw_closed(struct model_draws *draws, const struct gl_model *model, const struct model_level *level);
 
 #endif

@@ -38,7 +38,7 @@ static bool is_cut(const struct frame_context *context, int asset)
 
 static void count_asset(struct section_caps *caps, const struct frame_context *context, int asset)
 {
-    const struct model *model = context->gpu_scene->of_asset[asset];
+    const struct gl_model *model = context->gpu_scene->of_asset[asset];
     const struct scene_asset *at = &context->gpu_scene->scene->assets[asset];
     double clip_from_file[16];
     float matrix[16];

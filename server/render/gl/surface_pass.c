@@ -153,7 +153,7 @@ static void place_instance(const struct frame_context *context, int index, const
 static void gather(struct surface_pass *pass, struct draw_batches *batches, const struct frame_context *context, int index, bool hidden)
 {
     const struct gpu_scene *gpu_scene = context->gpu_scene;
-    const struct model *model = gpu_scene->of_asset[index];
+    const struct gl_model *model = gpu_scene->of_asset[index];
     const struct model_level *level = frame_level(context, index);
     const struct fields_entry *field = context->fields[index];
     const struct scene_asset *asset = &gpu_scene->scene->assets[index];

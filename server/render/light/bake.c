@@ -229,7 +229,7 @@ static size_t places_in_a_bit(const struct bake *bake)
 
 static void bind_vertices(const struct bake *bake)
 {
-    const struct mesh *mesh = &bake->gpu_scene->of_asset[bake->asset]->mesh;
+    const struct gpu_mesh *mesh = &bake->gpu_scene->of_asset[bake->asset]->mesh;
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, mesh->positions);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, mesh->normals);
     const struct pool_slice *baked = bake->set.baked[bake->asset];
@@ -280,7 +280,7 @@ double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibilit
 static void vertices_bit(struct bake *bake)
 {
     const struct scene_asset *asset = &bake->gpu_scene->scene->assets[bake->asset];
-    const struct mesh *mesh = &bake->gpu_scene->of_asset[bake->asset]->mesh;
+    const struct gpu_mesh *mesh = &bake->gpu_scene->of_asset[bake->asset]->mesh;
     size_t end = smaller(bake->vertex + places_in_a_bit(bake), mesh->vertex_count);
     glUseProgram(bake->with_sky ? bake->programs->sky : bake->programs->sun);
     set_uniforms(bake, asset->placement, bake->vertex, end);

@@ -15,7 +15,7 @@ static const double BRIGHTEST = 24; /* times the mean: brighter spots are the su
 /* Rough layers are smooth: worked out small and enlarged. */
 static const int layer_px[ENVIRONMENT_LAYERS] = { 128, 128, 128, 64, 64, 32, 32, 32 };
 
-struct source { /* equirectangular, as the image; then octahedral, plant axes */
+struct environment_source { /* equirectangular, as the image; then octahedral, plant axes */
     const float (*pixels)[4];
     int width, height;
     bool y_up, even; /* even: differs by height alone, as the built-in sky */
@@ -89,7 +89,7 @@ static float (*make_sky(void))[4]
 }
 
 /* Towards the pixel's centre, plant axes. */
-static void pixel_direction(const struct source *source, int x, int y, double towards[3])
+static void pixel_direction(const struct environment_source *source, int x, int y, double towards[3])
 {
     double down = M_PI * (y + 0.5) / source->height, turn = 2 * M_PI * (x + 0.5) / source->width - M_PI;
     double a = sin(down) * cos(turn), b = -sin(down) * sin(turn), height = cos(down);
@@ -98,7 +98,7 @@ static void pixel_direction(const struct source *source, int x, int y, double to
     towards[2] = source->y_up ? -b : height;
 }
 
-static void clipped(const struct source *source, const float pixel[4], double out[3])
+static void clipped(const struct environment_source *source, const float pixel[4], double out[3])
 {
     double peak = 0, scale = 1;
     for (int i = 0; i < 3; i++) {
@@ -129,7 +129,7 @@ struct sums {
     double harmonic[ENVIRONMENT_TERMS][3], level[3], mean, solid_angle;
 };
 
-static void add_up(const struct source *source, struct sums *sums)
+static void add_up(const struct environment_source *source, struct sums *sums)
 {
     int up = source->y_up ? 1 : 2;
     *sums = (struct sums){ 0 };
@@ -153,7 +153,7 @@ static void add_up(const struct source *source, struct sums *sums)
 }
 
 /* Clips what is too bright, then exposes and balances. False: there is no light from above. */
-static bool expose(struct source *source, struct environment *environment)
+static bool expose(struct environment_source *source, struct environment *environment)
 {
     struct sums sums;
     for (int i = 0; i < 3; i++)
@@ -173,7 +173,7 @@ static bool expose(struct source *source, struct environment *environment)
     return true;
 }
 
-static void source_radiance(const struct source *source, const double towards[3], double out[3])
+static void source_radiance(const struct environment_source *source, const double towards[3], double out[3])
 {
     double height = source->y_up ? towards[1] : towards[2], b = source->y_up ? -towards[2] : towards[1], pixels[3];
     double x = (atan2(-b, towards[0]) + M_PI) / (2 * M_PI) * source->width - 0.5;
@@ -184,8 +184,8 @@ static void source_radiance(const struct source *source, const double towards[3]
 
 /* --- mirrored light ------------------------------------------------------------------------------------------------------------- */
 
-struct job {
-    struct source *source;
+struct environment_job {
+    struct environment_source *source;
     float (*out)[4];
     int side_px, layer;
     const struct lobe *lobe; /* of the layer; the first has none */
@@ -193,7 +193,7 @@ struct job {
 
 /* The texel of the same light that is worked out for all of them: the mapping folds a sky that is the same all around into eight
    triangles alike, or, where its height is along the mapping's y, into two halves. */
-static size_t twin_of(const struct source *source, int side_px, size_t i)
+static size_t twin_of(const struct environment_source *source, int side_px, size_t i)
 {
     int x = (int)(i % (size_t)side_px), y = (int)(i / (size_t)side_px);
     if (!source->even)
@@ -206,7 +206,7 @@ static size_t twin_of(const struct source *source, int side_px, size_t i)
     return (size_t)(y * side_px + x);
 }
 
-static void copy_to_twins(const struct source *source, int side_px, float (*texels)[4])
+static void copy_to_twins(const struct environment_source *source, int side_px, float (*texels)[4])
 {
     for (size_t i = 0; source->even && i < (size_t)side_px * (size_t)side_px; i++)
         memcpy(texels[i], texels[twin_of(source, side_px, i)], sizeof(*texels));
@@ -215,7 +215,7 @@ static void copy_to_twins(const struct source *source, int side_px, float (*texe
 /* The base of the pyramid: the mean of 4 x 4 places in each texel. */
 static void base_rows(void *arg, size_t begin, size_t end)
 {
-    struct job *job = arg;
+    struct environment_job *job = arg;
     for (size_t i = begin * BASE_PX; i < end * BASE_PX; i++) {
         double sum[3] = { 0 };
         if (twin_of(job->source, BASE_PX, i) != i)
@@ -233,9 +233,9 @@ static void base_rows(void *arg, size_t begin, size_t end)
     }
 }
 
-static void make_pyramid(struct source *source, struct workers *workers)
+static void make_pyramid(struct environment_source *source, struct workers *workers)
 {
-    struct job job = { .source = source };
+    struct environment_job job = { .source = source };
     for (int level = 0, side = BASE_PX; level < PYRAMID; level++, side /= 2) {
         float (*to)[4] = source->pyramid[level] = mem_array((size_t)side * (size_t)side, sizeof(*to));
         if (level == 0) {
@@ -292,7 +292,7 @@ static void make_lobe(double alpha, struct lobe *lobe)
     }
 }
 
-static void mirror(const struct source *source, const struct lobe *lobe, const double n[3], double out[3])
+static void mirror(const struct environment_source *source, const struct lobe *lobe, const double n[3], double out[3])
 {
     double t[3], b[3], sum[3] = { 0 }, all = 0;
     frame_of(n, t, b);
@@ -313,7 +313,7 @@ static void mirror(const struct source *source, const struct lobe *lobe, const d
 
 static void layer_rows(void *arg, size_t begin, size_t end)
 {
-    struct job *job = arg;
+    struct environment_job *job = arg;
     for (size_t i = begin * (size_t)job->side_px; i < end * (size_t)job->side_px; i++) {
         double towards[3], color[3], x, y;
         if (twin_of(job->source, job->side_px, i) != i)
@@ -331,14 +331,14 @@ static void layer_rows(void *arg, size_t begin, size_t end)
     }
 }
 
-static void make_layer(struct source *source, struct workers *workers, int layer, float (*out)[4])
+static void make_layer(struct environment_source *source, struct workers *workers, int layer, float (*out)[4])
 {
     int side = layer_px[layer];
     bool small = side < ENVIRONMENT_PX;
     double roughness = (double)layer / (ENVIRONMENT_LAYERS - 1);
     struct lobe lobe;
     make_lobe(roughness * roughness, &lobe);
-    struct job job = { .source = source, .side_px = side, .layer = layer, .lobe = &lobe };
+    struct environment_job job = { .source = source, .side_px = side, .layer = layer, .lobe = &lobe };
     job.out = small ? mem_array((size_t)side * (size_t)side, sizeof(*job.out)) : out;
     workers_for(workers, (size_t)side, 4, layer_rows, &job);
     copy_to_twins(source, side, job.out);
@@ -356,11 +356,11 @@ static void make_layer(struct source *source, struct workers *workers, int layer
 bool environment_init(struct environment *environment, const struct image_float *image, bool y_up, struct workers *workers)
 {
     float (*sky)[4] = image ? NULL : make_sky();
-    struct source source = { .pixels = image ? (const float(*)[4])image->rgba : (const float(*)[4])sky,
-                             .width = image ? (int)image->width_px : SKY_WIDTH,
-                             .height = image ? (int)image->height_px : SKY_HEIGHT,
-                             .y_up = y_up,
-                             .even = !image };
+    struct environment_source source = { .pixels = image ? (const float(*)[4])image->rgba : (const float(*)[4])sky,
+                                         .width = image ? (int)image->width_px : SKY_WIDTH,
+                                         .height = image ? (int)image->height_px : SKY_HEIGHT,
+                                         .y_up = y_up,
+                                         .even = !image };
     *environment = (struct environment){ 0 };
     bool good = expose(&source, environment);
     if (good) {

@@ -9,7 +9,7 @@
 
 enum { TURNS = 32 }; /* tried, in a quarter of a circle */
 
-struct extent {
+struct sun_extent {
     double low[3], high[3]; /* across, upward, towards the sun; from the middle of the scene */
 };
 
@@ -27,7 +27,7 @@ static void axes_of(const double towards[3], double turn, double axes[3][3])
     }
 }
 
-static void add_box(struct extent *extent, const double axes[3][3], const double middle_m[3], const struct scene_asset *asset)
+static void add_box(struct sun_extent *extent, const double axes[3][3], const double middle_m[3], const struct scene_asset *asset)
 {
     for (int a = 0; a < 3; a++) {
         double low = 0, high = 0;
@@ -41,9 +41,9 @@ static void add_box(struct extent *extent, const double axes[3][3], const double
     }
 }
 
-static struct extent extent_of(const struct gpu_scene *gpu_scene, const double axes[3][3], const struct visibility *shown)
+static struct sun_extent extent_of(const struct gpu_scene *gpu_scene, const double axes[3][3], const struct visibility *shown)
 {
-    struct extent extent = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+    struct sun_extent extent = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
     for (size_t i = 0; i < gpu_scene->scene->asset_count; i++) {
         const struct scene_asset *asset = &gpu_scene->scene->assets[i];
         if (visibility_of(shown, (int)i) == ASSET_SHOWN && !clip_drops(&shown->clip, asset->bounds_min_m, asset->bounds_max_m))
@@ -57,7 +57,7 @@ static struct extent extent_of(const struct gpu_scene *gpu_scene, const double a
     return extent;
 }
 
-static double longer_side(const struct extent *extent)
+static double longer_side(const struct sun_extent *extent)
 {
     return fmax(extent->high[0] - extent->low[0], extent->high[1] - extent->low[1]);
 }
@@ -66,10 +66,10 @@ void sun_frame_fit(struct sun_frame *frame, const struct gpu_scene *gpu_scene, c
                    double margin)
 {
     double best[3][3], axes[3][3];
-    struct extent extent = { 0 };
+    struct sun_extent extent = { 0 };
     for (int turn = 0; turn < TURNS; turn++) {
         axes_of(towards, turn * M_PI_2 / TURNS, axes);
-        struct extent tried = extent_of(gpu_scene, (const double(*)[3])axes, shown);
+        struct sun_extent tried = extent_of(gpu_scene, (const double(*)[3])axes, shown);
         if (turn > 0 && longer_side(&tried) >= longer_side(&extent))
             continue;
         extent = tried;

@@ -11,7 +11,7 @@
 enum { MOST = 6 };
 static const double NEAR = 30, HELD = 0.8;
 
-struct crowd {
+struct item_buckets {
     const struct crowd_item *items;
     double cell;
     int *heads, *next; /* by bucket; by item: the one before it in its bucket; -1: none */
@@ -31,17 +31,17 @@ static int by_importance(const void *a, const void *b, void *arg)
     return i < k ? -1 : 1;
 }
 
-static double cell_of(const struct crowd *crowd, double at)
+static double cell_of(const struct item_buckets *crowd, double at)
 {
     return floor(at / crowd->cell);
 }
 
-static size_t bucket(const struct crowd *crowd, double column, double row)
+static size_t bucket(const struct item_buckets *crowd, double column, double row)
 {
     return ((uint64_t)(int64_t)column * 73856093u ^ (uint64_t)(int64_t)row * 19349663u) & crowd->mask;
 }
 
-static void put(struct crowd *crowd, int index)
+static void put(struct item_buckets *crowd, int index)
 {
     const struct crowd_item *item = &crowd->items[index];
     int *head = &crowd->heads[bucket(crowd, cell_of(crowd, item->x), cell_of(crowd, item->y))];
@@ -50,7 +50,7 @@ static void put(struct crowd *crowd, int index)
 }
 
 /* How many of that cell are nearer than the root of `least`. */
-static int count_cell(const struct crowd *crowd, double column, double row, const struct crowd_item *item, double least)
+static int count_cell(const struct item_buckets *crowd, double column, double row, const struct crowd_item *item, double least)
 {
     int count = 0;
     for (int i = crowd->heads[bucket(crowd, column, row)]; i >= 0 && count < MOST; i = crowd->next[i]) {
@@ -62,7 +62,7 @@ static int count_cell(const struct crowd *crowd, double column, double row, cons
     return count;
 }
 
-static bool is_crowded(const struct crowd *crowd, const struct crowd_item *item)
+static bool is_crowded(const struct item_buckets *crowd, const struct crowd_item *item)
 {
     double near = crowd->cell * (item->held ? HELD : 1), column = cell_of(crowd, item->x), row = cell_of(crowd, item->y);
     int count = 0;
@@ -74,7 +74,7 @@ static bool is_crowded(const struct crowd *crowd, const struct crowd_item *item)
 
 void crowd_thin(const struct crowd_item *items, size_t count, double unit, bool *drawn)
 {
-    struct crowd crowd = { .items = items, .cell = NEAR * unit, .mask = 63 };
+    struct item_buckets crowd = { .items = items, .cell = NEAR * unit, .mask = 63 };
     int *order = mem_array(count, sizeof(*order));
     size_t others = 0;
     while (crowd.mask < count)

@@ -41,7 +41,7 @@ static int clamp(double value, int count)
 }
 
 /* The cells of a box: first and last column and row. */
-static void cells_of(const struct layout *layout, const struct box *box, int range[4])
+static void cells_of(const struct label_layout *layout, const struct label_box *box, int range[4])
 {
     double cell = CELL * layout->area->unit, x = box->x - layout->area->box.x, y = box->y - layout->area->box.y;
     range[0] = clamp(x / cell, layout->columns);
@@ -50,7 +50,7 @@ static void cells_of(const struct layout *layout, const struct box *box, int ran
     range[3] = clamp((y + box->height) / cell, layout->rows);
 }
 
-static void take(struct layout *layout, const struct box *box, int owner, enum label_over kind)
+static void take(struct label_layout *layout, const struct label_box *box, int owner, enum label_over kind)
 {
     int range[4];
     cells_of(layout, box, range);
@@ -63,14 +63,14 @@ static void take(struct layout *layout, const struct box *box, int owner, enum l
         }
 }
 
-bool layout_is_free(const struct layout *layout, const struct box *box, int owner, enum label_over over)
+bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, enum label_over over)
 {
     int range[4];
     cells_of(layout, box, range);
     for (int column = range[0]; column <= range[1]; column++)
         for (int row = range[2]; row <= range[3]; row++)
             for (int i = layout->heads[row * layout->columns + column]; i >= 0; i = layout->entries[i].next) {
-                const struct box *other = &layout->entries[i].box;
+                const struct label_box *other = &layout->entries[i].box;
                 bool counts = layout->entries[i].owner != owner && layout->entries[i].kind > over;
                 if (counts && box->x < other->x + other->width && other->x < box->x + box->width && box->y < other->y + other->height &&
                     other->y < box->y + box->height)
@@ -81,7 +81,7 @@ bool layout_is_free(const struct layout *layout, const struct box *box, int owne
 
 /* --- one label -------------------------------------------------------------------------------------------------------------- */
 
-struct box layout_box(const struct label_item *item, int slot, double unit, double across, double down)
+struct label_box layout_box(const struct label_item *item, int slot, double unit, double across, double down)
 {
     static const double places[LABEL_SLOTS][2] = { { 1, -0.5 }, { -1, -0.5 }, { 1, -1.3 }, { 1, 0.3 }, { -1, -1.3 }, { -1, 0.3 },
                                                    { 0, -1.9 }, { 0, 0.9 },   { 1, -2 },   { -1, -2 }, { 1, 1 },     { -1, 1 },
@@ -91,38 +91,38 @@ struct box layout_box(const struct label_item *item, int slot, double unit, doub
     double beside = across + gap + more;
     double x = side > 0 ? item->x + beside : side < 0 ? item->x - beside - item->width : item->x - item->width / 2;
     double y = item->y + places[slot][1] * item->height + (side == 0 ? above * (more + down) : 0);
-    return (struct box){ x, y, item->width, item->height };
+    return (struct label_box){ x, y, item->width, item->height };
 }
 
-static struct box box_of(const struct label_item *item, int slot, double unit)
+static struct label_box box_of(const struct label_item *item, int slot, double unit)
 {
     return layout_box(item, slot, unit, 0, 0);
 }
 
-bool layout_is_inside(const struct layout *layout, const struct box *box)
+bool layout_is_inside(const struct label_layout *layout, const struct label_box *box)
 {
-    const struct box *area = &layout->area->box;
+    const struct label_box *area = &layout->area->box;
     return box->x >= area->x && box->y >= area->y && box->x + box->width <= area->x + area->width &&
            box->y + box->height <= area->y + area->height;
 }
 
-static bool fits(const struct layout *layout, int index, int slot)
+static bool fits(const struct label_layout *layout, int index, int slot)
 {
     const struct label_item *item = &layout->items[index];
-    struct box box = box_of(item, slot, layout->area->unit);
+    struct label_box box = box_of(item, slot, layout->area->unit);
     double more = slot == item->held ? 0 : LABEL_CLEARANCE * layout->area->unit;
-    struct box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
+    struct label_box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
     return layout_is_inside(layout, &box) && layout_is_free(layout, &grown, index, OVER_NOTHING);
 }
 
-static void place(struct layout *layout, int index)
+static void place(struct label_layout *layout, int index)
 {
     const struct label_item *item = &layout->items[index];
     for (int n = is_held(item) && item->held < LABEL_SLOTS ? -1 : 0; n < LABEL_SLOTS; n++) { /* not where a call-out was */
         int slot = n < 0 ? item->held : n;
         if (!fits(layout, index, slot))
             continue;
-        struct box box = box_of(item, slot, layout->area->unit);
+        struct label_box box = box_of(item, slot, layout->area->unit);
         take(layout, &box, index, OVER_ALL);
         layout->places[index] = (struct label_place){ box, slot, LABEL_NONE };
         layout->labelled[layout->labelled_count++] = index;
@@ -131,7 +131,7 @@ static void place(struct layout *layout, int index)
     }
 }
 
-static bool is_apart(const struct layout *layout, const struct label_item *item, double least)
+static bool is_apart(const struct label_layout *layout, const struct label_item *item, double least)
 {
     for (int i = 0; i < layout->labelled_count; i++) {
         const struct label_item *other = &layout->items[layout->labelled[i]];
@@ -141,9 +141,9 @@ static bool is_apart(const struct layout *layout, const struct label_item *item,
     return true;
 }
 
-static void place_rank(struct layout *layout, const int *order, size_t count)
+static void place_rank(struct label_layout *layout, const int *order, size_t count)
 {
-    const struct box *area = &layout->area->box;
+    const struct label_box *area = &layout->area->box;
     for (int pass = 0; pass < PASSES; pass++)
         for (size_t i = 0; i < count; i++) {
             const struct label_item *item = &layout->items[order[i]];
@@ -154,7 +154,7 @@ static void place_rank(struct layout *layout, const int *order, size_t count)
         }
 }
 
-void layout_set(struct layout *layout, const int *members, size_t count, const struct box *box, int slot)
+void layout_set(struct label_layout *layout, const int *members, size_t count, const struct label_box *box, int slot)
 {
     take(layout, box, members[0], OVER_ALL);
     for (size_t i = 0; i < count; i++) {
@@ -164,11 +164,11 @@ void layout_set(struct layout *layout, const int *members, size_t count, const s
     layout->used += box->width * box->height;
 }
 
-static void layout_init(struct layout *layout, const struct label_item *items, size_t count, const struct label_area *area,
+static void layout_init(struct label_layout *layout, const struct label_item *items, size_t count, const struct label_area *area,
                         struct label_place *places)
 {
     double cell = CELL * area->unit;
-    *layout = (struct layout){ .items = items, .area = area, .places = places };
+    *layout = (struct label_layout){ .items = items, .area = area, .places = places };
     layout->columns = (int)(area->box.width / cell) + 1;
     layout->rows = (int)(area->box.height / cell) + 1;
     layout->heads = mem_array((size_t)layout->columns * (size_t)layout->rows, sizeof(*layout->heads));
@@ -179,7 +179,7 @@ static void layout_init(struct layout *layout, const struct label_item *items, s
         take(layout, &area->blocked[i], -1, OVER_ALL);
     for (size_t i = 0; i < count; i++) {
         double radius = (items[i].ring ? RING : MARK) * area->unit;
-        struct box mark = { items[i].x - radius, items[i].y - radius, 2 * radius, 2 * radius };
+        struct label_box mark = { items[i].x - radius, items[i].y - radius, 2 * radius, 2 * radius };
         take(layout, &mark, (int)i, items[i].ring ? OVER_RINGS : OVER_MARKS);
         places[i] = (struct label_place){ .slot = LABEL_NONE, .callout = LABEL_NONE };
     }
@@ -187,7 +187,7 @@ static void layout_init(struct layout *layout, const struct label_item *items, s
 
 void labels_place(const struct label_item *items, size_t count, const struct label_area *area, struct label_place *places)
 {
-    struct layout layout;
+    struct label_layout layout;
     int *order = mem_array(count, sizeof(*order));
     size_t wanted = 0, rings = 0;
     layout_init(&layout, items, count, area, places);

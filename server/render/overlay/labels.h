@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-struct box {
+struct label_box {
     double x, y, width, height;
 };
 
@@ -21,15 +21,15 @@ struct label_item {             /* one per visible marker */
     int callout; /* the call-out it was in in the picture before, or LABEL_NONE */
 };
 struct label_area {
-    struct box box;
+    struct label_box box;
     double unit;
-    const struct box *blocked;
+    const struct label_box *blocked;
     size_t blocked_count;
     void (*measure)(void *arg, const int *members, size_t count, double size[2]); /* gives the size of the call-out for these items */
     void *arg;
 };
 struct label_place {
-    struct box box;
+    struct label_box box;
     int slot;    /* LABEL_NONE: no label */
     int callout; /* index of the item that leads its call-out; LABEL_NONE: a label of its own */
 };

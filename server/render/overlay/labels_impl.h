@@ -14,12 +14,12 @@ enum label_over { /* what a label may cover; also the kind of a taken box */
 };
 
 struct cell_entry {
-    struct box box;
+    struct label_box box;
     int owner, next;
     enum label_over kind;
 };
 
-struct layout {
+struct label_layout {
     const struct label_item *items;
     const struct label_area *area;
     struct label_place *places;
@@ -32,14 +32,14 @@ struct layout {
 };
 
 /* Returns the box of an item's label in a slot. across, down: half extent of its markers around item->x, item->y. */
-struct box layout_box(const struct label_item *item, int slot, double unit, double across, double down);
+struct label_box layout_box(const struct label_item *item, int slot, double unit, double across, double down);
 /* Returns whether a box lies within the picture's area. */
-bool layout_is_inside(const struct layout *layout, const struct box *box);
+bool layout_is_inside(const struct label_layout *layout, const struct label_box *box);
 /* Returns whether a box covers nothing but boxes of its owner and of kinds it may cover. */
-bool layout_is_free(const struct layout *layout, const struct box *box, int owner, enum label_over over);
+bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, enum label_over over);
 /* Places the label of these items and marks its box as taken; with more than one item it is a call-out. */
-void layout_set(struct layout *layout, const int *members, size_t count, const struct box *box, int slot);
+void layout_set(struct label_layout *layout, const int *members, size_t count, const struct label_box *box, int slot);
 /* Gives every item with an alarm ring a label or a place in a call-out. order: their indices, most important first. */
-void layout_place_rings(struct layout *layout, const int *order, size_t count);
+void layout_place_rings(struct label_layout *layout, const int *order, size_t count);
 
 #endif

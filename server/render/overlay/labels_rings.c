@@ -17,21 +17,21 @@ struct offset {
     int x, y, squared, index;
 };
 
-struct group {              /* rings that share a label */
+struct ring_group {         /* rings that share a label */
     struct label_item item; /* in the middle between them; the size of their label */
     double across, down;    /* from there to the outermost */
     int *members;           /* indices of items, by importance; in rings.members */
     size_t count;
-    struct box box;
+    struct label_box box;
     int slot, mate; /* mate: the group that it joins, since there was no room */
 };
 
 struct rings {
-    struct layout *layout;
+    struct label_layout *layout;
     const int *order;
     size_t count, group_count;
     double least; /* a unit, or more where many rings are close together */
-    struct group *groups;
+    struct ring_group *groups;
     int *group_of;          /* by place in `order` */
     int *members;           /* of all groups, one after the other */
     struct offset *offsets; /* the nearest first */
@@ -98,7 +98,7 @@ static size_t join_close(const struct rings *rings, int *first)
 }
 
 /* A group's place and size, and what it had in the picture before. */
-static void measure(struct rings *rings, struct group *group)
+static void measure(struct rings *rings, struct ring_group *group)
 {
     const struct label_area *area = rings->layout->area;
     const struct label_item *items = rings->layout->items, *one = &items[group->members[0]];
@@ -132,7 +132,7 @@ static void make_groups(struct rings *rings, int *first)
     for (size_t i = 0; i < rings->count; i++) {
         int root = root_of(first, (int)i), index = root == (int)i ? (int)rings->group_count++ : rings->group_of[root];
         if (root == (int)i)
-            rings->groups[index] = (struct group){ .count = 0 };
+            rings->groups[index] = (struct ring_group){ .count = 0 };
         rings->group_of[i] = index;
         rings->groups[index].count++;
     }
@@ -142,7 +142,7 @@ static void make_groups(struct rings *rings, int *first)
         rings->groups[i].count = 0;
     }
     for (size_t i = 0; i < rings->count; i++) {
-        struct group *group = &rings->groups[rings->group_of[i]];
+        struct ring_group *group = &rings->groups[rings->group_of[i]];
         group->members[group->count++] = rings->order[i];
     }
     for (size_t i = 0; i < rings->group_count; i++)
@@ -151,33 +151,33 @@ static void make_groups(struct rings *rings, int *first)
 
 /* --- where their labels lie -------------------------------------------------------------------------------------------------- */
 
-static struct box box_at(const struct rings *rings, const struct group *group, int slot)
+static struct label_box box_at(const struct rings *rings, const struct ring_group *group, int slot)
 {
     const struct label_item *item = &group->item;
     double unit = rings->layout->area->unit;
     if (slot < LABEL_SLOTS)
         return layout_box(item, slot, unit, group->across, group->down);
     const struct offset *offset = &rings->offsets[slot - LABEL_SLOTS];
-    return (struct box){ item->x + offset->x * unit - item->width / 2, item->y + offset->y * unit - item->height / 2, item->width,
-                         item->height };
+    return (struct label_box){ item->x + offset->x * unit - item->width / 2, item->y + offset->y * unit - item->height / 2, item->width,
+                               item->height };
 }
 
 /* before: groups whose labels stand already, as far as they do. */
-static bool is_free(const struct rings *rings, const struct group *group, int slot, double more, enum label_over over)
+static bool is_free(const struct rings *rings, const struct ring_group *group, int slot, double more, enum label_over over)
 {
-    struct box box = box_at(rings, group, slot);
-    struct box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
+    struct label_box box = box_at(rings, group, slot);
+    struct label_box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
     int owner = slot < LABEL_SLOTS && group->count == 1 ? group->members[0] : LABEL_NONE - 1;
     if (!layout_is_inside(rings->layout, &box) || !layout_is_free(rings->layout, &grown, owner, over))
         return false;
-    for (const struct group *other = rings->groups; other < group; other++)
+    for (const struct ring_group *other = rings->groups; other < group; other++)
         if (other->slot != NOWHERE && grown.x < other->box.x + other->box.width && other->box.x < grown.x + grown.width &&
             grown.y < other->box.y + other->box.height && other->box.y < grown.y + grown.height)
             return false;
     return true;
 }
 
-static int find_slot(const struct rings *rings, const struct group *group)
+static int find_slot(const struct rings *rings, const struct ring_group *group)
 {
     int held = group->item.held;
     bool alone = rings->group_count == 1;
@@ -195,12 +195,12 @@ static int find_slot(const struct rings *rings, const struct group *group)
 }
 
 /* Over other things, but within the area. */
-static struct box forced_box(const struct rings *rings, const struct group *group)
+static struct label_box forced_box(const struct rings *rings, const struct ring_group *group)
 {
-    const struct box *area = &rings->layout->area->box;
+    const struct label_box *area = &rings->layout->area->box;
     double width = group->item.width, height = group->item.height;
-    return (struct box){ fmax(area->x, fmin(area->x + area->width - width, group->item.x - width / 2)),
-                         fmax(area->y, fmin(area->y + area->height - height, group->item.y - height / 2)), width, height };
+    return (struct label_box){ fmax(area->x, fmin(area->x + area->width - width, group->item.x - width / 2)),
+                               fmax(area->y, fmin(area->y + area->height - height, group->item.y - height / 2)), width, height };
 }
 
 static double squared(double x)
@@ -210,11 +210,11 @@ static double squared(double x)
 
 static int nearest_to(const struct rings *rings, int index)
 {
-    const struct group *a = &rings->groups[index];
+    const struct ring_group *a = &rings->groups[index];
     double least = INFINITY;
     int nearest = -1;
     for (int i = 0; i < (int)rings->group_count; i++) {
-        const struct group *b = &rings->groups[i];
+        const struct ring_group *b = &rings->groups[i];
         double apart = squared(fmax(0, fabs(a->item.x - b->item.x) - a->across - b->across)) +
                        squared(fmax(0, fabs(a->item.y - b->item.y) - a->down - b->down));
         if (i != index && apart < least) {
@@ -230,7 +230,7 @@ static bool place_groups(struct rings *rings)
 {
     bool all = true;
     for (size_t i = 0; i < rings->group_count; i++) {
-        struct group *group = &rings->groups[i];
+        struct ring_group *group = &rings->groups[i];
         group->slot = find_slot(rings, group);
         group->mate = group->slot == NOWHERE ? nearest_to(rings, (int)i) : LABEL_NONE;
         all = all && group->slot != NOWHERE;
@@ -240,7 +240,7 @@ static bool place_groups(struct rings *rings)
     return all;
 }
 
-void layout_place_rings(struct layout *layout, const int *order, size_t count)
+void layout_place_rings(struct label_layout *layout, const int *order, size_t count)
 {
     struct rings rings = { .layout = layout, .order = order, .count = count };
     int *first = mem_array(count, sizeof(*first));

@@ -12,14 +12,14 @@
 #include "render/overlay/text_face.h"
 #include "value/quality.h"
 
-bool box_meets(const struct box *a, const struct box *b)
+bool box_meets(const struct label_box *a, const struct label_box *b)
 {
     return a->x < b->x + b->width && b->x < a->x + a->width && a->y < b->y + b->height && b->y < a->y + a->height;
 }
 
-bool pen_is_free(const struct pen *pen, const struct box *box)
+bool pen_is_free(const struct pen *pen, const struct label_box *box)
 {
-    const struct box *area = &pen->area;
+    const struct label_box *area = &pen->area;
     double right = area->x + area->width, bottom = area->y + area->height;
     if (box->x < area->x || box->y < area->y || box->x + box->width > right || box->y + box->height > bottom)
         return false;
@@ -29,13 +29,13 @@ bool pen_is_free(const struct pen *pen, const struct box *box)
     return true;
 }
 
-void pen_take(struct pen *pen, const struct box *box)
+void pen_take(struct pen *pen, const struct label_box *box)
 {
     if (pen->taken_count < PEN_MAX_TAKEN)
         pen->taken[pen->taken_count++] = *box;
 }
 
-static void round_path(cairo_t *cairo, const struct box *box, double radius)
+static void round_path(cairo_t *cairo, const struct label_box *box, double radius)
 {
     double x = box->x, y = box->y, right = x + box->width, bottom = y + box->height;
     cairo_new_path(cairo);
@@ -46,7 +46,7 @@ static void round_path(cairo_t *cairo, const struct box *box, double radius)
     cairo_close_path(cairo);
 }
 
-void pen_card(struct pen *pen, const struct box *box)
+void pen_card(struct pen *pen, const struct label_box *box)
 {
     round_path(pen->cairo, box, 4 * pen->unit);
     cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.88);
@@ -187,7 +187,7 @@ static void draw_header(struct pen *pen)
     pen_font(pen, 0.92, false);
     for (int i = 0; i < count; i++)
         width = fmax(width, pen_text_width(pen, lines[i]));
-    struct box box = { pad, pad, width + 2 * pad, header_height(pen, count) };
+    struct label_box box = { pad, pad, width + 2 * pad, header_height(pen, count) };
     pen_card(pen, &box);
     pen_ink(pen, 1);
     pen_font(pen, 1.15, true);
@@ -213,7 +213,7 @@ static void draw_banner(struct pen *pen, const char *text, const double rgb[3])
 {
     pen_font(pen, 1.5, true);
     double width = pen_text_width(pen, text), pad = 12 * pen->unit;
-    struct box box = { 0.5 * (pen->frame->width_px - width) - pad, 0, width + 2 * pad, 1.5 * pen->text_px + 1.4 * pad };
+    struct label_box box = { 0.5 * (pen->frame->width_px - width) - pad, 0, width + 2 * pad, 1.5 * pen->text_px + 1.4 * pad };
     box.y = pen->taken[0].y + pen->taken[0].height + pad;
     if (box.x > pen->taken[0].x + pen->taken[0].width + pad)
         box.y = pad;
@@ -249,7 +249,7 @@ void pen_choose_half(struct pen *pen, int half)
     int left_px = half ? view_left_px(view) : 0;
     pen->half = half;
     view_half(view, half, &pen->view);
-    pen->area = (struct box){ left_px, 0, pen->view.width_px, pen->view.height_px };
+    pen->area = (struct label_box){ left_px, 0, pen->view.width_px, pen->view.height_px };
 }
 
 static void pen_scale(struct pen *pen, double unit)

@@ -64,7 +64,7 @@ static void format_reading(const struct pen *pen, int tag, char out[200])
                  kind);
 }
 
-static void draw_rows(struct pen *pen, const struct box *card, double pad, const struct unseen *list, size_t rows)
+static void draw_rows(struct pen *pen, const struct label_box *card, double pad, const struct unseen *list, size_t rows)
 {
     double y = card->y + pad + ROW * pen->text_px;
     pen_font(pen, 0.85, false);
@@ -97,7 +97,7 @@ static void draw_list(struct pen *pen, const struct unseen *list, size_t count)
         format_reading(pen, list[i].tag, text);
         width = fmax(width, pen_text_width(pen, text) + 1.7 * pen->text_px);
     }
-    struct box card = { pad, 0, width + 2 * pad, (1 + (double)rows) * ROW * pen->text_px + 1.5 * pad };
+    struct label_box card = { pad, 0, width + 2 * pad, (1 + (double)rows) * ROW * pen->text_px + 1.5 * pad };
     card.y = pen->frame->height_px - pad - card.height;
     pen_card(pen, &card);
     pen_take(pen, &card);

@@ -142,7 +142,7 @@ double overlay_bar_width(struct pen *pen)
 }
 
 /* Each row of pixels by the legend's own rule. */
-static void draw_colors(struct pen *pen, const struct box *bar, const struct scale *scale)
+static void draw_colors(struct pen *pen, const struct label_box *bar, const struct scale *scale)
 {
     int top = (int)lround(bar->y), rows = (int)lround(bar->height);
     for (int row = 0; row < rows; row++) {
@@ -154,7 +154,7 @@ static void draw_colors(struct pen *pen, const struct box *bar, const struct sca
     }
 }
 
-static double height_of(const struct box *bar, double place)
+static double height_of(const struct label_box *bar, double place)
 {
     return bar->y + (1 - place) * bar->height;
 }
@@ -168,7 +168,7 @@ static void draw_rule(struct pen *pen, double from_x, double from_y, double to_x
     cairo_stroke(pen->cairo);
 }
 
-static void draw_lines(struct pen *pen, const struct box *bar, const struct scale *scale)
+static void draw_lines(struct pen *pen, const struct label_box *bar, const struct scale *scale)
 {
     double lines[VIEW_ALL_LINES];
     int count = view_lines(&pen->view, lines);
@@ -178,7 +178,7 @@ static void draw_lines(struct pen *pen, const struct box *bar, const struct scal
     }
 }
 
-static void draw_ticks(struct pen *pen, const struct box *bar, const struct scale *scale)
+static void draw_ticks(struct pen *pen, const struct label_box *bar, const struct scale *scale)
 {
     struct ticks ticks;
     double right = bar->x + bar->width;
@@ -195,7 +195,7 @@ static void draw_ticks(struct pen *pen, const struct box *bar, const struct scal
     }
 }
 
-static void draw_limits(struct pen *pen, const struct box *bar, const struct scale *scale)
+static void draw_limits(struct pen *pen, const struct label_box *bar, const struct scale *scale)
 {
     static const char *const texts[LIMIT_COUNT] = { "LL", "L", "H", "HH" };
     struct ticks limits;
@@ -210,7 +210,7 @@ static void draw_limits(struct pen *pen, const struct box *bar, const struct sca
     }
 }
 
-void overlay_bar(struct pen *pen, const struct box *bar)
+void overlay_bar(struct pen *pen, const struct label_box *bar)
 {
     struct scale scale;
     view_scale(&pen->view, &scale);

@@ -67,7 +67,7 @@ static void draw_caption(struct pen *pen, const struct caption *caption)
     pen_font(pen, 1, true);
     for (int i = 0; i < caption->count; i++)
         width = fmax(width, pen_text_width(pen, caption->lines[i]));
-    struct box box = { pen->area.x + pad, pen->area.y + pad, width + 2 * pad, line_px * caption->count + 1.4 * pad };
+    struct label_box box = { pen->area.x + pad, pen->area.y + pad, width + 2 * pad, line_px * caption->count + 1.4 * pad };
     for (int i = 0; i < pen->taken_count; i++)
         if (box_meets(&pen->taken[i], &box))
             box.y = pen->taken[i].y + pen->taken[i].height + pad;

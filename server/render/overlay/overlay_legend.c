@@ -29,7 +29,7 @@ struct legend {
     enum row rows[ROWS]; /* under the bar */
     const char *notes[NOTES];
     int row_count, note_count;
-    struct box card, bar;
+    struct label_box card, bar;
     double pad;
 };
 
@@ -211,7 +211,7 @@ static const char *row_text(const struct pen *pen, const struct legend *legend, 
 }
 
 /* Below what lies over the picture already, where the card would lie on it. */
-static double free_from(const struct pen *pen, const struct box *card)
+static double free_from(const struct pen *pen, const struct label_box *card)
 {
     double from = pen->area.y;
     for (int i = 0; i < pen->taken_count; i++)
@@ -222,7 +222,7 @@ static double free_from(const struct pen *pen, const struct box *card)
 
 static void lay_out(struct pen *pen, struct legend *legend)
 {
-    const struct box *area = &pen->area;
+    const struct label_box *area = &pen->area;
     double left = overlay_bar_left(pen), beside = left + 2.2 * pen->text_px, width;
     double top = (legend->above[0] ? 3.3 : 1.7) * pen->text_px, bottom = (0.4 + ROW * legend->row_count) * pen->text_px;
     if (legend->note_count > 0)
@@ -243,7 +243,7 @@ static void lay_out(struct pen *pen, struct legend *legend)
     legend->pad = 9 * pen->unit;
     double others = top + bottom + 2 * legend->pad;
     double bar_height = fmax(fmin(0.46 * area->height, area->height - others - 4 * legend->pad), 3 * pen->text_px);
-    legend->card = (struct box){ 0, 0, width + 2 * legend->pad, bar_height + others };
+    legend->card = (struct label_box){ 0, 0, width + 2 * legend->pad, bar_height + others };
     legend->card.x = area->x + area->width - legend->card.width - legend->pad;
     legend->card.y = area->y + 0.5 * (area->height - legend->card.height);
     double from = free_from(pen, &legend->card) + legend->pad, room = area->y + area->height - legend->pad - from;
@@ -254,19 +254,20 @@ static void lay_out(struct pen *pen, struct legend *legend)
     }
     legend->card.x += pen->legend_shift.x_px;
     legend->card.y += pen->legend_shift.y_px;
-    legend->bar = (struct box){ legend->card.x + legend->pad + left, legend->card.y + legend->pad + top, 1.6 * pen->text_px, bar_height };
+    legend->bar =
+        (struct label_box){ legend->card.x + legend->pad + left, legend->card.y + legend->pad + top, 1.6 * pen->text_px, bar_height };
 }
 
 /* --- swatches ---------------------------------------------------------------------------------------------------------------- */
 
-static void fill_box(struct pen *pen, const struct box *box, const uint8_t rgb[3])
+static void fill_box(struct pen *pen, const struct label_box *box, const uint8_t rgb[3])
 {
     cairo_rectangle(pen->cairo, box->x, box->y, box->width, box->height);
     pen_rgb(pen, rgb);
     cairo_fill(pen->cairo);
 }
 
-static void draw_stripes(struct pen *pen, const struct box *box)
+static void draw_stripes(struct pen *pen, const struct label_box *box)
 {
     fill_box(pen, box, colormap_no_data[0]);
     cairo_save(pen->cairo);
@@ -282,15 +283,15 @@ static void draw_stripes(struct pen *pen, const struct box *box)
     cairo_restore(pen->cairo);
 }
 
-static void draw_rules(struct pen *pen, const struct box *box)
+static void draw_rules(struct pen *pen, const struct label_box *box)
 {
     fill_box(pen, box, colormap_no_limits[0]);
     for (int i = 0; i < 3; i++)
-        fill_box(pen, &(struct box){ box->x, box->y + box->height * (0.12 + 0.33 * i), box->width, 0.1 * box->height },
+        fill_box(pen, &(struct label_box){ box->x, box->y + box->height * (0.12 + 0.33 * i), box->width, 0.1 * box->height },
                  colormap_no_limits[1]);
 }
 
-static void draw_dots(struct pen *pen, const struct box *box)
+static void draw_dots(struct pen *pen, const struct label_box *box)
 {
     struct scale scale;
     view_scale(&pen->view, &scale);
@@ -303,7 +304,7 @@ static void draw_dots(struct pen *pen, const struct box *box)
     }
 }
 
-static void draw_swatch(struct pen *pen, const struct box *box, enum row row)
+static void draw_swatch(struct pen *pen, const struct label_box *box, enum row row)
 {
     struct scale scale;
     view_scale(&pen->view, &scale);
@@ -349,7 +350,7 @@ static void draw_rows(struct pen *pen, const struct legend *legend)
     double y = legend->bar.y + legend->bar.height + 0.55 * pen->text_px;
     pen_font(pen, 0.9, false);
     for (int i = 0; i < legend->row_count; i++, y += ROW * pen->text_px) {
-        draw_swatch(pen, &(struct box){ legend->bar.x, y, legend->bar.width, 1.1 * pen->text_px }, legend->rows[i]);
+        draw_swatch(pen, &(struct label_box){ legend->bar.x, y, legend->bar.width, 1.1 * pen->text_px }, legend->rows[i]);
         if (legend->rows[i] == ROW_ARROW)
             draw_longest(pen, legend, y);
         else
@@ -374,7 +375,7 @@ void overlay_legend(struct pen *pen)
     pen_text(pen, legend.card.x + legend.pad, legend.card.y + legend.pad + pen->text_px, legend.title);
     pen_font(pen, 0.9, false);
     if (legend.above[0]) {
-        struct box above = { legend.bar.x, legend.bar.y - 1.65 * pen->text_px, legend.bar.width, 1.1 * pen->text_px };
+        struct label_box above = { legend.bar.x, legend.bar.y - 1.65 * pen->text_px, legend.bar.width, 1.1 * pen->text_px };
         fill_box(pen, &above, scale.map->above);
         draw_text(pen, &legend, above.y, legend.above);
     }

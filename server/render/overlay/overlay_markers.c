@@ -145,7 +145,7 @@ struct label_text {
 };
 
 /* From the rim of the mark, or of its ring, to the nearest point of the label. */
-static void draw_leader(struct pen *pen, const struct label_item *item, const struct box *box)
+static void draw_leader(struct pen *pen, const struct label_item *item, const struct label_box *box)
 {
     double x = fmax(box->x, fmin(box->x + box->width, item->x)), y = fmax(box->y, fmin(box->y + box->height, item->y));
     double away = fmax(hypot(x - item->x, y - item->y), 1e-6), rim = (item->ring ? 11 : 5) * pen->unit / away;
@@ -158,7 +158,7 @@ static void draw_leader(struct pen *pen, const struct label_item *item, const st
     cairo_stroke(pen->cairo);
 }
 
-static void draw_label(struct pen *pen, const struct box *box, const struct label_text *text)
+static void draw_label(struct pen *pen, const struct label_box *box, const struct label_text *text)
 {
     double pad = 4 * pen->unit;
     pen_card(pen, box);
@@ -189,13 +189,13 @@ static bool is_bad(const struct frame_marker *marker)
 
 static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
 {
-    const struct box *area = &pen->area;
+    const struct label_box *area = &pen->area;
     return marker->half == pen->half && marker->x_px >= area->x && marker->y_px >= 0 && marker->x_px < area->x + area->width &&
            marker->y_px < area->height;
 }
 
 /* What there is to place: every mark in sight that no card covers. The caller owns both lists. */
-struct wanted {
+struct marker_labels {
     struct label_item *items;
     struct label_text *texts;
     int *tags;
@@ -203,7 +203,7 @@ struct wanted {
     struct pen *pen;
 };
 
-static void add_wanted(struct pen *pen, const struct frame_marker *marker, struct wanted *wanted)
+static void add_wanted(struct pen *pen, const struct frame_marker *marker, struct marker_labels *wanted)
 {
     const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
     struct label_item *item = &wanted->items[wanted->count];
@@ -236,7 +236,7 @@ struct callout_text {
 };
 
 /* The asset, where it is only one; how many alarms; and the gravest of them. */
-static void write_callout(const struct wanted *wanted, const int *members, size_t count, struct callout_text *text)
+static void write_callout(const struct marker_labels *wanted, const int *members, size_t count, struct callout_text *text)
 {
     const struct pen *pen = wanted->pen;
     const struct plant *plant = pen->scene->plant;
@@ -266,7 +266,7 @@ static const double LINE = 1.25; /* of text_px */
 
 static void measure_callout(void *arg, const int *members, size_t count, double size[2])
 {
-    const struct wanted *wanted = arg;
+    const struct marker_labels *wanted = arg;
     struct pen *pen = wanted->pen;
     struct callout_text text;
     write_callout(wanted, members, count, &text);
@@ -276,10 +276,10 @@ static void measure_callout(void *arg, const int *members, size_t count, double 
 }
 
 /* lead: the first of its items. */
-static void draw_callout(const struct wanted *wanted, const struct label_place *places, size_t lead)
+static void draw_callout(const struct marker_labels *wanted, const struct label_place *places, size_t lead)
 {
     struct pen *pen = wanted->pen;
-    const struct box *box = &places[lead].box;
+    const struct label_box *box = &places[lead].box;
     struct callout_text text;
     double pad = 4 * pen->unit;
     size_t count = 0;
@@ -296,7 +296,7 @@ static void draw_callout(const struct wanted *wanted, const struct label_place *
     pen_text(pen, box->x + pad, box->y + pad + (0.72 + LINE) * pen->text_px, text.worst);
 }
 
-static void place_labels(struct pen *pen, struct wanted *wanted, int cards)
+static void place_labels(struct pen *pen, struct marker_labels *wanted, int cards)
 {
     struct label_area area = { .box = pen->area,
                                .unit = pen->unit,
@@ -324,7 +324,7 @@ static void place_labels(struct pen *pen, struct wanted *wanted, int cards)
     mem_free(places);
 }
 
-static bool is_under(const struct pen *pen, int cards, const struct box *mark)
+static bool is_under(const struct pen *pen, int cards, const struct label_box *mark)
 {
     for (int i = 0; i < cards; i++)
         if (box_meets(&pen->taken[i], mark))
@@ -348,7 +348,7 @@ static void label_isolines(struct pen *pen)
         pen_number(label->value, pen->view.color_scale.log ? label->value : range, text);
         pen_font(pen, 0.75, true);
         double width = pen_text_width(pen, text) + 2 * pad, height = 0.75 * pen->text_px + 2 * pad;
-        struct box box = { label->x_px - 0.5 * width, label->y_px - 0.5 * height, width, height };
+        struct label_box box = { label->x_px - 0.5 * width, label->y_px - 0.5 * height, width, height };
         if (crowded || !pen_is_free(pen, &box))
             continue;
         done[i] = true;
@@ -362,15 +362,15 @@ static void label_isolines(struct pen *pen)
     mem_free(done);
 }
 
-static struct box mark_box(const struct pen *pen, const struct frame_marker *marker)
+static struct label_box mark_box(const struct pen *pen, const struct frame_marker *marker)
 {
     double radius = 5 * pen->unit;
-    return (struct box){ (double)marker->x_px - radius, (double)marker->y_px - radius, 2 * radius, 2 * radius };
+    return (struct label_box){ (double)marker->x_px - radius, (double)marker->y_px - radius, 2 * radius, 2 * radius };
 }
 
 bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marker)
 {
-    struct box mark = mark_box(pen, marker);
+    struct label_box mark = mark_box(pen, marker);
     return !marker->occluded && is_inside(pen, marker) && !is_under(pen, pen->taken_count, &mark);
 }
 
@@ -392,7 +392,7 @@ static size_t choose_markers(const struct pen *pen, int cards, size_t **chosen)
     *chosen = mem_array(frame->marker_count, sizeof(**chosen));
     for (size_t i = 0; i < frame->marker_count && !pen->bare; i++) {
         const struct frame_marker *marker = &frame->markers[i];
-        struct box mark = mark_box(pen, marker);
+        struct label_box mark = mark_box(pen, marker);
         if (!is_inside(pen, marker) || is_under(pen, cards, &mark))
             continue;
         items[count] = (struct crowd_item){ .x = (double)marker->x_px, .y = (double)marker->y_px, .occluded = marker->occluded };
@@ -412,7 +412,7 @@ static size_t choose_markers(const struct pen *pen, int cards, size_t **chosen)
 void overlay_markers(struct pen *pen)
 {
     int cards = pen->taken_count; /* what lies over the picture already */
-    struct wanted wanted = { .pen = pen };
+    struct marker_labels wanted = { .pen = pen };
     size_t *chosen, count = choose_markers(pen, cards, &chosen);
     wanted.items = mem_array(count, sizeof(*wanted.items));
     wanted.texts = mem_array(count, sizeof(*wanted.texts));
@@ -420,7 +420,7 @@ void overlay_markers(struct pen *pen)
     overlay_arrows(pen);
     for (size_t i = 0; i < count; i++) {
         const struct frame_marker *marker = &pen->frame->markers[chosen[i]];
-        struct box mark = mark_box(pen, marker);
+        struct label_box mark = mark_box(pen, marker);
         if (!marker->occluded)
             pen_take(pen, &mark);
         if (!marker->occluded || has_alarm(pen, marker))

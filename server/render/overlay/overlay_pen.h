@@ -14,7 +14,7 @@
 #include "render/overlay/overlay_words.h"
 #include "value/alarm.h"
 
-bool box_meets(const struct box *a, const struct box *b);
+bool box_meets(const struct label_box *a, const struct label_box *b);
 
 enum { PEN_MAX_TAKEN = 512 };
 struct pen {
@@ -22,7 +22,7 @@ struct pen {
     const struct frame *frame;
     struct view view; /* of the half being drawn */
     int half;         /* of a split view; else 0 */
-    struct box area;  /* of that half, in pixels */
+    struct label_box area; /* of that half, in pixels */
     const struct scene *scene;
     const struct snapshot *snapshot;
     const struct loop_checks *loop_checks; /* NULL: none */
@@ -30,18 +30,18 @@ struct pen {
     bool calm;                             /* only what is abnormal has a label */
     double unit, text_px;
     struct burn_shift legend_shift;  /* of the legend, within the margin around it */
-    struct box taken[PEN_MAX_TAKEN]; /* occupied areas */
+    struct label_box taken[PEN_MAX_TAKEN]; /* occupied areas */
     int taken_count;
 };
 
 /* Makes a half of a split view the one to draw over. */
 void pen_choose_half(struct pen *pen, int half);
 /* Returns whether a box lies inside the area and covers nothing that is taken. */
-bool pen_is_free(const struct pen *pen, const struct box *box);
+bool pen_is_free(const struct pen *pen, const struct label_box *box);
 /* Marks a box as taken. */
-void pen_take(struct pen *pen, const struct box *box);
+void pen_take(struct pen *pen, const struct label_box *box);
 /* Draws a light card with a thin border, as a background for text. */
-void pen_card(struct pen *pen, const struct box *box);
+void pen_card(struct pen *pen, const struct label_box *box);
 /* Set the colour: any sRGB colour; that of text. */
 void pen_rgb(struct pen *pen, const uint8_t rgb[3]);
 void pen_ink(struct pen *pen, double alpha);
@@ -64,7 +64,7 @@ int pen_decimals(double range);
 double pen_rounded(double value, int decimals);
 
 /* Draws the colour bar of pen->view: MIN at the bottom, MAX at the top, ticks on the right, the group's limits on the left. */
-void overlay_bar(struct pen *pen, const struct box *bar);
+void overlay_bar(struct pen *pen, const struct label_box *bar);
 /* Return the width of the colour bar with all text beside it, and the part of it that is left of the bar itself. */
 double overlay_bar_width(struct pen *pen);
 double overlay_bar_left(struct pen *pen);

@@ -9,13 +9,13 @@
 
 static const uint8_t DARK = 16, LIGHT = 255;
 
-struct ink {
+struct strip_ink {
     uint8_t code[STRIP_BYTES];
     uint8_t shades[STRIP_SHADES][256][3], below[STRIP_SHADES][3], above[STRIP_SHADES][3];
     struct scale scale;
 };
 
-static void choose_ink(const struct pen *pen, struct ink *ink)
+static void choose_ink(const struct pen *pen, struct strip_ink *ink)
 {
     const struct view *view = &pen->view;
     const struct plant *plant = pen->scene->plant;
@@ -37,7 +37,7 @@ static void choose_ink(const struct pen *pen, struct ink *ink)
 }
 
 /* The colour at a place along the inner cells, 0 to STRIP_INNER: below, MIN to MAX, above. */
-static const uint8_t *color_at(const struct ink *ink, int shade, double column)
+static const uint8_t *color_at(const struct strip_ink *ink, int shade, double column)
 {
     if (column < STRIP_BEYOND)
         return ink->below[shade];
@@ -54,7 +54,7 @@ static const uint8_t *grey(bool dark)
     return greys[dark];
 }
 
-static const uint8_t *ink_at(const struct ink *ink, double column, int row)
+static const uint8_t *ink_at(const struct strip_ink *ink, double column, int row)
 {
     int cell = (int)column, ramp_end = 1 + STRIP_SHADES * STRIP_SHADE_CELLS;
     if (cell < STRIP_FINDER)
@@ -77,7 +77,7 @@ int overlay_strip_height(int width_px, int height_px)
 void overlay_strip(struct pen *pen, uint8_t *bgrx, int stride_bytes)
 {
     const int width = pen->frame->width_px, height = pen->frame->height_px, high = overlay_strip_height(width, height);
-    struct ink ink;
+    struct strip_ink ink;
     choose_ink(pen, &ink);
     for (int y = 0; y < high; y++) {
         uint8_t *to = bgrx + (size_t)(height - high + y) * (size_t)stride_bytes;

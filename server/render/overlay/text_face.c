@@ -12,7 +12,7 @@ enum { FIRST_BEYOND = 0x590 }; /* Hebrew and all after it */
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 /* --- below: under lock. What was found last, regular and bold */
-static struct found {
+static struct found_face {
     FcCharSet *letters; /* NULL: nothing yet */
     cairo_font_face_t *face;
 } found[2];
@@ -34,7 +34,7 @@ static FcCharSet *letters_beyond(const char *text)
     return NULL;
 }
 
-static void find(struct found *out, const FcCharSet *letters, bool bold)
+static void find(struct found_face *out, const FcCharSet *letters, bool bold)
 {
     FcPattern *wanted = FcPatternCreate();
     FcResult result;
@@ -77,7 +77,7 @@ void text_face_choose(cairo_t *cairo, const char *text)
 bool text_face_has(const char *text)
 {
     FcCharSet *letters = letters_beyond(text);
-    struct found has = { 0 };
+    struct found_face has = { 0 };
     if (!letters)
         return true;
     find(&has, letters, false);

@@ -17,7 +17,7 @@ size_t arrows_vertex_count(const struct scene_asset *asset)
 
 /* --- places ----------------------------------------------------------------------------------------------------------------- */
 
-struct candidates {
+struct arrow_candidates {
     const struct asset_view *view;
     struct direction_place *at;
     size_t count, capacity;
@@ -41,7 +41,7 @@ static void point_of(const struct asset_view *view, const struct direction_place
 }
 
 /* The middles of equal pieces, each about half as long as arrows are apart. */
-static void add_triangle(struct candidates *candidates, const uint32_t corners[3], uint32_t triangle)
+static void add_triangle(struct arrow_candidates *candidates, const uint32_t corners[3], uint32_t triangle)
 {
     double at[3][3], normal[3];
     corners_of(candidates->view, corners, at);
@@ -76,7 +76,7 @@ static bool is_apart(const struct arrow_set *set, const struct asset_view *view,
 }
 
 /* Far apart first, so that whoever takes them in this order while there is room has them evenly spread. */
-static void thin_out(struct arrow_set *set, const struct candidates *candidates)
+static void thin_out(struct arrow_set *set, const struct arrow_candidates *candidates)
 {
     set->places = mem_array(PLACES, sizeof(*set->places));
     size_t step = candidates->count / CANDIDATES_MOST + 1;
@@ -89,7 +89,7 @@ static void thin_out(struct arrow_set *set, const struct candidates *candidates)
 
 static void seek(struct arrow_set *set, const struct scene_asset *asset)
 {
-    struct candidates candidates = { .view = &asset->file->view };
+    struct arrow_candidates candidates = { .view = &asset->file->view };
     const struct asset_level *level = coarse_level(asset);
     for (int pass = 0; pass < 2; pass++) { /* the area, then places by it */
         double area_m2 = 0;

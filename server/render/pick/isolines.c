@@ -38,7 +38,7 @@ void isolines_finish(struct isolines *isolines)
 /* --- points on lines --------------------------------------------------------------------------------------------------------- */
 
 /* One asset being searched. */
-struct search {
+struct isoline_search {
     const struct scene_asset *asset;
     const struct fields_entry *field;
     struct isoline_set *set;
@@ -47,7 +47,7 @@ struct search {
     int counts[VIEW_ALL_LINES];
 };
 
-static bool is_apart(const struct search *search, double value, const double place_m[3])
+static bool is_apart(const struct isoline_search *search, double value, const double place_m[3])
 {
     double least_m = SPACING * search->size_m;
     for (size_t i = search->set->count; i-- > 0;) {
@@ -61,7 +61,7 @@ static bool is_apart(const struct search *search, double value, const double pla
     return true;
 }
 
-static void add_point(struct search *search, int line, uint32_t a, uint32_t b)
+static void add_point(struct isoline_search *search, int line, uint32_t a, uint32_t b)
 {
     const struct asset_view *view = &search->asset->file->view;
     const struct scalar *values = search->field->shown;
@@ -81,7 +81,7 @@ static void add_point(struct search *search, int line, uint32_t a, uint32_t b)
     search->counts[line]++;
 }
 
-static void search_edge(struct search *search, uint32_t a, uint32_t b)
+static void search_edge(struct isoline_search *search, uint32_t a, uint32_t b)
 {
     const struct scalar *values = search->field->shown;
     double low = fminf(values[a].value, values[b].value), high = fmaxf(values[a].value, values[b].value);
@@ -97,7 +97,7 @@ size_t isolines_vertex_count(const struct scene_asset *asset)
     return coarse_level(asset)->vertex_count;
 }
 
-static void search_asset(struct search *search)
+static void search_asset(struct isoline_search *search)
 {
     const struct asset_view *view = &search->asset->file->view;
     search->size_m = coarse_size_m(search->asset);
@@ -123,7 +123,7 @@ static void update_set(struct isoline_set *set, const struct scene_asset *asset,
     set->content = field->content;
     set->line_count = line_count;
     memcpy(set->lines, lines, bytes);
-    search_asset(&(struct search){ .asset = asset, .field = field, .set = set });
+    search_asset(&(struct isoline_search){ .asset = asset, .field = field, .set = set });
 }
 
 /* --- which of them are seen -------------------------------------------------------------------------------------------------- */

@@ -14,7 +14,7 @@
 static const double MARKER_PX = 9;                       /* so near, the marker is meant */
 static const double MEASURED_PX = 3, MEASURED_M = 0.005; /* so near a sensor, its reading is what is seen */
 
-struct spot { /* one pick */
+struct pick_spot { /* one pick */
     const struct scene *scene;
     const struct view *view; /* a whole one */
     const struct snapshot *snapshot;
@@ -58,7 +58,7 @@ static void ray_through(const struct view *view, double x_px, double y_px, struc
 }
 
 /* A ray towards it meets nothing before. */
-static bool in_sight(const struct spot *spot, const struct marker_place *place, double x_px, double y_px)
+static bool in_sight(const struct pick_spot *spot, const struct marker_place *place, double x_px, double y_px)
 {
     struct ray ray;
     struct raycast_hit hit;
@@ -72,7 +72,7 @@ static bool in_sight(const struct spot *spot, const struct marker_place *place, 
     return hit.asset < 0 || hit.t * sqrt(square) > ahead / sqrt(square) - markers_slack_m(&spot->scene->assets[place->asset]);
 }
 
-static void find_sensor(const struct spot *spot, const struct trial *trial, double x_px, double y_px, struct pick *out)
+static void find_sensor(const struct pick_spot *spot, const struct trial *trial, double x_px, double y_px, struct pick *out)
 {
     struct marker_iterator iterator = { .scene = spot->scene, .trial = trial };
     struct marker_place place;
@@ -98,7 +98,7 @@ static void find_sensor(const struct spot *spot, const struct trial *trial, doub
 
 /* --- what the field says ----------------------------------------------------------------------------------------------------- */
 
-static double distance_of(const struct spot *spot, const struct field_sensor *sensor, const double place_file_m[3])
+static double distance_of(const struct pick_spot *spot, const struct field_sensor *sensor, const double place_file_m[3])
 {
     const struct asset_view *file = &spot->scene->assets[spot->hit.asset].file->view;
     double sum = 0;
@@ -126,7 +126,7 @@ static void insert(struct pick *out, const struct pick_sensor *sensor)
     out->nearest[at] = *sensor;
 }
 
-static void read_sensors(const struct spot *spot, struct field *field, const struct field_params *params, struct pick *out)
+static void read_sensors(const struct pick_spot *spot, struct field *field, const struct field_params *params, struct pick *out)
 {
     const struct scene_asset *asset = &spot->scene->assets[spot->hit.asset];
     struct field_sensor *sensors = NULL;
@@ -148,14 +148,14 @@ static void read_sensors(const struct spot *spot, struct field *field, const str
     mem_free(sensors);
 }
 
-static bool is_measured(const struct spot *spot, const struct field_params *params, const struct pick *pick)
+static bool is_measured(const struct pick_spot *spot, const struct field_params *params, const struct pick *pick)
 {
     return pick->state == PICK_BETWEEN && params->interpolation != INTERPOLATION_PAPER && params->show != SHOW_DISTANCE &&
            !field_params_cover(params) && pick->nearest_count > 0 && !pick->assumed &&
            pick->nearest[0].distance_m <= fmax(MEASURED_M, MEASURED_PX * spot->meter_per_pixel);
 }
 
-static void read_place(struct spot *spot, struct field *field, struct pick *out)
+static void read_place(struct pick_spot *spot, struct field *field, struct pick *out)
 {
     struct field_params params = spot->view->field;
     if (params.show == SHOW_OPERATOR)
@@ -182,7 +182,7 @@ void pick_at(const struct scene *scene, struct field *field, const struct view *
     bool right = view->split && x_px >= view_left_px(view);
     view_half(view, right, &half);
     x_px -= right ? view_left_px(view) : 0;
-    struct spot spot = { .scene = scene, .view = &half, .snapshot = snapshot };
+    struct pick_spot spot = { .scene = scene, .view = &half, .snapshot = snapshot };
     struct ray ray;
     *out = (struct pick){ .asset = -1, .sensor = -1, .value = NAN, .data_utc_ns = snapshot->taken_utc_ns };
     if (x_px < 0 || y_px < 0 || x_px >= half.width_px || y_px >= half.height_px)

@@ -17,7 +17,7 @@ static const double LEAST_DOT = -0.5; /* a direction that turns by more than 120
 
 /* --- neighbours ------------------------------------------------------------------------------------------------------------- */
 
-struct side { /* of a triangle */
+struct triangle_side { /* of a triangle */
     float low[3], high[3];
     uint32_t at; /* 3 times the triangle plus the corner that it begins at */
 };
@@ -30,7 +30,7 @@ static int compare_sides(const void *a, const void *b)
 /* Corners are split where normals or materials differ: what counts is where they are. Sides that more than two triangles share are ends. */
 static void find_neighbours(struct stroke_set *set, const struct asset_view *view, const struct asset_level *level, size_t tri_count)
 {
-    struct side *sides = mem_array(3 * tri_count + 1, sizeof(*sides));
+    struct triangle_side *sides = mem_array(3 * tri_count + 1, sizeof(*sides));
     size_t tri = 0;
     set->across = mem_array(tri_count + 1, sizeof(*set->across));
     memset(set->across, 0xff, tri_count * sizeof(*set->across));
@@ -39,7 +39,7 @@ static void find_neighbours(struct stroke_set *set, const struct asset_view *vie
         const uint32_t *corners = view->indices + primitive->first_index;
         for (uint32_t i = 0; i < primitive->index_count; i += 3, tri++)
             for (uint32_t e = 0; e < 3; e++) {
-                struct side *side = &sides[3 * tri + e];
+                struct triangle_side *side = &sides[3 * tri + e];
                 for (int c = 0; c < 3; c++) { /* + 0: -0 is 0 */
                     side->low[c] = view->positions_m[corners[i + e]][c] + 0.0f;
                     side->high[c] = view->positions_m[corners[i + (e + 1) % 3]][c] + 0.0f;

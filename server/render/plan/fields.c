@@ -215,13 +215,13 @@ static void make_room(struct fields *fields, const struct fields_ask *ask, const
     }
 }
 
-struct showing {
+struct fields_shown {
     struct fields_entry **entries;
 };
 
 static void show_some(void *arg, size_t begin, size_t end)
 {
-    const struct showing *showing = arg;
+    const struct fields_shown *showing = arg;
     for (size_t i = begin; i < end; i++)
         show(showing->entries[i]);
 }
@@ -239,7 +239,7 @@ static void take_sensors(const struct fields *fields, struct fields_entry *entry
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
 {
     struct fields_entry **changed = mem_array(ask->asset_count, sizeof(*changed));
-    struct showing showing = { changed };
+    struct fields_shown showing = { changed };
     size_t count = 0;
     field_update_all(fields->field, ask->assets, ask->counts, ask->asset_count, ask->params, ask->snapshot);
     for (size_t i = 0; i < ask->asset_count; i++) {

@@ -127,7 +127,7 @@ static bool model_init_reference(struct reference_model *model, struct log *log,
 
 bool reference_bind(struct reference *reference, int asset, GLuint sensors)
 {
-    const struct model *of = reference->gpu_scene->of_asset[asset];
+    const struct gl_model *of = reference->gpu_scene->of_asset[asset];
     struct reference_model *model = &reference->models[of - reference->gpu_scene->models];
     if (!model->distance_texture && !model_init_reference(model, reference->gpu_scene->gl->log, &of->file->view)) {
         model_finish_reference(model);

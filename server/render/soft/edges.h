@@ -7,7 +7,7 @@
 #include "render/soft/soft_impl.h"
 #include "render/soft/lanes.h"
 
-struct edge {
+struct raster_edge {
     float x, y, dx, dy; /* from its upper end */
     int32_t negative;   /* -1: what is negative lies inside; 0: what is not */
 };
@@ -28,21 +28,21 @@ SOFT_INLINE float largest(float a, float b, float c)
     return most > c ? most : c;
 }
 
-SOFT_INLINE void edge_init(struct edge *edge, const struct soft_vertex *p, const struct soft_vertex *q)
+SOFT_INLINE void edge_init(struct raster_edge *edge, const struct soft_vertex *p, const struct soft_vertex *q)
 {
     bool swap = q->y < p->y || (q->y == p->y && q->x < p->x);
     const struct soft_vertex *upper = swap ? q : p, *lower = swap ? p : q;
-    *edge = (struct edge){ upper->x, upper->y, lower->x - upper->x, lower->y - upper->y, swap ? -1 : 0 };
+    *edge = (struct raster_edge){ upper->x, upper->y, lower->x - upper->x, lower->y - upper->y, swap ? -1 : 0 };
 }
 
 /* Its part that is the same all along the row. */
-SOFT_INLINE float edge_row(const struct edge *edge, float y)
+SOFT_INLINE float edge_row(const struct raster_edge *edge, float y)
 {
     return edge->dx * (y - edge->y) + edge->dy * edge->x;
 }
 
 /* Below 0 where outside; by the sign alone, so that even -0 is on one side of the edge only. x: the pixels' middles. */
-SOFT_INLINE lanes_int edge_side(const struct edge *edge, float row, lanes x)
+SOFT_INLINE lanes_int edge_side(const struct raster_edge *edge, float row, lanes x)
 {
     return (lanes_int)(row - edge->dy * x) ^ edge->negative;
 }

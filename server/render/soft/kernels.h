@@ -5,7 +5,7 @@
 #define RENDER_SOFT_KERNELS_H
 #include "render/soft/tile.h"
 
-struct item;
+struct refined_item;
 struct refined;
 struct shaded_items;
 struct visibility_band;
@@ -26,13 +26,13 @@ struct soft_kernels {
     void (*color)(const struct raster *raster, const struct soft_rect *rect);
     /* --- of refined frames */
     /* Light on surfaces that show the field; where on them they are is kept. */
-    void (*shade_field)(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
+    void (*shade_field)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
     /* Likewise in a glossy look: fills out->gloss, too. */
-    void (*shade_gloss)(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
+    void (*shade_gloss)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
     /* Light on other surfaces. alphas: NULL: not asked for. */
-    void (*shade_surfaces)(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors, float *alphas);
+    void (*shade_surfaces)(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas);
     void (*shade_sky)(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
     /* Feature edges. */
     void (*ink_band)(const struct refined *refined, int band);
@@ -64,11 +64,11 @@ void soft_raster_faces(const struct soft_tile *tile, uint32_t mark);
 void soft_count_faces(const struct soft_tile *tile);
 void soft_look_again(struct soft_tile *tile, const struct soft_rect *blocks);
 void raster_color(const struct raster *raster, const struct soft_rect *rect);
-void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
+void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                          const struct shaded_items *out);
-void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
+void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                          const struct shaded_items *out);
-void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors, float *alphas);
+void refined_shade_surfaces(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas);
 void refined_shade_sky(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
 void refined_ink_band(const struct refined *refined, int band);
 

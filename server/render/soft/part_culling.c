@@ -102,7 +102,7 @@ static void find_meshes(void *arg, size_t begin, size_t end)
 }
 
 /* NULL: out of memory. */
-static const struct soft_parts *parts_of(struct raster *raster, const struct model *model, const struct model_level *level)
+static const struct soft_parts *parts_of(struct raster *raster, const struct gl_model *model, const struct model_level *level)
 {
     struct soft_parts **of_model = &raster->soft->parts[model - raster->soft->gpu_scene->models];
     if (!*of_model)
@@ -157,7 +157,7 @@ static void fill_mesh(struct raster *raster, struct soft_mesh *mesh, int index, 
 
 static bool add_asset(struct raster *raster, int asset, const struct model_level *level, bool both_sides)
 {
-    const struct model *model = raster->soft->gpu_scene->of_asset[asset];
+    const struct gl_model *model = raster->soft->gpu_scene->of_asset[asset];
     double file_from_plant[16], eye_m[3], eye[4];
     mem_grow(&raster->meshes, &raster->mesh_capacity, raster->mesh_count + 1, sizeof(*raster->meshes));
     mem_grow(&raster->found, &raster->found_capacity, raster->mesh_count + 1, sizeof(*raster->found));

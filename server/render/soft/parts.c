@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "render/soft/lanes.h"
 
-struct maker {
+struct parts_maker {
     struct soft_parts *parts;
     const struct asset_view *file;
     uint32_t *seen; /* by vertex of the file: the part that used it last, counted from 1 */
@@ -21,7 +21,7 @@ static uint32_t whole_lanes(uint32_t count)
     return (count + LANES - 1) / LANES * LANES;
 }
 
-static void add_vertex(struct maker *maker, struct soft_part *part, uint32_t vertex)
+static void add_vertex(struct parts_maker *maker, struct soft_part *part, uint32_t vertex)
 {
     struct soft_parts *parts = maker->parts;
     mem_grow(&parts->vertices, &parts->vertex_capacity, parts->vertex_count + 1, sizeof(*parts->vertices));
@@ -31,7 +31,7 @@ static void add_vertex(struct maker *maker, struct soft_part *part, uint32_t ver
 }
 
 /* False: there are too many vertices for another triangle. */
-static bool add_triangle(struct maker *maker, struct soft_part *part, const uint32_t *indices)
+static bool add_triangle(struct parts_maker *maker, struct soft_part *part, const uint32_t *indices)
 {
     uint32_t part_number = (uint32_t)maker->parts->part_count + 1, fresh = 0;
     for (int i = 0; i < 3; i++)
@@ -98,7 +98,7 @@ static int way_of(const float n[3])
 }
 
 /* Into the parts, in that order. */
-static void write_triangles(const struct maker *maker, const struct soft_part *part)
+static void write_triangles(const struct parts_maker *maker, const struct soft_part *part)
 {
     struct soft_parts *parts = maker->parts;
     struct plane_of_triangle planes[PART_TRIANGLES];
@@ -125,7 +125,7 @@ static void write_triangles(const struct maker *maker, const struct soft_part *p
     }
 }
 
-static void write_places(const struct maker *maker, const struct soft_part *part)
+static void write_places(const struct parts_maker *maker, const struct soft_part *part)
 {
     size_t rounded = whole_lanes(part->vertex_count);
     float *out = maker->parts->places_m + 3 * (size_t)part->first_vertex;
@@ -135,7 +135,7 @@ static void write_places(const struct maker *maker, const struct soft_part *part
 
 /* --- parts ------------------------------------------------------------------------------------------------------------------ */
 
-static void end_part(struct maker *maker, struct soft_part *part)
+static void end_part(struct parts_maker *maker, struct soft_part *part)
 {
     struct soft_parts *parts = maker->parts;
     part->rounded = (uint16_t)whole_lanes(part->triangle_count);
@@ -160,7 +160,7 @@ static void end_part(struct maker *maker, struct soft_part *part)
 }
 
 /* Most are one part. */
-static void add_cluster(struct maker *maker, const struct asset_cluster *cluster, const struct asset_primitive *primitive)
+static void add_cluster(struct parts_maker *maker, const struct asset_cluster *cluster, const struct asset_primitive *primitive)
 {
     for (uint32_t done = 0; done < cluster->index_count;) {
         struct soft_part part = {
@@ -185,7 +185,7 @@ static void add_cluster(struct maker *maker, const struct asset_cluster *cluster
 bool soft_parts_init(struct soft_parts *parts, const struct asset_view *file, const struct model_level *level)
 {
     *parts = (struct soft_parts){ 0 };
-    struct maker maker = {
+    struct parts_maker maker = {
         .parts = parts,
         .file = file,
         .seen = mem_try_array(level->vertex_count, sizeof(*maker.seen)),

@@ -81,7 +81,7 @@ SOFT_INLINE vec mirrored(const struct environment_light *surroundings, vec r, la
     return out;
 }
 
-struct surface {
+struct pbr_surface {
     vec base, normal;
     lanes metallic, roughness, open, sun_visible;
 };
@@ -102,7 +102,7 @@ struct sky_light { /* what a surface gets of it, whatever its colour */
     vec irradiance, seen;
 };
 
-SOFT_INLINE struct sky_light sky_light_at(const struct environment_light *surroundings, const struct surface *s, vec v)
+SOFT_INLINE struct sky_light sky_light_at(const struct environment_light *surroundings, const struct pbr_surface *s, vec v)
 {
     lanes n_v = lanes_clamp(dot(s->normal, v), 0, 1), a2 = s->roughness * s->roughness;
     vec reflected = plus(times(s->normal, 2.0f * dot(s->normal, v)), times(v, all(-1)));
@@ -113,7 +113,7 @@ SOFT_INLINE struct sky_light sky_light_at(const struct environment_light *surrou
     };
 }
 
-SOFT_INLINE vec sky_shade(const struct sky_light *sky, const struct surface *s)
+SOFT_INLINE vec sky_shade(const struct sky_light *sky, const struct pbr_surface *s)
 {
     struct brdf brdf = sky->brdf;
     vec f0 = between(grey(all((float)CLEAR_F0)), s->base, s->metallic), diffuse = times(s->base, 1.0f - s->metallic);
@@ -131,7 +131,7 @@ SOFT_INLINE lanes ggx_visible(lanes n_l, lanes n_v, lanes n_h, lanes alpha)
     return a2 / (d * d) * v;
 }
 
-SOFT_INLINE vec sun_shade(const struct surface *s, vec v, vec l)
+SOFT_INLINE vec sun_shade(const struct pbr_surface *s, vec v, vec l)
 {
     lanes n_v = most_of(dot(s->normal, v), all(1e-3f)), n_l = most_of(dot(s->normal, l), all(0));
     lanes roughness = most_of(s->roughness, all(0.1f));

@@ -5,7 +5,7 @@
 #include "render/soft/soft_impl.h"
 #include "render/soft/lanes.h"
 
-struct ink {
+struct mark_ink {
     int32_t last_row; /* of the colormap */
     float pattern_px;
     bool rich; /* there are lines, or the scale is logarithmic */
@@ -15,10 +15,10 @@ struct ink {
     const float *lines; /* as struct raster */
 };
 
-SOFT_INLINE struct ink ink_of(const struct raster *raster)
+SOFT_INLINE struct mark_ink ink_of(const struct raster *raster)
 {
     const struct frame_uniforms *block = &raster->block;
-    return (struct ink){
+    return (struct mark_ink){
         .last_row = (int32_t)block->shade[2],
         .pattern_px = block->scale[3],
         .rich = block->lines[0] > 0 || block->scale[2] > 0.5f,
@@ -67,7 +67,7 @@ SOFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
 }
 
 /* As field_color in shaders/field.glsl, but for patterns. value_x, value_y: by how much the value grows from pixel to pixel. */
-SOFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lanes row, const struct ink *ink)
+SOFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lanes row, const struct mark_ink *ink)
 {
     const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack), first = 1 + slack * columns, farthest = 1e6f;
     lanes none = { 0 }, slope = lanes_root(value_x * value_x + value_y * value_y), place;
@@ -101,7 +101,7 @@ SOFT_INLINE bool rule(float y, float pattern_px)
 
 /* Corners differ in their flags, or say that there is no data or that it is uncertain. */
 SOFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_int uncertain, lanes_int no_limits, lanes row, lanes x,
-                                    float y, const struct ink *ink)
+                                    float y, const struct mark_ink *ink)
 {
     lanes_int r = whole_within(row, ink->last_row) * COLORMAP_COLUMNS + (int32_t)MARK_FIELD + COLORMAP_PATTERNS;
     lanes_int dark = hatch(x, y, ink->pattern_px), dots = stipple(x, y, ink->pattern_px);

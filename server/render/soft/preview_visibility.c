@@ -11,7 +11,7 @@ struct keeping {
     struct visibility_buffer *buffer;
 };
 
-struct spot { /* a triangle, in the picture */
+struct preview_triangle { /* a triangle, in the picture */
     uint32_t id;
     uint32_t number;      /* in the band */
     double weights[3][3]; /* of x, y and 1: of its corners, up to a factor */
@@ -35,7 +35,7 @@ void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], doub
     }
 }
 
-static void find_spot(const struct keeping *keeping, struct visibility_band *band, uint32_t id, struct spot *spot)
+static void find_spot(const struct keeping *keeping, struct visibility_band *band, uint32_t id, struct preview_triangle *spot)
 {
     const struct raster *raster = keeping->raster;
     struct soft_triangle triangle = { 0 };
@@ -49,7 +49,7 @@ static void find_spot(const struct keeping *keeping, struct visibility_band *ban
     soft_weights(mesh, triangle.vertices, spot->weights);
 }
 
-static uint32_t weights_at(const struct spot *spot, double x, double y)
+static uint32_t weights_at(const struct preview_triangle *spot, double x, double y)
 {
     double w[3], sum = 0;
     for (int i = 0; i < 3; i++) {
@@ -72,7 +72,7 @@ static void keep_band(const struct keeping *keeping, int number)
     const struct raster *raster = keeping->raster;
     struct visibility_buffer *buffer = keeping->buffer;
     struct visibility_band *band = &buffer->bands[number];
-    struct spot spots[SPOTS]; /* by id: neighbours in a row, and the rows above, show the same triangles */
+    struct preview_triangle spots[SPOTS]; /* by id: neighbours in a row, and the rows above, show the same triangles */
     for (int i = 0; i < SPOTS; i++)
         spots[i].id = UINT32_MAX;
     int end = (number + 1) * buffer->band_rows < buffer->height_px ? (number + 1) * buffer->band_rows : buffer->height_px;
@@ -85,7 +85,7 @@ static void keep_band(const struct keeping *keeping, int number)
                 buffer->surfaces[to + x] = VISIBILITY_FIXED | (out[x] & 0xffffff);
                 continue;
             }
-            struct spot *spot = &spots[(id ^ id >> 8) % SPOTS];
+            struct preview_triangle *spot = &spots[(id ^ id >> 8) % SPOTS];
             if (spot->id != id)
                 find_spot(keeping, band, id, spot);
             buffer->surfaces[to + x] = spot->number;

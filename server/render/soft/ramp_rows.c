@@ -10,7 +10,7 @@
 
 enum { WHOLE = 8 }; /* bits of a channel */
 
-struct rows {
+struct ramp_search {
     const uint32_t *muted, *own;
     size_t steps;
     int bits; /* WHOLE: by all their colours; fewer: by so many bits of the brightest ones */
@@ -21,12 +21,12 @@ static int by_number(uint32_t a, uint32_t b)
     return (a > b) - (a < b);
 }
 
-static uint32_t brightest(const struct rows *rows, const uint32_t *colors, uint32_t row)
+static uint32_t brightest(const struct ramp_search *rows, const uint32_t *colors, uint32_t row)
 {
     return colors[(row + 1) * rows->steps - 1] & (0x010101u * (0xffu & ~0u << (WHOLE - rows->bits)));
 }
 
-static int by_look(const struct rows *rows, uint32_t a, uint32_t b)
+static int by_look(const struct ramp_search *rows, uint32_t a, uint32_t b)
 {
     if (rows->bits < WHOLE)
         return by_number(brightest(rows, rows->own, a), brightest(rows, rows->own, b));
@@ -43,7 +43,7 @@ static int compare(const void *a, const void *b, void *arg)
 }
 
 /* Writes for each row the first that looks the same; returns how many differ. */
-static size_t find_first(const struct rows *rows, size_t count, uint32_t *order, uint32_t *first)
+static size_t find_first(const struct ramp_search *rows, size_t count, uint32_t *order, uint32_t *first)
 {
     size_t different = 0;
     for (size_t i = 0; i < count; i++)
@@ -59,7 +59,7 @@ static size_t find_first(const struct rows *rows, size_t count, uint32_t *order,
 
 size_t ramp_rows_pack(uint32_t *muted, uint32_t *own, size_t count, size_t steps, size_t most, uint32_t *row_of_material)
 {
-    struct rows rows = { .muted = muted, .own = own, .steps = steps, .bits = WHOLE };
+    struct ramp_search rows = { .muted = muted, .own = own, .steps = steps, .bits = WHOLE };
     uint32_t *order = mem_array(count, sizeof(*order)), *first = mem_array(count, sizeof(*first));
     while (find_first(&rows, count, order, first) > most && rows.bits > 1)
         rows.bits--;

@@ -20,10 +20,10 @@ void ramp_fill(const struct environment_light *sky, const double up[3], const st
 {
     vec n = { all((float)up[0]), all((float)up[1]), all((float)up[2]) };
     vec v = unit(plus(times(n, all(0.7f)), (vec){ 0.7f * n.y, 0.7f * n.z, 0.7f * n.x }));
-    struct surface surface = { .base = { all(material->mean[0]), all(material->mean[1]), all(material->mean[2]) },
-                               .normal = n,
-                               .metallic = all(material->metallic),
-                               .roughness = all(fmaxf(material->roughness, 0.6f)) };
+    struct pbr_surface surface = { .base = { all(material->mean[0]), all(material->mean[1]), all(material->mean[2]) },
+                                   .normal = n,
+                                   .metallic = all(material->metallic),
+                                   .roughness = all(fmaxf(material->roughness, 0.6f)) };
     vec glow = { all(material->emissive[0]), all(material->emissive[1]), all(material->emissive[2]) };
     struct sky_light around = sky_light_at(sky, &surface, v);
     for (int first = 0; first < steps; first += LANES) {

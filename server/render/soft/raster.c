@@ -21,7 +21,7 @@ SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_sample 
 
 struct setup {
     float x, y; /* of the first corner: what planes start from */
-    struct edge edges[3];
+    struct raster_edge edges[3];
     struct plane depth, a, b, inverse_w;
     struct plane no_data, uncertain, no_limits; /* where flags are set; as struct near_patterns */
     uint32_t mark, flags;
@@ -88,7 +88,7 @@ SOFT_INLINE void setup_init(struct setup *setup, const struct soft_vertex v[3], 
 }
 
 /* w: 1 over inverse_w there; looked at if there is perspective. */
-SOFT_INLINE lanes_int field_marks(const struct setup *setup, const struct ink *ink, lanes a, lanes b, lanes w)
+SOFT_INLINE lanes_int field_marks(const struct setup *setup, const struct mark_ink *ink, lanes a, lanes b, lanes w)
 {
     lanes none = { 0 }, x = none + setup->a.dx, y = none + setup->a.dy;
     if (!ink->rich)
@@ -100,7 +100,7 @@ SOFT_INLINE lanes_int field_marks(const struct setup *setup, const struct ink *i
     return rich_mark(a, x, y, b, ink);
 }
 
-SOFT_INLINE lanes_int marks_at(const struct setup *setup, const struct ink *ink, lanes x, float y)
+SOFT_INLINE lanes_int marks_at(const struct setup *setup, const struct mark_ink *ink, lanes x, float y)
 {
     lanes from_x = x - setup->x;
     float from_y = y - setup->y;
@@ -131,7 +131,7 @@ SOFT_INLINE lanes_int marks_at(const struct setup *setup, const struct ink *ink,
 SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *right)
 {
     for (int e = 0; e < 3; e++) {
-        const struct edge *edge = &setup->edges[e];
+        const struct raster_edge *edge = &setup->edges[e];
         if (edge->dy < 1e-3f)
             continue;
         float x = edge->x + edge->dx * ((y - edge->y) / edge->dy);
@@ -155,7 +155,7 @@ SOFT_INLINE lanes_int leave_out_holes(const struct soft_cutout *cutout, lanes x,
 
 /* cutout: NULL: it has no holes. */
 SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
-                           const struct setup *setup, const struct soft_cutout *cutout, const struct ink *ink)
+                           const struct setup *setup, const struct soft_cutout *cutout, const struct mark_ink *ink)
 {
     bool wide = face->right - face->left >= 2 * LANES;
     int last = tile->rect.right + 1 - LANES; /* beyond the tile another thread draws */
@@ -201,7 +201,7 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sampl
 
 /* What is at most four wide, two rows of it. */
 SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
-                             const struct small *small, int l, int top, uint32_t mark, const struct ink *ink)
+                             const struct small *small, int l, int top, uint32_t mark, const struct mark_ink *ink)
 {
     int last_left = tile->rect.right + 1 - LANES / 2, last_top = tile->rect.bottom - 1;
     int left = face->left < last_left ? face->left : last_left;
@@ -211,7 +211,7 @@ SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sam
 /* Kind by kind, or the processor would guess wrong with each. In this order on every machine: of what lies at one depth the last one
    stays. */
 SOFT_INLINE void draw_kinds(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
-                            const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct ink *ink)
+                            const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct mark_ink *ink)
 {
     for (uint32_t bits = kinds->one; bits; bits &= bits - 1)
         draw_by_one(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top, mark, ink);
@@ -232,7 +232,7 @@ SOFT_INLINE void draw_kinds(const struct soft_tile *tile, const struct soft_samp
 }
 
 SOFT_INLINE void draw_eight(const struct soft_tile *tile, const struct soft_face *const faces[LANES], int count, uint32_t mark,
-                            const struct ink *ink)
+                            const struct mark_ink *ink)
 {
     struct small small;
     struct eight_faces eight = read_faces(faces);
@@ -245,7 +245,7 @@ SOFT_INLINE void draw_eight(const struct soft_tile *tile, const struct soft_face
 
 /* --- all -------------------------------------------------------------------------------------------------------------------- */
 
-static void draw_any(const struct soft_tile *tile, const struct soft_face *face, uint32_t mark, const struct ink *ink)
+static void draw_any(const struct soft_tile *tile, const struct soft_face *face, uint32_t mark, const struct mark_ink *ink)
 {
     struct soft_vertex v[3];
     struct near_patterns patterns[3];
@@ -274,7 +274,7 @@ static uint32_t mark_of_back(const struct soft_tile *tile, const struct soft_fac
 
 void soft_raster_faces(const struct soft_tile *tile, uint32_t mark)
 {
-    struct ink ink = ink_of(tile->raster);
+    struct mark_ink ink = ink_of(tile->raster);
     bool one_by_one = tile->material->cut_out || tile->draws == DRAW_BLENDED;
     const struct soft_face *waiting[LANES];
     int count = 0;
@@ -304,7 +304,7 @@ void soft_raster_faces(const struct soft_tile *tile, uint32_t mark)
 
 static void count_face(const struct soft_tile *tile, const struct soft_face *face)
 {
-    struct edge edges[3];
+    struct raster_edge edges[3];
     struct soft_vertex v[3];
     int32_t by = face->triangle & FACE_BACK ? 1 : -1;
     for (int i = 0; i < 3; i++)

@@ -198,14 +198,14 @@ static bool find_ghosts(struct refined *refined, const struct frame *frame)
     return buffer->veil && raster_make_room(raster, frame) && raster_ghosts(raster, buffer->veil, buffer->veil_bgr);
 }
 
-struct piece {
+struct refined_piece {
     struct refined *refined;
     size_t first;
 };
 
 static void shade_some(void *arg, size_t begin, size_t end)
 {
-    const struct piece *piece = arg;
+    const struct refined_piece *piece = arg;
     for (size_t band = begin; band < end; band++)
         if (!refined_shade_band(piece->refined, (int)(piece->first + band)))
             __atomic_store_n(&piece->refined->failed, true, __ATOMIC_RELAXED);
@@ -213,7 +213,7 @@ static void shade_some(void *arg, size_t begin, size_t end)
 
 static void ink_some(void *arg, size_t begin, size_t end)
 {
-    const struct piece *piece = arg;
+    const struct refined_piece *piece = arg;
     for (size_t band = begin; band < end; band++)
         piece->refined->raster.soft->kernels->ink_band(piece->refined, (int)(piece->first + band));
 }
@@ -250,7 +250,7 @@ bool refined_step(struct refined *refined, const struct frame_context *context, 
 {
     struct raster *raster = &refined->raster;
     struct workers *workers = refined->raster.soft->workers;
-    struct piece piece = { .refined = refined };
+    struct refined_piece piece = { .refined = refined };
     size_t begin = 0, end = 0, bands = refined->buffer ? (size_t)refined->buffer->band_count : 0;
     bool done = true;
     if (refined->failed)

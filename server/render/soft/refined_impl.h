@@ -47,7 +47,7 @@ struct refined {
     float ground_step[3];                              /* likewise off the ground */
 };
 
-struct item { /* a surface in a pixel */
+struct refined_item { /* a surface in a pixel */
     struct soft_triangle triangle;
     float x, y;     /* in the picture, where it is shaded */
     uint16_t share; /* of VISIBILITY_SHARES */
@@ -64,7 +64,7 @@ void refined_raster_band(const struct refined *refined, int band, const struct s
                          struct soft_fragments *fragments);
 bool refined_shade_band(const struct refined *refined, int band); /* false: out of memory */
 /* Keeps the number in the band of the item's triangle, and where on it the item is: at that place of `out`. */
-void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct item *item, float w1, float w2,
+void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct refined_item *item, float w1, float w2,
                         const struct shaded_items *out, size_t at);
 
 #endif

@@ -92,7 +92,7 @@ static inline float column_of_carried(const struct coloring *coloring, float car
     return coloring->log ? column_of(lanes_log2((lanes){ 0 } + carried)[0], coloring->scale) : carried;
 }
 
-struct place { /* of the field: what its corners carry, and their weights */
+struct pixel_place { /* of the field: what its corners carry, and their weights */
     float carried[3], weights[3];
     uint32_t flags[3];
     const struct visibility_slopes *slopes;
@@ -100,7 +100,7 @@ struct place { /* of the field: what its corners carry, and their weights */
     float x, y;
 };
 
-static uint32_t color_of_place(const struct coloring *coloring, const struct place *place)
+static uint32_t color_of_place(const struct coloring *coloring, const struct pixel_place *place)
 {
     const uint32_t *colors = coloring->colormap + place->row * COLORMAP_COLUMNS;
     const float *w = place->weights;
@@ -131,7 +131,7 @@ static uint32_t flagged_color(const struct coloring *coloring, const struct visi
                               uint8_t row, float x, float y)
 {
     float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT;
-    struct place place = { .weights = { 1 - w1 - w2, w1, w2 }, .row = row, .x = x, .y = y };
+    struct pixel_place place = { .weights = { 1 - w1 - w2, w1, w2 }, .row = row, .x = x, .y = y };
     for (int i = 0; i < 3; i++) {
         place.carried[i] = coloring->buffer->plain[band->triangles[triangle][i]];
         place.flags[i] = coloring->buffer->flags[band->triangles[triangle][i]];

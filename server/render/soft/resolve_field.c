@@ -6,12 +6,12 @@
 
 /* --- the field --------------------------------------------------------------------------------------------------------------- */
 
-void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
-                                     const struct shaded_items *out)
+void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
+                         const struct shaded_items *out)
 {
     const float *shade = refined->raster.block.shade;
     for (size_t first = 0; first < count; first += LANES) {
-        struct spot spot;
+        struct eight_points spot;
         size_t some = count - first < LANES ? count - first : LANES;
         look(refined, items + first, some, false, &spot);
         vec n = facing(&spot, view_of(refined, &spot));

@@ -9,7 +9,7 @@
 #include "render/soft/refined_impl.h"
 #include "render/soft/section_colors.h"
 
-struct group { /* samples of a pixel that show one surface */
+struct sample_group { /* samples of a pixel that show one surface */
     const struct soft_triangle *triangle;
     float x, y; /* sums of where they are */
     int count;
@@ -26,8 +26,8 @@ struct mixed { /* a pixel with several surfaces: its items in the row */
     uint32_t first_field, first_surface;
 };
 
-struct row { /* of pixels; all arrays hold SAMPLES for each */
-    struct item *field, *surfaces;
+struct refined_row { /* of pixels; all arrays hold SAMPLES for each */
+    struct refined_item *field, *surfaces;
     int *field_columns, *surface_columns; /* of pixels that show nothing else; -1: of a mixed one */
     struct mixed *mixed;
     uint8_t *sky;  /* per pixel: some of it is seen */
@@ -40,12 +40,12 @@ struct row { /* of pixels; all arrays hold SAMPLES for each */
     void *memory;
 };
 
-static bool row_init(struct row *row, int pitch_px)
+static bool row_init(struct refined_row *row, int pitch_px)
 {
     size_t pixels = (size_t)pitch_px, most = pixels * SAMPLES;
-    size_t bytes = most * (2 * sizeof(struct item) + 2 * sizeof(int) + 3 * sizeof(uint32_t) + sizeof(*row->gloss) + 1) +
+    size_t bytes = most * (2 * sizeof(struct refined_item) + 2 * sizeof(int) + 3 * sizeof(uint32_t) + sizeof(*row->gloss) + 1) +
                    pixels * (sizeof(struct mixed) + 2 + sizeof(uint32_t)) + 64;
-    *row = (struct row){ .memory = mem_try_array(bytes, 1) };
+    *row = (struct refined_row){ .memory = mem_try_array(bytes, 1) };
     uint8_t *at = row->memory;
     if (!at)
         return false;
@@ -98,7 +98,7 @@ static bool share_edge(const struct soft_triangle *a, const struct soft_triangle
 
 /* under: shares of the samples. triangles: room for those of the groups. */
 static int group_samples(struct recent *recent, const struct soft_sample samples[SAMPLES], size_t at, const uint16_t under[SAMPLES],
-                         struct soft_triangle triangles[SAMPLES], struct group groups[SAMPLES])
+                         struct soft_triangle triangles[SAMPLES], struct sample_group groups[SAMPLES])
 {
     int count = 0;
     for (int s = 0; s < SAMPLES; s++) {
@@ -111,7 +111,7 @@ static int group_samples(struct recent *recent, const struct soft_sample samples
             g++;
         if (g == count) {
             triangles[count] = *triangle;
-            groups[count] = (struct group){ .triangle = &triangles[count] };
+            groups[count] = (struct sample_group){ .triangle = &triangles[count] };
             count++;
         }
         groups[g].x += samples[s].x;
@@ -126,7 +126,7 @@ static int group_samples(struct recent *recent, const struct soft_sample samples
 
 struct layers {                      /* of a band */
     struct soft_fragments fragments; /* pixel by pixel, nearest first */
-    struct item *items;              /* by layer: a triangle in a pixel */
+    struct refined_item *items;      /* by layer: a triangle in a pixel */
     uint32_t *colors;
     float *alphas;
     size_t count, item_capacity, color_capacity, alpha_capacity;
@@ -165,9 +165,9 @@ static void shade_layers(struct recent *recent, struct layers *layers, int top, 
         }
         float over = 1.0f / (float)(end - i);
         mem_grow(&layers->items, &layers->item_capacity, layers->count + 1, sizeof(*layers->items));
-        layers->items[layers->count++] = (struct item){ .triangle = *triangle_of(recent, fragments[i].id),
-                                                        .x = (float)(fragments[i].pixel % pitch) + 0.5f + x * over,
-                                                        .y = (float)((size_t)top + fragments[i].pixel / pitch) + 0.5f + y * over };
+        layers->items[layers->count++] = (struct refined_item){ .triangle = *triangle_of(recent, fragments[i].id),
+                                                                .x = (float)(fragments[i].pixel % pitch) + 0.5f + x * over,
+                                                                .y = (float)((size_t)top + fragments[i].pixel / pitch) + 0.5f + y * over };
     }
     mem_grow(&layers->colors, &layers->color_capacity, layers->count, sizeof(*layers->colors));
     mem_grow(&layers->alphas, &layers->alpha_capacity, layers->count, sizeof(*layers->alphas));
@@ -206,7 +206,7 @@ static void blend(const struct layers *layers, size_t first, size_t end, uint16_
 
 /* --- rows ------------------------------------------------------------------------------------------------------------------------ */
 
-static void add_item(const struct refined *refined, struct row *row, const struct item *item, int column)
+static void add_item(const struct refined *refined, struct refined_row *row, const struct refined_item *item, int column)
 {
     const struct soft_mesh *mesh = &refined->raster.meshes[item->triangle.mesh];
     if (mesh->has_field && !(item->triangle.id & ID_BACK)) {
@@ -219,11 +219,11 @@ static void add_item(const struct refined *refined, struct row *row, const struc
 }
 
 /* first, end: what is blended over it. */
-static void add_mixed(struct recent *recent, struct row *row, const struct soft_sample samples[SAMPLES], size_t at, int column, int y,
-                      const struct layers *layers, size_t first, size_t end)
+static void add_mixed(struct recent *recent, struct refined_row *row, const struct soft_sample samples[SAMPLES], size_t at, int column,
+                      int y, const struct layers *layers, size_t first, size_t end)
 {
     struct soft_triangle triangles[SAMPLES];
-    struct group groups[SAMPLES];
+    struct sample_group groups[SAMPLES];
     uint16_t under[SAMPLES] = { SAMPLE_SHARE, SAMPLE_SHARE, SAMPLE_SHARE, SAMPLE_SHARE };
     struct mixed *mixed = &row->mixed[row->mixed_count++];
     *mixed = (struct mixed){ .column = column, .first_field = (uint32_t)row->field_count, .first_surface = (uint32_t)row->surface_count };
@@ -233,7 +233,7 @@ static void add_mixed(struct recent *recent, struct row *row, const struct soft_
     for (int g = 0; g < count; g++) {
         float over = 1.0f / (float)groups[g].count;
         float at_x = (float)column + 0.5f + groups[g].x * over, at_y = (float)y + 0.5f + groups[g].y * over;
-        struct item item = { *groups[g].triangle, at_x, at_y, groups[g].share };
+        struct refined_item item = { *groups[g].triangle, at_x, at_y, groups[g].share };
         if (item.share == VISIBILITY_SHARES) { /* one surface after all */
             row->mixed_count--;
             add_item(recent->refined, row, &item, column);
@@ -252,7 +252,7 @@ static void add_mixed(struct recent *recent, struct row *row, const struct soft_
 }
 
 /* layered: the first of the layers' fragments in this row; moved on. */
-static void sort_row(struct recent *recent, struct row *row, const struct soft_sample samples[SAMPLES], size_t start, int y,
+static void sort_row(struct recent *recent, struct refined_row *row, const struct soft_sample samples[SAMPLES], size_t start, int y,
                      const struct layers *layers, size_t *layered)
 {
     const struct raster *raster = &recent->refined->raster;
@@ -276,7 +276,7 @@ static void sort_row(struct recent *recent, struct row *row, const struct soft_s
             row->sky[column] = 1;
             row->any_sky = true;
         } else {
-            struct item item = { *triangle_of(recent, first), (float)column + 0.5f, (float)y + 0.5f, VISIBILITY_SHARES };
+            struct refined_item item = { *triangle_of(recent, first), (float)column + 0.5f, (float)y + 0.5f, VISIBILITY_SHARES };
             add_item(recent->refined, row, &item, column);
         }
     }
@@ -293,8 +293,8 @@ static uint32_t cap_at(const struct refined *refined, int column, int y)
     return (uint32_t)cap_color((lanes){ 0 } + ((float)column + 0.5f), (float)y + 0.5f, refined->raster.block.scale[3])[0];
 }
 
-static uint32_t keep_mixed(const struct refined *refined, struct visibility_band *band, const struct row *row, const struct mixed *from,
-                           int y)
+static uint32_t keep_mixed(const struct refined *refined, struct visibility_band *band, const struct refined_row *row,
+                           const struct mixed *from, int y)
 {
     struct visibility_mixed mixed = {
         .part_count = from->field_count,
@@ -325,7 +325,7 @@ static uint32_t keep_mixed(const struct refined *refined, struct visibility_band
     return VISIBILITY_MIXED | (uint32_t)band->mixed_count++;
 }
 
-static void keep_row(const struct refined *refined, struct visibility_band *band, const struct row *row, int y)
+static void keep_row(const struct refined *refined, struct visibility_band *band, const struct refined_row *row, int y)
 {
     struct visibility_buffer *buffer = refined->buffer;
     size_t start = (size_t)y * (size_t)buffer->width_px;
@@ -353,7 +353,7 @@ static void keep_row(const struct refined *refined, struct visibility_band *band
         surfaces[row->mixed[i].column] = keep_mixed(refined, band, row, &row->mixed[i], y);
 }
 
-void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct item *item, float w1, float w2,
+void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct refined_item *item, float w1, float w2,
                         const struct shaded_items *out, size_t at)
 {
     const struct soft_mesh *mesh = &refined->raster.meshes[item->triangle.mesh];
@@ -368,7 +368,7 @@ void refined_keep_place(const struct refined *refined, struct visibility_band *b
     }
 }
 
-static void shade_rows(struct recent *recent, int number, const struct soft_sample samples[SAMPLES], struct row *row,
+static void shade_rows(struct recent *recent, int number, const struct soft_sample samples[SAMPLES], struct refined_row *row,
                        const struct layers *layers)
 {
     size_t layered = 0;
@@ -394,7 +394,7 @@ bool refined_shade_band(const struct refined *refined, int number)
 {
     size_t pixels = REFINED_ROWS * (size_t)refined->raster.pitch_px;
     struct soft_sample samples[SAMPLES];
-    struct row row;
+    struct refined_row row;
     struct layers layers = { 0 };
     float *memory = mem_try_array(pixels, SAMPLES * (sizeof(float) + sizeof(uint32_t)));
     struct recent *recent = mem_new(sizeof(*recent));

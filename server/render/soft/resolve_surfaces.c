@@ -55,7 +55,7 @@ static void map_normal(const float dx[3], const float dy[3], float uv[3][2], con
 }
 
 static void wear_maps(const struct refined *refined, const struct soft_triangle *triangle, const struct soft_spread *spread, size_t i,
-                      struct surface *surface, vec *glow)
+                      struct pbr_surface *surface, vec *glow)
 {
     const struct soft_material *material = &refined->raster.soft->materials.at[triangle->material];
     const struct asset_view *file = refined->raster.meshes[triangle->mesh].file;
@@ -93,8 +93,8 @@ static void wear_maps(const struct refined *refined, const struct soft_triangle 
 }
 
 /* What textures make of these surfaces. alphas: NULL: not asked for. */
-SOFT_INLINE void wear(const struct refined *refined, const struct item *items, size_t count, const struct spot *spot,
-                      struct surface *surface, vec *glow, float *alphas)
+SOFT_INLINE void wear(const struct refined *refined, const struct refined_item *items, size_t count, const struct eight_points *spot,
+                      struct pbr_surface *surface, vec *glow, float *alphas)
 {
     for (size_t i = 0; i < count; i++) {
         const struct soft_triangle *triangle = &items[i].triangle;
@@ -116,21 +116,21 @@ SOFT_INLINE void wear(const struct refined *refined, const struct item *items, s
 /* --- light ---------------------------------------------------------------------------------------------------------------------- */
 
 struct lit { /* eight surfaces */
-    struct spot spot;
-    struct surface surface;
+    struct eight_points spot;
+    struct pbr_surface surface;
     vec v, l, glow; /* towards the eye and the sun */
 };
 
 /* alphas: NULL: not asked for. */
-SOFT_INLINE void see(const struct refined *refined, const struct item *items, size_t count, struct lit *lit, float *alphas)
+SOFT_INLINE void see(const struct refined *refined, const struct refined_item *items, size_t count, struct lit *lit, float *alphas)
 {
-    struct spot *spot = &lit->spot;
+    struct eight_points *spot = &lit->spot;
     look(refined, items, count, true, spot);
     lit->v = view_of(refined, spot);
     lit->l = towards_sun(refined);
     const lanes *m = spot->material;
     vec n = facing(spot, lit->v);
-    lit->surface = (struct surface){
+    lit->surface = (struct pbr_surface){
         .base = { m[BASE] * spot->attributes[TINT], m[BASE + 1] * spot->attributes[TINT + 1], m[BASE + 2] * spot->attributes[TINT + 2] },
         .normal = n,
         .metallic = m[METALLIC],
@@ -144,8 +144,7 @@ SOFT_INLINE void see(const struct refined *refined, const struct item *items, si
     wear(refined, items, count, spot, &lit->surface, &lit->glow, alphas);
 }
 
-void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors,
-                                        float *alphas)
+void refined_shade_surfaces(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas)
 {
     const struct soft_tones *tones = refined->raster.soft->tones;
     float bright = refined->raster.block.up[3]; /* of context; 0: as it is */
@@ -154,7 +153,7 @@ void refined_shade_surfaces(const struct refined *refined, const struct item *it
         struct lit lit;
         size_t some = count - first < LANES ? count - first : LANES;
         see(refined, items + first, some, &lit, alphas ? alphas + first : NULL);
-        const struct spot *spot = &lit.spot;
+        const struct eight_points *spot = &lit.spot;
         struct sky_light sky = sky_light_at(&refined->surroundings, &lit.surface, lit.v);
         vec v = lit.v, c = plus(sky_shade(&sky, &lit.surface), sun_shade(&lit.surface, v, lit.l));
         c = tone_map(plus(c, lit.glow));
@@ -176,15 +175,15 @@ void refined_shade_surfaces(const struct refined *refined, const struct item *it
 
 SOFT_INLINE vec glossy_light(const struct lit *lit, const struct sky_light *sky, float white)
 {
-    struct surface surface = lit->surface;
+    struct pbr_surface surface = lit->surface;
     surface.base = grey(all(white));
     return plus(times(sky_shade(sky, &surface), all((float)GLOSSY_SKY)),
                 times(sun_shade(&surface, lit->v, lit->l), all((float)GLOSSY_SUN)));
 }
 
 /* What comes back of a surface that is no metal is linear in its colour. */
-void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
-                                     const struct shaded_items *out)
+void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
+                         const struct shaded_items *out)
 {
     for (size_t first = 0; first < count; first += LANES) {
         struct lit lit;

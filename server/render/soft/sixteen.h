@@ -97,7 +97,8 @@ SOFT_INLINE sixteen_int many_within(sixteen x, int32_t high)
 
 /* As draw_stamp. */
 SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
-                           const struct small *small, int l, int left, int top, uint32_t mark, const struct ink *ink, int width, bool thin)
+                           const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, int width,
+                           bool thin)
 {
     size_t pitch = (size_t)tile->pitch_px, place = place_in(tile, left, top);
     sixteen x = many_x(width) + ((float)left + 0.5f + sample->x), y = many_y(width) + ((float)top + 0.5f + sample->y);
@@ -121,7 +122,7 @@ SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sampl
 }
 
 SOFT_INLINE void draw_by_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
-                              const struct small *small, int l, uint32_t mark, const struct ink *ink, int width)
+                              const struct small *small, int l, uint32_t mark, const struct mark_ink *ink, int width)
 {
     int height = MANY / width, last_left = tile->rect.right + 1 - width, last_top = tile->rect.bottom + 1 - height;
     for (int y = face->top; y <= face->bottom; y += height) {
@@ -137,13 +138,14 @@ SOFT_INLINE void draw_by_many(const struct soft_tile *tile, const struct soft_sa
 }
 
 /* There is room for a stamp of any shape, and no line to be drawn. */
-SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct ink *ink)
+SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct mark_ink *ink)
 {
     return !ink->rich && tile->rect.right - tile->rect.left >= MANY - 1 && tile->rect.bottom - tile->rect.top >= 3;
 }
 
 SOFT_INLINE void draw_sixteen(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
-                              const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct ink *ink)
+                              const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark,
+                              const struct mark_ink *ink)
 {
     int last_left = tile->rect.right - 3, last_top = tile->rect.bottom - 3;
     for (uint32_t bits = kinds->four; bits; bits &= bits - 1) {
@@ -161,7 +163,7 @@ SOFT_INLINE void draw_sixteen(const struct soft_tile *tile, const struct soft_sa
 
 #else
 
-SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct ink *ink)
+SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct mark_ink *ink)
 {
     (void)tile;
     (void)ink;
@@ -169,7 +171,8 @@ SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct ink
 }
 
 SOFT_INLINE void draw_sixteen(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
-                              const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct ink *ink)
+                              const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark,
+                              const struct mark_ink *ink)
 {
     (void)tile, (void)sample, (void)faces, (void)small, (void)kinds, (void)rows, (void)mark, (void)ink;
 }

@@ -29,7 +29,7 @@ SOFT_INLINE bool is_plain(const struct soft_corners *corners, const struct soft_
 
 struct small { /* eight of them: a row of lanes is one number of each */
     lanes x, y;
-    lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3]; /* as struct edge; edge_row: of dy x */
+    lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3]; /* as struct raster_edge; edge_row: of dy x */
     lanes_int negative[3];
     lanes at[3], dx[3], dy[3], low[3], high[3]; /* planes of depth, a, b */
     lanes_int thin;
@@ -150,7 +150,8 @@ SOFT_INLINE size_t place_in(const struct soft_tile *tile, int column, int row)
 
 /* left, top: of the stamp. two, thin: constants. */
 SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
-                            const struct small *small, int l, int left, int top, uint32_t mark, const struct ink *ink, bool two, bool thin)
+                            const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, bool two,
+                            bool thin)
 {
     size_t pitch = (size_t)tile->pitch_px, place = place_in(tile, left, top);
     lanes x = (two ? (lanes){ 0, 1, 2, 3, 0, 1, 2, 3 } : LANES_IOTA) + ((float)left + 0.5f + sample->x);
@@ -181,7 +182,7 @@ SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_samp
 
 /* Stamps do not leave the tile, where another thread draws: the last ones cover some pixels twice, which changes nothing. */
 SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
-                            const struct small *small, int l, uint32_t mark, const struct ink *ink, bool two)
+                            const struct small *small, int l, uint32_t mark, const struct mark_ink *ink, bool two)
 {
     int width = two ? LANES / 2 : LANES, height = two ? 2 : 1;
     int last_left = tile->rect.right + 1 - width, last_top = tile->rect.bottom + 1 - height;

@@ -44,7 +44,7 @@ static void copy_materials(struct soft *soft)
     soft->own_ramps = mem_array(soft->material_count * RAMP_STEPS, sizeof(*soft->own_ramps));
     soft->shading = mem_array(soft->material_count, sizeof(*soft->shading));
     for (size_t m = 0; m < gpu_scene->model_count; m++) {
-        const struct model *model = &gpu_scene->models[m];
+        const struct gl_model *model = &gpu_scene->models[m];
         size_t first = soft->material_of_model[m], bytes = model->material_count * RAMP_STEPS * sizeof(uint32_t);
         memcpy(soft->muted_ramps + first * RAMP_STEPS, model->ramp_texels[MODEL_MUTED], bytes);
         memcpy(soft->own_ramps + first * RAMP_STEPS, model->ramp_texels[MODEL_OWN], bytes);

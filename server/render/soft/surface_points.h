@@ -9,7 +9,7 @@
 #include "render/soft/refined_impl.h"
 #include "render/soft/vectors.h"
 
-struct spot {            /* eight of them */
+struct eight_points {    /* eight of them */
     lanes attributes[8]; /* NORMAL_X ... */
     lanes material[8];
     lanes x, y, depth; /* in the picture */
@@ -29,7 +29,7 @@ struct corners {                    /* of eight triangles, seen from the spots: 
 };
 
 /* As place_part in faces.c; a corner that has no place in the picture may lie behind the eye. */
-SOFT_INLINE void see_corners(const struct refined *refined, const struct item *item, int i, struct corners *out)
+SOFT_INLINE void see_corners(const struct refined *refined, const struct refined_item *item, int i, struct corners *out)
 {
     const struct raster *raster = &refined->raster;
     const struct soft_mesh *mesh = &raster->meshes[item->triangle.mesh];
@@ -83,7 +83,7 @@ SOFT_INLINE void keep_within(const struct corners *corners, lanes e[3])
 }
 
 /* Weights of the corners with perspective, kept within the triangle; the spot moves to the place that they have. */
-SOFT_INLINE void weigh(struct spot *spot, const struct corners *corners)
+SOFT_INLINE void weigh(struct eight_points *spot, const struct corners *corners)
 {
     lanes e[3], sum, depth = all(0), over = all(0), x = all(0), y = all(0);
     for (int k = 0; k < 3; k++) {
@@ -155,12 +155,13 @@ SOFT_INLINE void attributes_at(const struct refined *refined, const struct soft_
 }
 
 /* Up to eight items; the last one fills what is left. */
-SOFT_INLINE void look(const struct refined *refined, const struct item *items, size_t count, bool with_material, struct spot *spot)
+SOFT_INLINE void look(const struct refined *refined, const struct refined_item *items, size_t count, bool with_material,
+                      struct eight_points *spot)
 {
     struct corners corners;
     float rows[LANES][8], materials[LANES][8];
     for (int i = 0; i < LANES; i++) {
-        const struct item *item = &items[(size_t)i < count ? (size_t)i : count - 1];
+        const struct refined_item *item = &items[(size_t)i < count ? (size_t)i : count - 1];
         const struct soft_mesh *mesh = &refined->raster.meshes[item->triangle.mesh];
         see_corners(refined, item, i, &corners);
         spot->x[i] = item->x;
@@ -173,7 +174,7 @@ SOFT_INLINE void look(const struct refined *refined, const struct item *items, s
     }
     weigh(spot, &corners);
     for (int i = 0; i < LANES; i++) {
-        const struct item *item = &items[(size_t)i < count ? (size_t)i : count - 1];
+        const struct refined_item *item = &items[(size_t)i < count ? (size_t)i : count - 1];
         float weights[3] = { spot->weights[0][i], spot->weights[1][i], spot->weights[2][i] };
         attributes_at(refined, &item->triangle, weights, with_material, rows[i]);
     }
@@ -183,7 +184,7 @@ SOFT_INLINE void look(const struct refined *refined, const struct item *items, s
     spot->normal = unit((vec){ spot->attributes[NORMAL_X], spot->attributes[NORMAL_Y], spot->attributes[NORMAL_Z] });
 }
 
-SOFT_INLINE vec view_of(const struct refined *refined, const struct spot *spot)
+SOFT_INLINE vec view_of(const struct refined *refined, const struct eight_points *spot)
 {
     const float(*m)[3] = refined->raster.ray_from_pixel;
     lanes ray[3];
@@ -193,13 +194,13 @@ SOFT_INLINE vec view_of(const struct refined *refined, const struct spot *spot)
 }
 
 /* Two-sided surfaces from behind, and those whose normals are of the other side: -1. */
-SOFT_INLINE lanes_int is_turned(const struct spot *spot, vec view)
+SOFT_INLINE lanes_int is_turned(const struct eight_points *spot, vec view)
 {
     lanes towards = dot(spot->normal, view);
     return (spot->back & (towards < 0.0f)) | (towards < (float)MOST_AWAY);
 }
 
-SOFT_INLINE vec facing(const struct spot *spot, vec view)
+SOFT_INLINE vec facing(const struct eight_points *spot, vec view)
 {
     return times(spot->normal, lanes_choose(is_turned(spot, view), all(-1), all(1)));
 }
@@ -216,7 +217,7 @@ SOFT_INLINE lanes sun_visible(const struct soft_light *light, lanes s, lanes t, 
     return lanes_choose((s > 0.0f) & (s < 1.0f) & (t > 0.0f) & (t < 1.0f), 0.25f * sum, all(1));
 }
 
-SOFT_INLINE lanes sun_at(const struct refined *refined, const struct spot *spot, vec n)
+SOFT_INLINE lanes sun_at(const struct refined *refined, const struct eight_points *spot, vec n)
 {
     const float(*m)[4] = refined->sun_from_pixel;
     const float(*step)[3] = refined->sun_from_normal;

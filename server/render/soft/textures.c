@@ -45,12 +45,12 @@ static quad between_texels(const struct soft_texture *texture, int level, float 
 
 /* --- making --------------------------------------------------------------------------------------------------------------------- */
 
-struct making {
+struct texture_making {
     struct soft_materials *materials;
     uint8_t bytes[1 << 14]; /* sRGB, of linear light 0..1 */
 };
 
-static void make_level(const struct making *making, const struct soft_texture *texture, int level, uint8_t (*out)[4])
+static void make_level(const struct texture_making *making, const struct soft_texture *texture, int level, uint8_t (*out)[4])
 {
     int width = side_of(texture->width_px, level), height = side_of(texture->height_px, level);
     float by_x = (float)side_of(texture->width_px, level - 1) / (float)width;
@@ -67,7 +67,7 @@ static void make_level(const struct making *making, const struct soft_texture *t
 
 static void make_levels(void *arg, size_t begin, size_t end)
 {
-    const struct making *making = arg;
+    const struct texture_making *making = arg;
     for (size_t i = begin; i < end; i++) {
         const struct soft_texture *texture = &making->materials->textures[i];
         uint8_t(*out)[4] = texture->coarse;
@@ -113,9 +113,9 @@ static void describe_material(const struct asset_material *from, const struct so
     material->cut_out = from->alpha == ASSET_ALPHA_MASK && material->maps[MODEL_BASE_COLOR];
 }
 
-bool soft_materials_init(struct soft_materials *materials, const struct model *models, size_t model_count, struct workers *workers)
+bool soft_materials_init(struct soft_materials *materials, const struct gl_model *models, size_t model_count, struct workers *workers)
 {
-    struct making *making;
+    struct texture_making *making;
     size_t material_count = 0, texture_count = 0;
     bool good = true;
     for (size_t m = 0; m < model_count; m++) {

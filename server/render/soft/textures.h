@@ -32,7 +32,7 @@ struct soft_materials {
 
 /* Makes the materials of all models, one after another, with the coarser levels of their textures; the models must outlive them. Returns
    false when out of memory; call soft_materials_finish() in both cases. */
-bool soft_materials_init(struct soft_materials *materials, const struct model *models, size_t model_count, struct workers *workers);
+bool soft_materials_init(struct soft_materials *materials, const struct gl_model *models, size_t model_count, struct workers *workers);
 void soft_materials_finish(struct soft_materials *materials);
 
 /* Weights of a triangle's corners at a place of the picture, and how they change from pixel to pixel there. */

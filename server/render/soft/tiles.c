@@ -7,13 +7,13 @@
 
 #include "base/mem.h"
 
-struct entry {      /* of a tile's list */
+struct tile_entry { /* of a tile's list */
     uint64_t order; /* nearest first; then as found */
     uint32_t mesh, item;
 };
 
-struct list {
-    struct entry *entries;
+struct tile_list {
+    struct tile_entry *entries;
     size_t count, capacity;
 };
 
@@ -31,11 +31,11 @@ static uint32_t bits_of(float x)
 
 static int by_order(const void *a, const void *b)
 {
-    uint64_t x = ((const struct entry *)a)->order, y = ((const struct entry *)b)->order;
+    uint64_t x = ((const struct tile_entry *)a)->order, y = ((const struct tile_entry *)b)->order;
     return (x > y) - (x < y);
 }
 
-static void fill_list(const struct soft_tile *tile, struct list *list)
+static void fill_list(const struct soft_tile *tile, struct tile_list *list)
 {
     const struct raster *raster = tile->raster;
     for (size_t m = 0; m < raster->mesh_count; m++) {
@@ -46,7 +46,7 @@ static void fill_list(const struct soft_tile *tile, struct list *list)
         for (size_t i = 0; i < found->count; i++)
             if (overlap(&found->items[i].rect, &tile->rect)) {
                 uint64_t order = (uint64_t)(UINT32_MAX - bits_of(found->items[i].near)) << 32 | list->count;
-                list->entries[list->count++] = (struct entry){ order, (uint32_t)m, (uint32_t)i };
+                list->entries[list->count++] = (struct tile_entry){ order, (uint32_t)m, (uint32_t)i };
             }
     }
     if (list->count > 1) /* where there is none, there may be no array */
@@ -149,7 +149,7 @@ static bool is_drawn(const struct soft_tile *tile)
     return tile->draws == DRAW_ALL || blended == (tile->draws == DRAW_BLENDED);
 }
 
-static void draw_list(struct soft_tile *tile, const struct list *list)
+static void draw_list(struct soft_tile *tile, const struct tile_list *list)
 {
     const struct raster *raster = tile->raster;
     for (size_t i = 0; i < list->count; i++) {
@@ -171,7 +171,7 @@ static void look_at_all(struct soft_tile *tile)
 }
 
 /* Before all else: what is behind a body that is cut open is hidden. */
-static void draw_caps(struct soft_tile *tile, const struct list *list)
+static void draw_caps(struct soft_tile *tile, const struct tile_list *list)
 {
     const struct raster *raster = tile->raster;
     for (size_t i = 0; i < list->count; i++) {
@@ -199,7 +199,7 @@ static int columns_of(const struct raster *raster)
     return (raster->pitch_px + TILE_WIDTH_PX - 1) / TILE_WIDTH_PX;
 }
 
-static void draw_tile(const struct raster *raster, int number, enum soft_output output, struct list *list)
+static void draw_tile(const struct raster *raster, int number, enum soft_output output, struct tile_list *list)
 {
     struct soft_tile tile; /* not set to anything: corners and faces are large, and few are used */
     int left = number % columns_of(raster) * TILE_WIDTH_PX, top = number / columns_of(raster) * TILE_HEIGHT_PX;
@@ -228,7 +228,7 @@ void raster_samples(const struct raster *raster, const struct soft_rect *rect, c
                     float reach_px, struct soft_fragments *fragments)
 {
     struct soft_tile tile;
-    struct list list = { 0 };
+    struct tile_list list = { 0 };
     tile.raster = raster;
     tile.rect = *rect;
     memcpy(tile.samples, samples, sizeof(tile.samples));
@@ -247,16 +247,16 @@ void raster_samples(const struct raster *raster, const struct soft_rect *rect, c
     mem_free(list.entries);
 }
 
-struct drawing {
+struct tile_drawing {
     const struct raster *raster;
     enum soft_output output;
 };
 
 static void draw_tiles(void *arg, size_t begin, size_t end)
 {
-    const struct drawing *drawing = arg;
+    const struct tile_drawing *drawing = arg;
     const struct raster *raster = drawing->raster;
-    struct list list = { 0 };
+    struct tile_list list = { 0 };
     for (size_t t = begin; t < end; t++) {
         list.count = 0;
         draw_tile(raster, (int)t, drawing->output, &list);
@@ -272,7 +272,7 @@ static void draw_tiles(void *arg, size_t begin, size_t end)
 
 void raster_tiles(struct raster *raster, enum soft_output output)
 {
-    struct drawing drawing = { raster, output };
+    struct tile_drawing drawing = { raster, output };
     int rows = (raster->height_px + TILE_HEIGHT_PX - 1) / TILE_HEIGHT_PX;
     workers_for(raster->soft->workers, (size_t)(columns_of(raster) * rows), 1, draw_tiles, &drawing);
 }

@@ -114,7 +114,7 @@ void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct v
 
 /* --- once its pixels are known ---------------------------------------------------------------------------------------------------- */
 
-struct settling {
+struct band_settling {
     struct visibility_buffer *buffer;
     uint32_t *numbers; /* by vertex of the picture: 0: of no triangle that is seen; then one more than its number here */
 };
@@ -132,7 +132,7 @@ static void settle_inks(struct visibility_buffer *buffer, size_t begin, size_t e
 
 static void settle_bands(void *arg, size_t begin, size_t end)
 {
-    const struct settling *settling = arg;
+    const struct band_settling *settling = arg;
     struct visibility_buffer *buffer = settling->buffer;
     size_t row = (size_t)buffer->width_px, rows = (size_t)buffer->band_rows, height = (size_t)buffer->height_px;
     for (size_t b = begin; b < end; b++) {
@@ -146,7 +146,7 @@ static void settle_bands(void *arg, size_t begin, size_t end)
 
 static void number_bands(void *arg, size_t begin, size_t end)
 {
-    const struct settling *settling = arg;
+    const struct band_settling *settling = arg;
     for (size_t b = begin; b < end; b++) {
         struct visibility_band *band = &settling->buffer->bands[b];
         for (size_t t = 0; t < band->triangle_count; t++)
@@ -185,7 +185,7 @@ bool visibility_buffer_settle(struct visibility_buffer *buffer, struct workers *
     size_t all = 0, count = 0;
     for (size_t m = 0; m < buffer->mesh_count; m++)
         all = (size_t)buffer->meshes[m].first_vertex + buffer->meshes[m].vertex_count;
-    struct settling settling = { buffer, mem_try_array(all, sizeof(*settling.numbers)) };
+    struct band_settling settling = { buffer, mem_try_array(all, sizeof(*settling.numbers)) };
     if (settling.numbers) {
         workers_for(workers, (size_t)buffer->band_count, 4, settle_bands, &settling);
         count = count_seen(settling.numbers, all);

@@ -123,13 +123,13 @@ static int64_t usual(const struct admission *admission, of_share *of)
     return found;
 }
 
-struct crowd {            /* who moves */
+struct moving_sessions {  /* who moves */
     int own, all, others; /* sessions of the address; of all; other addresses */
 };
 
-static struct crowd count_crowd(const struct admission *admission, const struct address_share *own)
+static struct moving_sessions count_crowd(const struct admission *admission, const struct address_share *own)
 {
-    struct crowd crowd = { .own = own ? own->moving : 0 };
+    struct moving_sessions crowd = { .own = own ? own->moving : 0 };
     for (const struct address_share *share = admission->shares; share; share = share->next) {
         crowd.all += share->moving;
         crowd.others += share != own && share->moving > 0;
@@ -141,7 +141,7 @@ static struct crowd count_crowd(const struct admission *admission, const struct 
 static bool slows_too_far(const struct admission *admission, const struct address_share *own)
 {
     const struct admission_window *newest = &admission->windows[ADMISSION_WINDOWS - 1];
-    const struct crowd crowd = count_crowd(admission, own);
+    const struct moving_sessions crowd = count_crowd(admission, own);
     int64_t least_fps = admission->quotas->at[QUOTA_LEAST_FPS], cost_ns = usual(admission, cost_of);
     if (crowd.all == 0 || newest->moving >= least_fps * (crowd.all + 1))
         return false;

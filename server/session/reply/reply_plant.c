@@ -203,7 +203,7 @@ static json_t *quotas_json(const struct quotas *quotas)
                      (json_int_t)quotas->at[QUOTA_MESSAGES], "pixels", (json_int_t)quotas->at[QUOTA_SESSION_PIXELS]);
 }
 
-static char *lists_text(const struct session_context *context, enum lists kind)
+static char *lists_text(const struct session_context *context, enum audience_lists kind)
 {
     bool open = kind != LISTS_NAMED;
     json_t *object = json_object();
@@ -223,7 +223,7 @@ static char *join(char *first, char *second)
 }
 
 /* Kept for the next who comes. mem_free. */
-static char *lists_said(const struct session_context *context, enum lists kind)
+static char *lists_said(const struct session_context *context, enum audience_lists kind)
 {
     if (!context->lists_said)
         return lists_text(context, kind);
@@ -255,7 +255,7 @@ char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
         json_object_set_new(json_object_get(object, "plant"), "only", session_scope_views(session));
     reply_set_params(params, session->context, view, session_is_open(session));
     json_object_set_new(object, "view", params);
-    enum lists kind = narrowed ? LISTS_VIEWS : session_is_open(session) ? LISTS_OPEN : LISTS_NAMED;
+    enum audience_lists kind = narrowed ? LISTS_VIEWS : session_is_open(session) ? LISTS_OPEN : LISTS_NAMED;
     return join(json_text(object, DIGITS), lists_said(session->context, kind));
 }
 

@@ -10,7 +10,7 @@
 #include "base/text/hex.h"
 #include "session/session_state.h"
 
-struct kept {
+struct kept_view {
     char secret[RESUME_CHARS + 1];
     struct token_holder holder;
     struct resumed what;
@@ -18,7 +18,7 @@ struct kept {
 };
 
 struct resumes {
-    struct kept *kept; /* those who went first, first */
+    struct kept_view *kept; /* those who went first, first */
     size_t count, capacity;
 };
 
@@ -43,7 +43,7 @@ static void forget(struct resumes *resumes, size_t i)
     memmove(&resumes->kept[i], &resumes->kept[i + 1], (resumes->count - i) * sizeof(*resumes->kept));
 }
 
-static bool gone(const struct kept *kept, int64_t now_ns)
+static bool gone(const struct kept_view *kept, int64_t now_ns)
 {
     return !kept->what.live && now_ns >= kept->until_ns;
 }
@@ -56,8 +56,8 @@ void resumes_open(struct resumes *resumes, struct session *session, char secret[
         return;
     hex_print(bytes, sizeof(bytes), secret);
     mem_grow(&resumes->kept, &resumes->capacity, resumes->count + 1, sizeof(*resumes->kept));
-    struct kept *kept = &resumes->kept[resumes->count++];
-    *kept = (struct kept){ .what.live = session, .holder = session->identity.holder };
+    struct kept_view *kept = &resumes->kept[resumes->count++];
+    *kept = (struct kept_view){ .what.live = session, .holder = session->identity.holder };
     strcpy(kept->secret, secret);
 }
 
@@ -76,7 +76,7 @@ void resumes_close(struct resumes *resumes, const struct session *session, bool 
         i++;
     if (i == resumes->count)
         return;
-    struct kept kept = resumes->kept[i];
+    struct kept_view kept = resumes->kept[i];
     forget(resumes, i);
     if (keep) {
         kept.what = (struct resumed){ .view = session->view,
@@ -90,7 +90,7 @@ void resumes_close(struct resumes *resumes, const struct session *session, bool 
     drop_oldest(resumes, now_ns);
 }
 
-static const struct kept *find(const struct resumes *resumes, const char *secret)
+static const struct kept_view *find(const struct resumes *resumes, const char *secret)
 {
     for (size_t i = 0; i < resumes->count && strlen(secret) == RESUME_CHARS; i++)
         if (CRYPTO_memcmp(resumes->kept[i].secret, secret, RESUME_CHARS) == 0)
@@ -100,7 +100,7 @@ static const struct kept *find(const struct resumes *resumes, const char *secret
 
 bool resumes_find(const struct resumes *resumes, const char *secret, const struct session *session, int64_t now_ns, struct resumed *out)
 {
-    const struct kept *kept = find(resumes, secret);
+    const struct kept_view *kept = find(resumes, secret);
     if (!kept || gone(kept, now_ns) || memcmp(kept->holder.hash, session->identity.holder.hash, TOKEN_HASH_BYTES) != 0)
         return false;
     struct session *live = kept->what.live;
@@ -132,7 +132,7 @@ void resumes_forget_gone(struct resumes *resumes)
 
 void resumes_forget(struct resumes *resumes, const char *secret)
 {
-    const struct kept *kept = find(resumes, secret);
+    const struct kept_view *kept = find(resumes, secret);
     if (kept)
         forget(resumes, (size_t)(kept - resumes->kept));
 }

@@ -33,12 +33,12 @@ struct end { /* of a side that leaves the point in hand */
     float length_m; /* as in a fan */
 };
 
-struct wedge { /* a triangle at the point */
+struct vertex_wedge { /* a triangle at the point */
     struct end ends[2];
     float cosine, sine;
 };
 
-static struct wedge wedge_of(const struct propagation *propagation, const struct intrinsic *in, size_t t, int corner)
+static struct vertex_wedge wedge_of(const struct propagation *propagation, const struct intrinsic *in, size_t t, int corner)
 {
     const uint32_t *v = tri_points(propagation, in, t);
     bool inside = t >= in->tri_count;
@@ -47,13 +47,13 @@ static struct wedge wedge_of(const struct propagation *propagation, const struct
     double to_a = sides[corner], to_b = sides[(corner + 2) % 3], across = sides[(corner + 1) % 3];
     double cosine = min_of(max_of((to_a * to_a + to_b * to_b - across * across) / (2 * to_a * to_b), -1), 1);
     uint32_t a = v[(corner + 1) % 3], b = v[(corner + 2) % 3];
-    return (struct wedge){ { { a, (float)(inside && !propagation->hidden[a] ? -to_a : to_a) },
-                             { b, (float)(inside && !propagation->hidden[b] ? -to_b : to_b) } },
-                           (float)cosine,
-                           (float)sqrt(1 - cosine * cosine) };
+    return (struct vertex_wedge){ { { a, (float)(inside && !propagation->hidden[a] ? -to_a : to_a) },
+                                    { b, (float)(inside && !propagation->hidden[b] ? -to_b : to_b) } },
+                                  (float)cosine,
+                                  (float)sqrt(1 - cosine * cosine) };
 }
 
-static void turn_round(struct wedge *wedge)
+static void turn_round(struct vertex_wedge *wedge)
 {
     struct end swap = wedge->ends[0];
     wedge->ends[0] = wedge->ends[1];
@@ -61,14 +61,14 @@ static void turn_round(struct wedge *wedge)
 }
 
 /* Puts wedges that follow one another after the first `count` ones, as many as there are. Returns how many that makes. */
-static size_t extend(struct wedge *wedges, size_t count, size_t all)
+static size_t extend(struct vertex_wedge *wedges, size_t count, size_t all)
 {
     for (size_t i = count; i < all && i < count + MOST_TRIED; i++)
         for (int end = 0; end < 2; end++) {
             const struct end *last = &wedges[count - 1].ends[1];
             if (wedges[i].ends[end].to != last->to || wedges[i].ends[end].length_m != last->length_m)
                 continue;
-            struct wedge next = wedges[i];
+            struct vertex_wedge next = wedges[i];
             wedges[i] = wedges[count];
             wedges[count] = next;
             if (end == 1)
@@ -79,10 +79,10 @@ static size_t extend(struct wedge *wedges, size_t count, size_t all)
     return count;
 }
 
-static void reverse(struct wedge *wedges, size_t count)
+static void reverse(struct vertex_wedge *wedges, size_t count)
 {
     for (size_t i = 0; i < (count + 1) / 2; i++) {
-        struct wedge swap = wedges[i];
+        struct vertex_wedge swap = wedges[i];
         wedges[i] = wedges[count - 1 - i];
         wedges[count - 1 - i] = swap;
     }
@@ -103,7 +103,7 @@ static struct propagation_fan *add_fan(struct propagation *propagation, uint32_t
 }
 
 /* Ends of wedges in a row, and the wedges in between. What is cut by a fan's end begins the next one too. Returns the lanes in use. */
-static int add_row(struct propagation *propagation, uint32_t point, const struct wedge *row, size_t count, int lane)
+static int add_row(struct propagation *propagation, uint32_t point, const struct vertex_wedge *row, size_t count, int lane)
 {
     for (size_t i = 0; i <= count; i++) {
         const struct end *end = i < count ? &row[i].ends[0] : &row[count - 1].ends[1];
@@ -121,7 +121,7 @@ static int add_row(struct propagation *propagation, uint32_t point, const struct
     return lane;
 }
 
-static void add_fans(struct propagation *propagation, uint32_t point, struct wedge *wedges, size_t count)
+static void add_fans(struct propagation *propagation, uint32_t point, struct vertex_wedge *wedges, size_t count)
 {
     int lane = PROPAGATION_FAN;
     for (size_t begin = 0, row; begin < count; begin += row) {
@@ -154,7 +154,7 @@ static void make_fans(struct propagation *propagation, const struct intrinsic *i
             corners[first[tri_points(propagation, in, t)[i] + 1]++] = 3 * t + i;
     for (size_t p = 0; p < points; p++)
         most = first[p + 1] - first[p] > most ? first[p + 1] - first[p] : most;
-    struct wedge *wedges = mem_array(most, sizeof(*wedges));
+    struct vertex_wedge *wedges = mem_array(most, sizeof(*wedges));
     for (uint32_t p = 0; p < points; p++) {
         size_t count = first[p + 1] - first[p];
         for (size_t i = 0; i < count; i++)

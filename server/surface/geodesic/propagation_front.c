@@ -138,7 +138,7 @@ SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes 
 }
 
 /* Where a front is. */
-struct turn {
+struct front_turn {
     struct propagation_front *front;
     const struct propagation_fan *fan, *end; /* the fan in hand; the end of its point's */
     lanes d, reached;                        /* of the point */
@@ -148,7 +148,7 @@ struct turn {
 };
 
 /* Takes the next point in hand. False: there is none left. */
-SIMD_BODY bool next_point(const struct propagation *propagation, struct turn *turn)
+SIMD_BODY bool next_point(const struct propagation *propagation, struct front_turn *turn)
 {
     struct propagation_front *front = turn->front;
     for (; turn->empty < propagation->bucket_count; front->at++) {
@@ -172,7 +172,7 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct turn *tu
 }
 
 /* What the point in hand offers to those of its fan: no branches, so that those of several fronts are under way at once. */
-SIMD_BODY void look_round(struct turn *turn)
+SIMD_BODY void look_round(struct front_turn *turn)
 {
     const lanes zero = { 0 };
     const struct propagation_fan *fan = turn->fan;
@@ -190,7 +190,7 @@ SIMD_BODY void look_round(struct turn *turn)
     turn->takes = bits_of(&takes);
 }
 
-SIMD_BODY void hand_out(const struct propagation *propagation, struct turn *turn)
+SIMD_BODY void hand_out(const struct propagation *propagation, struct front_turn *turn)
 {
     for (uint32_t left = turn->takes; left; left &= left - 1) {
         int i = __builtin_ctz(left);
@@ -392,7 +392,7 @@ SIMD_BODY void measure_straight(const struct trimesh *mesh, struct propagation_f
    processor would wait for that; fronts know nothing of each other. */
 SIMD_BODY void go_on(const struct propagation *propagation, struct propagation_front *fronts, size_t count)
 {
-    struct turn turns[PROPAGATION_ABREAST] = { { 0 } };
+    struct front_turn turns[PROPAGATION_ABREAST] = { { 0 } };
     size_t left = 0;
     for (size_t i = 0; i < count; i++) {
         turns[left].front = &fronts[i];

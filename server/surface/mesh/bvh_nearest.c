@@ -103,13 +103,13 @@ static void try_tri(const struct bvh *bvh, uint32_t tri, const double p[3], doub
 
 /* --- eight boxes at a time -------------------------------------------------------------------------------------------------------- */
 
-struct box {
+struct bvh_box {
     float low[3], high[3];
 };
 
-static struct box box_of_tri(const struct trimesh *mesh, uint32_t tri)
+static struct bvh_box box_of_tri(const struct trimesh *mesh, uint32_t tri)
 {
-    struct box box;
+    struct bvh_box box;
     const double *a = mesh->points[mesh->tris[tri][0]], *b = mesh->points[mesh->tris[tri][1]], *c = mesh->points[mesh->tris[tri][2]];
     for (int axis = 0; axis < 3; axis++) {
         double margin = BOX_MARGIN * max_of(fabs(a[axis]), max_of(fabs(b[axis]), fabs(c[axis])));
@@ -120,13 +120,13 @@ static struct box box_of_tri(const struct trimesh *mesh, uint32_t tri)
 }
 
 /* Triangles of so many in order, halved so often that single ones, or eight times fewer and so on, are left: all but the root are full. */
-static struct box build_wide(struct bvh *bvh, uint32_t first, uint32_t count, int halvings)
+static struct bvh_box build_wide(struct bvh *bvh, uint32_t first, uint32_t count, int halvings)
 {
     uint32_t firsts[BVH_WIDE + 1] = { first, first + count };
     size_t lanes = 1;
     int own = halvings ? (halvings - 1) % 3 + 1 : 3;
     struct bvh_wide node;
-    struct box all = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+    struct bvh_box all = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
     for (; own > 0 && halvings; own--, lanes *= 2)
         for (size_t i = lanes; i-- > 0;) {
             uint32_t at = firsts[i], end = firsts[i + 1];
@@ -135,7 +135,7 @@ static struct box build_wide(struct bvh *bvh, uint32_t first, uint32_t count, in
             firsts[2 * i] = at;
         }
     for (size_t i = 0; i < BVH_WIDE; i++) {
-        struct box box = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+        struct bvh_box box = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
         if (!halvings && i < count) {
             node.child[i] = bvh->order[first + i] | BVH_IS_TRIANGLE;
             box = box_of_tri(bvh->mesh, bvh->order[first + i]);
@@ -167,7 +167,7 @@ void bvh_build_wide(struct bvh *bvh)
         build_wide(bvh, 0, (uint32_t)mesh->tri_count, halvings);
 }
 
-struct search {
+struct nearest_search {
     const struct bvh *bvh;
     const double *point;
     bool (*allowed)(const void *arg, uint32_t tri);
@@ -239,7 +239,7 @@ SIMD_BODY size_t push_near(look *look_at, const struct bvh_wide *node, const flo
     return count;
 }
 
-SIMD_BODY void search(struct search *s, look *look_at)
+SIMD_BODY void search(struct nearest_search *s, look *look_at)
 {
     const float p[3] = { (float)s->point[0], (float)s->point[1], (float)s->point[2] };
     const struct bvh_wide *wide = s->bvh->wide;
@@ -267,12 +267,12 @@ SIMD_BODY void search(struct search *s, look *look_at)
     }
 }
 
-static void search_plain(struct search *s)
+static void search_plain(struct nearest_search *s)
 {
     search(s, look_plain);
 }
 
-SIMD_AVX2 static void search_wide(struct search *s)
+SIMD_AVX2 static void search_wide(struct nearest_search *s)
 {
     search(s, look_wide);
 }
@@ -280,7 +280,7 @@ SIMD_AVX2 static void search_wide(struct search *s)
 void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                  const void *arg, struct bvh_place *place)
 {
-    struct search s = { bvh, point, allowed, arg, false, limit_m * limit_m, place };
+    struct nearest_search s = { bvh, point, allowed, arg, false, limit_m * limit_m, place };
     *place = (struct bvh_place){ .tri = TRIMESH_NONE, .distance_m = INFINITY };
     (simd_has_avx2() ? search_wide : search_plain)(&s);
     if (place->tri != TRIMESH_NONE)
@@ -291,7 +291,7 @@ bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m
                     const void *arg, uint32_t *tri)
 {
     struct bvh_place place = { .tri = TRIMESH_NONE };
-    struct search s = { bvh, point, allowed, arg, true, limit_m * limit_m, &place };
+    struct nearest_search s = { bvh, point, allowed, arg, true, limit_m * limit_m, &place };
     if (*tri != TRIMESH_NONE && (!allowed || allowed(arg, *tri)))
         try_tri(bvh, *tri, point, &s.best2, &place);
     if (place.tri == TRIMESH_NONE)

@@ -124,7 +124,7 @@ void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[
     visit_box(bvh, &query, simd_has_avx2() ? meet_box_wide : meet_box_plain, visit, arg);
 }
 
-struct ray {
+struct bvh_ray {
     const struct bvh *bvh;
     const double *origin, *direction;
     void (*visit)(void *arg, uint32_t tri, double t);
@@ -133,7 +133,7 @@ struct ray {
 
 static void visit_if_met(void *arg, uint32_t tri)
 {
-    const struct ray *ray = arg;
+    const struct bvh_ray *ray = arg;
     const double(*points)[3] = (const double(*)[3])ray->bvh->mesh->points;
     const uint32_t *v = ray->bvh->mesh->tris[tri];
     double t, weights[3];
@@ -144,7 +144,7 @@ static void visit_if_met(void *arg, uint32_t tri)
 void bvh_ray(const struct bvh *bvh, const double origin[3], const double direction[3], void (*visit)(void *arg, uint32_t tri, double t),
              void *arg)
 {
-    struct ray ray = { bvh, origin, direction, visit, arg };
+    struct bvh_ray ray = { bvh, origin, direction, visit, arg };
     struct query query;
     for (int axis = 0; axis < 3; axis++) {
         query.origin[axis] = origin[axis];

@@ -19,14 +19,14 @@ struct thin {
     uint32_t *heads, *tails, *next; /* corners (3 * triangle + corner) at each point; the one after each */
 };
 
-struct face { /* a triangle of a star, with the point and with a neighbour in its place */
+struct star_face { /* a triangle of a star, with the point and with a neighbour in its place */
     uint32_t tri, corner;
     double normal[3], length; /* twice its area */
 };
 
 struct star {
     uint32_t point;
-    struct face faces[MOST_STAR];
+    struct star_face faces[MOST_STAR];
     size_t count;
     double longest_m; /* side at the point */
 };
@@ -36,7 +36,7 @@ static const double *point_of(const struct thin *thin, uint32_t point)
     return thin->mesh->points[point];
 }
 
-static uint32_t corner_of(const struct thin *thin, const struct face *face, uint32_t after)
+static uint32_t corner_of(const struct thin *thin, const struct star_face *face, uint32_t after)
 {
     return thin->mesh->tris[face->tri][(face->corner + after) % 3];
 }
@@ -52,8 +52,8 @@ static bool look_round(const struct thin *thin, uint32_t point, struct star *sta
             continue;
         if (star->count == MOST_STAR)
             return false;
-        struct face *face = &star->faces[star->count++];
-        *face = (struct face){ .tri = corner / 3, .corner = corner % 3 };
+        struct star_face *face = &star->faces[star->count++];
+        *face = (struct star_face){ .tri = corner / 3, .corner = corner % 3 };
         const double *b = point_of(thin, corner_of(thin, face, 1)), *c = point_of(thin, corner_of(thin, face, 2));
         vec_normal(point_of(thin, point), b, c, face->normal);
         face->length = sqrt(vec_dot(face->normal, face->normal));
@@ -63,7 +63,7 @@ static bool look_round(const struct thin *thin, uint32_t point, struct star *sta
 }
 
 /* The face with a neighbour in the point's place. False: it would leave its plane, turn over, or be no good. */
-static bool can_take(const struct thin *thin, const struct star *star, const struct face *face, const double to[3], double *length)
+static bool can_take(const struct thin *thin, const struct star *star, const struct star_face *face, const double to[3], double *length)
 {
     const double *a = point_of(thin, star->point), *b = point_of(thin, corner_of(thin, face, 1));
     const double *c = point_of(thin, corner_of(thin, face, 2));
@@ -120,7 +120,7 @@ static bool can_go_to(const struct thin *thin, const struct star *star, uint32_t
 {
     double grown[MOST_STAR], all = 0;
     for (size_t i = 0; i < star->count; i++) {
-        const struct face *face = &star->faces[i];
+        const struct star_face *face = &star->faces[i];
         double length = 0;
         bool at_both = corner_of(thin, face, 1) == to || corner_of(thin, face, 2) == to;
         if (!at_both && !can_take(thin, star, face, point_of(thin, to), &length))
@@ -131,7 +131,7 @@ static bool can_go_to(const struct thin *thin, const struct star *star, uint32_t
     if (!keeps_areas(thin, star, grown, thin->params->within_m * star->longest_m + ROUNDING_OF_AREA * all))
         return false;
     for (size_t i = 0; i < star->count; i++) {
-        const struct face *face = &star->faces[i];
+        const struct star_face *face = &star->faces[i];
         uint32_t b = corner_of(thin, face, 1), c = corner_of(thin, face, 2);
         if (!thin->hidden[face->tri] && (b == to || c == to) && !stays_joined(thin, b == to ? c : b, star->point, to))
             return false;
@@ -160,7 +160,7 @@ static void join_planes(struct thin *thin, const struct star *star)
 {
     for (size_t i = 0; i < star->count; i++)
         for (size_t j = 0; j < i; j++) {
-            const struct face *a = &star->faces[i], *b = &star->faces[j];
+            const struct star_face *a = &star->faces[i], *b = &star->faces[j];
             uint32_t from = thin->mesh->tri_source[a->tri], to = thin->mesh->tri_source[b->tri];
             double across[3];
             vec_cross(a->normal, b->normal, across);
@@ -173,7 +173,7 @@ static void join_planes(struct thin *thin, const struct star *star)
 static void go_to(struct thin *thin, const struct star *star, uint32_t to)
 {
     for (size_t i = 0; i < star->count; i++) {
-        const struct face *face = &star->faces[i];
+        const struct star_face *face = &star->faces[i];
         thin->gone[face->tri] = corner_of(thin, face, 1) == to || corner_of(thin, face, 2) == to;
         thin->mesh->tris[face->tri][face->corner] = to;
     }

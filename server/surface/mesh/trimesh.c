@@ -151,20 +151,20 @@ void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, u
 }
 
 /* Points in a grid of cells of twice the welding distance; a point looks into the eight cells that its neighbourhood touches. */
-struct grid {
+struct weld_grid {
     double cell_m;
     uint32_t *heads, *next;
     size_t mask;
 };
 
-static size_t grid_slot(const struct grid *grid, const int64_t cell[3])
+static size_t grid_slot(const struct weld_grid *grid, const int64_t cell[3])
 {
     return hash64((uint64_t)cell[0] * 0x9e3779b97f4a7c15ull ^ hash64((uint64_t)cell[1]) ^
                   hash64((uint64_t)cell[2] + 0x632be59bd9b4e019ull)) &
            grid->mask;
 }
 
-static uint32_t grid_find(const struct grid *grid, const struct trimesh *mesh, const double p[3], double within_m)
+static uint32_t grid_find(const struct weld_grid *grid, const struct trimesh *mesh, const double p[3], double within_m)
 {
     int64_t low[3];
     for (int axis = 0; axis < 3; axis++)
@@ -178,7 +178,7 @@ static uint32_t grid_find(const struct grid *grid, const struct trimesh *mesh, c
     return TRIMESH_NONE;
 }
 
-static void grid_add(struct grid *grid, const double p[3], uint32_t point)
+static void grid_add(struct weld_grid *grid, const double p[3], uint32_t point)
 {
     int64_t cell[3];
     for (int axis = 0; axis < 3; axis++)
@@ -188,9 +188,9 @@ static void grid_add(struct grid *grid, const double p[3], uint32_t point)
     grid->heads[slot] = point;
 }
 
-static bool grid_init(struct grid *grid, size_t count, double within_m)
+static bool grid_init(struct weld_grid *grid, size_t count, double within_m)
 {
-    *grid = (struct grid){ .cell_m = within_m > 0 ? 2 * within_m : 1e-30, .mask = 15 };
+    *grid = (struct weld_grid){ .cell_m = within_m > 0 ? 2 * within_m : 1e-30, .mask = 15 };
     while (grid->mask < count)
         grid->mask = grid->mask * 2 + 1;
     grid->heads = mem_try_array(grid->mask + 1, sizeof(*grid->heads));
@@ -200,7 +200,7 @@ static bool grid_init(struct grid *grid, size_t count, double within_m)
     return grid->heads && grid->next;
 }
 
-static void grid_finish(struct grid *grid)
+static void grid_finish(struct weld_grid *grid)
 {
     mem_free(grid->heads);
     mem_free(grid->next);
@@ -208,7 +208,7 @@ static void grid_finish(struct grid *grid)
 
 static bool weld_points(struct trimesh *mesh, const float (*positions)[3], size_t vertex_count, double weld_m, uint32_t *vertex_point)
 {
-    struct grid grid;
+    struct weld_grid grid;
     bool good = grid_init(&grid, vertex_count, weld_m);
     for (size_t v = 0; good && v < vertex_count; v++) {
         const double p[3] = { (double)positions[v][0], (double)positions[v][1], (double)positions[v][2] };
@@ -225,7 +225,7 @@ static bool weld_points(struct trimesh *mesh, const float (*positions)[3], size_
 
 bool trimesh_find_twins(const struct trimesh *mesh, double within_m, uint32_t *target)
 {
-    struct grid grid;
+    struct weld_grid grid;
     bool good = grid_init(&grid, mesh->point_count, within_m);
     for (uint32_t i = 0; good && i < mesh->point_count; i++) {
         target[i] = grid_find(&grid, mesh, mesh->points[i], within_m);

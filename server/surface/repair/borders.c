@@ -104,7 +104,7 @@ static void find_edges_at(struct borders *b)
             b->at[b->first[b->slot[b->edges[e][i]] + 1]++] = e;
 }
 
-static void find_reach(struct borders *b, const struct trimesh *mesh, const struct parts *parts)
+static void find_reach(struct borders *b, const struct trimesh *mesh, const struct body_parts *parts)
 {
     b->reach_m = mem_array(b->point_count, sizeof(*b->reach_m));
     for (size_t i = 0; i < b->point_count; i++)
@@ -124,7 +124,7 @@ void borders_init(struct borders *b, const struct trimesh *mesh)
     find_edges_at(b);
 }
 
-void borders_init_rims(struct borders *b, const struct trimesh *seen, const struct trimesh *hidden, const struct parts *parts)
+void borders_init_rims(struct borders *b, const struct trimesh *seen, const struct trimesh *hidden, const struct body_parts *parts)
 {
     *b = (struct borders){ 0 };
     find_open_edges(b, seen, hidden);

@@ -18,7 +18,7 @@ struct borders {
 /* Collects all border edges of a mesh, and the points on them. Keeps no pointer to the mesh. Free with borders_finish(). */
 void borders_init(struct borders *borders, const struct trimesh *mesh);
 /* Collects only those border edges of `seen` that are open because the other faces at them are hidden, with the reach of their parts. */
-void borders_init_rims(struct borders *borders, const struct trimesh *seen, const struct trimesh *hidden, const struct parts *parts);
+void borders_init_rims(struct borders *borders, const struct trimesh *seen, const struct trimesh *hidden, const struct body_parts *parts);
 /* Frees the lists. */
 void borders_finish(struct borders *borders);
 

@@ -10,20 +10,20 @@
 #define SLIVER 1e-5    /* height, of the model's size: the plane of a lower face is not trusted */
 #define BESIDE 1e-4    /* of a face's longest side: so exactly is known where it cuts a plane */
 
-struct face {
+struct crossing_face {
     const double *at[3];
     double normal[3], height_m, longest_m; /* normal: of length 1 */
 };
 
-struct search {
-    const struct parts *parts;
+struct crossing_search {
+    const struct body_parts *parts;
     double rounding_m, sliver_m;
     uint32_t tri;     /* whose edges are in question */
-    struct face face; /* that */
+    struct crossing_face face; /* that */
     bool crosses;
 };
 
-static void face_init(struct face *face, const struct trimesh *mesh, uint32_t tri)
+static void face_init(struct crossing_face *face, const struct trimesh *mesh, uint32_t tri)
 {
     for (int i = 0; i < 3; i++)
         face->at[i] = mesh->points[mesh->tris[tri][i]];
@@ -36,7 +36,7 @@ static void face_init(struct face *face, const struct trimesh *mesh, uint32_t tr
 }
 
 /* From the plane of a face to the corners of another one. True: they are all to one side of it, or clear_m from it at most. */
-static bool lies_to_one_side(const struct face *plane, const struct face *face, double clear_m, double heights_m[3])
+static bool lies_to_one_side(const struct crossing_face *plane, const struct crossing_face *face, double clear_m, double heights_m[3])
 {
     double low_m = INFINITY, high_m = -INFINITY;
     for (int i = 0; i < 3; i++) {
@@ -50,7 +50,7 @@ static bool lies_to_one_side(const struct face *plane, const struct face *face, 
 }
 
 /* How far a place in a face's plane is beyond its side from corner i to the next one. */
-static double beyond_side(const struct face *face, int i, const double place[3])
+static double beyond_side(const struct crossing_face *face, int i, const double place[3])
 {
     double along[3], out[3], from[3];
     vec_sub(face->at[(i + 1) % 3], face->at[i], along);
@@ -61,7 +61,7 @@ static double beyond_side(const struct face *face, int i, const double place[3])
 }
 
 /* Whether a face lies to one side of the line from a to b, in its plane. */
-static bool lies_beside(const struct face *face, const double a[3], const double b[3], double margin_m)
+static bool lies_beside(const struct crossing_face *face, const double a[3], const double b[3], double margin_m)
 {
     double along[3], across[3], low_m = INFINITY, high_m = -INFINITY;
     vec_sub(b, a, along);
@@ -77,7 +77,7 @@ static bool lies_beside(const struct face *face, const double a[3], const double
 }
 
 /* The corner of a face that is also the other one's; -1: none. */
-static int shared_corner(const struct face *face, const struct face *other)
+static int shared_corner(const struct crossing_face *face, const struct crossing_face *other)
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
@@ -88,7 +88,7 @@ static int shared_corner(const struct face *face, const struct face *other)
 
 /* The face, which reaches through the plane of `other`, cuts it along a line: whether that stays clear of `other`, but for a corner that
    both have. */
-static bool cuts_beside(const struct face *face, const double heights_m[3], const struct face *other, double margin_m)
+static bool cuts_beside(const struct crossing_face *face, const double heights_m[3], const struct crossing_face *other, double margin_m)
 {
     const int shared = shared_corner(face, other), from = shared_corner(other, face);
     double ends[2][3];
@@ -111,10 +111,10 @@ static bool cuts_beside(const struct face *face, const double heights_m[3], cons
 
 static void visit_face(void *arg, uint32_t tri)
 {
-    struct search *s = arg;
-    const struct parts *parts = s->parts;
+    struct crossing_search *s = arg;
+    const struct body_parts *parts = s->parts;
     const uint32_t own = parts->of_source[parts->solid.tri_source[s->tri]], part = parts->of_source[parts->solid.tri_source[tri]];
-    struct face other;
+    struct crossing_face other;
     double heights_m[3], others_m[3], clear_m = own == part ? CROSSING_CLEAR / 2 * parts->reach_m[own] : 0;
     if (s->crosses || tri == s->tri)
         return;
@@ -130,10 +130,10 @@ static void visit_face(void *arg, uint32_t tri)
                        : !lies_to_one_side(&s->face, &other, -s->rounding_m, others_m);
 }
 
-char *crossing_faces_find(const struct parts *parts)
+char *crossing_faces_find(const struct body_parts *parts)
 {
     const struct trimesh *mesh = &parts->solid;
-    struct search search = { .parts = parts };
+    struct crossing_search search = { .parts = parts };
     struct bvh *bvh = bvh_create(mesh);
     double low[3], high[3], size_m = 0, coordinate_m = 0;
     bool any = false;

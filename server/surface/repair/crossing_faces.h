@@ -10,6 +10,6 @@
 /* Returns, by model triangle, 1 where some edge within parts->solid's pieces of it may pass through another face, else 0. A face is told
    apart only where no rounding can matter: what is flagged need not cross. Within one part, faces that meet at a corner or along an edge
    alone do not cross. NULL: none does. The caller frees the array (mem_free). Thread: any. */
-char *crossing_faces_find(const struct parts *parts);
+char *crossing_faces_find(const struct body_parts *parts);
 
 #endif

@@ -23,7 +23,7 @@ struct solid { /* a closed part, as it was before it was cut up */
     bool winds;   /* it passes through itself: its inside is what it goes round */
     double low[3], high[3];
     struct trimesh mesh;     /* its triangles; the arrays belong to others */
-    const signed char *side; /* of its triangles, as in struct parts */
+    const signed char *side; /* of its triangles, as in struct body_parts */
     struct bvh *bvh;
 };
 
@@ -60,7 +60,7 @@ static void surface_pass_init(struct solid *solid)
     solid->bvh = bvh_create(&solid->mesh);
 }
 
-static void solids_init(struct solids *solids, const struct parts *parts)
+static void solids_init(struct solids *solids, const struct body_parts *parts)
 {
     const struct trimesh *mesh = &parts->solid;
     uint32_t *first = mem_array(parts->count + 1, sizeof(*first));
@@ -96,10 +96,10 @@ static void solids_init(struct solids *solids, const struct parts *parts)
     mem_free(first);
 }
 
-struct search {
+struct interior_search {
     const struct trimesh *mesh;
     const uint32_t *part;
-    const struct parts *parts;
+    const struct body_parts *parts;
     const struct solids *solids;
     const size_t *asked; /* triangles to look at */
     char *hidden;
@@ -117,7 +117,7 @@ struct hits { /* of one ray */
     const double *direction;
     double same_m;
     int count, turns; /* count: of places; turns: how often it goes out more than in */
-    struct hit {      /* the first places */
+    struct ray_hits { /* the first places */
         double t;
         int faces;
         bool bounds;
@@ -139,7 +139,7 @@ static void count_hit(void *arg, uint32_t tri, double t)
             return;
         }
     if (hits->count < HITS)
-        hits->at[hits->count] = (struct hit){ .t = t, .faces = 1, .bounds = hits->solid->side[tri] != 0 };
+        hits->at[hits->count] = (struct ray_hits){ .t = t, .faces = 1, .bounds = hits->solid->side[tri] != 0 };
     hits->count++;
 }
 
@@ -179,15 +179,15 @@ static bool is_inside(const struct solid *solid, const double place[3], double s
     return inside >= RAYS_INSIDE;
 }
 
-struct face { /* in question: its middle and normal, and the solid that it is part of, if that is closed */
+struct interior_face { /* in question: its middle and normal, and the solid that it is part of, if that is closed */
     double middle[3], normal[3];
     double height_m; /* over its longest edge */
     const struct solid *own;
 };
 
 /* Is one side of it inside the one solid, and the other side inside the other? */
-static bool is_between(const struct face *face, const double normal[3], const struct solid *one, const struct solid *other, double beside_m,
-                       double same_m)
+static bool is_between(const struct interior_face *face, const double normal[3], const struct solid *one, const struct solid *other,
+                       double beside_m, double same_m)
 {
     for (int turn = 0; turn < 2; turn++) {
         double above[3], below[3], step_m = turn ? -beside_m : beside_m;
@@ -203,7 +203,7 @@ static bool is_between(const struct face *face, const double normal[3], const st
     return false;
 }
 
-static char is_hidden_by(const struct face *face, const struct solid *solid, double reach_m)
+static char is_hidden_by(const struct interior_face *face, const struct solid *solid, double reach_m)
 {
     struct bvh_place at;
     double n[3];
@@ -231,10 +231,10 @@ static double longest_side(const struct trimesh *mesh, size_t t)
     return max_of(max_of(ab, bc), vec_distance(mesh->points[v[2]], mesh->points[v[0]]));
 }
 
-static char tri_is_hidden(const struct search *s, size_t t)
+static char tri_is_hidden(const struct interior_search *s, size_t t)
 {
     const uint32_t *v = s->mesh->tris[t], part = s->part[t];
-    struct face face = { .own = s->solids->of_part[part] };
+    struct interior_face face = { .own = s->solids->of_part[part] };
     double reach_m = s->parts->reach_m[part];
     trimesh_normal(s->mesh, t, face.normal);
     double length = sqrt(vec_dot(face.normal, face.normal));
@@ -258,7 +258,7 @@ static char tri_is_hidden(const struct search *s, size_t t)
 
 static void search_some(void *arg, size_t begin, size_t end)
 {
-    struct search *s = arg;
+    struct interior_search *s = arg;
     for (size_t i = begin; i < end; i++)
         s->hidden[s->asked[i]] = tri_is_hidden(s, s->asked[i]);
 }
@@ -327,7 +327,7 @@ static bool untouched(const struct trimesh *mesh, size_t t, const char *mixed)
     return !mixed[mesh->tris[t][0]] && !mixed[mesh->tris[t][1]] && !mixed[mesh->tris[t][2]];
 }
 
-static void ask(struct search *search, struct workers *workers, const size_t *asked, size_t count)
+static void ask(struct interior_search *search, struct workers *workers, const size_t *asked, size_t count)
 {
     search->asked = asked;
     if (workers)
@@ -338,7 +338,7 @@ static void ask(struct search *search, struct workers *workers, const size_t *as
 
 /* A few triangles of a region may be missed by those that are asked of it. They show at a point within it where triangles that are hidden
    meet others: all at it are asked, until no more such points come up. */
-static void ask_beside(struct search *search, struct workers *workers, const char *mixed, size_t *asked, char *was_asked)
+static void ask_beside(struct interior_search *search, struct workers *workers, const char *mixed, size_t *asked, char *was_asked)
 {
     const struct trimesh *mesh = search->mesh;
     char *kinds = mem_array(mesh->point_count, 1); /* of the triangles at each point: 1: seen, 2: hidden */
@@ -363,13 +363,13 @@ static void ask_beside(struct search *search, struct workers *workers, const cha
     mem_free(kinds);
 }
 
-struct vote { /* of a region */
+struct region_vote { /* of a region */
     size_t seen, asked, hidden;
     char most;
 };
 
 /* A closed part hides what is of others, or of itself where it passes through itself. */
-static bool may_hide(const struct parts *parts)
+static bool may_hide(const struct body_parts *parts)
 {
     for (size_t p = 0; p < parts->count; p++)
         if (parts->closed[p] && (parts->count > 1 || parts->tangled[p]))
@@ -377,7 +377,7 @@ static bool may_hide(const struct parts *parts)
     return false;
 }
 
-bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struct parts *parts, const uint32_t *crossings,
+bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struct body_parts *parts, const uint32_t *crossings,
                    size_t crossing_count, struct workers *workers, char *hidden)
 {
     struct solids solids;
@@ -392,8 +392,8 @@ bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struc
         mixed[crossings[i]] = 1;
     uint32_t *region = find_regions(mesh, mixed);
     size_t *asked = mem_array(mesh->tri_count, sizeof(*asked)), asked_count = 0;
-    struct vote *votes = mem_array(mesh->point_count, sizeof(*votes));
-    struct search search = { .mesh = mesh, .part = part, .parts = parts, .solids = &solids, .hidden = hidden };
+    struct region_vote *votes = mem_array(mesh->point_count, sizeof(*votes));
+    struct interior_search search = { .mesh = mesh, .part = part, .parts = parts, .solids = &solids, .hidden = hidden };
     for (size_t t = 0; t < mesh->tri_count; t++) { /* those where parts meet, and of each region some */
         uint32_t r = region_of(mesh, t, mixed, region);
         if (!untouched(mesh, t, mixed) || votes[r].seen++ % VOTE_EVERY == 0)
@@ -405,14 +405,14 @@ bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struc
         was_asked[asked[i]] = 1;
     for (size_t i = 0; i < asked_count; i++)
         if (untouched(mesh, asked[i], mixed)) {
-            struct vote *vote = &votes[region_of(mesh, asked[i], mixed, region)];
+            struct region_vote *vote = &votes[region_of(mesh, asked[i], mixed, region)];
             vote->asked++;
             vote->hidden += hidden[asked[i]] != INTERIOR_NOT;
             vote->most = hidden[asked[i]] > vote->most ? hidden[asked[i]] : vote->most;
         }
     asked_count = 0;
     for (size_t t = 0; t < mesh->tri_count; t++) { /* regions that do not agree with themselves are asked in full */
-        const struct vote *vote = untouched(mesh, t, mixed) ? &votes[region_of(mesh, t, mixed, region)] : NULL;
+        const struct region_vote *vote = untouched(mesh, t, mixed) ? &votes[region_of(mesh, t, mixed, region)] : NULL;
         if (vote && vote->hidden > 0 && vote->hidden < vote->asked)
             asked[asked_count++] = t;
         else if (vote)

@@ -13,7 +13,7 @@ enum interior_kind { INTERIOR_NOT, INTERIOR_INSIDE, INTERIOR_ACROSS };
    stands across, unless it alone connects visible triangles. In a part that intersects itself or has internal walls, where both sides are
    inside that part. part: of each triangle. crossings: points where a part intersects itself. workers may be NULL. Returns whether any is
    hidden. */
-bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struct parts *parts, const uint32_t *crossings,
+bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struct body_parts *parts, const uint32_t *crossings,
                    size_t crossing_count, struct workers *workers, char *hidden);
 /* Decides the triangles marked INTERIOR_ACROSS: those that alone connect visible pieces become visible, the others interior. */
 void interior_resolve_across(const struct trimesh *mesh, char *hidden);

@@ -25,7 +25,7 @@ static void list_triangles(struct line_of_sight *sight)
             sight->at[sight->first[mesh->tris[t][i] + 1]++] = t;
 }
 
-void line_of_sight_init(struct line_of_sight *sight, const struct trimesh *mesh, const struct parts *parts, const uint32_t *body,
+void line_of_sight_init(struct line_of_sight *sight, const struct trimesh *mesh, const struct body_parts *parts, const uint32_t *body,
                         const struct bvh *bvh)
 {
     bool any_thin = false;
@@ -89,7 +89,7 @@ static bool looks_at(const struct line_of_sight *sight, uint32_t point, const do
     return false;
 }
 
-struct ray {
+struct sight_ray {
     const struct line_of_sight *sight;
     uint32_t own;
     bool is_blocked;
@@ -97,14 +97,14 @@ struct ray {
 
 static void block(void *arg, uint32_t tri, double t)
 {
-    struct ray *ray = arg;
+    struct sight_ray *ray = arg;
     ray->is_blocked = ray->is_blocked || (t > NEXT_TO && t < 1 + NEXT_TO && ray->sight->body[tri] == ray->own);
 }
 
 /* By its own body: a wall between two bodies that are one part looks at what is behind one of them. */
 static bool is_blocked(const struct line_of_sight *sight, const double from[3], const double way[3], uint32_t own)
 {
-    struct ray ray = { sight, own, false };
+    struct sight_ray ray = { sight, own, false };
     bvh_ray(sight->bvh, from, way, block, &ray);
     return ray.is_blocked;
 }

@@ -8,7 +8,7 @@
 
 struct line_of_sight {
     const struct trimesh *mesh;
-    const struct parts *parts;
+    const struct body_parts *parts;
     const uint32_t *body; /* of its triangles */
     const struct bvh *bvh;
     uint32_t *first, *at; /* triangles at each point; NULL: no part is thin, and nothing is seen that is not within its reach */
@@ -16,7 +16,7 @@ struct line_of_sight {
 
 /* Prepares the search. Keeps pointers to everything passed, which must outlive it and must not change while it is used: it sees the mesh as
    it is before anything is joined. body: of each triangle. Free with line_of_sight_finish(). */
-void line_of_sight_init(struct line_of_sight *sight, const struct trimesh *mesh, const struct parts *parts, const uint32_t *body,
+void line_of_sight_init(struct line_of_sight *sight, const struct trimesh *mesh, const struct body_parts *parts, const uint32_t *body,
                         const struct bvh *bvh);
 /* Frees the lists. */
 void line_of_sight_finish(struct line_of_sight *sight);

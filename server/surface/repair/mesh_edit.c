@@ -71,7 +71,7 @@ static void find_targets(const struct mesh_edit *edit, size_t point_count, uint3
         target[i] = trimesh_root(target, i);
 }
 
-struct lists { /* items by edge (lower points first, then by t) and by triangle */
+struct crossing_lists { /* items by edge (lower points first, then by t) and by triangle */
     struct edge_table edges;
     uint32_t *edge_first, *tri_first; /* of each edge number, each triangle; one more at the end */
     struct mesh_edit_insertion *by_edge;
@@ -88,7 +88,7 @@ static int by_t(const void *a, const void *b)
 }
 
 /* Both ways, of what the points become. */
-static void lists_partners(struct lists *lists, const struct mesh_edit_pair *joins, size_t count, size_t point_count)
+static void lists_partners(struct crossing_lists *lists, const struct mesh_edit_pair *joins, size_t count, size_t point_count)
 {
     if (!count)
         return;
@@ -108,9 +108,9 @@ static void lists_partners(struct lists *lists, const struct mesh_edit_pair *joi
     }
 }
 
-static void lists_init(struct lists *lists, const struct mesh_edit *edit, const struct trimesh *mesh)
+static void lists_init(struct crossing_lists *lists, const struct mesh_edit *edit, const struct trimesh *mesh)
 {
-    *lists = (struct lists){ .target = mem_array(mesh->point_count, sizeof(*lists->target)) };
+    *lists = (struct crossing_lists){ .target = mem_array(mesh->point_count, sizeof(*lists->target)) };
     find_targets(edit, mesh->point_count, lists->target);
     edge_table_init(&lists->edges, edit->item_count);
     for (size_t i = 0; i < edit->item_count; i++)
@@ -143,7 +143,7 @@ static void lists_init(struct lists *lists, const struct mesh_edit *edit, const 
     lists_partners(lists, edit->joins, edit->join_count, mesh->point_count);
 }
 
-static void lists_finish(struct lists *lists)
+static void lists_finish(struct crossing_lists *lists)
 {
     edge_table_finish(&lists->edges);
     mem_free(lists->edge_first);
@@ -162,7 +162,7 @@ static bool is_corner(const uint32_t corners[3], uint32_t point)
 }
 
 /* Local points on the side from a to b (global c0 to c1), in that order, without the ends. */
-static size_t side(struct face_triangulation *face, const struct lists *lists, const uint32_t corners[3], uint32_t a, uint32_t b,
+static size_t side(struct face_triangulation *face, const struct crossing_lists *lists, const uint32_t corners[3], uint32_t a, uint32_t b,
                    uint32_t *out)
 {
     uint32_t e = edge_table_find(&lists->edges, corners[a], corners[b]);
@@ -204,8 +204,8 @@ static void zip(struct face_triangulation *face, const uint32_t *low, size_t low
     }
 }
 
-static size_t list_chain(struct face_triangulation *face, const struct lists *lists, const uint32_t corners[3], const uint32_t *way,
-                         int steps, uint32_t **chain, size_t *capacity)
+static size_t list_chain(struct face_triangulation *face, const struct crossing_lists *lists, const uint32_t corners[3],
+                         const uint32_t *way, int steps, uint32_t **chain, size_t *capacity)
 {
     size_t count = 0, most = 2;
     for (int s = 0; s < steps; s++) {
@@ -240,7 +240,7 @@ static void lay_out(struct face_triangulation *face, const struct trimesh *mesh,
     face_triangulation_add_point(face, corners[2], vec_dot(pq, pr) / length, vec_length(n) / length);
 }
 
-static size_t side_count(const struct lists *lists, const uint32_t corners[3], uint32_t i)
+static size_t side_count(const struct crossing_lists *lists, const uint32_t corners[3], uint32_t i)
 {
     uint32_t e = edge_table_find(&lists->edges, corners[i], corners[(i + 1) % 3]);
     size_t count = 0;
@@ -249,7 +249,7 @@ static size_t side_count(const struct lists *lists, const uint32_t corners[3], u
     return count;
 }
 
-static bool touched(const struct lists *lists, const uint32_t v[3], size_t t)
+static bool touched(const struct crossing_lists *lists, const uint32_t v[3], size_t t)
 {
     return lists->tri_first[t + 1] > lists->tri_first[t] || edge_table_find(&lists->edges, v[0], v[1]) != TRIMESH_NONE ||
            edge_table_find(&lists->edges, v[1], v[2]) != TRIMESH_NONE || edge_table_find(&lists->edges, v[2], v[0]) != TRIMESH_NONE;
@@ -271,7 +271,7 @@ static void set_point(struct face_triangulation *face, const struct trimesh *mes
     face_triangulation_insert(face, face_triangulation_add_point(face, id, x, y));
 }
 
-static void join_points(struct face_triangulation *face, const struct lists *lists)
+static void join_points(struct face_triangulation *face, const struct crossing_lists *lists)
 {
     if (!lists->partners)
         return;
@@ -289,7 +289,7 @@ static void join_points(struct face_triangulation *face, const struct lists *lis
         lists->slot[lists->target[face->ids[i]]] = 0;
 }
 
-static void cut(struct cutter *cutter, const struct lists *lists, struct trimesh *mesh, size_t t)
+static void cut(struct cutter *cutter, const struct crossing_lists *lists, struct trimesh *mesh, size_t t)
 {
     struct face_triangulation *face = &cutter->face;
     uint32_t corners[3], source = mesh->tri_source[t];
@@ -319,7 +319,7 @@ static void cut(struct cutter *cutter, const struct lists *lists, struct trimesh
 
 void mesh_edit_apply(const struct mesh_edit *edit, struct trimesh *mesh, uint32_t *target)
 {
-    struct lists lists;
+    struct crossing_lists lists;
     struct cutter cutter = { 0 };
     size_t tri_count = mesh->tri_count, dropped = 0, repeated = 0;
     lists_init(&lists, edit, mesh);

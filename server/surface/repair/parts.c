@@ -20,19 +20,19 @@ static void face_outwards(struct parts_finding *f)
 {
     const struct trimesh *mesh = &f->parts->solid;
     signed char *side = f->parts->side;
-    struct vote {
+    struct part_middle {
         double middle[3], volume;
         size_t corners;
     } *votes = mem_array(mesh->tri_count, sizeof(*votes));
     for (size_t t = 0; t < mesh->tri_count; t++)
         for (int i = 0; i < 3; i++) {
-            struct vote *vote = &votes[f->patch[t]];
+            struct part_middle *vote = &votes[f->patch[t]];
             for (int axis = 0; axis < 3; axis++)
                 vote->middle[axis] += mesh->points[mesh->tris[t][i]][axis];
             vote->corners++;
         }
     for (size_t t = 0; t < mesh->tri_count; t++) {
-        struct vote *vote = &votes[f->patch[t]];
+        struct part_middle *vote = &votes[f->patch[t]];
         double from[3], n[3];
         for (int axis = 0; axis < 3; axis++)
             from[axis] = mesh->points[mesh->tris[t][0]][axis] - vote->middle[axis] / (double)vote->corners;
@@ -50,7 +50,7 @@ static void face_outwards(struct parts_finding *f)
    like a fin, bounds nothing either. */
 static void drop_walls(struct parts_finding *f, const uint32_t *times)
 {
-    struct parts *parts = f->parts;
+    struct body_parts *parts = f->parts;
     const struct trimesh *mesh = &parts->solid;
     uint32_t *least = mem_array(parts->count, sizeof(*least));
     for (size_t t = 0; t < mesh->tri_count; t++) {
@@ -58,13 +58,13 @@ static void drop_walls(struct parts_finding *f, const uint32_t *times)
         *low = !*low || times[t] < *low ? times[t] : *low;
     }
     for (size_t t = 0; t < mesh->tri_count; t++) {
-        struct patch *patch = &f->patches[f->patch[t]];
+        struct surface_patch *patch = &f->patches[f->patch[t]];
         double n[3];
         trimesh_normal(mesh, t, n);
         patch->doubles_m2 += times[t] >= 2 * least[parts->of_tri[t]] ? vec_length(n) / 2 : 0;
     }
     for (size_t t = 0; t < mesh->tri_count; t++) {
-        const struct patch *patch = &f->patches[f->patch[t]];
+        const struct surface_patch *patch = &f->patches[f->patch[t]];
         bool fin = patch->open_m > patch->branching_m, wall = patch->doubles_m2 > DOUBLES * patch->area_m2;
         if (patch->loose || (patch->branching_m > 0 && (fin || wall)))
             parts->side[t] = 0;
@@ -75,7 +75,7 @@ static void drop_walls(struct parts_finding *f, const uint32_t *times)
 /* --- how near is touching --------------------------------------------------------------------------------------------------- */
 
 /* A plate's thickness is twice its volume by its area; other bodies are thicker than that. */
-static void limit_reach(struct parts *parts, double tolerance_m)
+static void limit_reach(struct body_parts *parts, double tolerance_m)
 {
     const struct trimesh *mesh = &parts->solid;
     double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *volume_m3 = mem_array(parts->count, sizeof(*volume_m3));
@@ -103,10 +103,10 @@ static void limit_reach(struct parts *parts, double tolerance_m)
 
 /* --- all ------------------------------------------------------------------------------------------------------------------ */
 
-void parts_init(struct parts *parts, const struct trimesh *mesh, size_t source_count, double tolerance_m, bool is_chosen)
+void parts_init(struct body_parts *parts, const struct trimesh *mesh, size_t source_count, double tolerance_m, bool is_chosen)
 {
     struct parts_finding f = { .parts = parts };
-    *parts = (struct parts){ .source_count = source_count };
+    *parts = (struct body_parts){ .source_count = source_count };
     trimesh_copy(&parts->solid, mesh);
     parts->of_tri = mem_array(mesh->tri_count, sizeof(*parts->of_tri));
     parts->side = mem_array(mesh->tri_count, 1);
@@ -133,7 +133,7 @@ void parts_init(struct parts *parts, const struct trimesh *mesh, size_t source_c
     mem_free(f.patches);
 }
 
-void parts_finish(struct parts *parts)
+void parts_finish(struct body_parts *parts)
 {
     trimesh_finish(&parts->solid);
     mem_free(parts->of_tri);

@@ -7,7 +7,7 @@
 /* A part is what hangs together by edges (a point in common is not enough: a corner may touch anything), a patch what does so by edges with
    two faces. Where one patch has two faces at an edge with more, the others only stand on it, like a fin: that does not make two closed
    bodies one part. */
-struct parts {
+struct body_parts {
     struct trimesh solid;
     uint32_t *of_tri;                     /* of the solid's triangles: part */
     signed char *side;                    /* likewise: +1 or -1, by which each patch faces the same way throughout; 0: it bounds nothing */
@@ -26,9 +26,9 @@ struct parts {
 /* Finds the parts of `mesh`, the model's source_count triangles after welding and closing seams, with multiplicities. tolerance_m is every
    part's reach; if it was chosen by the program (is_chosen), a closed part's reach is at most half of its thickness, so that what touches
    one side of a plate does not touch the other; beyond that it is joined to what it faces (line_of_sight.h). Finish with parts_finish(). */
-void parts_init(struct parts *parts, const struct trimesh *mesh, size_t source_count, double tolerance_m, bool is_chosen);
+void parts_init(struct body_parts *parts, const struct trimesh *mesh, size_t source_count, double tolerance_m, bool is_chosen);
 /* Frees the parts. */
-void parts_finish(struct parts *parts);
+void parts_finish(struct body_parts *parts);
 
 /* Returns of_source looked up for each current triangle of the mesh. The caller frees it (mem_free). */
 uint32_t *parts_spread(const struct trimesh *mesh, const uint32_t *of_source);

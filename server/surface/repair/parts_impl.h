@@ -6,10 +6,10 @@
 #include "surface/repair/parts.h"
 
 struct parts_finding {
-    struct parts *parts;
+    struct body_parts *parts;
     struct tri_edges edges;
     uint32_t *patch;                         /* of each triangle: its lowest one */
-    struct patch {                           /* by its lowest triangle */
+    struct surface_patch {                   /* by its lowest triangle */
         double open_m, branching_m, area_m2; /* edges with one face; with three or more, of which it has only one */
         double doubles_m2;                   /* of triangles that are there twice as often as others of the part */
         bool loose;                          /* it stands on others, and is open */

@@ -34,7 +34,7 @@ static void find_patches(struct parts_finding *f)
 /* Faces at edges with three or more, edge by edge and there patch by patch: one patch with so many faces. A patch with two of them runs
    through there, and the others only stand on it, as a fin does. */
 struct branches {
-    struct branch {
+    struct open_branch {
         uint32_t edge, patch, faces;
         bool runs_through; /* some patch does at this edge */
         double length_m;
@@ -44,7 +44,7 @@ struct branches {
 
 static int compare_branches(const void *a, const void *b)
 {
-    const struct branch *x = a, *y = b;
+    const struct open_branch *x = a, *y = b;
     if (x->edge != y->edge)
         return x->edge < y->edge ? -1 : 1;
     return (x->patch > y->patch) - (x->patch < y->patch);
@@ -59,10 +59,10 @@ static void branches_init(struct branches *b, const struct parts_finding *f)
             if (tri_edges_at(&f->edges, t, i)->faces < 3)
                 continue;
             mem_grow(&b->at, &capacity, b->count + 1, sizeof(*b->at));
-            b->at[b->count++] = (struct branch){ .edge = f->edges.of_side[3 * t + (size_t)i],
-                                                .patch = f->patch[t],
-                                                .faces = 1,
-                                                .length_m = edge_length(&f->parts->solid, t, i) };
+            b->at[b->count++] = (struct open_branch){ .edge = f->edges.of_side[3 * t + (size_t)i],
+                                                      .patch = f->patch[t],
+                                                      .faces = 1,
+                                                      .length_m = edge_length(&f->parts->solid, t, i) };
         }
     if (b->count)
         qsort(b->at, b->count, sizeof(*b->at), compare_branches);
@@ -85,7 +85,7 @@ static void measure_patches(struct parts_finding *f, const struct branches *b)
 {
     const struct trimesh *mesh = &f->parts->solid;
     for (size_t t = 0; t < mesh->tri_count; t++) {
-        struct patch *patch = &f->patches[f->patch[t]];
+        struct surface_patch *patch = &f->patches[f->patch[t]];
         double n[3];
         trimesh_normal(mesh, t, n);
         patch->area_m2 += vec_length(n) / 2;
@@ -96,7 +96,7 @@ static void measure_patches(struct parts_finding *f, const struct branches *b)
         f->patches[b->at[i].patch].branching_m += b->at[i].faces == 1 ? b->at[i].length_m : 0;
 }
 
-static bool stands(const struct branch *branch)
+static bool stands(const struct open_branch *branch)
 {
     return branch->runs_through && branch->faces == 1;
 }
@@ -147,7 +147,7 @@ static void join_patches(struct parts_finding *f, const struct branches *b, uint
 /* Numbers parts from 0, in the order of their first triangles. */
 static void number_parts(struct parts_finding *f, const struct branches *b)
 {
-    struct parts *parts = f->parts;
+    struct body_parts *parts = f->parts;
     size_t tri_count = parts->solid.tri_count;
     uint32_t *number = mem_array(tri_count, sizeof(*number)), *part = parts->of_tri;
     memcpy(part, f->patch, tri_count * sizeof(*part));
@@ -160,7 +160,7 @@ static void number_parts(struct parts_finding *f, const struct branches *b)
 
 static void find_closed(struct parts_finding *f)
 {
-    struct parts *parts = f->parts;
+    struct body_parts *parts = f->parts;
     const struct trimesh *mesh = &parts->solid;
     double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *open_m = mem_array(parts->count, sizeof(*open_m));
     for (size_t t = 0; t < mesh->tri_count; t++) {
@@ -185,9 +185,9 @@ static void find_closed(struct parts_finding *f)
 /* Bodies that a few edges join to others by mistake are told from them: such a patch is nearly closed by itself. */
 static void find_bodies(struct parts_finding *f, const struct trimesh *mesh)
 {
-    struct parts *parts = f->parts;
+    struct body_parts *parts = f->parts;
     for (size_t t = 0; t < mesh->tri_count; t++) {
-        const struct patch *patch = &f->patches[f->patch[t]];
+        const struct surface_patch *patch = &f->patches[f->patch[t]];
         bool alone = patch->branching_m > 0 && patch->open_m + patch->branching_m < ALONE * sqrt(patch->area_m2);
         parts->body_of_source[mesh->tri_source[t]] = alone ? (uint32_t)parts->count + f->patch[t] : parts->of_tri[t];
     }
@@ -195,7 +195,7 @@ static void find_bodies(struct parts_finding *f, const struct trimesh *mesh)
 
 void parts_number(struct parts_finding *f, const struct trimesh *mesh)
 {
-    struct parts *parts = f->parts;
+    struct body_parts *parts = f->parts;
     struct branches branches;
     tri_edges_init(&f->edges, (const uint32_t(*)[3])mesh->tris, mesh->tri_count);
     find_patches(f);

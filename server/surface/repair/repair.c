@@ -26,7 +26,7 @@ struct seams {
     struct mesh_edit *edit;
     double tolerance_m, end_m; /* places nearer to the end of an edge than end_m are left to the joining of points */
     bool fits;                 /* only what fits exactly */
-    struct nearest {           /* of each border point: the best place found on an open edge that is not its own */
+    struct nearest_edge {      /* of each border point: the best place found on an open edge that is not its own */
         double distance_m, t;
         uint32_t edge;
     } * nearest;
@@ -163,7 +163,7 @@ static void try_edge(struct seams *s, size_t i, uint32_t e)
     if (hangs(s, p, e))
         mesh_edit_insert_in_edge(s->edit, p, u, v, t, distance_m);
     else if (distance_m < s->nearest[i].distance_m)
-        s->nearest[i] = (struct nearest){ .distance_m = distance_m, .t = t, .edge = e };
+        s->nearest[i] = (struct nearest_edge){ .distance_m = distance_m, .t = t, .edge = e };
 }
 
 struct edge_search {
@@ -193,7 +193,7 @@ static void set_into_edges(struct seams *s)
         const double *p = s->mesh->points[b->points[i]];
         s->nearest[i].distance_m = INFINITY;
         bvh_overlaps(bvh, p, p, s->tolerance_m, visit_border_tri, &search);
-        const struct nearest *n = &s->nearest[i];
+        const struct nearest_edge *n = &s->nearest[i];
         if (n->distance_m < INFINITY)
             mesh_edit_insert_in_edge(s->edit, b->points[i], b->edges[n->edge][0], b->edges[n->edge][1], n->t, n->distance_m);
     }
@@ -262,7 +262,7 @@ static void take(struct trimesh *to, const struct trimesh *from, const char *hid
             trimesh_add_tri(to, from->tris[t][0], from->tris[t][1], from->tris[t][2], from->tri_source[t]);
 }
 
-size_t repair_rims(struct trimesh *mesh, const char *hidden, const struct parts *parts, uint32_t *target, struct repair_report *report)
+size_t repair_rims(struct trimesh *mesh, const char *hidden, const struct body_parts *parts, uint32_t *target, struct repair_report *report)
 {
     struct trimesh seen, rest;
     double widest_m = 0;

@@ -33,11 +33,12 @@ void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *targ
    both are cut along the line where two faces cross; where a point lies within both parts' reach of another body, or within the tolerance
    and both face each other (line_of_sight.h), it is inserted there; where the rim of a face that lies on another part crosses an edge, a
    point is inserted into both. target: as repair_seams(). */
-void repair_contacts(struct trimesh *mesh, struct parts *parts, uint32_t *target, struct repair_report *report);
+void repair_contacts(struct trimesh *mesh, struct body_parts *parts, uint32_t *target, struct repair_report *report);
 
 /* Closes rims that are open because what met there is hidden: where bodies with common vertices along part of a rim have a gap along the
    rest, the hidden faces in between had closed both. Closed as seams are, within both parts' reach. hidden[tri]: 0 or 1. Puts visible
    triangles first. Returns how many there are. target: as repair_seams(). */
-size_t repair_rims(struct trimesh *mesh, const char *hidden, const struct parts *parts, uint32_t *target, struct repair_report *report);
+size_t repair_rims(struct trimesh *mesh, const char *hidden, const struct body_parts *parts, uint32_t *target,
+                   struct repair_report *report);
 
 #endif

@@ -17,7 +17,7 @@
 
 struct contacts {
     struct trimesh *mesh;
-    struct parts *parts;
+    struct body_parts *parts;
     const uint32_t *part, *body; /* of its triangles, as they are now */
     const struct bvh *bvh;
     struct mesh_edit *edit;
@@ -25,7 +25,7 @@ struct contacts {
     double reach_m; /* of the point's part, or of the rim's */
     uint32_t edge[2];
     uint32_t *touched; /* of each point: the body that it touches, or TRIMESH_NONE */
-    struct crossing {
+    struct contact_crossing {
         uint32_t tri, a, b, c, d; /* edge a-b through tri, or, if that is TRIMESH_NONE, over the edge c-d */
         uint32_t point;           /* there, once it is set */
         double t, s, weights[3];
@@ -34,7 +34,7 @@ struct contacts {
     size_t crossing_count, crossing_capacity;
 };
 
-static struct crossing *add_crossing(struct contacts *c)
+static struct contact_crossing *add_crossing(struct contacts *c)
 {
     mem_grow(&c->crossings, &c->crossing_capacity, c->crossing_count + 1, sizeof(*c->crossings));
     return &c->crossings[c->crossing_count++];
@@ -72,8 +72,8 @@ static void visit_crossed(void *arg, uint32_t tri)
     double length = vec_distance(p, q), reach_m = min_of(c->parts->reach_m[c->own], reach_of(c, tri));
     if (t * length < reach_m || (1 - t) * length < reach_m || (own && !stands_clear(c, v)))
         return; /* the end of the edge touches; that is found by points */
-    struct crossing *found = add_crossing(c);
-    *found = (struct crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t, .own = own };
+    struct contact_crossing *found = add_crossing(c);
+    *found = (struct contact_crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t, .own = own };
     memcpy(found->weights, w, sizeof(w));
     if (own)
         c->parts->crossed[c->own] = c->parts->tangled[c->own] = 1;
@@ -204,7 +204,7 @@ static bool edges_meet(const double a[3], const double b[3], const double c[3], 
 static bool is_known(const struct contacts *c, uint32_t u, uint32_t v)
 {
     for (size_t i = c->crossing_count; i-- > 0;) {
-        const struct crossing *x = &c->crossings[i];
+        const struct contact_crossing *x = &c->crossings[i];
         if (x->tri != TRIMESH_NONE || x->a != c->edge[0] || x->b != c->edge[1])
             return false;
         if ((x->c == u && x->d == v) || (x->c == v && x->d == u))
@@ -228,7 +228,8 @@ static void visit_rim(void *arg, uint32_t tri)
         vec_mix(p, q, t, at);
         vec_mix(a, b, s, beside);
         if (vec_distance(at, beside) <= end && fmin(t, 1 - t) * length > end && fmin(s, 1 - s) * other > end)
-            *add_crossing(c) = (struct crossing){ .tri = TRIMESH_NONE, .a = c->edge[0], .b = c->edge[1], .c = u, .d = v, .t = t, .s = s };
+            *add_crossing(c) =
+                (struct contact_crossing){ .tri = TRIMESH_NONE, .a = c->edge[0], .b = c->edge[1], .c = u, .d = v, .t = t, .s = s };
     }
 }
 
@@ -252,7 +253,7 @@ static void find_rims(struct contacts *c)
 static void set_crossings(struct contacts *c, struct repair_report *report)
 {
     for (size_t i = 0; i < c->crossing_count; i++) {
-        struct crossing *x = &c->crossings[i];
+        struct contact_crossing *x = &c->crossings[i];
         double place[3];
         vec_mix(c->mesh->points[x->a], c->mesh->points[x->b], x->t, place);
         x->point = trimesh_add_point(c->mesh, place);
@@ -307,7 +308,7 @@ static void find_meetings(const struct contacts *c, struct meetings *meetings)
         for (int i = 0; i < 3; i++) {
             uint32_t e = edge_table_find(&edges, c->mesh->tris[t][i], c->mesh->tris[t][(i + 1) % 3]);
             for (uint32_t n = e == TRIMESH_NONE ? 0 : first[e]; e != TRIMESH_NONE && n < first[e + 1]; n++) {
-                const struct crossing *x = &c->crossings[of_edge[n]];
+                const struct contact_crossing *x = &c->crossings[of_edge[n]];
                 if (x->tri == TRIMESH_NONE || x->tri == t)
                     continue;
                 mem_grow(&meetings->at, &meetings->capacity, meetings->count + 1, sizeof(*meetings->at));
@@ -395,7 +396,7 @@ static void find_contacts(struct contacts *c)
     mem_free(may_cross);
 }
 
-void repair_contacts(struct trimesh *mesh, struct parts *parts, uint32_t *target, struct repair_report *report)
+void repair_contacts(struct trimesh *mesh, struct body_parts *parts, uint32_t *target, struct repair_report *report)
 {
     struct mesh_edit edit;
     uint32_t *part = parts_spread(mesh, parts->of_source), *body = parts_spread(mesh, parts->body_of_source);

@@ -21,7 +21,7 @@ struct alias {
     size_t first_tag, tags; /* of that topic: those that show the metric */
 };
 
-struct node {
+struct sparkplug_node {
     char *group, *name;
     bool is_born;
     bool told;       /* that it speaks before its birth */
@@ -35,7 +35,7 @@ struct node {
 
 struct sparkplug {
     struct sparkplug_params params;
-    struct node *nodes;
+    struct sparkplug_node *nodes;
     size_t node_count;
     size_t *node_of;        /* by topic */
     bool *is_born;          /* by topic: nodes' and devices' */
@@ -50,10 +50,11 @@ static const char *const verbs[] = { "NBIRTH", "NDEATH", "NDATA", "DBIRTH", "DDE
 /* --- who there is ----------------------------------------------------------------------------------------------------------- */
 
 /* The nodes are few, and each is looked for once a message. */
-static struct node *find_node(const struct sparkplug *sparkplug, const char *group, size_t group_length, const char *name, size_t length)
+static struct sparkplug_node *find_node(const struct sparkplug *sparkplug, const char *group, size_t group_length, const char *name,
+                                        size_t length)
 {
     for (size_t i = 0; i < sparkplug->node_count; i++) {
-        struct node *node = &sparkplug->nodes[i];
+        struct sparkplug_node *node = &sparkplug->nodes[i];
         if (!strncmp(node->name, name, length) && !node->name[length] && !strncmp(node->group, group, group_length) &&
             !node->group[group_length])
             return node;
@@ -65,7 +66,7 @@ static void add_node(struct sparkplug *sparkplug, size_t topic)
 {
     const char *group = sparkplug->params.topics->at[topic].name, *name = strchr(group, '/') + 1;
     size_t group_length = (size_t)(name - 1 - group), length = strcspn(name, "/");
-    struct node *node = find_node(sparkplug, group, group_length, name, length);
+    struct sparkplug_node *node = find_node(sparkplug, group, group_length, name, length);
     if (!node) {
         node = &sparkplug->nodes[sparkplug->node_count++];
         node->group = mem_printf("%.*s", (int)group_length, group);
@@ -120,7 +121,7 @@ char **sparkplug_subscriptions(const struct sparkplug *sparkplug, size_t *count)
 
 /* --- birth and death -------------------------------------------------------------------------------------------------------- */
 
-static void ask(struct sparkplug *sparkplug, struct node *node, int64_t now_ns)
+static void ask(struct sparkplug *sparkplug, struct sparkplug_node *node, int64_t now_ns)
 {
     node->is_wanted = sparkplug->params.rebirth;
     if (!node->is_wanted || (node->asked_ns && now_ns - node->asked_ns < ASK_NS))
@@ -139,7 +140,7 @@ void sparkplug_on_tick(struct sparkplug *sparkplug, int64_t now_mono_ns)
             ask(sparkplug, &sparkplug->nodes[i], now_mono_ns);
 }
 
-static void forget(struct sparkplug *sparkplug, struct node *node)
+static void forget(struct sparkplug *sparkplug, struct sparkplug_node *node)
 {
     node->is_born = false;
     node->alias_count = 0;
@@ -166,7 +167,7 @@ static void topic_dies(struct sparkplug *sparkplug, size_t topic)
 }
 
 /* With all its devices. spared: the node's own topic where it is born at once, else SIZE_MAX. */
-static void node_dies(struct sparkplug *sparkplug, struct node *node, size_t spared)
+static void node_dies(struct sparkplug *sparkplug, struct sparkplug_node *node, size_t spared)
 {
     for (size_t i = 0; i < sparkplug->params.topics->count; i++)
         if (&sparkplug->nodes[sparkplug->node_of[i]] == node && i != spared)
@@ -201,7 +202,7 @@ static int by_number(const void *pa, const void *pb)
     return (a->number > b->number) - (a->number < b->number);
 }
 
-static void drop_aliases(struct node *node, size_t topic)
+static void drop_aliases(struct sparkplug_node *node, size_t topic)
 {
     size_t kept = 0;
     for (size_t i = 0; i < node->alias_count; i++)
@@ -211,8 +212,8 @@ static void drop_aliases(struct node *node, size_t topic)
 }
 
 /* The tags that show a metric, by its name or else by its alias. Returns how many: mostly none. */
-static size_t tags_of(const struct sparkplug *sparkplug, const struct node *node, size_t topic, const struct sparkplug_metric *metric,
-                      size_t *first)
+static size_t tags_of(const struct sparkplug *sparkplug, const struct sparkplug_node *node, size_t topic,
+                      const struct sparkplug_metric *metric, size_t *first)
 {
     if (metric->name)
         return tags_named(sparkplug, topic, metric->name, first);
@@ -253,8 +254,8 @@ static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metr
 }
 
 /* False: some metric is wrong; its tags are Bad. */
-static bool take_metrics(struct sparkplug *sparkplug, const struct node *node, size_t topic, const struct sparkplug_payload *payload,
-                         char why[200])
+static bool take_metrics(struct sparkplug *sparkplug, const struct sparkplug_node *node, size_t topic,
+                         const struct sparkplug_payload *payload, char why[200])
 {
     const struct mqtt_topic *of = &sparkplug->params.topics->at[topic];
     bool all_good = true;
@@ -270,7 +271,7 @@ static bool take_metrics(struct sparkplug *sparkplug, const struct node *node, s
 }
 
 /* Types and aliases of a birth certificate. */
-static void learn(struct sparkplug *sparkplug, struct node *node, size_t topic, const struct sparkplug_payload *payload)
+static void learn(struct sparkplug *sparkplug, struct sparkplug_node *node, size_t topic, const struct sparkplug_payload *payload)
 {
     const struct mqtt_topic *of = &sparkplug->params.topics->at[topic];
     drop_aliases(node, topic);
@@ -291,7 +292,8 @@ static void learn(struct sparkplug *sparkplug, struct node *node, size_t topic, 
 }
 
 /* Of a birth: what is not in it does not exist. */
-static bool take_birth(struct sparkplug *sparkplug, struct node *node, size_t topic, const struct sparkplug_payload *payload, char why[200])
+static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node, size_t topic, const struct sparkplug_payload *payload,
+                       char why[200])
 {
     const struct mqtt_topic *of = &sparkplug->params.topics->at[topic];
     size_t missing = 0;
@@ -318,7 +320,7 @@ static bool take_birth(struct sparkplug *sparkplug, struct node *node, size_t to
 /* --- the sequence ----------------------------------------------------------------------------------------------------------- */
 
 /* What a lost message said is not known: what was read before may be another by now. */
-static void doubt_all(struct sparkplug *sparkplug, const struct node *node)
+static void doubt_all(struct sparkplug *sparkplug, const struct sparkplug_node *node)
 {
     for (size_t i = 0; i < sparkplug->params.topics->count; i++) {
         const struct mqtt_topic *topic = &sparkplug->params.topics->at[i];
@@ -336,7 +338,7 @@ static void doubt_all(struct sparkplug *sparkplug, const struct node *node)
     }
 }
 
-static void follow(struct sparkplug *sparkplug, struct node *node, const struct sparkplug_payload *payload)
+static void follow(struct sparkplug *sparkplug, struct sparkplug_node *node, const struct sparkplug_payload *payload)
 {
     int seq = payload->seq, wanted = node->next_seq;
     node->next_seq = (seq + 1) % 256;
@@ -354,7 +356,7 @@ static void follow(struct sparkplug *sparkplug, struct node *node, const struct 
 
 struct said {
     enum verb verb;
-    struct node *node;
+    struct sparkplug_node *node;
     size_t topic; /* SIZE_MAX: no tag is of that node, or of that device */
 };
 
@@ -387,7 +389,7 @@ static bool read_topic(const struct sparkplug *sparkplug, const char *topic, str
 }
 
 /* Until its birth is heard, nobody knows whether it is alive, nor what its aliases mean. */
-static bool refuse_unborn(struct sparkplug *sparkplug, struct node *node, char why[200])
+static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *node, char why[200])
 {
     ask(sparkplug, node, sparkplug->params.writer->mono_ns);
     if (!node->told)
@@ -400,7 +402,7 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct node *node, char w
 
 static bool take_node_birth(struct sparkplug *sparkplug, const struct said *said, const struct sparkplug_payload *payload, char why[200])
 {
-    struct node *node = said->node;
+    struct sparkplug_node *node = said->node;
     node_dies(sparkplug, node, said->topic); /* what was born before it */
     node->is_born = true;
     node->told = node->is_wanted = false;
@@ -410,7 +412,7 @@ static bool take_node_birth(struct sparkplug *sparkplug, const struct said *said
     return said->topic == SIZE_MAX || take_birth(sparkplug, node, said->topic, payload, why);
 }
 
-static bool take_node_death(struct sparkplug *sparkplug, struct node *node, const struct sparkplug_payload *payload)
+static bool take_node_death(struct sparkplug *sparkplug, struct sparkplug_node *node, const struct sparkplug_payload *payload)
 {
     int64_t bd_seq = sparkplug_bd_seq(payload);
     if (!node->is_born)

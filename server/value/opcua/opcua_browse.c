@@ -12,7 +12,7 @@
 enum { OBJECTS_FOLDER = 85, HIERARCHICAL = 33, HAS_PROPERTY = 46 }; /* nodes of every server */
 enum { MOST_NODES = 200000, MOST_DEEP = 24, REFERENCES_AT_ONCE = 500 };
 
-struct step {
+struct browse_step {
     UA_NodeId id;
     char *path;
     int depth;
@@ -25,7 +25,7 @@ struct browse {
     void *arg;
     int stop_fd;
     int64_t deadline_mono_ns;
-    struct step *steps; /* all that were seen, in the order they are looked at */
+    struct browse_step *steps; /* all that were seen, in the order they are looked at */
     size_t count, capacity;
     size_t *table; /* open addressing; 0: free, else index in steps + 1 */
 };
@@ -44,8 +44,8 @@ static void see(struct browse *browse, const UA_NodeId *id, const char *path, in
     if (browse->table[slot] || browse->count == MOST_NODES || depth > MOST_DEEP)
         return;
     mem_grow(&browse->steps, &browse->capacity, browse->count + 1, sizeof(*browse->steps));
-    struct step *step = &browse->steps[browse->count++];
-    *step = (struct step){ .path = mem_strdup(path), .depth = depth, .is_variable = is_variable };
+    struct browse_step *step = &browse->steps[browse->count++];
+    *step = (struct browse_step){ .path = mem_strdup(path), .depth = depth, .is_variable = is_variable };
     UA_NodeId_copy(id, &step->id);
     browse->table[slot] = browse->count;
 }
@@ -54,7 +54,7 @@ static void see_all(struct browse *browse, size_t parent, const UA_BrowseResult 
 {
     for (size_t i = 0; i < result->referencesSize; i++) {
         const UA_ReferenceDescription *to = &result->references[i];
-        const struct step *step = &browse->steps[parent];
+        const struct browse_step *step = &browse->steps[parent];
         bool is_property = to->referenceTypeId.namespaceIndex == 0 && to->referenceTypeId.identifierType == UA_NODEIDTYPE_NUMERIC &&
                            to->referenceTypeId.identifier.numeric == HAS_PROPERTY;
         if (to->nodeId.serverIndex != 0 || to->nodeId.nodeId.namespaceIndex == 0 || is_property)
@@ -136,7 +136,7 @@ static bool is_number(const UA_Variant *value)
 
 static int read_variable(struct browse *browse, size_t at, char why[200])
 {
-    const struct step *step = &browse->steps[at];
+    const struct browse_step *step = &browse->steps[at];
     UA_ReadValueId values[2] = { { .nodeId = step->id, .attributeId = UA_ATTRIBUTEID_VALUE },
                                  { .nodeId = step->id, .attributeId = UA_ATTRIBUTEID_DESCRIPTION } };
     UA_ReadRequest request = { .nodesToRead = values, .nodesToReadSize = 2, .timestampsToReturn = UA_TIMESTAMPSTORETURN_NEITHER };
