@@ -12,7 +12,7 @@ struct connection {               /* lives as long as the connection */
     struct token_holder holder;
     char token[TOKEN_MAX_CHARS + 1]; /* of the last request; "": none */
     bool answered; /* nothing that it asked waits for an answer */
-    uint64_t received_before_head; /* bytes, when the wait for the next request began (http/stuck_head.h) */
+    uint64_t received_before_head; /* bytes, when the wait for the next request began; UINT64_MAX: none (http/stuck_head.h) */
 };
 
 /* Decides about a socket before a connection is made of it. Returns false if it is to be closed. */

@@ -13,6 +13,7 @@
 #include "net/connection.h"
 
 enum { LOOK_US = 500000, QUIET_MS = 2000 }; /* a lost packet is sent again after 1 s at most, unless that is lost as well */
+static const uint64_t NOT_WATCHED = UINT64_MAX;
 
 static bool tcp_info_of(struct lws *wsi, struct tcp_info *info)
 {
@@ -24,13 +25,14 @@ static bool tcp_info_of(struct lws *wsi, struct tcp_info *info)
 void stuck_head_await(struct lws *wsi)
 {
     struct tcp_info info;
-    connection_of(wsi)->received_before_head = tcp_info_of(wsi, &info) ? info.tcpi_bytes_received : UINT64_MAX;
+    connection_of(wsi)->received_before_head = tcp_info_of(wsi, &info) ? info.tcpi_bytes_received : NOT_WATCHED;
     lws_set_timer_usecs(wsi, LOOK_US);
 }
 
+/* The timer goes off once more and is not set again: lws_set_timer_usecs of libwebsockets 4.1 cannot cancel it, -1 lets it go off at once. */
 void stuck_head_arrived(struct lws *wsi)
 {
-    lws_set_timer_usecs(wsi, LWS_SET_TIMER_USEC_CANCEL);
+    connection_of(wsi)->received_before_head = NOT_WATCHED;
 }
 
 /* As far as the socket takes it at once. */
@@ -63,7 +65,7 @@ int stuck_head_look(struct server_context *server, struct lws *wsi)
 {
     struct tcp_info info;
     SSL *ssl = lws_get_ssl(wsi);
-    if (!connection_of(wsi))
+    if (!connection_of(wsi) || connection_of(wsi)->received_before_head == NOT_WATCHED)
         return 0;
     bool begun = tcp_info_of(wsi, &info) && info.tcpi_bytes_received > connection_of(wsi)->received_before_head;
     if (!begun || info.tcpi_last_data_recv < QUIET_MS || (ssl && !SSL_is_init_finished(ssl))) {
