@@ -29,7 +29,7 @@ void stuck_head_await(struct lws *wsi)
     lws_set_timer_usecs(wsi, LOOK_US);
 }
 
-/* The timer goes off once more and is not set again: lws_set_timer_usecs of libwebsockets 4.1 cannot cancel it, -1 lets it go off at once. */
+/* The timer goes off once more and is not set again: libwebsockets 4.1 cannot cancel it, -1 lets it go off at once. */
 void stuck_head_arrived(struct lws *wsi)
 {
     connection_of(wsi)->received_before_head = NOT_WATCHED;
