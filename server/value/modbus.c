@@ -37,7 +37,7 @@ static void read_block(struct modbus_source *modbus, size_t index)
     block->due_ns = next_ns > now_ns ? next_ns : now_ns + block->scan_ms * NS_PER_MS; /* late: no bursts to catch up */
     counter_inc(status == 0 ? modbus->reads_ok : modbus->reads_failed, 1);
     if (status < 0) {
-        modbus->manners.gateway_waits = status == -ETIMEDOUT;
+        modbus->manners.timed_out = status == -ETIMEDOUT ? unit : NULL;
         if (!modbus_unit_doubt(modbus, unit, index))
             modbus_unit_is_down(modbus, unit, strerror(-status));
         return;

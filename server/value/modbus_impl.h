@@ -29,8 +29,9 @@ struct modbus_manners {       /* how the device wants its connections: as the pl
     int64_t first_wait_ns;    /* the first request of a connection is repeated for so long; 0: it is answered like others */
     int short_connections;    /* in a row: ended by the device after one answer */
     int silent_connections;   /* in a row: no answer at all while no unit was up */
-    bool gateway_waits;       /* a unit timed out just now: the gateway may wait for it longer than we did, before it takes requests */
-    bool first_excused;       /* the first answer of this connection may be late for that reason */
+    /* The unit that timed out just now, or NULL: a gateway may wait for it longer than we did, before it takes requests for others. */
+    const struct modbus_unit *timed_out;
+    bool first_excused; /* the first answer of this connection may be late for that reason */
     int failed_connections;   /* in a row: refused or closed at once, right after a connection that answered */
     bool ends_said;
 };

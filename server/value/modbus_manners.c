@@ -37,11 +37,10 @@ void modbus_manners_before(struct modbus_source *modbus, const struct modbus_uni
     int64_t patience_ns = manners->first_wait_ns;
     if (!modbus->link_up && manners->silent_connections > 0 && patience_ns < PATIENCE_NS)
         patience_ns = manners->silent_connections == 1 ? PATIENCE_NS : 2 * PATIENCE_NS;
-    if (manners->gateway_waits && unit->state == UNIT_UP && patience_ns < GATEWAY_NS) {
+    manners->first_excused = manners->timed_out && manners->timed_out != unit && unit->state == UNIT_UP && patience_ns < GATEWAY_NS;
+    if (manners->first_excused)
         patience_ns = GATEWAY_NS;
-        manners->first_excused = true;
-    }
-    manners->gateway_waits = false;
+    manners->timed_out = NULL;
     modbus_link_set_patience(modbus->link, patience_ns);
 }
 
@@ -112,7 +111,6 @@ void modbus_manners_answered(struct modbus_source *modbus, const struct read_pla
     int answers = modbus_link_answers(modbus->link);
     if (answers == 1 && modbus->base.config->transport == TRANSPORT_TCP && !manners->first_excused)
         learn_start(modbus);
-    manners->first_excused = false;
     learn_rtu_delay(modbus);
     if (answers > 1)
         manners->short_connections = 0;

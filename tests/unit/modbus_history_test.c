@@ -150,7 +150,25 @@ static void check_history(const struct modbus_replay *r, struct history_reader *
     history_series_finish(&series);
 }
 
-static void run(struct modbus_replay *r, double seconds)
+/* Keeps the device deaf until the store knows that each tag has lost its device. */
+static void outage(struct modbus_replay *r, struct store *store)
+{
+    struct snapshot *snapshot = snapshot_create(r->plant->tag_count);
+    size_t lost = 0;
+    r->deaf = true;
+    sleep_ns(OUTAGE_MS * NS_PER_MS);
+    for (int64_t end_ns = clock_mono_ns() + 30 * NS_PER_S; lost < r->mapped_count && clock_mono_ns() < end_ns; sleep_ns(10 * NS_PER_MS)) {
+        store_snapshot(store, clock_mono_ns(), clock_utc_ns(), snapshot);
+        lost = 0;
+        for (size_t i = 0; i < r->mapped_count; i++)
+            lost += !quality_is_good(snapshot->readings[r->mapped[i]].quality);
+    }
+    assert_int_equal(lost, r->mapped_count);
+    r->deaf = false;
+    snapshot_destroy(&snapshot);
+}
+
+static void run(struct modbus_replay *r, struct store *store, double seconds)
 {
     int64_t ms = (int64_t)(seconds * 1000);
     sleep_ns((ms / 4) * NS_PER_MS);
@@ -158,9 +176,7 @@ static void run(struct modbus_replay *r, double seconds)
     sleep_ns(SPIKE_MS * NS_PER_MS);
     r->spike = -1;
     sleep_ns((ms / 4) * NS_PER_MS);
-    r->deaf = true;
-    sleep_ns(OUTAGE_MS * NS_PER_MS);
-    r->deaf = false;
+    outage(r, store);
     sleep_ns((ms / 2) * NS_PER_MS);
 }
 
@@ -223,7 +239,7 @@ TEST(history_gives_back_what_the_device_held)
     assert_non_null(historian);
     assert_int_equal(pthread_create(&device, NULL, device_main, &r), 0);
     struct source *source = source_start(log, r.plant, 0, store, counters);
-    run(&r, asked ? atof(asked) : SHORT_S);
+    run(&r, store, asked ? atof(asked) : SHORT_S);
     source_stop(&source);
     historian_stop(&historian);
     eventfd_write(r.stop_fd, 1);

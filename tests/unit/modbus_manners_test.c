@@ -303,6 +303,19 @@ CASE(a_dead_unit_at_a_closing_gateway)
     expect_two_units_live(s);
 }
 
+/* A device of one unit that falls silent is no gateway that waits for another unit: two timeouts are enough. */
+CASE(a_device_that_falls_silent_is_not_waited_for)
+{
+    start(s);
+    for (int i = 0; i < BLOCKS; i++)
+        modbus_case_expect(s, i, QUALITY_GOOD, 10);
+    s->device.silent_unit = 1;
+    int requests = s->device.requests;
+    await_line("no readings", 20);
+    assert_true(s->device.requests - requests <= 8); /* two, and few after the loss; a wait for a gateway repeats the second 16 times */
+    assert_false(quality_is_good(modbus_case_look(s, 0)->quality));
+}
+
 /* A gateway that waits for a dead unit three times as long as we do, and takes no other request meanwhile. */
 CASE(a_dead_unit_that_blocks_its_gateway)
 {
