@@ -275,7 +275,7 @@ static bool on_connection(struct lws *wsi, enum lws_callback_reasons reason, voi
         return true;
     case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED:
         connection_open(server_context_of(wsi), wsi);
-        stuck_head_await(wsi);
+        stuck_head_await(wsi, true);
         return true;
     case LWS_CALLBACK_WSI_DESTROY: connection_close(server_context_of(wsi), wsi); return true;
     case LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS: tls_serve(server_context_of(wsi)->tls, user); return true;

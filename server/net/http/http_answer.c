@@ -113,7 +113,7 @@ int request_done(struct http_exchange *request)
     request_hold(request, NULL, 0);
     request->pieces = PIECES_NONE;
     connection_set_answered(server_context_of(request->wsi), request->wsi, true);
-    stuck_head_await(request->wsi);
+    stuck_head_await(request->wsi, false);
     return request->close || server_context_of(request->wsi)->goes_down || lws_http_transaction_completed(request->wsi) ? -1 : 0;
 }
 

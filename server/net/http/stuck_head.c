@@ -22,10 +22,10 @@ static bool tcp_info_of(struct lws *wsi, struct tcp_info *info)
     return getsockopt((int)lws_get_socket_fd(wsi), IPPROTO_TCP, TCP_INFO, info, &size) == 0;
 }
 
-void stuck_head_await(struct lws *wsi)
+void stuck_head_await(struct lws *wsi, bool first)
 {
     struct tcp_info info;
-    connection_of(wsi)->received_before_head = tcp_info_of(wsi, &info) ? info.tcpi_bytes_received : NOT_WATCHED;
+    connection_of(wsi)->received_before_head = !tcp_info_of(wsi, &info) ? NOT_WATCHED : first ? 0 : info.tcpi_bytes_received;
     lws_set_timer_usecs(wsi, LOOK_US);
 }
 
@@ -61,6 +61,13 @@ static void note(struct server_context *server, struct lws *wsi)
     log_warn(server->params.log, "http: a request from %s ended: its head did not end within %d s (408)%s", address, QUIET_MS / 1000, more);
 }
 
+/* Over TLS bytes of the handshake count as received, too: only a request line tells that a request has begun. */
+static bool has_request_line(struct lws *wsi)
+{
+    return lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0 || lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0 ||
+           lws_hdr_total_length(wsi, WSI_TOKEN_POST_URI) > 0;
+}
+
 int stuck_head_look(struct server_context *server, struct lws *wsi)
 {
     struct tcp_info info;
@@ -68,7 +75,7 @@ int stuck_head_look(struct server_context *server, struct lws *wsi)
     if (!connection_of(wsi) || connection_of(wsi)->received_before_head == NOT_WATCHED)
         return 0;
     bool begun = tcp_info_of(wsi, &info) && info.tcpi_bytes_received > connection_of(wsi)->received_before_head;
-    if (!begun || info.tcpi_last_data_recv < QUIET_MS || (ssl && !SSL_is_init_finished(ssl))) {
+    if (!begun || info.tcpi_last_data_recv < QUIET_MS || (ssl && !has_request_line(wsi))) {
         lws_set_timer_usecs(wsi, LOOK_US);
         return 0;
     }

@@ -5,8 +5,9 @@
 #define HTTP_STUCK_HEAD_H
 #include "net/server_context.h"
 
-/* Starts to watch for the next request's head: when a connection opens, and when a request is done. */
-void stuck_head_await(struct lws *wsi);
+/* Starts to watch for the next request's head: when a connection opens, and when a request is done. The bytes of a connection's first
+   request may have arrived before it was accepted. */
+void stuck_head_await(struct lws *wsi, bool first);
 /* Ends the watch: the head is here. */
 void stuck_head_arrived(struct lws *wsi);
 /* For LWS_CALLBACK_TIMER. Returns 0; or -1 if the connection is to be closed: bytes arrived, then none for 2 s. It was told so (408). */
