@@ -34,7 +34,7 @@ static const struct {
     [QUOTA_PATIENCE_S] = { "patience", 10, 1, 600, "seconds for a request, for hello, and for the rest of a message" },
     [QUOTA_ANSWER_WAIT_S] = { "answer-wait", 120, 1, 3600, "seconds until an answer over HTTP is that it is not ready" },
     [QUOTA_IMPORT_S] = { "import-seconds", 120, 1, 86400, "seconds for reading one model or tag list" },
-    [QUOTA_IMPORT_MB] = { "import-megabytes", 2048, 64, 1 << 24, "memory for reading one model or tag list" },
+    [QUOTA_IMPORT_MB] = { "import-megabytes", 2048, 64, 1000000, "memory for reading one model or tag list" },
     [QUOTA_PREPARE_S] = { "prepare-seconds", 14400, 1, 7 * 86400, "seconds for preparing models (plantcast-prep)" },
     [QUOTA_PREPARE_MB] = { "prepare-megabytes", 0, 0, 1 << 24, "memory for preparing models; 0: three quarters of the machine's" },
 };

@@ -72,7 +72,7 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
 static void count_written(struct journal *journal, size_t count, int error)
 {
     pthread_mutex_lock(&journal->thread.lock);
-    journal->settling.done += error ? 0 : count;
+    journal->settling.done += count;
     journal->settling.failures += error != 0;
     journal->settling.error = error;
     pthread_mutex_unlock(&journal->thread.lock);
@@ -180,7 +180,7 @@ void journal_end(struct journal *journal, struct settling_ticket *ticket)
 {
     pthread_mutex_lock(&journal->thread.lock);
     settling_end(&journal->settling, ticket, clock_mono_ns());
-    journal->urgent = ticket->last > ticket->first;
+    journal->urgent |= ticket->last > ticket->first;
     pthread_cond_signal(&journal->thread.wake);
     pthread_mutex_unlock(&journal->thread.lock);
 }
