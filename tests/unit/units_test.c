@@ -281,7 +281,7 @@ CASE(what_was_recorded_is_shown_in_the_unit_of_now)
     struct import_counts counts;
     struct log *log = log_create(LOG_ERROR);
     char *taken = mem_printf(rows, "taken"), *converted = mem_printf(rows, "temp"), *folder = temp_path(c->folder, "h");
-    char *path = temp_write_text(c->folder, "s.csv", "Tag,Time,Value\nF,2026-10-25T00:00:01Z,212\nF,2026-10-25T01:00:00Z,212\n");
+    char *path = temp_write_text(c->folder, "s.csv", "Tag,Time,Value\nF,2026-10-25T00:00:01Z,212\nF,2026-10-25T00:10:00Z,212\n");
     plant_case_load(c, yaml, taken);
     struct import_params params = { .log = log, .plant = c->plant, .folder = folder, .path = path, .start_us = INT64_MIN };
     assert_true(history_import(&params, &diag, &counts));

@@ -300,7 +300,7 @@ test('what the server refuses is said in the reader\'s language', options, async
     const other = await openPage(`${url}?lang=ko`, SCREEN);
     await waitForPicture(other.page);
     await other.page.evaluate(() => globalThis.plantcast.session.setParams({ strength: 500 }));
-    await other.page.locator('#toast', { hasText: '서버가 거부했습니다: 0–100 범위의 수가 필요합니다' }).waitFor();
+    await other.page.locator('#toast', { hasText: '서버가 거부했습니다: 0에서 100까지의 수가 필요합니다' }).waitFor();
     await other.page.evaluate(async () => {
         const { askFit } = await import('/core/requests.js');
         askFit(globalThis.plantcast.session, { side: 'inside out' });
