@@ -91,8 +91,8 @@ const strange = (seen, known) =>
 
 // A view kept its preview once, before the first loss, beside other programs: make test-long runs the first.
 for (const hardware of [true, false]) {
-    const where = hardware ? 'as on a GPU' : 'without a GPU';
-    test(`a context that is lost ${LOSSES} times under load is made again each time, ${where}`, { skip: skip || (hardware && long) }, async () => {
+    const where = hardware ? 'as on a GPU' : 'without a GPU', options = { skip: skip || (hardware && long) };
+    test(`a context that is lost ${LOSSES} times under load is made again each time, ${where}`, options, async () => {
         const { plant, faults } = await start(hardware);
         const clients = await Promise.all(SIZES.map((size, i) => look(plant, size, i === 1 ? { group: 'pressure' } : {})));
         const movers = MOVERS.map((i) => clients[i]), expected = {}, known = {};

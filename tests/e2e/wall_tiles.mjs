@@ -137,7 +137,8 @@ async function compare(wall, columns, rows, [across, down]) {
 }
 
 // It differed once beside other programs, in a preview: make test-long runs it.
-test('six tiles are the large picture, pixel by pixel, preview and refined', { ...options, skip: options.skip || long }, () => compare('seamless', 3, 2, [0, 0]));
+test('six tiles are the large picture, pixel by pixel, preview and refined', { ...options, skip: options.skip || long },
+    () => compare('seamless', 3, 2, [0, 0]));
 test('behind bezels the picture goes on', options, async () => {
     assert.ok(BEZEL[0] > 20 && BEZEL[1] > 10);
     await compare('framed', 2, 2, BEZEL);

@@ -37,7 +37,8 @@ async function openCounted(address, screen, before = null) {
     const answers = [];
     const browser = await openPage(address, screen, before, (page) => page.on('response', (answer) => answers.push(answer)));
     const bytes = async (answer) => [new URL(answer.url()).pathname, (await answer.body()).length];
-    return { ...browser, fetched: async () => (await Promise.all(answers.map(bytes))).filter(([path]) => !path.startsWith('/vendor/') && !path.includes('/watchdog')) };
+    const counts = ([path]) => !path.startsWith('/vendor/') && !path.includes('watchdog');
+    return { ...browser, fetched: async () => (await Promise.all(answers.map(bytes))).filter(counts) };
 }
 const sum = (files) => files.reduce((all, [, bytes]) => all + bytes, 0);
 
