@@ -692,6 +692,7 @@ test('a guessed unit is a question that reads again; lost elements are counted a
         await shown('skid.stl does not say its unit. Taken as metres: the model is 2 m long');
         await shown('2 elements have no triangles');
         await sheet.locator('#import [data-kind=lost] summary').click();
+        await sheet.locator('#import [data-kind=lost] li').nth(1).waitFor();
         const items = await sheet.locator('#import [data-kind=lost] li').allTextContents();
         assert.match(items[0], /^LINE-1000 #903 · IfcPipeSegment · 0\$PlantcastKinds0000000 · lines\.ifc.*IfcSectionedSolidHorizontal/);
         assert.match(items[1], /^LINE-1001 #904 .*its representation is empty/);
