@@ -16,7 +16,7 @@
 #include "plant/plant_folder.h"
 #include "sibling.h"
 
-enum { FILES = 3, MOST_ARGUMENTS = 300, OWN_MB = 512 /* of plantcast-import itself, beside its readers */ };
+enum { FILES = 3, MOST_ARGUMENTS = 300, OWN_MB = 512 /* memory of plantcast-import itself, without its readers */ };
 static const size_t max_bytes = (size_t)256 << 20;
 
 struct texts {

@@ -32,7 +32,7 @@ struct sibling {
     struct text written; /* to stderr */
     char *cgroup;        /* NULL: none */
     int64_t until_ns, kill_ns;
-    bool told, timed_out; /* it was told to end: by the caller, by the time limit */
+    bool told, timed_out; /* the program was told to end: by the caller, by the time limit */
 };
 
 static void close_end(int *fd)

@@ -299,7 +299,7 @@ bool geometry_node_place(const struct gltf_model *model, const struct geometry_p
 
 /* --- putting parts together ------------------------------------------------------------------------------------------------ */
 
-struct geometry_room { /* what the arrays of a geometry can hold */
+struct geometry_room { /* capacities of a geometry's arrays */
     size_t positions, normals, texcoords, second_texcoords, colors, indices, primitives;
     float (*all_texcoords)[2], (*all_second_texcoords)[2];
     uint8_t (*all_colors)[4];

@@ -21,7 +21,7 @@ struct rvm_params {
     double chord_m;    /* no chord is further from the surface */
     bool keep_covered; /* faces that lie on a neighbour's face stay */
     const char *encoding; /* of its names, as a person says; NULL: as the file says, or as they look */
-    struct text *findings; /* what is lost is appended, as lines of findings.h; NULL: not wanted */
+    struct text *findings; /* losses are appended, as lines of findings.h; NULL: not wanted */
 };
 
 /* Appends the file's groups and their triangles to the model. `bytes` is the whole file.

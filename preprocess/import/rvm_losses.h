@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What an RVM file holds and a model does not show, named by group. Thread: one per object. */
+/* Primitives of an RVM file that the model does not show, named by group. Thread: one per object. */
 #ifndef PREPROCESS_IMPORT_RVM_LOSSES_H
 #define PREPROCESS_IMPORT_RVM_LOSSES_H
 #include "base/text/text.h"
@@ -11,7 +11,7 @@ enum { RVM_UNKNOWN_KIND = 0, RVM_OBSTRUCTION = 1000, RVM_INSULATION };
 struct rvm_loss {
     int node; /* -1: outside of every group */
     int kind;
-    size_t byte; /* of the file, where its chunk begins */
+    size_t byte; /* offset in the file at which its chunk begins */
     const char *why; /* a literal; NULL for obstruction and insulation volumes */
 };
 

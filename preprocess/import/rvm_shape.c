@@ -400,7 +400,7 @@ static void add_line(struct cad_node *node, const struct primitive_frame *frame,
 
 /* --- polygons --------------------------------------------------------------------------------------------------------------------- */
 
-struct tessellated_polygon { /* what GLU's callbacks need */
+struct tessellated_polygon { /* data for GLU's callbacks */
     struct cad_node *node;
     const struct primitive_frame *frame;
     double normal[3];

@@ -26,7 +26,7 @@ struct bend_drawn { /* the triangles that are drawn */
     const uint32_t *triangles; /* 3 indices each, level by level, the finest first */
     size_t vertex_count, triangle_count;
     const struct influence_anchor *anchors; /* of the vertices */
-    /* Of the finest level all places are found. Coarser ones do not lie on the surface: some samples of each triangle are looked at. */
+    /* All places of the finest level are found. Coarser levels do not lie on the surface: some samples of each triangle are taken. */
     const struct bend_level *levels;
     size_t level_count; /* 0: all triangles are of the finest level */
 };
@@ -37,8 +37,8 @@ struct influence_bend {
     size_t count, capacity;
     double *area_m2, *hidden_m2, *unknown_m2; /* by drawn triangle: all of it, and what of it is not bounded. Coarse: in samples */
     _Atomic int64_t *plus, *minus;            /* by place: what shares are too small and too large by, added up */
-    struct mesh_error *mesh_error;            /* of the solution itself */
-    size_t point_count;                       /* of the mesh */
+    struct mesh_error *mesh_error;            /* error of the solution itself */
+    size_t point_count;                       /* points of the mesh */
 };
 
 /* Finds the places of the drawn triangles; these and the anchors must outlive *bend. surface: what the mesh was made from. Returns false if

@@ -66,10 +66,10 @@ static double worst_of(double plus, double minus, double around)
 
 /* --- errors of vertices ------------------------------------------------------------------------------------------------------ */
 
-/* What is known of a drawn triangle. */
+/* Measured errors of a drawn triangle. */
 enum triangle_state { TRIANGLE_BOUNDED, TRIANGLE_HIDDEN, TRIANGLE_UNKNOWN };
-#define ALL_OF_IT 0.999     /* of a triangle's area, but for rounding */
-#define COARSE_UNKNOWN 0.5  /* of a coarse level's triangle, which does not lie on the surface, as much may be unknown */
+#define ALL_OF_IT 0.999     /* share of a triangle's area that counts as all, for rounding */
+#define COARSE_UNKNOWN 0.5  /* share that may be unknown in a coarse level's triangle, which is not on the surface */
 
 static enum triangle_state state_of(const struct influence_bend *bend, size_t tri)
 {

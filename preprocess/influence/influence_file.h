@@ -25,7 +25,7 @@ struct influence_input {
     const struct surface *surface;
     const float (*positions_m)[3]; /* vertices, as the asset file has them */
     const float (*normals)[3];
-    const uint32_t *triangles; /* of all levels of detail, the finest first */
+    const uint32_t *triangles; /* triangles of all levels of detail, the finest first */
     size_t vertex_count, triangle_count;
     const struct bend_level *levels;
     size_t level_count;

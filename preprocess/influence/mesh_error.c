@@ -15,7 +15,7 @@
 /* The sum of fluxes out of an edge, times the height of its lowest triangle: by how much that triangle's tip is off the plane of the
    others. */
 struct edge_form {
-    uint32_t first, count; /* of the terms */
+    uint32_t first, count; /* range of the terms */
     float low_m, sum_m;    /* heights of its triangles: the lowest, and their sum */
 };
 struct edge_term {

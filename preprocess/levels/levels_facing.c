@@ -13,7 +13,7 @@
 #define BESIDE 1.25f /* times the error: a slanting sheet errs by less than a thickness */
 #define NONE UINT32_MAX
 
-struct corner_need { /* of a corner */
+struct corner_need { /* the direction that a corner needs */
     size_t corner;
     float normal[3]; /* of its face */
     float score;     /* of the best so far */

@@ -23,7 +23,7 @@ struct welds {
     uint32_t *part;                           /* of each weld */
     uint32_t *first_there;                    /* of each weld: the first one at its place */
     float (*low_m)[3], (*high_m)[3], *size_m; /* of each part: its box, and that box's diagonal */
-    double whole_m;                           /* of the main part (gap_split.h) */
+    double whole_m;                           /* size of the main part (gap_split.h) */
 };
 
 /* Groups the geometry's vertices into welds and parts. Returns false if out of memory; call welds_finish() in both cases. */

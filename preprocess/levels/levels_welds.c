@@ -10,7 +10,7 @@
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/trimesh.h"
 
-struct weld_key { /* what keeps vertices apart for the simplifier: a border of material or texture is then a seam, which it keeps */
+struct weld_key { /* vertices that differ here stay apart: the simplifier keeps a border of material or texture as a seam */
     float position[3], texcoord[2], second_texcoord[2];
     uint32_t primitive;
     uint8_t color[4];

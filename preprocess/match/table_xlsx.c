@@ -11,7 +11,7 @@
 #include "base/mem.h"
 #include "base/text/text.h"
 
-enum { MAX_SHEETS = 1024, MAX_BYTES = 1 << 28 /* of all cells; a shared string counts in each */ };
+enum { MAX_SHEETS = 1024, MAX_BYTES = 1 << 28 /* size of all cells; a shared string counts in each */ };
 static const size_t max_part_bytes = (size_t)512 << 20;
 
 struct xlsx_sheet {

@@ -10,7 +10,7 @@
 static const int64_t WINDOW_NS = 60 * NS_PER_S, WAIT_NS = LOGIN_WAIT_S * NS_PER_S, NEWS_NS = 600 * NS_PER_S;
 enum { KNOWN = 8 };
 
-struct known_token { /* a token that was let in from there */
+struct known_token { /* a token that signed in from that address */
     uint8_t hash[TOKEN_HASH_BYTES];
     int64_t said_ns;
 };

@@ -40,7 +40,7 @@ bool mesh_init(struct gpu_mesh *mesh, const struct gl *gl, const char *name,
                const struct mesh_params *params); /* false: out of memory, logged */
 void mesh_finish(struct gpu_mesh *mesh);
 void mesh_bind(const struct gpu_mesh *mesh);                             /* for the next draws */
-void mesh_bind_instances(const struct gpu_mesh *mesh, GLuint instances); /* of MESH_INSTANCE_VECTORS each, from its beginning */
+void mesh_bind_instances(const struct gpu_mesh *mesh, GLuint instances); /* a buffer of MESH_INSTANCE_VECTORS each, from its start */
 
 /* An immutable buffer, or 0 when the GPU is out of memory (logged). */
 GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags);

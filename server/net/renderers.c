@@ -29,7 +29,7 @@ struct lists_seen {
 
 struct deed {
     struct session *session; /* session_proxy.h */
-    json_t *id;              /* of the message, for the answer */
+    json_t *id;              /* id of the message, for the answer */
     struct deed *next;
 };
 

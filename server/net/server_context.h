@@ -104,15 +104,15 @@ struct server_context {
     struct marker_text_cache marker_lists; /* of the frame that was sent last */
     struct neighbour_text_cache neighbour_texts;
     struct {
-        struct log_pace pace; /* of requests for the stream without Upgrade */
+        struct log_pace pace; /* pace of log lines on requests for the stream without Upgrade */
         struct upgrade_refusal {
-            char address[64]; /* of the client */
+            char address[64]; /* the client's address */
             int64_t at_ns;    /* monotonic */
             char why[120];
         } refused[UPGRADE_REFUSALS]; /* handshakes that were refused, in a ring */
-        unsigned count;              /* of all that were refused */
+        unsigned count;              /* number of all refused handshakes */
     } upgrade;
-    struct log_pace stuck_heads; /* of requests whose heads did not end */
+    struct log_pace stuck_heads; /* pace of log lines on requests whose heads did not end */
     struct latency_stages latency;
     struct wall_displays displays;
     struct tile_wall tile_walls[WALLS];

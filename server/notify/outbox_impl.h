@@ -33,7 +33,7 @@ struct queue {
     size_t count, capacity;
 };
 
-struct recipient_box { /* of a recipient */
+struct recipient_box { /* messages that wait for a recipient */
     struct queue waiting;
     struct outbox_item *batch; /* of the message that is being sent, or sent again */
     size_t batch_count;

@@ -66,7 +66,7 @@ static void find_next(const struct field_layout *layout, enum distance_mode mode
     }
 }
 
-struct nearest_block { /* of a block of vertices */
+struct nearest_block { /* the nearest in a block of vertices */
     float m[KERNEL_BLOCK];
     bool good[KERNEL_BLOCK];
 };

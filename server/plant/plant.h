@@ -326,7 +326,7 @@ struct plant {
     struct wall *walls;
     size_t view_count, tour_count, other_plant_count, wall_count;
     struct plant_publish *publish; /* NULL: nothing is published */
-    struct plant_notify *notify; /* who is told of alarms (plant/sections/notification.h); NULL: nobody */
+    struct plant_notify *notify; /* recipients of alarms (plant/sections/notification.h); NULL: none */
     struct plant_asset *assets;
     struct plant_group *groups;
     struct plant_source *sources;

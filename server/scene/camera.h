@@ -6,7 +6,7 @@
 
 #include "plant/plant.h"
 
-#define CAMERA_NEAR_TO_FAR 1e-4 /* of the near plane to the far one, at least: 24 bits of depth must resolve what is near */
+#define CAMERA_NEAR_TO_FAR 1e-4 /* least ratio of near to far plane: 24 bits of depth must resolve near parts */
 
 struct camera {
     double eye_m[3], target_m[3], up[3];

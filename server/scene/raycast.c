@@ -44,7 +44,7 @@ static bool cross_box(const double origin[3], const double direction[3], const d
     return *low <= *high;
 }
 
-struct raycast_search { /* of one asset */
+struct raycast_search { /* search in one asset */
     const struct asset_view *view;
     double origin[3], direction[3], low; /* file frame */
     bool cut;

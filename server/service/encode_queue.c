@@ -44,7 +44,7 @@ struct encode_job {
     bool heavy;
 };
 
-struct stream_work {                  /* of a stream */
+struct stream_work {                  /* work for one stream */
     struct encode_job *first, **last; /* under lock; the first is running */
     struct encoder *encoder;   /* of a codec that is a stream; and below: only the running job's */
     struct frame *before;      /* what the clients of the stream show, in this quality */

@@ -22,7 +22,7 @@ struct frame_request {
     struct encoder_params moving_quality;
     enum wire_codec moving_codec; /* of that preview, which has no record then; 0: that of the frame, with what it has */
     struct frame_part part; /* what of the picture the client gets; the picture itself is drawn once for all parts */
-    uint64_t picture;       /* of tiles (session/tiles/tile_sync.h): which of their pictures it is, counted from 1; else 0 */
+    uint64_t picture;       /* number of the tiles' common picture (session/tiles/tile_sync.h), from 1; else 0 */
     bool only_replace; /* good only in place of a request that is not begun: the client may have no more frames under way */
     bool always;       /* draw and send even if the client shows the same already */
     bool alone;        /* must be decodable without anything sent before */

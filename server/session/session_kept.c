@@ -11,7 +11,7 @@
 #include "session/session_impl.h"
 
 struct kept_answer {
-    char *text, *what; /* what: of an alarm's action, for the audit trail; else NULL */
+    char *text, *what; /* what: an alarm's action for the audit trail, or NULL */
     const struct alarm_service *alarms; /* that did it; NULL: nothing was done to alarms */
     struct settling_ticket journal, audit;
     struct kept_answer *next;

@@ -53,7 +53,7 @@ struct paper_bench {
     double few_ms; /* with the fewest sensors of a series; 0: not measured */
 };
 
-struct timing_series { /* of one row */
+struct timing_series { /* times of one row */
     double time_ms[MOST_FRAMES], work_ms[MOST_FRAMES];
     int frames, triangles, changes;
     double seconds;

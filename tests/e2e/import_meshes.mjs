@@ -187,7 +187,7 @@ test('glTF: the diffuse colour of the older materials, odd kinds of images, chun
     assert.equal(boxed(folder, 'tail.glb', Buffer.concat([glbOf(first, bin), Buffer.alloc(12, 7)])).triangles, 1);
 }));
 
-// Of gltfpack: the compressed bytes, and a buffer without bytes for programs that cannot read them.
+// Two buffers that gltfpack writes: the compressed bytes, and one without bytes for programs that cannot read them.
 const noPacker = spawnSync('gltfpack', ['-v']).error ? 'no gltfpack' : false;
 test('glTF: meshopt, with a fallback buffer that has no uri', { skip: skip || noPacker }, () => inFolder((folder) => {
     writeFileSync(join(folder, 'a.bin'), triangle);

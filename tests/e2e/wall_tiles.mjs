@@ -136,7 +136,7 @@ async function compare(wall, columns, rows, [across, down]) {
     return undefined;
 }
 
-// It differed once beside other programs, in a preview: make test-long runs it.
+// The pictures differed once beside other programs, in a preview: make test-long runs the case.
 test('six tiles are the large picture, pixel by pixel, preview and refined', { ...options, skip: options.skip || long },
     () => compare('seamless', 3, 2, [0, 0]));
 test('behind bezels the picture goes on', options, async () => {

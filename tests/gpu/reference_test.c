@@ -43,7 +43,7 @@ struct pixels_seen { /* by a camera: numbers of pixels */
     bool shown_is_finest;
 };
 
-struct value_span { /* of values */
+struct value_span { /* least and largest value */
     double low, high;
 };
 
@@ -171,7 +171,7 @@ static void look_at_some_asset(struct site *site, double away, struct view *view
     while (is_inside_any(site->scene, view->camera.eye_m));
 }
 
-struct reference_display { /* of showing a plant */
+struct reference_display { /* parameters of showing a plant */
     int group;
     int number, each; /* by default every each-th view is tried, of each way others */
     enum interpolation interpolation;

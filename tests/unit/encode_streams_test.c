@@ -28,7 +28,7 @@ struct encode_streams_fixture {
     enum wire_codec codec;
 };
 
-struct chain_head { /* of a chain: what its clients show */
+struct chain_head { /* the picture that a chain's clients show */
     uint64_t state;
 };
 

@@ -21,7 +21,7 @@ struct vertex_truth {
 };
 
 #define MAX_SENSORS 4096
-struct vertex_sight { /* what one vertex sees of each sensor */
+struct vertex_sight { /* the sensors that one vertex sees */
     double distance_m[MAX_SENSORS], weight[MAX_SENSORS], term[MAX_SENSORS];
     bool usable[MAX_SENSORS], configured[MAX_SENSORS];
 };

@@ -221,7 +221,7 @@ TEST(test_fin_on_long_triangles_is_marked)
     finish(&fine);
 }
 
-static double log_slope; /* of the temperature on the sphere */
+static double log_slope; /* slope of the temperature on the sphere */
 
 static double exact_sphere(const double at[3])
 {

@@ -9,7 +9,7 @@
 
 #define ROUND 96u /* corners of a circle */
 
-struct bounded_shape { /* of one part, on one primitive or two */
+struct bounded_shape { /* a shape of one part, on one primitive or two */
     struct geometry g;
     struct welds welds;
     struct trimesh mesh;

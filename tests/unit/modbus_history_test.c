@@ -24,7 +24,7 @@ enum { SPEED = 60, TICK_MS = 50, SHORT_S = 8, OUTAGE_MS = 1500, SPIKE_MS = 400, 
 static const char plant_path[] = "tests/plants/cookie_line.yaml", map_path[] = "tests/plants/cookie_line.map";
 static const char data_path[] = "../shared/data/sensors/cookie_factory/telemetry.csv";
 
-struct register_rows { /* what the registers held, or what the store was told */
+struct register_rows { /* values that the registers held, or that the store got */
     struct register_row {
         int64_t mono_ns, utc_ns;
         double value;

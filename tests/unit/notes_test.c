@@ -79,7 +79,7 @@ CASE(they_end_by_their_time_or_by_hand)
     assert_true(notes_differ(f->notes, NOON - S, NOON + S) && notes_differ(f->notes, NOON + 3600 * S, NOON + S));
     assert_false(notes_differ(f->notes, NOON + S, NOON + 2 * S));
     assert_notes(notes_text(f->notes, NOON + 3600 * S), "stays");
-    assert_int_not_equal(notes_end(f->notes, f->id, "lee", NOON + 3601 * S), REFUSAL_NONE); /* it has ended */
+    assert_int_not_equal(notes_end(f->notes, f->id, "lee", NOON + 3601 * S), REFUSAL_NONE); /* the note has ended */
     assert_int_not_equal(notes_end(f->notes, "n1", "lee", NOON), REFUSAL_NONE);
     open_again(f);
     assert_int_equal(notes_end(f->notes, first, "lee", NOON + 7200 * S), REFUSAL_NONE);

@@ -32,7 +32,7 @@ enum {
     ENDS_S = 30,      /* it says 5; a machine may be busy */
 };
 
-/* What lies at the origin beside a plate far away. */
+/* Kinds of strays at the origin beside a plate far away. */
 enum expected_stray { STRAY_NONE, STRAY_VERTEX, STRAY_NEEDLE, STRAY_TRIANGLE };
 
 /* Adds a node with one triangle: without area at the origin; from the plate to the origin; or at the origin. */

@@ -267,7 +267,7 @@ static void onto_surface(const struct prepared_body *body, double p[3])
     memcpy(p, hit.point_m, sizeof(hit.point_m));
 }
 
-struct field_shown { /* of a field */
+struct field_shown { /* the shown values of a field */
     int group;
     bool paper, geodesic;
     unsigned readings;

@@ -220,7 +220,7 @@ add('wall', 'burnShift', [1e15], ENDS);
 add('wall', 'legendsLie', [640, 360, true], ENDS);
 add('wire', 'pictureSize', [640, 360]);
 
-// Of the page's own modules: charts and curves, whose geometry is what they draw.
+// Cases for the page's own modules: charts and curves, which draw the geometry that they compute.
 function drawing(draw, ...given) {
     const at = [], note = (...numbers) => { at.push(numbers); };
     const ctx = { canvas: HD, moveTo: note, lineTo: note, fillRect: note };

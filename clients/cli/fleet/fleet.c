@@ -24,7 +24,7 @@ struct fleet_site {
     const char *host; /* a name that it is reached by besides local ones; NULL: none */
 };
 
-struct fleet_answer { /* of one connection */
+struct fleet_answer { /* the answer of one connection */
     char *body;
     size_t bytes, sent;
 };

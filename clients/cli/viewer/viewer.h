@@ -57,7 +57,7 @@ struct viewer_result {
     int64_t bytes, first_ns, last_ns; /* of frames; monotonic */
     struct latency_samples input;     /* from sending a camera to its frame decoded */
     struct latency_samples sensor;    /* from a reading that changed, in the server, to its frame decoded */
-    struct latency_samples behind;    /* of a follower: from its leader's sending a camera to its frame decoded */
+    struct latency_samples behind;    /* in a follower, from its leader's sending a camera to its frame decoded */
     struct latency_samples first;     /* from connecting to the first frame decoded: one */
     struct latency_samples stages[STAGE_COUNT];
     char failure[200]; /* "": went well */

@@ -49,7 +49,7 @@ double volume_of(const triangles &all);
 /* --- ifc_curve.cc */
 double length_of(const curve_piece &part); /* in mm */
 gp_Pnt point_of(const ifc_model &in, const value &reference);
-/* Of an IfcCartesianPointList. */
+/* The points of an IfcCartesianPointList. */
 std::vector<gp_Pnt> points_of(const ifc_model &in, const value &reference);
 /* Of an IfcDirection; `otherwise` where it is absent. */
 gp_Dir direction_of(const ifc_model &in, const value &reference, const gp_Dir &otherwise);

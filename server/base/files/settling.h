@@ -11,7 +11,7 @@ struct settling {
     uint64_t queued, done; /* rows since the start; done: written or dropped */
     uint64_t lost;         /* the newest row that was dropped; 0: none */
     uint64_t failures;     /* tries to write that failed */
-    int error;             /* of the last of them, -errno */
+    int error;             /* error of the last of them, -errno */
 };
 
 /* The rows that are queued between settling_begin() and settling_end(). All zero: no rows. */

@@ -15,7 +15,7 @@ void counters_destroy(struct counters **counters);
 counter *counters_add(struct counters *counters, const char *name, const char *type, const char *help);
 /* Likewise, of a number that is counted in microseconds and printed in seconds. */
 counter *counters_add_seconds(struct counters *counters, const char *name, const char *type, const char *help);
-/* Likewise, of durations (base/metrics/histogram.h); in seconds. */
+/* The same for durations (base/metrics/histogram.h); in seconds. */
 struct histogram *counters_add_histogram(struct counters *counters, const char *name, const char *help);
 /* Appends all metrics in the text format of Prometheus. */
 void counters_print(struct counters *counters, struct text *out);

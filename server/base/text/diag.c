@@ -86,7 +86,7 @@ static void print_item(const struct diag_item *item, FILE *out)
     fprintf(out, ": %s: %s", item->severity == DIAG_ERROR ? "error" : "warning", item->text);
 }
 
-struct finding_group { /* of those that are alike */
+struct finding_group { /* findings that are alike */
     size_t first, count, shown;
 };
 

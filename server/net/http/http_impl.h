@@ -36,7 +36,7 @@ struct http_exchange {
     uint64_t client;      /* its number while it waits (request_await) */
     int64_t until_ns;     /* monotonic: then it is answered that what it waits for is not ready */
     bool reloads;         /* it waits for a reload of the plant */
-    struct upload_body *body_in; /* what is being uploaded; NULL: nothing */
+    struct upload_body *body_in; /* the upload in progress, or NULL */
     const char *step;     /* of an import: its path, static, for the audit trail */
     struct asked *asked;  /* what it waits for; NULL: nothing to be drawn */
     struct http_exchange *next; /* in server->snapshots */

@@ -23,7 +23,7 @@ struct named_view {
 struct tour_stop {
     char *view, *text; /* id of a view; what is said about it, or NULL */
     double dwell_s;
-    struct text_position place; /* of the view's id */
+    struct text_position place; /* position of the view's id in the file */
 };
 
 struct tour {

@@ -22,7 +22,7 @@ struct pen {
     const struct frame *frame;
     struct view view; /* of the half being drawn */
     int half;         /* of a split view; else 0 */
-    struct label_box area; /* of that half, in pixels */
+    struct label_box area; /* area of that half, in pixels */
     const struct scene *scene;
     const struct snapshot *snapshot;
     const struct loop_checks *loop_checks; /* NULL: none */

@@ -17,7 +17,7 @@ static const double LEAST_DOT = -0.5; /* a direction that turns by more than 120
 
 /* --- neighbours ------------------------------------------------------------------------------------------------------------- */
 
-struct triangle_side { /* of a triangle */
+struct triangle_side { /* one side of a triangle */
     float low[3], high[3];
     uint32_t at; /* 3 times the triangle plus the corner that it begins at */
 };

@@ -92,7 +92,7 @@ static inline float column_of_carried(const struct coloring *coloring, float car
     return coloring->log ? column_of(lanes_log2((lanes){ 0 } + carried)[0], coloring->scale) : carried;
 }
 
-struct pixel_place { /* of the field: what its corners carry, and their weights */
+struct pixel_place { /* the corners whose field a pixel shows, with their weights */
     float carried[3], weights[3];
     uint32_t flags[3];
     const struct visibility_slopes *slopes;

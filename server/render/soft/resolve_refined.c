@@ -26,7 +26,7 @@ struct mixed { /* a pixel with several surfaces: its items in the row */
     uint32_t first_field, first_surface;
 };
 
-struct refined_row { /* of pixels; all arrays hold SAMPLES for each */
+struct refined_row { /* a row of pixels; all arrays hold SAMPLES for each */
     struct refined_item *field, *surfaces;
     int *field_columns, *surface_columns; /* of pixels that show nothing else; -1: of a mixed one */
     struct mixed *mixed;

@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 
-struct tile_entry { /* of a tile's list */
+struct tile_entry { /* an entry of a tile's list */
     uint64_t order; /* nearest first; then as found */
     uint32_t mesh, item;
 };

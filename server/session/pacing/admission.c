@@ -123,7 +123,7 @@ static int64_t usual(const struct admission *admission, of_share *of)
     return found;
 }
 
-struct moving_sessions {  /* who moves */
+struct moving_sessions {  /* sessions whose cameras move */
     int own, all, others; /* sessions of the address; of all; other addresses */
 };
 

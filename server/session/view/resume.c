@@ -18,7 +18,7 @@ struct kept_view {
 };
 
 struct resumes {
-    struct kept_view *kept; /* those who went first, first */
+    struct kept_view *kept; /* in the order in which their clients left */
     size_t count, capacity;
 };
 

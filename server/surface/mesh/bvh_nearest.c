@@ -11,7 +11,7 @@
 #include "base/mem.h"
 #include "surface/mesh/bvh_impl.h"
 
-#define BOX_MARGIN 2.4e-7 /* of a box's largest coordinate, four roundings of it: a point in the box is in it in floats too */
+#define BOX_MARGIN 2.4e-7 /* share of a box's largest coordinate, four roundings: a point in the box is in it in floats too */
 #define MARGIN 1e-5       /* of a square in floats, many times what it is off by */
 #define SURE 1e-8         /* of its sides' squares: where the square of a triangle's area is more, its weights are right to eight digits, */
 #define INSIDE 1e-6       /* and one that is more is sure to be positive */

@@ -23,7 +23,7 @@ struct solid { /* a closed part, as it was before it was cut up */
     bool winds;   /* it passes through itself: its inside is what it goes round */
     double low[3], high[3];
     struct trimesh mesh;     /* its triangles; the arrays belong to others */
-    const signed char *side; /* of its triangles, as in struct body_parts */
+    const signed char *side; /* side of its triangles, as in struct body_parts */
     struct bvh *bvh;
 };
 
@@ -363,7 +363,7 @@ static void ask_beside(struct interior_search *search, struct workers *workers, 
     mem_free(kinds);
 }
 
-struct region_vote { /* of a region */
+struct region_vote { /* votes of a region */
     size_t seen, asked, hidden;
     char most;
 };

@@ -26,7 +26,7 @@ struct seams {
     struct mesh_edit *edit;
     double tolerance_m, end_m; /* places nearer to the end of an edge than end_m are left to the joining of points */
     bool fits;                 /* only what fits exactly */
-    struct nearest_edge {      /* of each border point: the best place found on an open edge that is not its own */
+    struct nearest_edge {      /* for each border point, the best place found on an open edge that is not its own */
         double distance_m, t;
         uint32_t edge;
     } * nearest;
