@@ -265,10 +265,11 @@ sec-websocket-extensions sec-websocket-key sec-websocket-protocol sec-websocket-
 transfer-encoding upgrade upgrade-insecure-requests user-agent vary via www-authenticate x-auth-token x-forwarded-for x-frame-options
 x-real-ip`.split(/\s+/);
 
-// Resolves with what the server says first, or "" if it closes without a word.
-function speak(text) {
+// Resolves with the first words of the server, or "" if it closes without any.
+function speak(text, secure = false, idleMs = 0) {
     return new Promise((done, fail) => {
-        const socket = connect(plant.port, '127.0.0.1', () => socket.write(text));
+        const where = { port: plant.port, host: '127.0.0.1', rejectUnauthorized: false };
+        const socket = (secure ? connectTls : connect)(where, () => setTimeout(() => socket.write(text), idleMs));
         let said = '';
         socket.on('data', (bytes) => {
             said += bytes;
@@ -291,4 +292,12 @@ test(ENDING, { skip, timeout: 60000 }, async () => {
     assert.ok(heads[408] > 100);
     assert.match(plant.daemon.said, /http: a request from 127\.0\.0\.1 ended: its head did not end within 2 s \(408\)/);
     assert.match(await speak('GET /healthz HTTP/1.1\r\nHost: localhost\r\nX-Plant: 1\r\n\r\n'), /^HTTP\/1\.1 200/, 'an unknown name');
+});
+
+test('over TLS, too; a connection that has asked for nothing yet stays open', { skip, timeout: 60000 }, async () => {
+    await serve(...tls, '--limit', 'patience=60');
+    const head = 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n', idleMs = 4000; // twice the 2 s after which a head is ended
+    const [stuck, idle] = await Promise.all([speak(`${head}Acc: 1\r\n\r\n`, true), speak(`${head}\r\n`, true, idleMs)]);
+    assert.match(stuck, /^HTTP\/1\.[01] 408 /);
+    assert.match(idle, /^HTTP\/1\.1 200/);
 });
