@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A model as a CAD system exports it, before it is written as glTF: a tree of named nodes with attributes, triangles and lines. Readers of
- * formats (rvm.h) fill it, cad_glb.h writes it. One thread per model. Lengths are metres, Z is up, positions are those of the plant. */
+/* A CAD model in memory, before it is written as glTF: a tree of named nodes with attributes, triangles and lines. Readers of formats
+ * (rvm.h) fill it, cad_glb.h writes it. One thread per model. Lengths are metres, Z is up, positions are plant coordinates. */
 #ifndef PREPROCESS_IMPORT_CAD_MODEL_H
 #define PREPROCESS_IMPORT_CAD_MODEL_H
 #include <stdbool.h>
@@ -9,7 +9,7 @@
 
 struct cad_vertex {
     double position_m[3];
-    float normal[3]; /* of length 1 */
+    float normal[3]; /* unit vector */
 };
 
 struct cad_attribute {
@@ -17,8 +17,8 @@ struct cad_attribute {
 };
 
 struct cad_node {
-    char *name; /* UTF-8; "" where the file has none */
-    int parent; /* an index before its own; -1: a root */
+    char *name; /* UTF-8; "": the file has no name */
+    int parent; /* index of the parent, lower than the node's own; -1: a root */
     uint32_t material;
     struct cad_vertex *vertices;
     uint32_t (*triangles)[3];
@@ -38,18 +38,18 @@ struct cad_model {
     size_t node_count, node_room, color_count, color_room;
 };
 
-/* Creates an empty model. The caller owns it: cad_model_destroy. */
+/* Creates an empty model. The caller owns it and frees it with cad_model_destroy(). */
 struct cad_model *cad_model_create(void);
-/* Frees the model and all it holds. &NULL is fine; leaves NULL. */
+/* Frees the model and all it holds, and sets *model to NULL. *model may be NULL. */
 void cad_model_destroy(struct cad_model **model);
 
-/* Appends a node below `parent` (-1: a root) and returns its index. `name` is copied. */
+/* Appends a node below `parent` (-1: a root) and returns its index. Copies `name`. */
 int cad_model_add_node(struct cad_model *model, int parent, const char *name);
-/* Appends a vertex and returns its index in the node. `normal` may have any length and is made 1 long; 0 becomes (0, 0, 1). */
+/* Appends a vertex and returns its index in the node. `normal` may have any length and is normalised; a zero vector becomes (0, 0, 1). */
 uint32_t cad_node_add_vertex(struct cad_node *node, const double position_m[3], const double normal[3]);
 void cad_node_add_triangle(struct cad_node *node, uint32_t a, uint32_t b, uint32_t c);
 void cad_node_add_line(struct cad_node *node, const double from_m[3], const double to_m[3]);
-/* Appends an attribute; both texts are copied. */
+/* Appends an attribute. Copies both texts. */
 void cad_node_add_attribute(struct cad_node *node, const char *name, const char *value);
 void cad_model_add_color(struct cad_model *model, uint32_t material, const uint8_t rgb[3]);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One model, of whatever format, as a GLB file. Thread: one at a time per process (child.h). */
+/* Converts one model of any supported format to a GLB file. Thread: one conversion at a time per process (child.h). */
 #ifndef PREPROCESS_IMPORT_CONVERSION_H
 #define PREPROCESS_IMPORT_CONVERSION_H
 #include <stdbool.h>
@@ -11,16 +11,16 @@ enum { CONVERSION_WHY_BYTES = 512 };
 
 struct conversion_params {
     double chord_m;
-    const char *units, *up; /* of formats that do not say; NULL: guessed, and said */
-    const char *mesh_units; /* of OBJ, STL, PLY and 3DS, where `units` is NULL; NULL: guessed, and said */
-    const char *encoding;   /* of names; NULL: as the file says, or as they look, and said */
-    bool keep_covered;      /* RVM: faces that lie on each other stay */
-    int timeout_s;          /* of a reader that is another program */
-    size_t memory_bytes;    /* likewise */
+    const char *units, *up; /* for formats that state no units or up axis; NULL: guess, and print the guess */
+    const char *mesh_units; /* for OBJ, STL, PLY and 3DS where `units` is NULL; NULL: guess, and print the guess */
+    const char *encoding;   /* encoding of names; NULL: as stated by the file, else detected and printed */
+    bool keep_covered;      /* RVM: keep faces that are covered by a neighbour's face */
+    int timeout_s;          /* seconds that an external reader program may run */
+    size_t memory_bytes;    /* bytes of memory that an external reader program may use */
 };
 
-/* Reads the model at `path` and writes it to `glb` as glTF. What it noticed is appended to `said`, line by line. Returns false with the
- * reason, one line, in why. `folder` is for what is needed meanwhile; it may stay there. */
+/* Reads the model at `path` and writes it to `glb` as glTF. Appends what the reader printed to `said`, line by line. Temporary files go to
+ * `folder` and may remain there. Returns false with the reason, one line, in why. */
 bool conversion_run(const char *path, const char *glb, const char *folder, const struct conversion_params *params, struct text *said,
                     char why[CONVERSION_WHY_BYTES]);
 

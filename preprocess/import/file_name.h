@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parts of paths. All results are to be freed with mem_free. Thread: any. */
+/* Splits and builds file names. The caller frees all results with mem_free. Thread: any. */
 #ifndef PREPROCESS_IMPORT_FILE_NAME_H
 #define PREPROCESS_IMPORT_FILE_NAME_H
 
-/* Returns the path with its ending replaced: a/b.rvm, .att -> a/b.att. */
+/* Returns the path with its ending replaced: "a/b.rvm" with ".att" gives "a/b.att". */
 char *file_name_with_ending(const char *path, const char *ending);
-/* Returns the file name without folder and ending: a/b.rvm -> b. */
+/* Returns the file name without folder and ending: "a/b.rvm" gives "b". */
 char *file_name_stem(const char *path);
 
 #endif

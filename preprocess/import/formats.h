@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which files can be imported, by their endings, and by what. Thread: any. */
+/* The file formats that can be imported, found by file ending, and the reader of each. Thread: any. */
 #ifndef PREPROCESS_IMPORT_FORMATS_H
 #define PREPROCESS_IMPORT_FORMATS_H
 #include <stdbool.h>
@@ -8,24 +8,25 @@
 enum format_reader { FORMAT_RVM, FORMAT_GLTF, FORMAT_PROGRAM };
 
 struct import_format {
-    const char *name;    /* "STEP" */
-    const char *endings; /* ".step .stp", lower case */
+    const char *name;    /* name for people: "STEP" */
+    const char *endings; /* file endings: ".step .stp", lower case */
     enum format_reader reader;
-    const char *program; /* FORMAT_PROGRAM: its file name, beside this program or in ../libexec/plantcast/ */
-    const char *runtime; /* what runs that file; NULL: itself */
-    const char *missing; /* what to do where the program is not there */
+    const char *program; /* FORMAT_PROGRAM: file name of the reader, in the folder of this program or in ../libexec/plantcast/ */
+    const char *runtime; /* interpreter that runs the reader, such as "node"; NULL: the reader is an executable */
+    const char *missing; /* advice printed if the reader is not installed */
     const char *beside;  /* endings of files that a model refers to, ".mtl", lower case; NULL: none */
-    bool unitless;       /* it does not say its units: --units may */
-    bool upless;         /* nor which axis is up: --up may */
+    bool unitless;       /* the format states no units, so --units applies */
+    bool upless;         /* the format does not state which axis is up, so --up applies */
 };
 
-/* Returns the format of a path by its ending, in any case; NULL if it has none of these. */
+/* Returns the format that the path's ending (in any case) belongs to, or NULL if there is none. */
 const struct import_format *import_format_of(const char *path);
-/* Finds the program of a format. Returns its path, to be freed with mem_free, or NULL. */
+/* Finds the reader program of a format. Returns its path, which the caller frees with mem_free, or NULL. */
 char *import_format_program(const struct import_format *format);
-/* Finds the runtime of a format in PATH. Returns its path, to be freed with mem_free; NULL: the format has none, or it is not installed. */
+/* Finds the interpreter of a format's reader in PATH. Returns its path, which the caller frees with mem_free. NULL: the format needs none,
+ * or it is not installed. */
 char *import_format_runtime(const struct import_format *format);
-/* Prints each format, and whether this build reads it. */
+/* Prints each format and whether this build can read it. */
 void import_formats_print(FILE *out);
 
 #endif

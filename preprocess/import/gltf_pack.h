@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A glTF model with all that belongs to it as one GLB file. Thread: any. */
+/* Packs a glTF model, its buffers and its images into one GLB file. Thread: any. */
 #ifndef PREPROCESS_IMPORT_GLTF_PACK_H
 #define PREPROCESS_IMPORT_GLTF_PACK_H
 #include "preprocess/model/refusal.h"
 
-/* Copies the model at `path` to the file `glb`: as it is if all of it is in one GLB file, else with buffers and images that its URIs name
- * taken in. Returns false with the reason in why. */
+/* Copies the model at `path` to the file `glb`. A GLB file that refers to no other file is copied unchanged; otherwise the buffers and
+ * images that its URIs name are embedded. Returns false with the reason in why. */
 bool gltf_pack(const char *path, const char *glb, char why[MODEL_WHY_BYTES]);
 
 #endif

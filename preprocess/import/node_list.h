@@ -8,12 +8,12 @@
 #include "preprocess/import/model_outline.h"
 
 struct node_list_params {
-    const regex_t *grep; /* only nodes whose path or property it finds; NULL: all */
-    int levels;          /* 0: a table of paths; else a tree of so many levels */
+    const regex_t *grep; /* prints only nodes whose path or a property matches; NULL: all */
+    int levels;          /* 0: print a table of paths; else print a tree of this many levels */
     bool json;
 };
 
-/* Prints the nodes, a line for each, and returns how many there were. */
+/* Prints one line per node. Returns the number of nodes printed. */
 size_t node_list_print(const struct model_outline *outline, const struct node_list_params *params, FILE *out);
 
 #endif

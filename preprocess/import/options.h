@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What `import` and `nodes` have in common on the command line. */
+/* Command-line options that the commands `import` and `nodes` share. */
 #ifndef PREPROCESS_IMPORT_OPTIONS_H
 #define PREPROCESS_IMPORT_OPTIONS_H
 #include <getopt.h>
@@ -7,7 +7,7 @@
 
 #include "preprocess/import/conversion.h"
 
-/* For the array of getopt_long. */
+/* Entries for the option array of getopt_long(). */
 #define OPTIONS_OF_CONVERSION                                                                                                              \
     { "chord", required_argument, NULL, 'c' }, { "units", required_argument, NULL, 'u' }, { "up", required_argument, NULL, 'U' },          \
         { "encoding", required_argument, NULL, 'e' }, { "mesh-units", required_argument, NULL, 'M' },                                      \
@@ -18,9 +18,10 @@
     }
 
 extern const struct conversion_params options_default;
-/* Describes these options. */
+/* Prints the help text of the shared options. */
 void options_print(FILE *out);
-/* Takes one of these options. Returns false if its value is wrong, already printed, or the option is not one of them. */
+/* Applies one shared option to params. Returns false if the option is not a shared one, or if its value is wrong; in that case the error
+ * has been printed. */
 bool options_take(struct conversion_params *params, const char *command, int option, const char *value);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads RVM files, as AVEVA PDMS, E3D and Marine export them: binary, big-endian, a chain of chunks (HEAD, MODL, COLR, CNTB with
- * primitives and CNTE, END:). There is no published specification; the layout is as open readers describe it. Thread: any. */
+/* Reads RVM files as exported by AVEVA PDMS, E3D and Marine: binary, big-endian, a chain of chunks (HEAD, MODL, COLR, CNTB with primitives
+ * and CNTE, END:). There is no published specification; the layout follows open-source readers. Thread: any. */
 #ifndef PREPROCESS_IMPORT_RVM_H
 #define PREPROCESS_IMPORT_RVM_H
 #include "base/text/charset.h"
@@ -9,23 +9,23 @@
 
 struct rvm_counts {
     size_t primitives;
-    size_t covered_faces;                 /* lie on a neighbour's face: left out */
-    double covered_m2;                    /* how large they are, together */
-    size_t empty;                         /* primitives without extent, or with numbers that are not finite: left out */
-    size_t unknown_chunks, unknown_kinds; /* skipped */
-    char unknown_chunk[40];               /* the first one, as "ABCD at byte 120" */
-    struct charset_choice encoding;       /* of its names */
+    size_t covered_faces;                 /* faces left out because they lie on a neighbour's face */
+    double covered_m2;                    /* total area of the covered faces, square metres */
+    size_t empty;                         /* primitives left out because they have no extent or contain non-finite numbers */
+    size_t unknown_chunks, unknown_kinds; /* unknown chunks and unknown kinds of primitives, all skipped */
+    char unknown_chunk[40];               /* the first unknown chunk, as "ABCD at byte 120" */
+    struct charset_choice encoding;       /* encoding of the names */
 };
 
 struct rvm_params {
-    double chord_m;    /* no chord is further from the surface */
-    bool keep_covered; /* faces that lie on a neighbour's face stay */
-    const char *encoding; /* of its names, as a person says; NULL: as the file says, or as they look */
-    struct text *findings; /* losses are appended, as lines of findings.h; NULL: not wanted */
+    double chord_m;    /* chord error: largest distance in metres between a chord and the true surface */
+    bool keep_covered; /* keep faces that lie on a neighbour's face */
+    const char *encoding; /* the user's choice for the names; NULL: as stated by the file, else detected */
+    struct text *findings; /* receives the lost primitives as lines of findings.h; NULL: not wanted */
 };
 
-/* Appends the file's groups and their triangles to the model. `bytes` is the whole file.
- * Returns false if the file is broken: `why` says what is wrong and at which byte, and the model may hold a part of it. */
+/* Appends the groups of an RVM file, wholly in memory at `bytes`, and their triangles to the model. Returns false if the file is broken:
+ * `why` says what is wrong and at which byte, and the model may hold a part of it. */
 bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const struct rvm_params *params, struct rvm_counts *counts,
               char *why, size_t why_bytes);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The statements of an IFC file (ISO 10303-21), parsed when they are asked for. Thread: one. */
+/* Reads the statements of an IFC file (ISO 10303-21); each is parsed on demand. Thread: one. */
 #ifndef PREPROCESS_IMPORT_READERS_IFC_FILE_HH
 #define PREPROCESS_IMPORT_READERS_IFC_FILE_HH
 #include <functional>
@@ -11,7 +11,7 @@
 namespace ifc
 {
 
-/* Thrown where a statement is damaged, missing, or of a kind that this reader does not build. */
+/* Thrown if a statement is damaged, missing, or of a kind that this reader does not build. */
 struct unsupported : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -19,9 +19,9 @@ struct unsupported : std::runtime_error {
 struct value {
     enum kind_of { ABSENT, NUMBER, TEXT, NAME, REFERENCE, LIST } kind = ABSENT;
     double number = 0;
-    int id = 0;              /* of REFERENCE */
-    std::string text;        /* of TEXT, still escaped; of NAME, such as ".T."; of LIST, its type if it is typed, such as "IFCLABEL" */
-    std::vector<value> list; /* of LIST */
+    int id = 0;              /* REFERENCE: id of the statement that the value refers to */
+    std::string text;        /* TEXT: the text, still escaped; NAME: the name, such as ".T."; typed LIST: its type, such as "IFCLABEL" */
+    std::vector<value> list; /* LIST: the elements */
 
     bool absent() const { return kind == ABSENT; }
     bool is(const char *name) const { return kind == NAME && text == name; }
@@ -30,10 +30,10 @@ struct value {
 
 struct entity {
     int id = 0;
-    std::string type; /* "IFCWALL" */
+    std::string type; /* type name in capitals, such as "IFCWALL" */
     std::vector<value> values;
 
-    /* Returns the value at a place; ABSENT where the statement is shorter. */
+    /* Returns the value at an index, or ABSENT if the statement has fewer values. */
     const value &operator[](size_t at) const;
     bool is(const char *name) const { return type == name; }
 };
@@ -43,22 +43,24 @@ class file
   public:
     /* Reads the file at `path` and finds its statements. Throws std::runtime_error if it cannot be read. */
     explicit file(const char *path);
-    /* Returns a statement. Throws unsupported if it is missing or damaged. */
+    /* Returns a statement. Throws unsupported if the statement is missing or damaged. */
     entity get(int id) const;
-    /* Returns the statement that a value refers to. Throws as above, also where the value is no reference. */
+    /* Returns the statement that a value refers to. Throws unsupported if the value is no reference, or the statement is missing or
+     * damaged. */
     entity get(const value &reference) const;
-    /* Returns the number that a value is, also within a measure such as IFCPARAMETERVALUE(1.). Throws unsupported if it is none. */
+    /* Returns the number that a value holds, also inside a measure such as IFCPARAMETERVALUE(1.). Throws unsupported if the value is not a
+     * number. */
     static double number(const value &from);
     static double number(const value &from, double otherwise);
-    /* Calls f(id, type) for each statement, in the order of their ids. */
+    /* Calls f(id, type) for each statement, in ascending order of ids. */
     void each(const std::function<void(int, const std::string &)> &f) const;
-    /* Whether a statement's values begin with a text, as those of all products do. */
+    /* Returns whether a statement's values begin with a text (the GUID), as those of all products do. */
     bool is_rooted(int id) const;
 
   private:
     struct statement_place {
         std::string type;
-        size_t at; /* of its opening bracket */
+        size_t at; /* byte offset of the statement's opening bracket */
     };
     std::string bytes;
     std::map<int, statement_place> places;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tree of an IGES file as an XCAF assembly, as STEP files come. */
+/* Converts the entity tree of an IGES file to an XCAF assembly, the form that STEP files are read into. */
 #ifndef PREPROCESS_IMPORT_READERS_IGES_TREE_HH
 #define PREPROCESS_IMPORT_READERS_IGES_TREE_HH
 #include <IGESControl_Reader.hxx>
@@ -9,12 +9,12 @@
 
 #include "preprocess/import/readers/reader.hh"
 
-/* Transfers the file that `iges` has read: groups and subfigures become assemblies, an instance of a subfigure a place of its part, solids and
- * the loose surfaces of a group parts; with names, colours and layers. Shapes are mended
- * part by part; what is mended while it is transferred (read.iges.sequence) would not be found by its entity. Names and layers are converted from
- * `encoding`. Throws what Open CASCADE throws. */
+/* Adds the file that `iges` has read to the document, with names, colours and layers. Groups and subfigures become assemblies, instances of
+ * a subfigure become placements of its part, solids and the loose surfaces of a group become parts. Shapes are repaired part by part
+ * afterwards: if Open CASCADE repaired them during transfer (read.iges.sequence), the tree could not find the shape of an entity. Names and
+ * layers are converted from `encoding`. Throws what Open CASCADE throws. */
 void iges_tree_add(IGESControl_Reader &iges, const Handle(TDocStd_Document) & document, const struct text_encoding &encoding);
-/* What the file says that its unit is; "": nothing. */
+/* Returns the name of the unit stated by the file, or "" if there is none. */
 std::string iges_units(IGESControl_Reader &iges);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the readers in C++: refusing a file, decoding its names, writing its scene, ending. Thread: one. */
+/* Shared by the C++ readers: rejecting a file, decoding names, writing the scene, the main function. Thread: one. */
 #ifndef PREPROCESS_IMPORT_READERS_READER_HH
 #define PREPROCESS_IMPORT_READERS_READER_HH
 #include <cerrno>
@@ -17,9 +17,9 @@ extern "C" {
 }
 #include "preprocess/glb/glb_scene.h"
 
-constexpr int MAX_DEPTH = 400; /* of a tree; plantcast-prep reads 512 levels */
+constexpr int MAX_DEPTH = 400; /* levels of a model's tree; plantcast-prep reads at most 512 */
 
-/* Ends the reading with these words as its reason: reader_main() prints them. */
+/* Stops the reader with an error message; reader_main() prints it. */
 [[noreturn]] inline void refuse(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 inline void refuse(const char *fmt, ...)
 {
@@ -31,16 +31,16 @@ inline void refuse(const char *fmt, ...)
     throw std::runtime_error(text);
 }
 
-/* The encoding of a file's texts. */
+/* The encoding of the texts in a file. */
 struct text_encoding {
     struct charset_choice choice = { "UTF-8", "", true };
 
-    /* asked: by a person; "-": nobody has. said: by the file, or "". */
+    /* Chooses the encoding. asked: the user's choice, "-" for none. said: the encoding stated by the file, or "". */
     void choose(const std::string &texts, const char *asked, const char *said)
     {
         choice = encoding_choose(texts.data(), texts.size(), strcmp(asked, "-") != 0 ? asked : nullptr, said);
     }
-    /* Whether texts have to be converted. */
+    /* Returns whether texts need conversion to UTF-8. */
     bool converts() const
     {
         return !choice.ascii && strcmp(choice.name, "UTF-8") != 0;
@@ -63,7 +63,7 @@ struct text_encoding {
     }
 };
 
-/* Returns a whole file; refuses one that cannot be read. */
+/* Returns the content of a file; calls refuse() if it cannot be read. */
 inline std::string read_whole(const char *path)
 {
     size_t count;
@@ -75,7 +75,8 @@ inline std::string read_whole(const char *path)
     return out;
 }
 
-/* Writes the scene, frees it and leaves NULL. advice: what makes a file smaller that is too large, or "". */
+/* Writes the scene, destroys it and sets *scene to NULL. advice: appended to the error message about a file over 4 GiB, says how to make it
+ * smaller; may be "". */
 inline void write_scene(struct glb_scene **scene, const char *output, const char *advice)
 {
     int status = glb_scene_write(*scene, output);
@@ -86,7 +87,8 @@ inline void write_scene(struct glb_scene **scene, const char *output, const char
         refuse("%s", strerror(-status));
 }
 
-/* The main function: convert takes INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING. Returns the exit status; the last line on stderr says why it failed. */
+/* The main function of a reader. Calls `convert` with the arguments INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING. Returns the exit status;
+ * on failure the last line on stderr is the reason. */
 inline int reader_main(int argc, char **argv, const char *name, void (*convert)(char **arguments))
 {
     if (argc != 7) {

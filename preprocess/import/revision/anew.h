@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Puts converted models into a folder, with a plant file and a tag list that do not depend on those that are there. Thread: one. */
+/* Replaces the models of a plant folder together with a plant file and a tag list that ignore the existing ones. Thread: one. */
 #ifndef PREPROCESS_IMPORT_ANEW_H
 #define PREPROCESS_IMPORT_ANEW_H
 #include "preprocess/import/revision/revise.h"
 
-/* Replaces models, plant.yaml and tags.csv together; revise_undo() takes that back. What people wrote is kept as NAME.1, NAME.2, ... The
- * tag list stays unless draft->anew is set. Returns the exit status: 0, or 1 with the reason on standard error, and then nothing was
- * changed. */
+/* Replaces models, plant.yaml and tags.csv together; revise_undo() reverts it. Versions that people wrote are kept as NAME.1, NAME.2, ...
+ * An existing tag list stays unless draft->anew is set. Returns the exit status: 0, or 1 with the reason on standard error, and then
+ * nothing was changed. */
 int import_anew(const struct revise_params *params, const struct plant_draft *draft);
 
 #endif

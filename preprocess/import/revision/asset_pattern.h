@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Patterns of nodes (nodes.h) that were written for the old model, for the new one: a renamed node's becomes its new name, a number
- * the new number. Thread: one. */
+/* Rewrites node patterns (nodes.h) written for the old model so that they match the new one: a renamed node's pattern becomes its new name,
+ * a "#number" pattern the new number. Thread: one. */
 #ifndef PREPROCESS_IMPORT_ASSET_PATTERN_H
 #define PREPROCESS_IMPORT_ASSET_PATTERN_H
 #include "plant/models/model_header.h"
 #include "preprocess/import/revision/node_pairs.h"
 
 struct asset_patterns {
-    const struct model_header *before, *after; /* must outlive it */
+    const struct model_header *before, *after; /* headers of the old and the new model; must outlive this struct */
     const struct node_pairs *pairs;
-    uint32_t *old_names, *new_names; /* nodes, sorted by name */
-    uint32_t *found;                 /* room for all of either */
+    uint32_t *old_names, *new_names; /* node indices sorted by name, of the old and the new model */
+    uint32_t *found;                 /* result of the last search; has room for all nodes of either model */
 };
 
 void asset_patterns_init(struct asset_patterns *patterns, const struct model_header *before, const struct model_header *after,
@@ -18,12 +18,13 @@ void asset_patterns_init(struct asset_patterns *patterns, const struct model_hea
 void asset_patterns_finish(struct asset_patterns *patterns);
 
 enum asset_pattern_change { ASSET_PATTERN_SAME, ASSET_PATTERN_OTHER, ASSET_PATTERN_GONE };
-/* Says what becomes of a pattern, without "!" before it. `before` marks the old nodes that are preferred where it names several; NULL:
- * none. Of ASSET_PATTERN_OTHER *out is the new pattern (mem_free). */
+/* Determines how a pattern (without a leading "!") changes. `before` marks the old nodes to prefer if the pattern matches several; NULL: no
+ * preference. For ASSET_PATTERN_OTHER *out receives the new pattern, which the caller frees with mem_free. */
 enum asset_pattern_change asset_patterns_follow(struct asset_patterns *patterns, const char *pattern, const bool *before, char **out);
 
-/* Brings an asset's patterns, one a line, up to date. Returns them in the same form (mem_free), or NULL if none is left that takes
- * anything. Where any has changed, *nodes (mem_free, each and all) has for each of them the new one, or NULL where it goes. */
+/* Updates an asset's patterns, one a line. Returns them in the same form (freed with mem_free), or NULL if none is left that matches a
+ * node. If any pattern changed, *nodes (each element and the array are freed with mem_free) holds the new text of each pattern, or NULL for
+ * a deleted one. */
 char *asset_patterns_update(struct asset_patterns *patterns, const char *lines, char ***nodes, size_t *node_count);
 
 #endif

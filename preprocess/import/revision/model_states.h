@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A model before and after a revision, with vertices: how far each part of it has moved. Units and axes are the model's. Thread: any, one
- * per states. */
+/* Compares a model before and after a revision, with vertices: how far each part of it has moved. Lengths and axes are in the model's units
+ * and frame. Thread: any, one per struct. */
 #ifndef PREPROCESS_IMPORT_MODEL_STATES_H
 #define PREPROCESS_IMPORT_MODEL_STATES_H
 #include "preprocess/import/revision/node_pairs.h"
 #include "preprocess/model/gltf_shim.h"
 
-struct model_state { /* the new one, or the old one */
+struct model_state { /* the old or the new model, loaded */
     struct model_outline outline;
     struct gltf_model model;
-    uint32_t *first; /* by node of the outline, the node of the model; instances of it come after it, with the same number */
+    uint32_t *first; /* for each outline node its first node in `model`; further instances of that node follow it with the same number */
     bool read;
 };
 
@@ -18,24 +18,25 @@ struct model_states {
     struct node_pairs pairs;
 };
 
-/* Reads both files and pairs their nodes. Returns false with the reason in why; finish it in both cases. */
+/* Reads both files and pairs their nodes. Returns false with the reason in why. Call model_states_finish() in both cases. */
 bool model_states_read(struct model_states *states, const char *before, const char *after, char why[MODEL_WHY_BYTES]);
 void model_states_finish(struct model_states *states);
 
 enum states_change {
     STATES_SAME,
     STATES_MOVED,
-    STATES_CHANGED /* in shape; motion is that of its box, if that has kept its size */
+    STATES_CHANGED /* the shape differs; the motion is that of its box, provided the box kept its size */
 };
 struct states_motion {
     enum states_change change;
-    bool known; /* motion is where things on it have gone */
+    bool known; /* the motion could be determined */
     double motion[16], moved;
-    size_t parts, different; /* nodes that show something; those among them that are gone or have another shape */
+    size_t parts, different; /* parts: nodes with geometry; different: parts that are gone or have another shape */
 };
-/* Finds what became of those nodes of the old model that `taken` marks, taken as one. tolerance: distances below it are no change. */
+/* Determines the common motion of the old model's nodes marked in `taken`. Distances below `tolerance` count as no change. */
 struct states_motion model_states_motion(const struct model_states *states, const bool *taken, double tolerance);
-/* Returns the node of the old model, among those that `taken` marks, whose triangles are nearest to a point; -1: they have none. */
+/* Returns the node, among the old model's nodes marked in `taken`, whose triangles are nearest to a point. Returns -1 if they have no
+ * triangles. */
 int model_states_nearest(const struct model_states *states, const bool *taken, const double point[3]);
 
 #endif

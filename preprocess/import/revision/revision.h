@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a new export of a plant's models changes in its plant file and tag list: assets follow their nodes, sensors their equipment; what is
- * no longer there is taken out, new equipment is added; and a review of all that for people. Thread: one. */
+/* Plans how a new export of a plant's models changes its plant file and tag list: assets follow their nodes, sensors their equipment;
+ * equipment that is gone is removed, new equipment is added. Also composes a review of these changes for people. Thread: one. */
 #ifndef PREPROCESS_IMPORT_REVISION_H
 #define PREPROCESS_IMPORT_REVISION_H
 #include "plant/plant.h"
@@ -9,8 +9,8 @@
 #include "preprocess/model/refusal.h"
 
 struct revision_model {
-    char *before, *after;                  /* paths; before NULL: the plant has no model of this name yet */
-    const struct plant_draft_model *draft; /* of the new one */
+    char *before, *after;                  /* paths of the old and the new file; before NULL: the plant has no model of this name yet */
+    const struct plant_draft_model *draft; /* describes the new model */
 };
 
 enum revision_kind { REVISION_ASSET, REVISION_NODE, REVISION_TAG };
@@ -21,20 +21,21 @@ struct revision_row {
 };
 
 struct revision {                  /* zero-initialise */
-    char *plant_text, *tags_text;  /* as they will be; NULL: they stay as they are */
-    struct revision_row *rows;     /* in the order in which people should read them */
-    const char **lost;             /* tags whose equipment is gone; the names are the plant's */
+    char *plant_text, *tags_text;  /* new texts of plant.yaml and the tag list; NULL: no change */
+    struct revision_row *rows;     /* the review, in reading order */
+    const char **lost;             /* tags whose equipment is gone; the strings belong to the plant */
     size_t row_count, row_room, lost_count, lost_room;
 };
 
 struct revision_input {
     const struct plant *plant;
-    const char *plant_text, *tags_text; /* tags_text NULL: it has no tag list */
+    const char *plant_text, *tags_text; /* current texts; tags_text NULL: the plant has no tag list */
     const struct revision_model *models;
     size_t model_count;
 };
 
-/* Compares the models and composes the texts and the review. Returns false with the reason in why; finish it in both cases. */
+/* Compares the models and composes the new texts and the review. Returns false with the reason in why. Call revision_finish() in both
+ * cases. */
 bool revision_plan(struct revision *revision, const struct revision_input *input, char why[MODEL_WHY_BYTES]);
 void revision_finish(struct revision *revision);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of a plant's folder that are replaced together, and can be put back together (plant_folder.h, which has to have the folder). A
- * program that is killed at any time leaves either the old files or work that the next one finishes. Functions that return int return 0 or
- * -errno. Thread: one. */
+/* Replaces several files of a plant folder as one transaction that can be undone. The caller must hold the folder's lock (plant_folder.h).
+ * If the program is killed at any time, either the old files remain or the next program finishes the work. Functions that return int return
+ * 0 or -errno. Thread: one. */
 #ifndef PREPROCESS_IMPORT_REVISION_FILES_H
 #define PREPROCESS_IMPORT_REVISION_FILES_H
 #include <stdbool.h>
@@ -10,17 +10,18 @@
 #include "base/text/text.h"
 
 struct revision_file {
-    const char *name;   /* in the folder; or an absolute path: it lies elsewhere */
-    char *made;         /* path of the new one, inside the folder; NULL: it stays as it is, and is remembered, for what others do to it */
-    const char *before; /* its text as it was when it was read, or NULL */
+    const char *name;   /* name in the folder, or an absolute path if the file lies elsewhere */
+    /* path of the new file, inside the folder; NULL: the file does not change, but is saved for undo since others may change it */
+    char *made;
+    const char *before; /* text that the file had when it was read; NULL: not checked */
 };
 
-/* Replaces the files, in this order, and remembers those of before in place of what was remembered. work is a folder inside `folder`.
- * -ESTALE: a file is not as it was read (`before`); *changed is its name, and nothing was done. */
+/* Saves the current files for undo, in place of the last saved ones, then replaces them in this order. `work` is a folder inside `folder`.
+ * -ESTALE: a file differs from its `before` text; *changed receives its name, and nothing was done. */
 int revision_files_apply(const char *folder, const char *work, const struct revision_file *files, size_t count, const char **changed);
 
-/* Puts back the files of before the last revision. What has changed since is named in `changed`, separated by ", ", and then nothing is
- * done, unless forced: then those files stay beside, as NAME.undone. Names of files that were put back are appended to `done`.
+/* Restores the files saved by the last revision. Appends the names of files that changed since to `changed`, separated by ", ". If there
+ * are any, does nothing unless forced; with forced, keeps those files as NAME.undone. Appends the names of restored files to `done`.
  * -ENOENT: there is no revision; -EBUSY: files have changed since. */
 int revision_files_undo(const char *folder, bool forced, struct text *changed, struct text *done);
 
