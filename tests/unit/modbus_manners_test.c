@@ -194,7 +194,8 @@ CASE(one_request_per_connection_by_key)
     modbus_case_start(s);
     expect_steady(s, 5, 10);
     source_stop(&s->source);
-    assert_int_equal(s->device.connections, s->device.requests);
+    int unused = s->device.connections - s->device.requests; /* 1 if the source stops after connecting, before its request */
+    assert_in_range(unused, 0, 1);
     assert_int_equal(lines_with("says so from the start"), 0);
 }
 

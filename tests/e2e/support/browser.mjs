@@ -41,7 +41,29 @@ export async function browserWith(args) {
         browsers.set(key, playwright().chromium.launch({ executablePath: HEADLESS, args: [...QUIET, ...args] }));
     return browsers.get(key);
 }
-after(() => Promise.all([...browsers.values()].map(async (browser) => (await browser).close())));
+after(async () => {
+    await Promise.all([...open].map(report));
+    await Promise.all([...browsers.values()].map(async (browser) => (await browser).close()));
+});
+
+// Pages that no test has closed: a failed test leaves its page open. Each with its newest console lines and failed requests.
+const open = new Map(), MAX_LINES = 30;
+
+function record(page) {
+    const lines = [], add = (line) => lines.push(line.slice(0, 300)) > MAX_LINES && lines.shift();
+    open.set(page, lines);
+    page.on('console', (message) => add(`console: ${message.text()}`));
+    page.on('pageerror', (error) => add(`error: ${error}`));
+    page.on('requestfailed', (request) => add(`request failed: ${request.url()}: ${request.failure()?.errorText}`));
+    page.on('response', (response) => response.status() >= 400 && add(`${response.status()}: ${response.url()}`));
+}
+
+// Prints the state of a page that was left open, for the log of the failed test.
+async function report([page, lines]) {
+    const late = new Promise((go) => setTimeout(go, 2000, '(no answer)').unref());
+    const text = await Promise.race([page.evaluate(() => document.body.innerText).catch(String), late]);
+    console.log([`# left open: ${page.url()}`, ...lines, `text: ${text.replace(/\s+/g, ' ').slice(0, 1500)}`].join('\n#   '));
+}
 
 // One with a profile on the disk, as people have: only there a page can be installed, or fill a screen.
 async function profileWith(args, shape) {
@@ -85,7 +107,7 @@ function waitingSeldom(page) {
 // process and all that is in it, 0.2 s of a processor.
 const closed = new Map();
 const kindOf = ({ viewport, ...shape }) => JSON.stringify(shape);
-const HEARD = ['pageerror', 'console', 'request', 'response', 'domcontentloaded', 'load', 'download', 'dialog'];
+const HEARD = ['pageerror', 'console', 'request', 'requestfailed', 'response', 'domcontentloaded', 'load', 'download', 'dialog'];
 
 // Nothing is left of what was in it.
 async function leave(page, kind) {
@@ -121,11 +143,13 @@ export async function openPage(url, screen = DESKTOP, before = null, arrange = n
         if (new URL(request.url()).host !== new URL(url).host && !request.url().startsWith('blob:'))
             errors.push(`asked ${request.url()}`);
     });
+    record(page);
     if (before)
         await page.addInitScript(...[before].flat());
     await arrange?.(page);
     await page.goto(url);
-    return { page, errors, close: () => (isPlain ? leave(page, kind).catch(() => context.close()) : context.close()) };
+    const close = () => open.delete(page) && (isPlain ? leave(page, kind).catch(() => context.close()) : context.close());
+    return { page, errors, close };
 }
 
 // Of what is to be looked at: in `make test-long`, or with PLANTCAST_SHOTS=1. Many would take longer than all else that a test does.

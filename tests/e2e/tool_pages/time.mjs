@@ -65,11 +65,14 @@ async function clickMarker(name) {
     await page.mouse.click(at.x, at.y);
 }
 
-test('a click on a marker leads to its trend, with unit and gap', options, async () => {
+test('a click on a marker leads to its trend, with unit and gap; a chart library that was lost is loaded again', options, async () => {
     await settle(page);
+    let requests = 0;
+    await page.route('**/vendor/uPlot.js', (route) => (requests++ === 0 ? route.abort() : route.continue()));
     await clickMarker('TI-1');
     await page.locator('#card .trend').click();
     await page.locator('#trend-chart canvas').waitFor();
+    assert.equal(requests, 2);
     assert.match(await page.locator('#trend-tags').textContent(), /TI-1.*°C/);
     await page.waitForFunction(() => document.getElementById('trend-note').textContent.includes('TI-1'));
     const ink = await page.evaluate(() => {

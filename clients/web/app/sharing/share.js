@@ -77,8 +77,8 @@ export class Share {
     }
 
     async drawCode(link) {
-        library ??= import('../../vendor/uqr.js').catch(() => null);
-        const encode = (await library)?.encode;
+        library ??= await import('../../vendor/uqr.js').catch(() => null);
+        const encode = library?.encode;
         if (this.link.value === link)
             this.code.replaceChildren(encode ? codeOf(encode, link) : say('share.nocode'));
     }

@@ -17,14 +17,19 @@ const isPane = () => document.body.classList.contains('pane-trend'); // of a wal
 const highPx = () => (isPane() ? Math.max(80, byId('trend-chart').clientHeight)
     : Math.round(Math.max(120, Math.min(210, 0.2 * innerHeight)))); // as #trend-chart has it
 
-// Loaded when the first trend is asked for.
+// Loads the chart library with the first trend. A failed load is not kept: the next refresh tries again.
 let library;
 function load() {
     library ??= new Promise((done, fail) => {
         const style = make('link', { rel: 'stylesheet', href: 'vendor/uPlot.css' });
         const script = make('script', { src: 'vendor/uPlot.js' });
         script.addEventListener('load', () => done(globalThis.uPlot));
-        script.addEventListener('error', () => fail(new Error(say('trends.uncharted'))));
+        script.addEventListener('error', () => {
+            library = null;
+            style.remove();
+            script.remove();
+            fail(new Error(say('trends.uncharted')));
+        });
         document.head.append(style, script);
     });
     return library;
@@ -32,7 +37,7 @@ function load() {
 
 export class Trends {
     constructor({ session }) {
-        Object.assign(this, { session, tags: [], spanS: 3600, series: [], number: 0 });
+        Object.assign(this, { session, tags: [], spanS: 3600, series: [], number: 0, pending: 0 });
         this.element = byId('trends');
         const spans = SPANS.map(([seconds, name]) => [seconds, say(`trends.${name}`), say(`trends.${name}.why`)]);
         fillSegments(byId('trend-span'), 'trend-span', spans, (span) => {
@@ -48,7 +53,7 @@ export class Trends {
             this.clock = zoneClock(this.zone);
             this.tags = this.tags.map(({ name }) => session.model.tag(name)).filter(Boolean);
         });
-        setInterval(() => this.isOpen && !document.hidden && this.refresh(), FRESH_MS);
+        setInterval(() => this.isOpen && !document.hidden && !this.pending && this.refresh(), FRESH_MS);
         new ResizeObserver(() => this.resize()).observe(byId('trend-chart'));
     }
 
@@ -137,9 +142,12 @@ export class Trends {
         return { tags: this.tags.map(({ name }) => name).join(','), from: (from / 1e6).toFixed(3), to: (to / 1e6).toFixed(3) };
     }
 
+    // `pending` counts requests on their way. The timer waits for them: a newer request discards the answer of an older one, and on a slow
+    // link no answer would ever be drawn.
     async refresh() {
         if (this.tags.length === 0 || !this.session.model)
             return;
+        this.pending++;
         const number = ++this.number, span = this.window, points = Math.max(200, Math.round(byId('trend-chart').clientWidth / 2));
         try {
             const answer = ask('api/v1/history', { ...this.query(span), points }, this.session.token);
@@ -154,6 +162,8 @@ export class Trends {
         } catch (error) {
             if (number === this.number)
                 setText(byId('trend-note'), say('trends.failed', { why: error.message }));
+        } finally {
+            this.pending--;
         }
     }
 
