@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames come and go. */
+/* Creates, cuts and releases frames, and keeps a few released pixel buffers for reuse. */
 #include "render/frame.h"
 
 #include <assert.h>
@@ -13,11 +13,11 @@
 #include "render/frame_record.h"
 #include "value/quality.h"
 
-static const float MARK_PX = 48; /* how far from its place a mark reaches */
+static const float MARK_PX = 48; /* pixels from a marker's position that its drawn symbol reaches at most */
 
-/* Pixels of frames that are gone: memory that is new to the process costs more than it takes to fill it. */
+/* Pool of released pixel buffers: fresh memory from the kernel costs more in page faults than filling a frame does. */
 enum { SPARES = 4 };
-static const size_t SPARE_BYTES = (size_t)16 << 20; /* of one: what is larger is rare */
+static const size_t SPARE_BYTES = (size_t)16 << 20; /* largest buffer that the pool keeps; larger frames are rare */
 static struct {
     pthread_mutex_t lock;
     struct {
@@ -28,7 +28,7 @@ static struct {
 } spares = { .lock = PTHREAD_MUTEX_INITIALIZER };
 static _Atomic size_t all_bytes;
 
-/* Of any content. NULL: out of memory. */
+/* Returns a buffer from the pool or a new one; its content is undefined. NULL: out of memory. */
 static uint8_t *take_pixels(size_t bytes)
 {
     uint8_t *pixels = NULL;
@@ -46,7 +46,7 @@ static uint8_t *take_pixels(size_t bytes)
     return pixels;
 }
 
-/* Takes them; NULL is fine. */
+/* Puts the buffer into the pool, which then frees its oldest one. Takes ownership; NULL is fine. */
 static void give_pixels(uint8_t *pixels, size_t bytes)
 {
     if (pixels && bytes <= SPARE_BYTES) {
@@ -122,7 +122,8 @@ void frame_unref(struct frame **frame_ptr)
     mem_free(frame);
 }
 
-/* A mark at the edge of a part is seen on both sides of it. */
+/* Moves a marker's position into the part's coordinates. Returns whether any of its symbol may show there: a symbol on the edge of a part
+   shows in both parts. */
 static bool is_near(const struct frame_part *part, float *x_px, float *y_px)
 {
     *x_px -= (float)part->x_px;
@@ -134,14 +135,15 @@ static uint64_t hash_part(uint64_t content, const struct frame_part *part)
 {
     const int parts[] = { part->x_px, part->y_px, part->width_px, part->height_px };
     for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++)
-        content = (content ^ (uint64_t)parts[i]) * 0x100000001b3u; /* FNV-1a */
+        content = (content ^ (uint64_t)parts[i]) * 0x100000001b3u; /* FNV-1a hash */
     return content;
 }
 
 struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
 {
     struct frame *frame = mem_new(sizeof(*frame));
-    size_t plain = offsetof(struct frame, view); /* others count its references meanwhile */
+    /* members before `view` are not copied: other threads change the reference count meanwhile */
+    size_t plain = offsetof(struct frame, view);
     assert(part->x_px >= 0 && part->y_px >= 0 && part->x_px + part->width_px <= whole->width_px &&
            part->y_px + part->height_px <= whole->height_px);
     memcpy((char *)frame + plain, (const char *)whole + plain, sizeof(*frame) - plain);
@@ -168,10 +170,10 @@ struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
     return frame;
 }
 
-/* What one half shows beside readings: what they differ from. */
+/* What one half of the frame subtracts from its readings: nothing, or a baseline. */
 struct then {
-    bool wanted, distance;           /* of a distance: nothing, the markers tell it */
-    const struct snapshot *snapshot; /* NULL: forgotten */
+    bool wanted, distance;           /* distance: the half shows distances, which the markers hold already */
+    const struct snapshot *snapshot; /* of the baseline; NULL: it no longer exists */
 };
 
 static struct then take_then(const struct field_params *params, struct baselines *baselines)

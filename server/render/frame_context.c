@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What each renderer asks of a frame alike. */
+/* Helpers that all render backends use on a frame context. */
 #include "render/frame_context.h"
 
 #include "render/plan/lod_selection.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One picture being drawn: what every pass needs to know. Thread: the one of the GL context. */
+/* Everything that the passes need to know about the frame being drawn. Thread: the one of the GL context. */
 #ifndef RENDER_FRAME_CONTEXT_H
 #define RENDER_FRAME_CONTEXT_H
 #include "gpu/target.h"
@@ -13,18 +13,18 @@ struct frame_context {
     const struct gpu_scene *gpu_scene;
     const struct view *view;
     struct view_constants constants;
-    struct light_key lit_by; /* what it is drawn with: what the view asks for, or the most alike */
+    struct light_key lit_by; /* key of the light used: the one that the view asks for, or the most similar light that is ready */
     const struct light_set *light;
     const struct target *target;
     struct field *field;
-    const struct fields_entry **fields; /* per asset; NULL: context */
-    const int *visible;                 /* assets, nearest first */
+    const struct fields_entry **fields; /* per asset; NULL: the asset shows no field */
+    const int *visible;                 /* indices of visible assets, nearest first */
     size_t visible_count;
     struct shaded_colormap colormap;
-    struct reference *reference; /* NULL: the field is interpolated between vertices; else worked out at each fragment */
-    double error_px;             /* of levels of detail, at most (render/plan/lod_selection.h); 0: no coarser ones */
-    uint64_t shape;              /* content_hash_shape of its plan */
-    bool measured;               /* the field's numbers instead of colours, into floats */
+    struct reference *reference; /* NULL: the field is interpolated between vertices; else it is computed at each fragment */
+    double error_px;             /* largest error of levels of detail in pixels (render/plan/lod_selection.h); 0: finest levels only */
+    uint64_t shape;              /* content_hash_shape() of the frame plan */
+    bool measured;               /* true: draws the field's numbers instead of colours, into a float target */
 };
 
 /* Returns the level of an asset that the frame plan chose. */
@@ -33,7 +33,7 @@ const struct model_level *frame_level(const struct frame_context *context, int a
 bool frame_shows_selected(const struct frame_context *context);
 /* Returns the number of triangles of the planned levels of all visible assets. */
 int frame_triangles(const struct frame_context *context);
-/* Returns by how much previews move surfaces towards the sun against shadow acne, in depth of the shadow map. */
+/* Returns how far previews move surfaces towards the sun to avoid shadow acne, in depth units of the shadow map. */
 double frame_sun_slack(const struct frame_context *context);
 
 #endif

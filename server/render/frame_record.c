@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Copies what a frame was drawn from. */
+/* Creates and releases frame records: copies of the readings that a frame was drawn from. */
 #include "render/frame_record.h"
 
 #include <stdatomic.h>
@@ -19,7 +19,7 @@ static void add_baseline(struct frame_record *record, struct baselines *baseline
         baselines_give(baselines, &snapshot);
 }
 
-/* Takes the readings. */
+/* Takes ownership of the readings. */
 static struct frame_record *make(struct snapshot *readings)
 {
     struct frame_record *record = mem_new(sizeof(*record));

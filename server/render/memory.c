@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One bound for all that a renderer keeps. */
+/* Divides one memory bound among the caches of a renderer. */
 #include "render/memory.h"
 
 #include "render/gl/gl_backend.h"
@@ -8,10 +8,10 @@
 
 const char *const render_store_names[RENDER_STORES] = { "shown fields", "light", "still pictures", "targets", "drawing", "models" };
 
-/* Of what room to draw in leaves. Of fields, half is here and half on the GPU. */
+/* Shares of the bound, after the working memory is subtracted. Half of the fields' share is in main memory, half on the GPU. */
 static const double FIELDS_SHARE = 0.35, LIGHT_SHARE = 0.3, REFINED_SHARE = 0.15, PREVIEWS_SHARE = 0.1, TARGETS_SHARE = 0.1;
-/* Room beyond this share is made anew for each picture that needs it. */
-static const double ROOM_SHARE = 0.4;
+/* Working memory beyond this share of the bound is freed after each frame and allocated again. */
+static const double WORKING_SHARE = 0.4;
 
 static size_t room_bytes(const struct renderer *renderer)
 {
@@ -36,9 +36,9 @@ void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_
 
 void renderer_bound_memory(struct renderer *renderer, size_t bytes)
 {
-    if (renderer->by_soft && (double)room_bytes(renderer) > ROOM_SHARE * (double)bytes)
+    if (renderer->by_soft && (double)room_bytes(renderer) > WORKING_SHARE * (double)bytes)
         soft_drop_spare(renderer->by_soft);
-    size_t room = room_bytes(renderer), least = bytes - (size_t)(ROOM_SHARE * (double)bytes);
+    size_t room = room_bytes(renderer), least = bytes - (size_t)(WORKING_SHARE * (double)bytes);
     double left = (double)(room < bytes - least ? bytes - room : least);
     renderer->fields.bound_bytes = (size_t)(FIELDS_SHARE * left / 2);
     light_bound(&renderer->light, (size_t)(LIGHT_SHARE * left));

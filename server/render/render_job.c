@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Copies of what a frame shows. */
+/* Render jobs: hold copies of what a frame shows while it is drawn in steps. */
 #include "render/render_job.h"
 
 #include <string.h>
@@ -30,7 +30,7 @@ static GLuint copy_buffer(struct log *log, GLuint from)
     return copy;
 }
 
-/* False: out of memory of some kind, logged. */
+/* Copies one asset's field. Returns false when out of memory (main or GPU), logged. */
 static bool copy_field(const struct render_job *job, const struct fields_entry *from, bool on_gpu, struct fields_entry *copy)
 {
     struct log *log = job->context.gpu_scene->gl->log;

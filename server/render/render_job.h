@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A frame being drawn: all that it shows is held from its beginning to its end. Thread: the one of the GL context. */
+/* A frame being drawn. The job holds everything that the frame shows, from its first step to its last. Thread: the one of the GL
+   context. */
 #ifndef RENDER_RENDER_JOB_H
 #define RENDER_RENDER_JOB_H
 #include "render/frame.h"
@@ -12,27 +13,27 @@ struct render_backend;
 
 struct render_job {
     const struct render_backend *backend;
-    union { /* what the backend keeps of it; NULL: nothing */
+    union { /* state of the backend; NULL: none */
         struct gl_job *gl;
         struct soft_job *soft;
     } of;
-    struct frame_context context; /* view, fields and visible point into this struct */
+    struct frame_context context; /* its view, fields and visible point into this struct */
     struct view view;
     struct frame *frame;
-    struct light_set *light;            /* held from when it is ready; NULL: not yet */
+    struct light_set *light;            /* reference to the light, held once the light is ready; NULL: not yet */
     const struct fields_entry **fields; /* per asset */
-    struct fields_entry *copies;        /* per asset, of what is shown; NULL: drawn at once, no copies needed */
+    struct fields_entry *copies;        /* copies of the shown fields, per asset; NULL: the frame is drawn at once and needs no copies */
     int *visible;
     struct isoline_points isolines;
-    bool keeps; /* once it has ended, a frame of other readings is quick */
+    bool keeps; /* true: once the job has ended, a frame with the same view and other readings is quick */
 };
 
-/* Takes the frame over, copies the context's lists and its view. */
+/* Takes ownership of the frame; copies the context's lists and view. */
 void render_job_init(struct render_job *job, const struct frame_context *context, struct frame *frame);
-/* Copies the fields, so that frames drawn before this one is done do not change it: on the GPU, or their values at vertices. Returns false
-   when out of memory of some kind, logged. */
+/* Copies the fields so that later frames do not change them: buffers on the GPU (on_gpu) or vertex values in main memory. Returns false
+   when out of memory (main or GPU), logged. */
 bool render_job_hold_fields(struct render_job *job, bool on_gpu);
-/* Frees all but what the backend keeps, and the frame, if it was not taken. */
+/* Frees the job but for the backend's state, and the frame if nobody took it. */
 void render_job_finish(struct render_job *job);
 
 #endif

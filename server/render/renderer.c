@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From a view and the field to a frame: the order of the passes. */
+/* Draws frames: turns a frame plan into a frame by one of the render backends. */
 #include "render/renderer.h"
 
 #include <math.h>
@@ -62,7 +62,8 @@ const struct frame_planner *renderer_planner(const struct renderer *renderer)
     return &renderer->planner;
 }
 
-/* What every pass is handed, but for light, colour map and target. It points into the plan, which must outlive it. */
+/* Fills in the context that every pass gets, except light, colour map and target. The context points into the plan, which must outlive
+   it. */
 static void init_context(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context)
 {
     *context = (struct frame_context){ .gpu_scene = &renderer->gpu_scene,
@@ -89,7 +90,7 @@ static int64_t oldest_age_of(const struct frame_context *context)
     return oldest_ns;
 }
 
-/* Rounded up to 1, 2 or 5 times a power of ten, so that it seldom changes while readings do. */
+/* Largest field error of the visible assets, rounded up to 1, 2 or 5 times a power of ten so that it seldom changes while readings do. */
 static double drawn_error_of(const struct frame_context *context)
 {
     double most = 0;
@@ -103,7 +104,7 @@ static double drawn_error_of(const struct frame_context *context)
     return unit * (parts <= 1 ? 1 : parts <= 2 ? 2 : parts <= 5 ? 5 : 10);
 }
 
-/* Returns an empty frame with all that the plan says of it. NULL: out of memory, logged. */
+/* Returns a frame without pixels drawn, with all metadata from the plan. NULL: out of memory, logged. */
 static struct frame *start_frame(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context)
 {
     const struct view *view = &plan->view;
@@ -226,11 +227,12 @@ void renderer_abandon(struct renderer *renderer, struct render_job **job_ptr)
     *job_ptr = NULL;
 }
 
-/* After a frame: works on the light that it should have had. */
+/* After each frame: bakes for a while at the light that the view asks for. */
 static void bake_wanted_light(struct renderer *renderer, const struct view *view)
 {
     struct light_key wanted = frame_plan_wanted_light(view);
-    bool steady = visibility_equal(&wanted.shown, &renderer->shown); /* not at each place of a cut that somebody drags */
+    /* false while a user drags a section plane: each of its positions would need a light of its own */
+    bool steady = visibility_equal(&wanted.shown, &renderer->shown);
     if (renderer->bake_budget_ns && steady)
         light_step(&renderer->light, &wanted, renderer->bake_budget_ns);
     renderer->shown = view->visibility;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What tests and benchmarks compare a renderer's frames by. Thread: the one that made the GL context. */
+/* Functions with which tests and benchmarks compare frames of a renderer. Thread: the one that made the GL context. */
 #ifndef RENDER_RENDERER_COMPARE_H
 #define RENDER_RENDERER_COMPARE_H
 #include <stdbool.h>
@@ -11,16 +11,16 @@ struct renderer; /* render/renderer.h */
 struct snapshot;
 struct view;
 
-/* Leaves out what other assets hide in frames of so many triangles from now on. INT_MAX: in none, but clusters that are not seen. As it
-   begins: where it pays. */
+/* Occlusion culling runs only for frames with at least this many triangles; INT_MAX: never (clusters outside the frustum are still culled).
+   The initial value is where culling pays off. */
 void renderer_set_occlusion_least(struct renderer *renderer, int least_triangles);
-/* Returns how many assets were left out of the frame that GL drew last; waits for it. */
+/* Returns how many assets occlusion culling removed from the last frame that GL drew; waits for that frame. */
 size_t renderer_occluded_count(const struct renderer *renderer);
-/* Draws each asset by GL calls of its own, not with all that are alike. */
+/* true: draws each asset with GL calls of its own instead of batching equal ones. */
 void renderer_set_batching_off(struct renderer *renderer, bool one_by_one);
-/* Fills out with what the pixels of the view's tier stand for, at one sample each, rows from the top: the field's place in the range
-   (unclamped, never on a logarithmic scale), no data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1),
-   depth (1 near, 0 far). finest: without coarser levels of detail. Returns false on failure, logged. */
+/* Fills `out` with the field's numbers at one sample per pixel, rows from the top: position in the range (unclamped, always linear), no
+   data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth (1 near, 0 far). finest: finest levels
+   of detail only. Returns false on failure, logged. */
 bool renderer_measure(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool finest, float (*out)[4]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the parts of the renderer share. Private to renderer.c, memory.c and the backends. */
+/* The renderer struct. Private to renderer.c, memory.c and the backends. */
 #ifndef RENDER_RENDERER_IMPL_H
 #define RENDER_RENDERER_IMPL_H
 #include "render/light/sky.h"
@@ -26,21 +26,21 @@ struct renderer {
     struct isolines isolines;
     struct shaded_colormap_cache colormaps;
     struct gl_backend *by_gl;
-    struct soft *by_soft; /* NULL: a GPU draws all */
+    struct soft *by_soft; /* software backend; NULL: a GPU draws everything */
     bool always_gl;
-    int64_t bake_budget_ns;  /* 0: none */
-    struct visibility shown; /* by the last frame that was drawn at once */
+    int64_t bake_budget_ns;  /* baking time per preview; 0: none */
+    struct visibility shown; /* visibility of the last frame that was drawn at once */
 };
 
-/* Brings the context's fields, which are the caller's own, to the GPU. What there is no room for becomes one of no data there, and the
-   frame says so. */
+/* Uploads the context's fields to the GPU; context->fields must belong to the caller. A field that does not fit is replaced by one that
+   shows no data, and the frame's content hash and age are updated. */
 void renderer_upload_fields(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context,
                             struct frame *frame);
-/* Finds the context's light, unless it has it, and its colour map. Returns false when out of GPU memory, logged. */
+/* Finds the context's light, unless it is set already, and its colour map. Returns false when out of GPU memory, logged. */
 bool renderer_find_light(struct renderer *renderer, struct frame_context *context);
-/* Likewise for a job, which holds its light from now on. */
+/* Finds light and colour map for a job, which holds a reference to the light from then on. Returns false when out of GPU memory, logged. */
 bool renderer_light_job(struct renderer *renderer, struct render_job *job);
-/* Returns the light that most views have. */
+/* Returns the key of the default light, which most views use. */
 struct light_key renderer_usual_light(const struct renderer *renderer);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colours by place and light. */
+/* Builds shaded colour maps: tables of colour by position on the scale and by brightness. */
 #include "render/shaded_colormap.h"
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Palettes by what they show; the least recently used one makes room. */
+/* Cache of shaded colour maps, keyed by scale and isolines; evicts the least recently used entry. */
 #include "render/shaded_colormap_cache.h"
 
 #include <string.h>
@@ -30,7 +30,7 @@ static const struct colormap_shades *shades_of(struct shaded_colormap_cache *col
     return colormaps->shades[number];
 }
 
-/* A free one, or the one that was used longest ago. */
+/* Returns a free entry, or the least recently used one after finishing its colour map. */
 static struct shaded_colormap_cache_entry *make_room(struct shaded_colormap_cache *colormaps)
 {
     if (colormaps->count < SHADED_COLORMAPS)

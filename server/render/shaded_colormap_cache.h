@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Palettes that were used lately. Thread: the one of the GL context. */
+/* Cache of recently used shaded colour maps. Thread: the one of the GL context. */
 #ifndef RENDER_SHADED_COLORMAP_CACHE_H
 #define RENDER_SHADED_COLORMAP_CACHE_H
 #include "render/shaded_colormap.h"
@@ -14,13 +14,13 @@ struct shaded_colormap_cache_entry {
 
 enum { SHADED_COLORMAPS = 16 };
 struct shaded_colormap_cache {       /* zero-initialise */
-    struct colormap_shades **shades; /* by colour map, then the operator's; NULL: not made yet */
+    struct colormap_shades **shades; /* by index of colour map, then one for the operator display; entries are NULL until first used */
     struct shaded_colormap_cache_entry at[SHADED_COLORMAPS];
     int count;
     uint64_t uses;
 };
 
-/* Valid until SHADED_COLORMAPS others were asked for. Nothing in it: out of GPU memory. */
+/* Returns the colour map of the view, valid until SHADED_COLORMAPS others have been requested. All zero: out of GPU memory. */
 struct shaded_colormap shaded_colormap_cache_get(struct shaded_colormap_cache *colormaps, const struct view *view);
 void shaded_colormap_cache_finish(struct shaded_colormap_cache *colormaps);
 

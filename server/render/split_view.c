@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws the halves one after the other and lays them side by side. */
+/* Draws the halves of a split view one after the other and copies them side by side into one frame. */
 #include "render/split_view.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@ static const uint8_t divider_bgrx[4] = { 48, 40, 34, 255 };
 
 struct split_view {
     struct view view;
-    int half_count, done; /* halves; those that need no more steps */
+    int half_count, done; /* done: halves that need no more steps */
     struct render_job *jobs[2];
 };
 
@@ -77,7 +77,7 @@ static void draw_divider(struct frame *frame, int x_px)
             memcpy(frame->bgrx + (size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4, divider_bgrx, 4);
 }
 
-/* x_px: where the half begins. What lies outside it would be seen in the other one. */
+/* Copies a half's markers. x_px: left edge of the half. A marker outside its half is left out, since it would show in the other half. */
 static void copy_markers(struct frame *whole, const struct frame *part, int half, int x_px)
 {
     size_t capacity = whole->marker_count;
@@ -121,7 +121,7 @@ static void add_meaning(struct frame *whole, const struct frame *part, int half)
     whole->triangles += part->triangles;
 }
 
-/* Takes both frames. */
+/* Joins two halves into one frame. Takes ownership of both. NULL: one is missing, or out of memory. */
 static struct frame *join(const struct view *view, struct frame *parts[2])
 {
     struct frame *whole = parts[0] && parts[1] ? frame_create(view->width_px, view->height_px) : NULL;

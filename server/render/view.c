@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a session sees before it asks for anything. */
+/* Default views, halves of split views, and equality of views. */
 #include "render/view.h"
 #include "scene/scene_create.h"
 
@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A late-morning sun over the viewer's shoulder: shapes read best, shadows stay short. One for the plant, whatever the picture's
-   shape: what is baked for it serves every session. */
+/* Default sun: late morning, over the viewer's shoulder, so that shapes read well and shadows stay short. One direction per plant, whatever
+   the frame's aspect ratio, so that all sessions share one baked light. */
 static void default_light(const struct scene *scene, double towards[3])
 {
     int up = scene->plant->up == AXIS_Y ? 1 : 2, a = 0, b = up == 1 ? 2 : 1;
@@ -36,7 +36,7 @@ void view_default_scale(const struct scene *scene, struct view *view)
     field_default_range(scene, &view->field, &view->range_min, &view->range_max);
     view->ramp_interval = 0;
     memset(&view->color_scale, 0, sizeof(view->color_scale));
-    view->color_scale.log = view->field.show == SHOW_BLIND; /* it grows as exp(D^2) */
+    view->color_scale.log = view->field.show == SHOW_BLIND; /* logarithmic, since the blind measure grows as exp(D^2) */
     if (view->field.show != SHOW_VALUE)
         return;
     view->color_scale.log = group->log;

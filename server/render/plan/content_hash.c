@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes a view field by field, since structs have padding. */
+/* Hashes a view member by member, because structs have padding. */
 #include "render/plan/content_hash.h"
 
 #define XXH_INLINE_ALL
@@ -28,7 +28,7 @@ static void add_color_scale(XXH3_state_t *state, const struct color_scale *color
     add(state, color_scale->lines, (size_t)color_scale->line_count * sizeof(*color_scale->lines));
 }
 
-/* What is hidden throws no shadow either, wherever it stands: all assets count. */
+/* Hashes visibility. All assets count, also those out of sight, since a hidden asset casts no shadow. */
 static void add_visibility(XXH3_state_t *state, const struct frame_plan *plan)
 {
     const struct visibility *visibility = &plan->view.visibility;
@@ -41,7 +41,7 @@ static void add_visibility(XXH3_state_t *state, const struct frame_plan *plan)
     add(state, visibility->clip.planes, planes * sizeof(visibility->clip.planes[0]));
 }
 
-/* All but the field and its colours. */
+/* Hashes everything except the field and its colours. */
 static void add_shape(XXH3_state_t *state, const struct frame_plan *plan)
 {
     const struct view *view = &plan->view;
@@ -67,7 +67,8 @@ static void add_colors(XXH3_state_t *state, const struct view *view)
 {
     double numbers[] = { view->colormap, view->ramp_interval, view->range_min, view->range_max };
     add(state, numbers, sizeof(numbers));
-    add(state, &view->at_us, sizeof(view->at_us)); /* the same picture of another instant says another time */
+    /* the instant: the frame carries its time, so equal pixels of two instants are two frames */
+    add(state, &view->at_us, sizeof(view->at_us));
     add_field_params(state, &view->field);
     add_color_scale(state, &view->color_scale);
 }

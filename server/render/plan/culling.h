@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which clusters of an asset's triangles a camera, or a tile of its picture, may show. No GL here. */
+/* Culling of triangle clusters by frustum and by normal cone, for a frame or a tile of it. Uses no GL. */
 #ifndef RENDER_PLAN_CULLING_H
 #define RENDER_PLAN_CULLING_H
 #include "render/plan/view_constants.h"
 
-struct culling { /* one asset, in the frame of its file */
+struct culling { /* planes and eye in the coordinates of one asset's file */
     float planes[6][4];
     float eye_m[3];
-    bool cones; /* winding tells what is turned away */
+    bool cones; /* true: normal cones may be used, since the winding tells back faces */
 };
 
 void culling_init(struct culling *culling, const struct view_constants *constants, const struct scene_asset *asset);

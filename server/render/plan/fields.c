@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeps scalars on the GPU up to date, as far as one can see. */
+/* Keeps vertex values of fields on the GPU up to date, as far as changes are visible. */
 #include "render/plan/fields.h"
 
 #include <math.h>
@@ -12,8 +12,9 @@
 #include "plant/influence.h"
 #include "render/reference/reference.h"
 
-static const uint64_t LOST = 0x6c6f7374;             /* content that no other has */
-static const size_t BOUND_BYTES = (size_t)384 << 20; /* on the GPU, and as much again here: some 700 assets of 66,000 vertices */
+static const uint64_t LOST = 0x6c6f7374;             /* content hash of fields->lost, which no other entry has */
+/* default bound in main memory, and the same on the GPU: about 700 assets of 66,000 vertices */
+static const size_t BOUND_BYTES = (size_t)384 << 20;
 
 void fields_init(struct fields *fields, struct log *log, struct field *field)
 {
@@ -74,7 +75,7 @@ static struct fields_entry *entry_create(struct fields *fields, int asset, const
     return entry;
 }
 
-/* False: there is none, logged; the entry is gone. */
+/* Takes a slice of GPU memory for the entry. Returns false when there is none, logged; the entry is then destroyed. */
 static bool take_slice(struct fields *fields, struct fields_entry *entry)
 {
     size_t at = 0;
@@ -90,7 +91,7 @@ static bool take_slice(struct fields *fields, struct fields_entry *entry)
     return false;
 }
 
-/* How far the values have moved from what is shown; no farther than is enough. */
+/* Returns the largest change of a vertex since the shown values; stops at `enough`. */
 static double error_of(const struct fields_entry *entry, const struct scalars *now, double enough)
 {
     float most = 0;
@@ -102,7 +103,7 @@ static double error_of(const struct fields_entry *entry, const struct scalars *n
     return most;
 }
 
-/* Less than half a colour step is not shown. Most of the time the field's own bound tells; else every value is compared. */
+/* Returns whether the change is at least half a colour step. The field's own bound usually decides; otherwise every vertex is compared. */
 static bool can_be_seen(struct fields_entry *entry, const struct scalars *now)
 {
     double half = 0.5 * entry->step;
@@ -115,7 +116,7 @@ static bool can_be_seen(struct fields_entry *entry, const struct scalars *now)
     return error >= half;
 }
 
-/* Any thread. */
+/* Copies the newest values into the entry and hashes them. Any thread. */
 static void show(struct fields_entry *entry)
 {
     const struct scalars *now = entry->behind;
@@ -134,7 +135,8 @@ static void show(struct fields_entry *entry)
     }
 }
 
-/* What a picture under way shows stays as it is. False: there is no room for another, logged. */
+/* Uploads the entry. A slice that a frame under way still uses is left unchanged and replaced. Returns false when there is no room for
+   another slice, logged. */
 static bool upload(struct fields *fields, struct fields_entry *entry)
 {
     if (entry->slice->holds > 1) {
@@ -149,7 +151,7 @@ static bool upload(struct fields *fields, struct fields_entry *entry)
     return entry->uploaded = true;
 }
 
-/* Where the readings point now. Of a trial nobody knows. */
+/* Reads the sensors' present directions. Trials have none: directions at trial positions are unknown. */
 static void take_directions(struct fields *fields, struct fields_entry *entry, const struct fields_ask *ask)
 {
     const struct scene *scene = field_scene(fields->field);
@@ -157,7 +159,7 @@ static void take_directions(struct fields *fields, struct fields_entry *entry, c
         return;
     mem_free(entry->directions);
     entry->direction_count = directions_read(scene, entry->asset, ask->params->group, ask->snapshot, &entry->directions);
-    entry->directions_content = XXH3_64bits(&entry->params, sizeof(entry->params)); /* on which they depend as well */
+    entry->directions_content = XXH3_64bits(&entry->params, sizeof(entry->params)); /* directions depend on the parameters as well */
     for (size_t i = 0; i < entry->direction_count; i++) {
         const struct sensor_direction *d = &entry->directions[i];
         const float said[6] = { d->vector[0], d->vector[1], d->vector[2], d->configured, d->known, d->uncertain };
@@ -165,7 +167,7 @@ static void take_directions(struct fields *fields, struct fields_entry *entry, c
     }
 }
 
-/* What there is to show of one asset, and whether it is behind. NULL: nothing. */
+/* Finds or creates the entry of one asset and notes whether its values are out of date. NULL: the asset has nothing to show. */
 static struct fields_entry *look(struct fields *fields, const struct fields_ask *ask, int asset, size_t count)
 {
     struct field_params room;
@@ -197,7 +199,7 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
     return entry;
 }
 
-/* Those that have no place yet shall lie together. */
+/* Takes GPU slices for all entries without one, expected together so that they lie next to each other. */
 static void make_room(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
 {
     size_t texels = 0, slices = 0;
@@ -226,16 +228,17 @@ static void show_some(void *arg, size_t begin, size_t end)
         show(showing->entries[i]);
 }
 
-/* For fragments that work the field out themselves. */
+/* Uploads the sensors for shaders that compute the field at each fragment. Fields of other kinds have weights or distances that no
+   shader has. */
 static void take_sensors(const struct fields *fields, struct fields_entry *entry)
 {
     if (fields->reference && !entry->sensors && !interpolation_is_prepared(entry->params.interpolation) &&
-        !field_params_cover(&entry->params) && entry->params.distance != DISTANCE_HEAT) /* no shader has their weights or distances */
+        !field_params_cover(&entry->params) && entry->params.distance != DISTANCE_HEAT)
         entry->sensors = reference_sensors(fields->reference, entry->asset, &entry->params);
 }
 
-/* Fields of one set of parameters stay where they are while others of it are asked for, however little room there is; of a trial, each
-   asset may have its own set, so these are not put off. */
+/* Entries of one parameter set are first all looked up, then shown: looking up one does not evict another, however little room there is. A
+   trial may use a parameter set per asset, so its entries are shown one by one. */
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
 {
     struct fields_entry **changed = mem_array(ask->asset_count, sizeof(*changed));
@@ -278,7 +281,8 @@ bool fields_upload(struct fields *fields, const int *assets, size_t count, const
     return good;
 }
 
-/* Not what the last picture showed, which is what the next one shows, mostly: it would be worked out anew for each. */
+/* Entries of the last frame are kept even beyond the bound: the next frame mostly shows the same, and they would be recomputed for each
+   frame. */
 void fields_trim(struct fields *fields)
 {
     while (fields->bytes > fields->bound_bytes && fields->count > 0) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Culling, light and levels first; then the fields, as many vertices as those levels show. */
+/* Plans a frame: culling, light and levels of detail first, then the fields of as many vertices as those levels need. */
 #include "render/plan/frame_planner.h"
 
 #include <math.h>
@@ -26,13 +26,13 @@ static int by_distance(const void *a, const void *b, void *distance_m)
     return (first > second) - (first < second);
 }
 
-/* Drawn as it is, some of it at least. */
+/* Returns whether any of the asset is drawn normally: neither hidden nor ghosted, nor wholly cut away. */
 static bool is_left(const struct visibility *visibility, int index, const struct scene_asset *asset)
 {
     return visibility_of(visibility, index) == ASSET_SHOWN && !clip_drops(&visibility->clip, asset->bounds_min_m, asset->bounds_max_m);
 }
 
-/* Assets in the frustum, nearest first, so that what is hidden costs little. */
+/* Lists the assets in the frustum, nearest first, so that hidden fragments fail the depth test early. */
 static void find_visible(struct frame_plan *plan)
 {
     const struct scene *scene = plan->gpu_scene->scene;
@@ -61,7 +61,7 @@ static struct light_key choose_light(const struct frame_planner *planner, const 
     return near ? near->key : key;
 }
 
-/* So many of the first vertices are drawn, or looked at for labels. */
+/* Returns how many vertices, from the first, the asset's level, labels or arrows need. */
 static size_t count_vertices(const struct frame_plan *plan, int asset)
 {
     double lines[VIEW_ALL_LINES];
@@ -113,7 +113,7 @@ bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *pla
     int64_t begin_ns = clock_mono_ns();
     bool ready = true;
     if (budget_ns == INT64_MAX)
-        return true; /* frame_plan_complete() works on many assets side by side */
+        return true; /* no slices needed: frame_plan_complete() computes many assets in parallel */
     for (size_t i = 0; i < plan->visible_count && ready && plan->view.look != LOOK_MATERIALS; i++)
         while (ready &&
                !field_advance(planner->fields->field, plan->visible[i], &plan->view.field, snapshot, plan->vertex_counts[i], slice))

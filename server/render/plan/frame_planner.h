@@ -4,24 +4,24 @@
 #define RENDER_PLAN_FRAME_PLANNER_H
 #include "render/plan/frame_plan.h"
 
-struct frame_planner { /* what plans are made from; all of it outlives them */
+struct frame_planner { /* inputs of frame plans; all of them outlive the plans */
     const struct gpu_scene *gpu_scene;
     struct fields *fields;
     struct light *light;
-    bool near_light; /* previews take the light most like the one they ask for, until that is baked */
-    bool finest;     /* without coarser levels of detail */
+    bool near_light; /* previews use the most similar ready light until the one they ask for is baked */
+    bool finest;     /* uses finest levels of detail only */
 };
 
-/* Finds what that view shows, but for the fields. view must be checked, and not split. */
+/* Plans everything about the view except its fields. The view must be valid and not split. The caller owns the plan. */
 struct frame_plan *frame_plan_create(const struct frame_planner *planner, const struct view *view);
-void frame_plan_destroy(struct frame_plan **plan); /* &NULL is fine; leaves NULL */
-/* Works towards its fields for about that long. Returns true when they are there, so that frame_plan_complete() will not take long, or at
-   once where there is no limit (INT64_MAX). */
+void frame_plan_destroy(struct frame_plan **plan); /* &NULL is fine; sets it to NULL */
+/* Computes the plan's fields for about budget_ns. Returns true when they are ready, so that frame_plan_complete() takes little time. With
+   INT64_MAX returns true at once, and frame_plan_complete() computes them. */
 bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *planner, const struct snapshot *snapshot, int64_t budget_ns);
-/* Brings its fields up to date with the snapshot, and fills in the rest. Where there is no room for a field it shows no data; logged. Two
-   plans with equal content give equal frames. */
+/* Brings the plan's fields up to date with the snapshot and fills in the remaining members. A field that there is no room for shows no
+   data; logged. Plans with equal content give equal frames. */
 void frame_plan_complete(struct frame_plan *plan, const struct frame_planner *planner, const struct snapshot *snapshot);
-/* Returns the key of the light that the view asks for, whether it is baked or not. */
+/* Returns the key of the light that the view asks for, baked or not. */
 struct light_key frame_plan_wanted_light(const struct view *view);
 
 #endif

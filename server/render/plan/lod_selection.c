@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts triangles before it chooses levels. */
+/* Chooses levels of detail by counting the triangles that an error bound would draw. */
 #include "render/plan/lod_selection.h"
 
-/* Of the silhouette, at most. */
-static const double MOST_PX[] = { [TIER_PREVIEW] = 1.0, [TIER_REFINED] = 0.7 };
-/* Frames are drawn truer as long as they have no more than these. Refined ones, from which people read values: 2.5 million take 0.45 s of
-   work on a processor, 0.3 s with levels. Previews: one asset, or a few; more would make a frame late. */
-static const int TRIANGLES[] = { [TIER_PREVIEW] = 300000, [TIER_REFINED] = 3000000 };
+/* Largest error of silhouettes in pixels, per tier. */
+static const double MAX_ERROR_PX[] = { [TIER_PREVIEW] = 1.0, [TIER_REFINED] = 0.7 };
+/* Triangle budget per tier: the error is reduced as long as the frame stays within it. Refined frames are generous because people read
+   values from them: 2.5 million triangles take 0.45 s of CPU time, 0.3 s with levels. A preview with more than one or a few finest assets
+   would be late. */
+static const int TRIANGLE_BUDGET[] = { [TIER_PREVIEW] = 300000, [TIER_REFINED] = 3000000 };
 
 static bool has_room(const struct lod_params *params, double error_px)
 {
-    int left = TRIANGLES[params->tier];
+    int left = TRIANGLE_BUDGET[params->tier];
     for (size_t i = 0; i < params->visible_count && left >= 0; i++)
         left -= lod_level(params->gpu_scene, params->constants, params->visible[i], error_px)->triangles;
     return left >= 0;
@@ -18,13 +19,13 @@ static bool has_room(const struct lod_params *params, double error_px)
 
 double lod_error_px(const struct lod_params *params)
 {
-    /* Few, and far apart: while a camera moves, levels seldom change because of others. */
+    /* Few, widely spaced error bounds: while a camera moves, an asset's level seldom changes because of other assets. */
     static const double parts[] = { 0, 0.125, 0.25, 0.5 };
-    double most_px = MOST_PX[params->tier];
+    double max_error_px = MAX_ERROR_PX[params->tier];
     for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++)
-        if (has_room(params, parts[i] * most_px))
-            return parts[i] * most_px;
-    return most_px;
+        if (has_room(params, parts[i] * max_error_px))
+            return parts[i] * max_error_px;
+    return max_error_px;
 }
 
 const struct model_level *lod_level(const struct gpu_scene *gpu_scene, const struct view_constants *constants, int asset, double error_px)

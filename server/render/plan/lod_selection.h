@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Level-of-detail selection: how far off the levels of a frame may be. The finest level shows the field to a step of colour; a coarser one
-   shows it as true as its surface lies, so that at some pixels it is some steps off. So frames with room for more triangles are drawn truer
-   than what is seen of shapes would need. Thread: any. */
+/* Level-of-detail selection: the error bound for the levels of a frame. The finest level shows the field exact to one colour step; a
+   coarser level is as wrong as its surface is displaced, which is several colour steps at some pixels. So a frame with few triangles uses
+   finer levels than its silhouettes need. Thread: any. */
 #ifndef RENDER_PLAN_LOD_SELECTION_H
 #define RENDER_PLAN_LOD_SELECTION_H
 #include "render/gl/gpu_scene.h"
@@ -13,10 +13,10 @@ struct lod_params {
     const int *visible; /* assets */
     size_t visible_count;
 };
-/* Returns the largest error of a frame's levels, in pixels; 0: the finest level of everything. It depends on the camera and on what is in
-   sight only, so that equal views are equal frames, and is the same for all tiles of a frame. */
+/* Returns the largest error of the frame's levels in pixels; 0: finest levels only. The result depends only on camera and visible assets,
+   so that equal views give equal frames, and is the same for all tiles of a frame. */
 double lod_error_px(const struct lod_params *params);
-/* Returns the coarsest level of an asset that errs by no more than that; 0: the finest. */
+/* Returns the coarsest level of the asset with an error up to error_px; with 0 the finest level. */
 const struct model_level *lod_level(const struct gpu_scene *gpu_scene, const struct view_constants *constants, int asset, double error_px);
 
 #endif

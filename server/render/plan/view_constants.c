@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From a camera to matrices and planes. */
+/* Computes matrices and frustum planes of a camera. */
 #include "render/plan/view_constants.h"
 
 #include <math.h>
@@ -24,7 +24,8 @@ static void set(struct view_constants *constants, const double eye_m[3], const d
         }
 }
 
-/* The camera's matrices, with depth turned round: 32-bit floats are finest near 0, and most of the scene lies far away. */
+/* Computes the camera's matrices, with reversed depth (1 near, 0 far): 32-bit floats are most precise near 0, and most of the scene is far
+   away. */
 void view_constants_init(struct view_constants *constants, const struct view *view, const struct scene *scene)
 {
     static const double reverse[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -0.5, 0, 0, 0, 0.5, 1 };
@@ -58,7 +59,7 @@ void view_constants_narrow(struct view_constants *constants, const double low[2]
 bool view_constants_sees(const struct view_constants *constants, const struct scene_asset *asset)
 {
     for (int p = 0; p < 6; p++) {
-        double far = constants->planes[p][3]; /* of the corner that lies farthest inward */
+        double far = constants->planes[p][3]; /* signed distance of the corner that lies farthest inward */
         for (int c = 0; c < 3; c++)
             far += constants->planes[p][c] * (constants->planes[p][c] > 0 ? asset->bounds_max_m[c] : asset->bounds_min_m[c]);
         if (far < 0)

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a cut shows of closed bodies: a plane where it enters them. Over all that a pixel's ray meets behind the cut, bodies that it leaves
-   are counted up and those that it comes into down: what is left over is what it was in from the beginning. */
+/* Section caps: where a section plane enters a closed body, the plane is drawn. For each pixel's ray, behind the cut, exits from bodies
+   count up and entries down: a positive sum means that the ray began inside a body. */
 #include <math.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "render/soft/kernels.h"
 
-/* Of a part: some triangle bounds a closed body. */
+/* Returns whether a triangle of the part bounds a closed body. */
 static bool bounds_bodies(const struct soft_parts *parts, const struct soft_part *part)
 {
     return parts->closed && memchr(parts->closed + part->first_vertex, 1, part->vertex_count);

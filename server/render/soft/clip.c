@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One triangle against the near plane, the band and the planes that cut. */
+/* Clips one triangle against the near plane, the guard band and section planes. */
 #include <string.h>
 
 #include "render/soft/clip.h"
@@ -13,7 +13,8 @@ struct near_corner near_corner_of(const struct soft_mesh *mesh, uint32_t vertex,
     return corner;
 }
 
-/* Over 0 on the side that stays. plane: 0 the near one, then left, right, top, bottom of the band, then those that cut. */
+/* Returns a positive value on the side that is kept. plane: 0 the near plane, 1 to 4 left, right, top, bottom of the guard band, then
+   section planes. */
 static float inside(const struct raster *raster, const struct near_corner *corner, int plane)
 {
     const float *at = corner->at;
@@ -36,7 +37,8 @@ static float part_way(float in, float out, float part)
     return in + part * (out - in);
 }
 
-/* Where an edge leaves. The same for both triangles that share it, though they go along it in opposite directions. */
+/* Returns where an edge crosses a plane. Both triangles that share the edge get the same point, though they traverse it in opposite
+   directions. */
 static struct near_corner between(const struct near_corner *in, const struct near_corner *out, float part)
 {
     struct near_corner corner = { .a = part_way(in->a, out->a, part), .b = part_way(in->b, out->b, part) };

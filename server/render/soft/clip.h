@@ -1,24 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles that the near plane cuts, or the edge of the band about the picture (one picture wide to either side, one high above and
-   below), or a plane that something is cut away by. Corners farther out, as those that lie just before the eye, would leave an edge too few
-   digits. Private to soft/. */
+/* Clipping of triangles against the near plane, section planes and the guard band (one frame width to either side, one frame height above
+   and below). Corners farther out, such as those just in front of the eye, would leave an edge too few digits. Private to soft/. */
 #ifndef RENDER_SOFT_CLIP_H
 #define RENDER_SOFT_CLIP_H
 #include "render/soft/soft_impl.h"
 
-/* The latter: what all planes may make of one triangle. */
+/* NEAR_CORNERS, NEAR_TRIANGLES: the most that clipping by all planes makes of one triangle. */
 enum { NEAR_PLANES = 5, NEAR_CORNERS = 3 + NEAR_PLANES + CLIP_MAX_PLANES, NEAR_TRIANGLES = NEAR_CORNERS - 2 };
 
-struct near_corner { /* in clip space, x and y in pixels; a and b as a vertex carries them */
+struct near_corner { /* a corner in clip space, with x and y in pixels; a and b as in struct soft_vertex */
     float at[4], a, b;
-    struct near_patterns { /* soft_lacking, soft_uncertain and soft_no_limits of its flags; between corners what is between these */
+    struct near_patterns { /* soft_lacking, soft_uncertain and soft_no_limits of the vertex's flags, interpolated between corners */
         float no_data, uncertain, no_limits;
     } patterns;
 };
 
 struct near_corner near_corner_of(const struct soft_mesh *mesh, uint32_t vertex, float a, float b, uint32_t flags);
-/* What lies beyond the near plane and in the band, and is left by the first `cuts` planes that cut. How many corners it has, in order:
-   0, or 3 and more. */
+/* Clips a triangle against the near plane, the guard band and the first `cuts` section planes. Returns the number of corners of the
+   remaining polygon, in order: 0, or 3 and more. */
 int near_cut(const struct raster *raster, int cuts, const struct near_corner at[3], struct near_corner out[NEAR_CORNERS]);
 
 static inline struct near_patterns near_patterns_of(uint32_t flags)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles of a part that the near plane, the edge of the band or a plane that something is cut away by may cut. */
+/* Clips the triangles of a part that the near plane, the guard band or a section plane may cut. */
 #include <math.h>
 
 #include "render/soft/clip.h"

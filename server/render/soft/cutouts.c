@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What does not simply hide what is behind it: triangles with holes, and blended ones. */
+/* Triangles that do not simply hide what is behind them: those with holes, and blended ones. */
 #include "base/mem.h"
 #include "render/soft/tile.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edges of triangles, and values over them, eight pixels at a time. Private to soft/. */
+/* Edge functions of triangles, and values interpolated over them, for eight pixels at a time. Private to soft/. */
 #ifndef RENDER_SOFT_EDGES_H
 #define RENDER_SOFT_EDGES_H
 #include <stdbool.h>
@@ -8,11 +8,11 @@
 #include "render/soft/lanes.h"
 
 struct raster_edge {
-    float x, y, dx, dy; /* from its upper end */
-    int32_t negative;   /* -1: what is negative lies inside; 0: what is not */
+    float x, y, dx, dy; /* from the upper end to the lower one */
+    int32_t negative;   /* -1: negative values of the edge function are inside; 0: the others are */
 };
 
-struct plane { /* a value over the picture, kept between its corners' */
+struct plane { /* a value interpolated linearly over the frame; low, high: the smallest and largest of its corners */
     float at, dx, dy, low, high;
 };
 
@@ -35,19 +35,20 @@ SOFT_INLINE void edge_init(struct raster_edge *edge, const struct soft_vertex *p
     *edge = (struct raster_edge){ upper->x, upper->y, lower->x - upper->x, lower->y - upper->y, swap ? -1 : 0 };
 }
 
-/* Its part that is the same all along the row. */
+/* Returns the part of the edge function that is constant along a row. */
 SOFT_INLINE float edge_row(const struct raster_edge *edge, float y)
 {
     return edge->dx * (y - edge->y) + edge->dy * edge->x;
 }
 
-/* Below 0 where outside; by the sign alone, so that even -0 is on one side of the edge only. x: the pixels' middles. */
+/* Returns lanes that are negative for pixels outside the edge. Only the sign bit counts, so that even -0 lies on one side only. x: pixel
+   centres. */
 SOFT_INLINE lanes_int edge_side(const struct raster_edge *edge, float row, lanes x)
 {
     return (lanes_int)(row - edge->dy * x) ^ edge->negative;
 }
 
-struct slopes { /* of the triangle, over twice its area */
+struct slopes { /* edge vectors of the triangle, divided by twice its area */
     float x1, y1, x2, y2;
 };
 

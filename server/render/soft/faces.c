@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The vertices of a part into the picture, and those of its triangles that cover a pixel's middle there and look this way. */
+/* Projects the vertices of a part and lists its front-facing triangles that cover a pixel centre. */
 #include <string.h>
 
 #include "render/soft/kernels.h"
 
-#define FARTHEST 1e6f /* columns: what lies so far outside the scale is outside all the same */
+#define FARTHEST 1e6f /* limit of colour map columns, far outside the scale on either side */
 
 /* --- vertices --------------------------------------------------------------------------------------------------------------- */
 
-/* What eight vertices are going to carry: on its way while they are placed and faces are found. */
+/* Prefetches what eight vertices will carry, while they are projected and faces are found. */
 SOFT_INLINE void fetch_carried(const struct soft_mesh *mesh, const uint32_t vertices[LANES])
 {
     for (int l = 0; l < LANES && mesh->scalars; l++)
@@ -52,7 +52,8 @@ void soft_place_part(struct soft_tile *tile, const struct soft_mesh *mesh, const
     corners->flat = most <= SOFT_LITTLE * least;
 }
 
-/* As colormap_column and colormap_row in shaders/field.glsl. numbers: of those that carry, up to whole lanes. */
+/* Computes columns and rows as colormap_column() and colormap_row() in shaders/field.glsl. numbers: vertices that carry, padded to whole
+   lanes. */
 SOFT_INLINE void carry_field(const struct raster *raster, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
                              int count, struct soft_corners *corners)
 {
@@ -106,7 +107,7 @@ SOFT_INLINE void carry_context(const struct soft_mesh *mesh, const uint32_t *ver
     corners->all_flags = 0;
 }
 
-/* Up to whole lanes. */
+/* Lists all vertices, padded to whole lanes. Returns their number. */
 static int list_all(const struct soft_part *part, uint8_t numbers[PART_VERTICES + LANES])
 {
     for (int i = 0; i < PART_VERTICES + LANES; i++)
@@ -155,7 +156,7 @@ SOFT_INLINE lanes most_of(lanes a, lanes b, lanes c)
     return lanes_most(lanes_most(a, b), c);
 }
 
-/* The first pixel whose middle may be covered, and the last one, kept to the tile. */
+/* First and last pixel whose centre may be covered, clamped to the tile. */
 SOFT_INLINE lanes_int first_pixel(lanes x, int low)
 {
     return lanes_whole(lanes_clamp(x + 0.4999f, (float)low, 1e5f));
@@ -166,7 +167,7 @@ SOFT_INLINE lanes_int last_pixel(lanes x, int high)
     return lanes_whole(lanes_clamp(x + 0.5f, 0, (float)high + 1)) - 1;
 }
 
-/* Behind what was drawn in all of its blocks. */
+/* Returns whether the face is behind the farthest depth of every block that it touches. */
 SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face *face, float nearest)
 {
     unsigned top = (unsigned)(face->top - tile->rect.top) / BLOCK_PX, bottom = (unsigned)(face->bottom - tile->rect.top) / BLOCK_PX;
@@ -178,20 +179,20 @@ SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face 
     return true;
 }
 
-struct eight { /* triangles */
+struct eight { /* eight triangles */
     lanes_int corners[3];
     lanes_int left, right, top, bottom;
-    lanes_int kept, doubtful; /* doubtful: hidden in the blocks of its corners, if there are others between them */
+    lanes_int kept, doubtful; /* doubtful: hidden in the blocks of its corners, but touches further blocks between them */
     lanes nearest;
 };
 
-/* Leaves out what is hidden, where four blocks tell. */
+/* Drops triangles that are hidden, as far as the blocks at the four corners of their rectangle tell. */
 SOFT_INLINE void hide(const struct soft_tile *tile, struct eight *eight)
 {
     const float *farthest = &tile->farthest[0][0], *depth = tile->corners.depth;
     lanes_int top = (eight->top - tile->rect.top) & eight->kept, bottom = (eight->bottom - tile->rect.top) & eight->kept;
     lanes_int left = (eight->left - tile->rect.left) & eight->kept, right = (eight->right - tile->rect.left) & eight->kept;
-    top = (top >> BLOCK_SHIFT) * BLOCK_COLUMNS; /* 0 or more */
+    top = (top >> BLOCK_SHIFT) * BLOCK_COLUMNS; /* not negative */
     bottom = (bottom >> BLOCK_SHIFT) * BLOCK_COLUMNS;
     left >>= BLOCK_SHIFT;
     right >>= BLOCK_SHIFT;
@@ -204,7 +205,7 @@ SOFT_INLINE void hide(const struct soft_tile *tile, struct eight *eight)
     eight->doubtful = hidden & wide;
 }
 
-/* Which of eight triangles may look this way: less than 0 is behind. Rounding does not lose one. */
+/* Returns which of eight triangles may face the eye (eye_m on the outer side of the plane). The slack keeps rounding from losing one. */
 SOFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye_m[3])
 {
     float slack_m = 1e-5f * (1 + __builtin_fabsf(eye_m[0]) + __builtin_fabsf(eye_m[1]) + __builtin_fabsf(eye_m[2]));
@@ -212,10 +213,10 @@ SOFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye
     return x * eye_m[0] + y * eye_m[1] + z * eye_m[2] + slack_m >= *(const lanes *)(planes + 3 * rounded);
 }
 
-/* first: of the eight, in the part. back: of those that look away where that is asked for, FACE_BACK. */
+/* first: number of the first of the eight in the part. back: FACE_BACK for back faces, where requested. */
 SOFT_INLINE void keep_faces(struct soft_tile *tile, const struct eight *eight, int first, lanes_int back)
 {
-    uint32_t words[sizeof(struct soft_face) / sizeof(uint32_t)][LANES]; /* as they lie in memory */
+    uint32_t words[sizeof(struct soft_face) / sizeof(uint32_t)][LANES]; /* struct soft_face as words in memory */
     float nearest[LANES];
     *(lanes_int *)words[0] = eight->corners[0] | eight->corners[1] << 16;
     *(lanes_int *)words[1] = eight->corners[2] | ((lanes_int){ 0, 1, 2, 3, 4, 5, 6, 7 } + first + back) << 16;
@@ -248,7 +249,7 @@ void soft_find_faces(struct soft_tile *tile, const struct soft_mesh *mesh, const
         lanes_int p = lanes_from_bytes(first + i), q = lanes_from_bytes(second + i), r = lanes_from_bytes(third + i);
         lanes x0 = lanes_look_up(corners->x, p), x1 = lanes_look_up(corners->x, q), x2 = lanes_look_up(corners->x, r);
         lanes y0 = lanes_look_up(corners->y, p), y1 = lanes_look_up(corners->y, q), y2 = lanes_look_up(corners->y, r);
-        lanes area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0); /* rows go down: what faces us is negative */
+        lanes area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0); /* rows go down, so front faces have a negative area */
         lanes_int turned = area > 0.0f;
         struct eight eight = {
             .corners = { p, lanes_choose_int(turned, q, r), lanes_choose_int(turned, r, q) },
@@ -267,7 +268,7 @@ void soft_find_faces(struct soft_tile *tile, const struct soft_mesh *mesh, const
 
 /* --- what they leave behind ---------------------------------------------------------------------------------------------------- */
 
-/* left, top: in the tile. */
+/* Returns the farthest depth in a block. left, top: of the block, in the tile. */
 SOFT_INLINE float farthest_in(const struct soft_tile *tile, int left, int top)
 {
     int bottom = top + BLOCK_PX - 1 < tile->rect.bottom - tile->rect.top ? top + BLOCK_PX - 1 : tile->rect.bottom - tile->rect.top;

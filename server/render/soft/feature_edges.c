@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Thin dark lines around shapes, found in depth: shaders/edges.frag once more. */
+/* Feature edges: thin dark lines around shapes, found in depth; ports shaders/edges.frag. */
 #include <math.h>
 
 #include "render/soft/kernels.h"
@@ -8,7 +8,7 @@
 struct view_of_depth {
     const float *depth;
     int width_px, height_px, pitch_px;
-    float scale; /* of depth, in an orthographic picture; 0: depth is one over the distance */
+    float scale; /* orthographic frame: view_constants.depth_scale; 0: depth is the reciprocal of distance */
 };
 
 SOFT_INLINE lanes at(const struct view_of_depth *view, int column, int row)
@@ -41,7 +41,7 @@ SOFT_INLINE lanes line(lanes rise)
     return t * t * (3.0f - 2.0f * t);
 }
 
-/* From here, one pixel to that side: whether it is nearer. */
+/* Compares with the neighbouring pixel at dx, dy: returns line coverage where the neighbour is nearer. */
 SOFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes here, int dx, int dy)
 {
     lanes next = at(view, x + dx, y + dy), zero = { 0 }, lines = zero;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assets that are only hinted at: lines where their depth breaks or bends, and thin level ones: shaders/ghost.frag once more. */
+/* Ghosted assets: lines where their depth has edges or creases, and thin level lines; ports shaders/ghost.frag. */
 #include <math.h>
 #include <string.h>
 
@@ -7,11 +7,11 @@
 #include "render/soft/soft_impl.h"
 #include "shaders/constants.glsl"
 
-static const double ghost_rgb[2][3] = { { GHOST_ON_LIGHT_RGB }, { GHOST_ON_DARK_RGB } }; /* by backdrop */
+static const double ghost_rgb[2][3] = { { GHOST_ON_LIGHT_RGB }, { GHOST_ON_DARK_RGB } }; /* by backdrop: light, dark */
 
 struct hinting {
     const struct raster *raster;
-    const float *ghosts; /* their depth */
+    const float *ghosts; /* depth of the ghosted assets */
     uint8_t *veil;
 };
 

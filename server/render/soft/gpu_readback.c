@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the other passes made on the GPU, brought here: light. */
+/* Reads baked light back from the GPU. */
 #include <math.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "base/system/huge_pages.h"
 #include "render/soft/soft_impl.h"
 
-enum { SUN_BAND_TILES = 32, SUN_BAND_ROWS = SUN_BAND_TILES * SUN_TILE_STEP_PX + 1 }; /* of the sun map, read at a time: 2 MB */
+enum { SUN_BAND_TILES = 32, SUN_BAND_ROWS = SUN_BAND_TILES * SUN_TILE_STEP_PX + 1 }; /* rows of the sun map read at a time: 2 MB */
 
 static bool fail(const struct soft *soft, const char *what)
 {
@@ -44,12 +44,12 @@ static bool read_baked(const struct soft *soft, struct soft_light *light, const 
     return true;
 }
 
-struct sun_band { /* rows of the sun map, and the first of those that follow them */
+struct sun_band { /* rows of the sun map, plus the first row of the next band */
     uint16_t *rows;
     int width_px, row_count;
 };
 
-/* The map's last row and column come twice, as lower and right neighbours. Returns the tile's bounds. */
+/* Copies a tile's texels; the map's last row and column are repeated as lower and right neighbours. Returns the tile's bounds. */
 static uint32_t fill_sun_tile(const struct sun_band *band, int u, int v, uint16_t *to)
 {
     static const uint16_t nothing[SUN_TILE_TEXELS];
@@ -65,13 +65,13 @@ static uint32_t fill_sun_tile(const struct sun_band *band, int u, int v, uint16_
                 out[x] = row[u + x < last_u ? u + x : last_u];
     }
     if (memcmp(texels, nothing, sizeof(texels)) == 0)
-        return 0; /* the least is nothing, and so is the greatest */
+        return 0; /* an empty tile: both bounds are 0 */
     memcpy(to, texels, sizeof(texels));
     return soft_sun_bounds(texels);
 }
 
-/* One band after the other, in the same memory. Tiles in which nothing stands are left as they were allocated: pages that hold no others
-   are never taken from the system, which for a map that is half empty saves half of the time as well. */
+/* Reads band by band through one buffer. Empty tiles are not written: untouched zero pages cost no memory, and for a half-empty map half of
+   the time. */
 static void fill_sun_tiles(struct soft_light *light, GLuint map, struct sun_band *band)
 {
     const int size = light->sun_map_px, tiles = light->sun_tiles;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loops that take most of a frame's time. Their files are compiled once for any machine and, for x86, once more for those with AVX2
-   and once for those with AVX-512 (Makefile): names end in _plain, _wide and _widest. The same bits come out. Private to soft/. */
+/* Table of the loops that take most of a frame's time. Their files are compiled once for any machine and, for x86, again for AVX2 and
+   AVX-512 (Makefile): the suffixes are _plain, _wide and _widest. All give identical bits. Private to soft/. */
 #ifndef RENDER_SOFT_KERNELS_H
 #define RENDER_SOFT_KERNELS_H
 #include "render/soft/tile.h"
@@ -11,35 +11,36 @@ struct shaded_items;
 struct visibility_band;
 
 struct soft_kernels {
-    /* The vertices of a part: first where all of them are, then what those of its faces carry of field and light; all, if some are cut. */
+    /* place_part projects a part's vertices. carry_part then computes field and light for the vertices that its faces use, or for all if
+       some faces are clipped. */
     void (*place_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
     void (*carry_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
-    /* Its faces, out of corners that were placed and are not cut. */
+    /* Lists the part's faces whose corners are all projected and need no clipping. */
     void (*find_faces)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_found *found, const struct soft_part *part);
-    /* Depth and marks of all faces. */
+    /* Draws depth and marks of all listed faces. */
     void (*raster_faces)(const struct soft_tile *tile, uint32_t mark);
-    /* Of all faces: into the marks, one more where a face looks away, one less where it faces the eye. */
+    /* Counts in the marks, for all listed faces: +1 per pixel where a face looks away from the eye, -1 where it faces the eye. */
     void (*count_faces)(const struct soft_tile *tile);
-    /* How far these blocks reach now. */
+    /* Recomputes the farthest depth of these blocks of the tile. */
     void (*look_again)(struct soft_tile *tile, const struct soft_rect *blocks);
-    /* From marks; begins at a whole SOFT_STRETCH_MOST. */
+    /* Turns the marks of a rectangle into colours. The rectangle begins at a multiple of SOFT_STRETCH_MOST. */
     void (*color)(const struct raster *raster, const struct soft_rect *rect);
     /* --- of refined frames */
-    /* Light on surfaces that show the field; where on them they are is kept. */
+    /* Shades surfaces that show the field, and stores in `out` triangle, weights and colour map row of each. */
     void (*shade_field)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
-    /* Likewise in a glossy look: fills out->gloss, too. */
+    /* Does the same in the glossy look, and fills out->gloss. */
     void (*shade_gloss)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
-    /* Light on other surfaces. alphas: NULL: not asked for. */
+    /* Shades all other surfaces. alphas may be NULL. */
     void (*shade_surfaces)(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas);
     void (*shade_sky)(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
-    /* Feature edges. */
+    /* Draws the feature edges of a band. */
     void (*ink_band)(const struct refined *refined, int band);
 };
-extern const struct soft_kernels soft_kernels_plain, soft_kernels_wide, soft_kernels_widest; /* but for plain: on x86 only */
+extern const struct soft_kernels soft_kernels_plain, soft_kernels_wide, soft_kernels_widest; /* _wide and _widest exist on x86 only */
 
-#ifndef SOFT_SET /* which of them is compiled */
+#ifndef SOFT_SET /* suffix of the set being compiled */
 #define SOFT_SET _plain
 #endif
 #define SOFT_JOIN(name, set) name##set

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Eight numbers at a time, by the compiler's vector extensions, which do not find all that a machine can: the same bits on every machine.
-   Private to soft/. */
+/* Eight numbers at a time by the compiler's vector extensions, with intrinsics where these miss an instruction. Results are bit-identical
+   on every machine. Private to soft/. */
 #ifndef RENDER_SOFT_LANES_H
 #define RENDER_SOFT_LANES_H
 #include <stdint.h>
@@ -13,7 +13,7 @@
 #define SOFT_KERNEL SIMD_CLONES("avx2")
 #define SOFT_INLINE SIMD_BODY
 
-enum { LANES = 8 }; /* SOFT_STRETCH_LEAST is no less */
+enum { LANES = 8 }; /* at most SOFT_STRETCH_LEAST */
 typedef float lanes __attribute__((vector_size(32), aligned(4)));
 typedef int32_t lanes_int __attribute__((vector_size(32), aligned(4)));
 typedef uint32_t lanes_uint __attribute__((vector_size(32), aligned(4)));
@@ -23,7 +23,7 @@ typedef uint8_t lanes_bytes __attribute__((vector_size(8)));
 typedef int64_t lanes_pair __attribute__((vector_size(16)));
 
 #ifdef __AVX512VL__
-#define LANES_CHOOSE_AT_ONCE 1 /* one instruction does it */
+#define LANES_CHOOSE_AT_ONCE 1 /* the choice takes a single instruction */
 #else
 #define LANES_CHOOSE_AT_ONCE 0
 #endif
@@ -81,7 +81,7 @@ SOFT_INLINE int lanes_any(lanes_int mask)
 #endif
 }
 
-/* A bit for each lane, the first one lowest. */
+/* Returns one bit per lane; lane 0 is the lowest bit. */
 SOFT_INLINE uint32_t lanes_bits(lanes_int mask)
 {
 #ifdef __AVX2__
@@ -102,7 +102,7 @@ SOFT_INLINE lanes_int lanes_whole(lanes x)
     return __builtin_convertvector(x, lanes_int);
 }
 
-/* log2, to 1e-7; of 1e-30 where x is less. As in field/kernels.c. */
+/* log2, to 1e-7; x below 1e-30 counts as 1e-30. The same polynomial as in field/kernels.c. */
 SOFT_INLINE lanes lanes_log2(lanes x)
 {
     lanes tiny = (lanes){ 0 } + 1e-30f;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The matrices by which pixels look things up. */
+/* Computes the matrices with which pixels look up sun map, ground and sky. */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ static void copy_columns(const double from[16], float to[4][4])
             to[c][r] = (float)from[4 * c + r];
 }
 
-/* Clip space from pixels and depth, for w = 1. */
+/* Computes the matrix from pixels and depth to clip space, for w = 1. */
 static void clip_from_pixel(const struct raster *raster, double out[16])
 {
     matrix_identity(out);
@@ -36,13 +36,13 @@ static void aim_sun(struct raster *raster, const double clip[16])
     copy_columns(out, raster->sun_from_pixel);
 }
 
-/* Where a pixel looks: near.xyz / near.w of shaders/sky.vert, whose w is the same everywhere. */
+/* Computes the matrix from pixels to view rays: near.xyz / near.w of shaders/sky.vert, whose w is constant. */
 static void aim_rays(struct raster *raster, const double clip[16])
 {
     double eye_from_clip[16], out[16];
     matrix_invert(raster->context->constants.clip_from_eye, eye_from_clip);
     matrix_multiply(eye_from_clip, clip, out);
-    double w = out[11] + out[15]; /* at depth 1 */
+    double w = out[11] + out[15]; /* clip w at depth 1 */
     if (raster->context->constants.pixel_per_metre > 0) {
         memset(raster->ray_from_pixel, 0, sizeof(raster->ray_from_pixel));
         for (int r = 0; r < 3; r++)
@@ -56,11 +56,12 @@ static void aim_rays(struct raster *raster, const double clip[16])
     }
 }
 
-/* Over n pixels a straight line errs from the sine of a ray's height by at most 0.15 n^2 / f^2, f being the eye's distance from the picture
-   in pixels: the direction of a ray turns by 1 / f at most from pixel to pixel, and its second difference is no more than 1.2 / f^2. */
+/* Chooses the stretch over which sky elevation is linear. Over n pixels a line deviates from the sine of a ray's elevation by at most 0.15
+   n^2 / f^2, with f the distance of eye and image plane in pixels: a ray's direction turns by at most 1 / f per pixel, and its second
+   difference is at most 1.2 / f^2. */
 static void choose_stretch(struct raster *raster)
 {
-    static const double most = 1; /* columns of the backdrop: half a level at the horizon, where it changes most */
+    static const double most = 1; /* columns of the backdrop: half a grey level at the horizon, where it changes most */
     const float(*m)[3] = raster->ray_from_pixel;
     double step2 = 0, area2 = 0, volume = 0;
     for (int r = 0; r < 3; r++) {
@@ -70,21 +71,21 @@ static void choose_stretch(struct raster *raster)
         area2 += normal * normal;
         volume += normal * (double)m[2][r];
     }
-    double turn2 = step2 > 0 ? step2 * area2 / (volume * volume) : 0; /* 1 / f^2; rays are parallel */
+    double turn2 = step2 > 0 ? step2 * area2 / (volume * volume) : 0; /* 1 / f^2; 0: rays are parallel */
     int n = SOFT_STRETCH_MOST;
     while (n >= SOFT_STRETCH_LEAST && !(0.15 * n * n * turn2 * SKY_BACKDROPS / 2 <= most))
         n /= 2;
     raster->stretch_px = n >= SOFT_STRETCH_LEAST ? n : 1;
 }
 
-/* The ground is flat: its coordinates and the picture's map to each other by 3x3 matrices. */
+/* Computes the 3x3 matrix from pixels to the ground plane's coordinates. */
 static void aim_ground(struct raster *raster, const struct light *light)
 {
     double clip[16];
     float(*to)[3] = raster->ground_from_pixel;
     raster->has_ground = sky_sees_ground(raster->context, light);
     matrix_multiply(raster->context->constants.clip_from_plant, light->plant_from_ground, clip);
-    double h[3][3]; /* rows: x w, y w in pixels, w; columns: u, v, 1 */
+    double h[3][3]; /* rows: x w and y w in pixels, w; columns: u, v, 1 */
     for (int c = 0; c < 3; c++) {
         const double *column = &clip[c == 2 ? 12 : 4 * c];
         h[0][c] = 0.5 * raster->width_px * (column[3] + column[0]);
@@ -95,7 +96,7 @@ static void aim_ground(struct raster *raster, const struct light *light)
     for (int c = 0; c < 3; c++) {
         int a = (c + 1) % 3, b = (c + 2) % 3;
         determinant += h[0][c] * (h[1][a] * h[2][b] - h[1][b] * h[2][a]);
-        for (int r = 0; r < 3; r++) { /* adjugate */
+        for (int r = 0; r < 3; r++) { /* adjugate matrix */
             int p = (r + 1) % 3, q = (r + 2) % 3;
             to[c][r] = (float)(h[p][a] * h[q][b] - h[p][b] * h[q][a]);
         }

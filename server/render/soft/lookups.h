@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What pixels look up, eight at a time: shadow and backdrop. Private to soft/. */
+/* Texture lookups of shadow map and backdrop, for eight pixels at a time. Private to soft/. */
 #ifndef RENDER_SOFT_LOOKUPS_H
 #define RENDER_SOFT_LOOKUPS_H
 #include <math.h>
@@ -31,16 +31,16 @@ SOFT_INLINE lanes byte_of(lanes_int packed, int number)
     return __builtin_convertvector(packed >> (8 * number) & 0xff, lanes);
 }
 
-/* Where on the sun's map eight places are, and what the bounds of its tiles tell already: most are as light or as dark as all of their
-   tile. Looked up in three steps, with other work between them: each fetches what the next one needs. */
+/* Positions of eight points on the sun's shadow map. Bounds per tile of the map decide most points without reading texels. The lookup has
+   three steps with other work between them, each prefetching the memory of the next: sun_aim, sun_bound, sun_look. */
 struct sun_aim {
-    lanes u_part, v_part, place; /* between texels; depth, as the map has it */
-    lanes_int tile, at;          /* at: the upper left one of four texels */
-    lanes_int open;              /* those that have to be looked up; of the others `lit` is how much of the sun is seen */
+    lanes u_part, v_part, place; /* position between texels, 0..1; depth in units of the map */
+    lanes_int tile, at;          /* at: index of the upper left of the four texels */
+    lanes_int open; /* lanes whose texels must still be read; for the others `lit` is final: the visible part of the sun, 0..1 */
     lanes lit;
 };
 
-/* s, t: 0..1 over the map. */
+/* s_t_depth: position on the map and depth, 0..1. wanted: lanes that need a shadow. */
 SOFT_INLINE void sun_aim(const struct soft_light *light, const lanes s_t_depth[3], lanes_int wanted, struct sun_aim *aim)
 {
     const float over = 1.0f / SUN_TILE_STEP_PX, size = (float)light->sun_map_px;
@@ -56,7 +56,7 @@ SOFT_INLINE void sun_aim(const struct soft_light *light, const lanes s_t_depth[3
     aim->open = wanted;
 }
 
-/* Asks for what sun_bound() will look up soon: as a rule neighbours lie in one line. */
+/* Prefetches the tile bounds that sun_bound() reads: usually all eight points lie in one cache line, so the ends suffice. */
 SOFT_INLINE void sun_prefetch_bounds(const struct soft_light *light, const struct sun_aim *aim)
 {
     lanes_int tile = aim->tile & aim->open;
@@ -64,7 +64,7 @@ SOFT_INLINE void sun_prefetch_bounds(const struct soft_light *light, const struc
         __builtin_prefetch(light->sun_bounds + tile[i]);
 }
 
-/* Leaves open what the bounds of tiles do not tell. */
+/* Decides lanes by the bounds of their tiles; lanes that remain undecided stay in `open`. */
 SOFT_INLINE void sun_bound(const struct soft_light *light, struct sun_aim *aim)
 {
     lanes_int bounds = gather(light->sun_bounds, aim->tile & aim->open);
@@ -74,7 +74,7 @@ SOFT_INLINE void sun_bound(const struct soft_light *light, struct sun_aim *aim)
     aim->lit = lanes_choose(lit, one, none);
 }
 
-/* Asks for what sun_look() will look up soon. */
+/* Prefetches the texels that sun_look() reads. */
 SOFT_INLINE void sun_prefetch(const struct soft_light *light, const struct sun_aim *aim)
 {
     lanes_int at = aim->at & aim->open;
@@ -82,10 +82,10 @@ SOFT_INLINE void sun_prefetch(const struct soft_light *light, const struct sun_a
         __builtin_prefetch(light->sun_map + at[i]);
 }
 
-/* Four comparisons, weighted as a GL sampler with linear filter does. at: as in aim. */
+/* Compares depth with four texels and weights the results, like a GL shadow sampler with linear filter. at: indices as in aim->at. */
 SOFT_INLINE lanes sun_compare(const struct soft_light *light, const struct sun_aim *aim, lanes_int at)
 {
-    uint32_t pairs[2][LANES]; /* of neighbours; above, below */
+    uint32_t pairs[2][LANES]; /* horizontal neighbours: upper row, lower row */
     for (int i = 0; i < LANES; i++) {
         memcpy(&pairs[0][i], light->sun_map + at[i], 4);
         memcpy(&pairs[1][i], light->sun_map + at[i] + SUN_TILE_PX, 4);
@@ -99,7 +99,7 @@ SOFT_INLINE lanes sun_compare(const struct soft_light *light, const struct sun_a
     return upper + aim->v_part * (lower - upper);
 }
 
-/* How much of the sun is seen, 0..1. */
+/* Returns the visible part of the sun, 0..1. */
 SOFT_INLINE lanes sun_look(const struct soft_light *light, const struct sun_aim *aim)
 {
     if (!lanes_any(aim->open))
@@ -107,7 +107,8 @@ SOFT_INLINE lanes sun_look(const struct soft_light *light, const struct sun_aim 
     return lanes_choose(aim->open, sun_compare(light, aim, aim->at & aim->open), aim->lit);
 }
 
-/* The same at once, without bounds: refined frames, which look up four places near each other, are not faster by them. */
+/* Does the whole lookup at once without bounds. Refined frames use this: their four neighbouring lookups per point do not gain from
+   bounds. */
 SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lanes depth)
 {
     struct sun_aim aim;
@@ -115,10 +116,10 @@ SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lane
     return sun_compare(light, &aim, aim.at);
 }
 
-/* Heights over the horizon, as columns of the backdrop. They bend so little that they are worked out at the ends of stretches only: of
-   raster->stretch_px, as long as the picture lets them be. */
+/* Elevations over the horizon as columns of the backdrop table, interpolated linearly between the ends of a stretch of raster->stretch_px
+   pixels (choose_stretch bounds the error). */
 struct heights {
-    float first, step; /* at the middle of the first pixel; from pixel to pixel */
+    float first, step; /* at the centre of the first pixel; per pixel */
 };
 
 static float height_at(const struct raster *raster, float x, float y)
@@ -133,7 +134,7 @@ static float height_at(const struct raster *raster, float x, float y)
     return up / sqrtf(square) * 1023.5f + 1024.0f;
 }
 
-/* Of the stretch that begins there. */
+/* Returns the elevations of the stretch that begins at this pixel. */
 static inline struct heights heights_from(const struct raster *raster, int column, int row)
 {
     float y = (float)row + 0.5f, x = (float)column + 0.5f, first = height_at(raster, x, y);
@@ -151,11 +152,11 @@ SOFT_INLINE lanes_int backdrop_at(const struct raster *raster, const struct heig
     return gather(raster->soft->backdrops, tile * SKY_BACKDROPS + at);
 }
 
-/* factor: 256 leaves a colour as it is. */
+/* Scales colours by factor / 256. */
 SOFT_INLINE lanes_int darkened(lanes_int color, lanes_int factor)
 {
     lanes_uint by = (lanes_uint)factor, bgrx = (lanes_uint)color;
-    lanes_uint blue_red = ((bgrx & 0xff00ff) * by + 0x800080) >> 8 & 0xff00ff; /* both at once */
+    lanes_uint blue_red = ((bgrx & 0xff00ff) * by + 0x800080) >> 8 & 0xff00ff; /* two channels in one multiplication */
     lanes_uint green = ((bgrx & 0xff00) * by + 0x8000) >> 8 & 0xff00;
     return (lanes_int)(blue_red | green | 0xff000000);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A dark line with a light one around it, along the rim of one asset, as shaders/outline.frag draws it. */
+/* Outlines the rim of one asset with a dark line inside a light one, as shaders/outline.frag. */
 #include <math.h>
 #include <string.h>
 
@@ -7,21 +7,21 @@
 #include "render/gl/lines.h"
 #include "shaders/constants.glsl"
 
-enum { MOST_REACH_PX = 32 };
+enum { MAX_REACH_PX = 32 };
 static const double dark_rgb[3] = { RIM_RGB };
 
-struct brush { /* half a side is reach_px; what a pixel of the rim does to those around it */
+struct brush { /* effect of one rim pixel on its surroundings; reach_px: half the brush's width */
     int reach_px;
-    uint8_t rim[2 * MOST_REACH_PX + 1][2 * MOST_REACH_PX + 1];
+    uint8_t rim[2 * MAX_REACH_PX + 1][2 * MAX_REACH_PX + 1];
 };
 
 static void brush_init(struct brush *brush, double width_px)
 {
-    brush->reach_px = (int)fmin(ceil(2 * width_px), MOST_REACH_PX);
+    brush->reach_px = (int)fmin(ceil(2 * width_px), MAX_REACH_PX);
     for (int y = -brush->reach_px; y <= brush->reach_px; y++)
         for (int x = -brush->reach_px; x <= brush->reach_px; x++) {
             double away = hypot(x, y) - 0.35;
-            brush->rim[y + MOST_REACH_PX][x + MOST_REACH_PX] = away <= width_px ? RIM_DARK : away <= 2 * width_px ? RIM_LIGHT : 0;
+            brush->rim[y + MAX_REACH_PX][x + MAX_REACH_PX] = away <= width_px ? RIM_DARK : away <= 2 * width_px ? RIM_LIGHT : 0;
         }
 }
 
@@ -33,12 +33,12 @@ static void stamp(const struct raster *raster, uint8_t *rim, const struct brush 
     for (int v = top; v <= bottom; v++)
         for (int u = left; u <= right; u++) {
             uint8_t *at = &rim[(size_t)v * (size_t)raster->pitch_px + (size_t)u];
-            uint8_t ink = brush->rim[v - y + MOST_REACH_PX][u - x + MOST_REACH_PX];
+            uint8_t ink = brush->rim[v - y + MAX_REACH_PX][u - x + MAX_REACH_PX];
             *at = ink > *at ? ink : *at;
         }
 }
 
-/* Covered, with a neighbour that is not. */
+/* Returns whether the pixel is covered and has an uncovered neighbour. */
 static bool is_rim(const struct raster *raster, int x, int y)
 {
     const uint32_t *mark = raster->marks + (size_t)y * (size_t)raster->pitch_px + (size_t)x;
@@ -63,7 +63,7 @@ static void paint(const struct raster *raster, const uint8_t *rim)
 const uint8_t *raster_rim(const struct raster *raster)
 {
     struct brush brush;
-    uint8_t *rim = (uint8_t *)raster->depth; /* which is done with */
+    uint8_t *rim = (uint8_t *)raster->depth; /* depth is no longer needed */
     brush_init(&brush, lines_outline_px(raster->context->view));
     memset(rim, 0, (size_t)raster->pitch_px * (size_t)raster->height_px);
     for (int y = 0; y < raster->height_px; y++)

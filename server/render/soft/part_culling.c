@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which parts of which assets a picture may show, and where in it. */
+/* Finds which parts of which assets a frame may show, and where in it. */
 #include <float.h>
 #include <math.h>
 
@@ -10,10 +10,10 @@
 #include "render/gl/ghosts.h"
 
 #define SLACK_PX 0.02f    /* boxes and vertices round differently */
-#define SLACK_DEPTH 1e-5f /* of it */
-#define BEFORE 2.0f       /* nearer than the near plane */
+#define SLACK_DEPTH 1e-5f /* relative to depth */
+#define IN_FRONT_OF_NEAR 2.0f /* depth of anything in front of the near plane */
 
-/* Where a box may be in the picture. False: outside. */
+/* Bounds a box's rectangle in the frame and its nearest depth. Returns false if the box is outside. */
 SOFT_INLINE bool project(const struct raster *raster, const struct soft_mesh *mesh, const float low[3], const float high[3],
                          struct soft_rect *rect, float *near)
 {
@@ -24,7 +24,7 @@ SOFT_INLINE bool project(const struct raster *raster, const struct soft_mesh *me
     for (int r = 0; r < 4; r++)
         at[r] = mesh->place[0][r] * x + mesh->place[1][r] * y + mesh->place[2][r] * z + mesh->place[3][r];
     *rect = (struct soft_rect){ 0, 0, raster->width_px - 1, raster->height_px - 1 };
-    *near = BEFORE;
+    *near = IN_FRONT_OF_NEAR;
     if (lanes_any((at[3] <= 0.0f) | (at[2] > at[3])))
         return lanes_any((at[3] > 0.0f) & (at[2] <= at[3])) != 0;
     lanes over = 1.0f / at[3], px = at[0] * over, py = at[1] * over, depth = at[2] * over;
@@ -37,7 +37,7 @@ SOFT_INLINE bool project(const struct raster *raster, const struct soft_mesh *me
         nearest = depth[i] > nearest ? depth[i] : nearest;
     }
     const float slack = SLACK_PX + raster->reach_px;
-    left += 0.5f - slack; /* whose middles lie within */
+    left += 0.5f - slack; /* pixels whose centres lie within */
     top += 0.5f - slack;
     last += 0.5f + slack;
     bottom += 0.5f + slack;
@@ -59,7 +59,7 @@ static void include(struct soft_rect *rect, const struct soft_rect *other)
     rect->bottom = other->bottom > rect->bottom ? other->bottom : rect->bottom;
 }
 
-/* Nothing of the part is left, nor does it bound what is. */
+/* Returns whether section planes remove the whole part, and it bounds no body that is cut open. */
 static bool is_cut_away(const struct raster *raster, const struct soft_mesh *mesh, const struct asset_cluster *box, struct soft_item *item)
 {
     item->cut = item->beyond = false;
@@ -101,7 +101,7 @@ static void find_meshes(void *arg, size_t begin, size_t end)
     }
 }
 
-/* NULL: out of memory. */
+/* Returns the parts of a level of detail, made on first use. NULL: out of memory. */
 static const struct soft_parts *parts_of(struct raster *raster, const struct gl_model *model, const struct model_level *level)
 {
     struct soft_parts **of_model = &raster->soft->parts[model - raster->soft->gpu_scene->models];
@@ -115,7 +115,8 @@ static const struct soft_parts *parts_of(struct raster *raster, const struct gl_
     return parts;
 }
 
-/* Whose side of a surface is seen. In an orthographic picture all rays are parallel: far enough away for floats not to tell. */
+/* Computes the eye position that decides which side of a surface is visible. Orthographic rays are parallel: the eye is put so far away
+   that floats cannot tell. */
 static void find_eye(const struct raster *raster, double eye_m[3])
 {
     const struct view_constants *constants = &raster->context->constants;
@@ -125,7 +126,7 @@ static void find_eye(const struct raster *raster, double eye_m[3])
                        : constants->eye_m[c];
 }
 
-/* An asset, its vertices counted on from raster->vertex_count. */
+/* Fills in the mesh of an asset and counts its vertices on from raster->vertex_count. */
 static void fill_mesh(struct raster *raster, struct soft_mesh *mesh, int index, const struct model_level *level)
 {
     const struct frame_context *context = raster->context;
@@ -166,7 +167,7 @@ static bool add_asset(struct raster *raster, int asset, const struct model_level
     struct soft_found *found = &raster->found[raster->mesh_count++];
     found->parts = parts_of(raster, model, level);
     found->material = raster->soft->material_of_model[model - raster->soft->gpu_scene->models];
-    found->both_sides = both_sides || mesh->cut; /* the inner side of what is cut shows */
+    found->both_sides = both_sides || mesh->cut; /* cut meshes show their inner side */
     matrix_invert(raster->soft->gpu_scene->scene->assets[asset].placement, file_from_plant);
     find_eye(raster, eye_m);
     matrix_point(file_from_plant, eye_m, eye);
@@ -227,7 +228,7 @@ bool raster_find_ghosts(struct raster *raster)
     return true;
 }
 
-/* The mesh that has this id; likely: looked at first. */
+/* Returns the mesh that contains this id. likely: mesh to try first. */
 static size_t mesh_of(const struct raster *raster, uint32_t id, size_t likely)
 {
     const struct soft_found *found = raster->found;

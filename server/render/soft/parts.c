@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clusters of an asset file, each with its vertices numbered by itself. */
+/* Makes parts from the clusters of an asset file: each gets vertices of its own numbering. */
 #include "render/soft/parts.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@
 struct parts_maker {
     struct soft_parts *parts;
     const struct asset_view *file;
-    uint32_t *seen; /* by vertex of the file: the part that used it last, counted from 1 */
+    uint32_t *seen; /* per vertex of the file: number of the last part that used it, from 1 */
     uint8_t *number;
     uint8_t corners[3][PART_TRIANGLES];
 };
@@ -30,7 +30,7 @@ static void add_vertex(struct parts_maker *maker, struct soft_part *part, uint32
     maker->number[vertex] = (uint8_t)part->vertex_count++;
 }
 
-/* False: there are too many vertices for another triangle. */
+/* Returns false if the part has no room for the triangle's vertices. */
 static bool add_triangle(struct parts_maker *maker, struct soft_part *part, const uint32_t *indices)
 {
     uint32_t part_number = (uint32_t)maker->parts->part_count + 1, fresh = 0;
@@ -49,7 +49,8 @@ static bool add_triangle(struct parts_maker *maker, struct soft_part *part, cons
 
 /* --- triangles that look the same way ------------------------------------------------------------------------------------- */
 
-enum { WAYS = 8, ALL_WAYS = WAYS * WAYS }; /* on an octahedron folded flat */
+/* Directions are cells of the square that an octahedron unfolds to. */
+enum { DIRECTION_CELLS = 8, DIRECTION_COUNT = DIRECTION_CELLS * DIRECTION_CELLS };
 
 struct plane_of_triangle {
     float normal[3], along;
@@ -77,12 +78,12 @@ static struct plane_of_triangle plane_of_triangle(const float *a, const float *b
 
 static int step_of(float x)
 {
-    int step = (int)((x + 1) * (WAYS / 2));
-    return step < WAYS ? step : WAYS - 1;
+    int step = (int)((x + 1) * (DIRECTION_CELLS / 2));
+    return step < DIRECTION_CELLS ? step : DIRECTION_CELLS - 1;
 }
 
-/* Neighbours in number are neighbours in direction, mostly. */
-static int way_of(const float n[3])
+/* Returns the number of the direction of a normal. Close numbers are mostly close directions. */
+static int direction_of(const float n[3])
 {
     float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]);
     if (sum == 0)
@@ -94,29 +95,29 @@ static int way_of(const float n[3])
         x = folded;
     }
     int row = step_of(y), column = step_of(x);
-    return row * WAYS + (row % 2 ? WAYS - 1 - column : column);
+    return row * DIRECTION_CELLS + (row % 2 ? DIRECTION_CELLS - 1 - column : column);
 }
 
-/* Into the parts, in that order. */
+/* Writes the triangles into the part, sorted by direction. */
 static void write_triangles(const struct parts_maker *maker, const struct soft_part *part)
 {
     struct soft_parts *parts = maker->parts;
     struct plane_of_triangle planes[PART_TRIANGLES];
-    uint8_t ways[PART_TRIANGLES];
-    uint16_t starts[ALL_WAYS + 1] = { 0 };
+    uint8_t directions[PART_TRIANGLES];
+    uint16_t starts[DIRECTION_COUNT + 1] = { 0 };
     float *out = parts->planes + 4 * (size_t)(part->first_corner / 3);
     for (int t = 0; t < part->triangle_count; t++) {
         const float *at[3];
         for (int i = 0; i < 3; i++)
             at[i] = maker->file->positions_m[parts->vertices[part->first_vertex + maker->corners[i][t]]];
         planes[t] = plane_of_triangle(at[0], at[1], at[2]);
-        ways[t] = (uint8_t)way_of(planes[t].normal);
-        starts[ways[t] + 1]++;
+        directions[t] = (uint8_t)direction_of(planes[t].normal);
+        starts[directions[t] + 1]++;
     }
-    for (int way = 0; way < ALL_WAYS; way++)
+    for (int way = 0; way < DIRECTION_COUNT; way++)
         starts[way + 1] = (uint16_t)(starts[way + 1] + starts[way]);
     for (int t = 0; t < part->triangle_count; t++) {
-        size_t to = starts[ways[t]]++;
+        size_t to = starts[directions[t]]++;
         for (size_t i = 0; i < 3; i++) {
             parts->corners[part->first_corner + i * part->rounded + to] = maker->corners[i][t];
             out[i * part->rounded + to] = planes[t].normal[i];
@@ -159,7 +160,7 @@ static void end_part(struct parts_maker *maker, struct soft_part *part)
     parts->parts[parts->part_count++] = *part;
 }
 
-/* Most are one part. */
+/* Splits a cluster into parts; most clusters are one part. */
 static void add_cluster(struct parts_maker *maker, const struct asset_cluster *cluster, const struct asset_primitive *primitive)
 {
     for (uint32_t done = 0; done < cluster->index_count;) {

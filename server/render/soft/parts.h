@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A level of detail cut into parts: at most 256 neighbouring triangles with vertices of their own numbers, so that a part is placed,
-   tested and drawn without leaving the nearest cache. In a part those that look the same way are next to each other, so that what looks
-   away goes eight at a time. Private to soft/. */
+/* A level of detail cut into parts of up to 256 neighbouring triangles with locally numbered vertices, so that a part is projected, tested
+   and drawn within the L1 cache. Triangles of similar direction are adjacent in a part, so that back faces are skipped eight at a time.
+   Private to soft/. */
 #ifndef RENDER_SOFT_PARTS_H
 #define RENDER_SOFT_PARTS_H
 #include "render/gl/model.h"
@@ -9,24 +9,24 @@
 enum { PART_TRIANGLES = 256, PART_VERTICES = 256 };
 
 struct soft_part {
-    struct asset_cluster cluster; /* its box and cone */
-    uint32_t first_vertex;        /* in soft_parts.vertices */
-    uint32_t first_corner;        /* in soft_parts.corners: its first corners, then its second, then its third ones */
+    struct asset_cluster cluster; /* bounding box and normal cone */
+    uint32_t first_vertex;        /* index in soft_parts.vertices */
+    uint32_t first_corner;        /* index in soft_parts.corners: all first corners, then all second, then all third ones */
     uint16_t vertex_count, triangle_count;
-    uint16_t rounded; /* triangles, up to whole lanes; what is beyond has no area */
+    uint16_t rounded; /* triangle_count rounded up to whole lanes; the triangles added have no area */
     uint16_t material;
     bool double_sided;
-    bool blended; /* its material is, where no field is shown */
+    bool blended; /* its material is blended, where no field is shown */
 };
 
 struct soft_parts {
     struct soft_part *parts;
-    uint32_t *vertices; /* of the file; each part's up to whole lanes, beyond by the last one again */
-    float *places_m;    /* of the same: three times as many; each part's x, then its y, then its z */
-    uint8_t *corners;   /* vertices of the part */
-    float *planes;      /* four for three corners: each part's normals (x, then y, then z), then how far along them its triangles lie */
-    uint8_t *closed;    /* as vertices: 1 where they are of a closed body. NULL: not asked for yet */
-    bool blended;       /* some part is */
+    uint32_t *vertices; /* vertex numbers in the file; each part is padded to whole lanes with its last vertex */
+    float *places_m;    /* positions of `vertices`, three floats each; per part all x, then all y, then all z */
+    uint8_t *corners;   /* local vertex numbers within the part */
+    float *planes;      /* planes of triangles, four floats each; per part all normals' x, y, z, then all distances */
+    uint8_t *closed;    /* by index in `vertices`: 1 if the vertex belongs to a closed body. NULL: not computed yet */
+    bool blended;       /* at least one part is blended */
     size_t part_count, vertex_count, corner_count;
     size_t part_capacity, vertex_capacity, place_capacity, corner_capacity, plane_capacity;
 };
@@ -41,7 +41,7 @@ static inline const float *soft_part_planes(const struct soft_parts *parts, cons
     return parts->planes + 4 * (size_t)(part->first_corner / 3);
 }
 
-/* Vertices of the file, of one of its triangles. */
+/* Writes the file's vertex numbers of one triangle of the part. */
 static inline void soft_part_triangle(const struct soft_parts *parts, const struct soft_part *part, uint32_t triangle, uint32_t vertices[3])
 {
     const uint8_t *corners = parts->corners + part->first_corner + triangle;
@@ -49,9 +49,9 @@ static inline void soft_part_triangle(const struct soft_parts *parts, const stru
         vertices[i] = parts->vertices[part->first_vertex + corners[i * part->rounded]];
 }
 
-/* False: out of memory. Finish in both cases. */
+/* Returns false when out of memory. Call soft_parts_finish() in either case. */
 bool soft_parts_init(struct soft_parts *parts, const struct asset_view *file, const struct model_level *level);
-/* Finds out which vertices are of closed bodies, if that is not known. vertex_count: of the level. False: out of memory. */
+/* Computes `closed` if it is NULL. vertex_count: of the level. Returns false when out of memory. */
 bool soft_parts_close(struct soft_parts *parts, const struct asset_view *file, const struct closed_bodies *closed, uint32_t vertex_count);
 void soft_parts_finish(struct soft_parts *parts);
 

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Marks of pixels (render/soft/soft_impl.h), eight at a time. Private to soft/. */
+/* Computes marks of eight pixels at a time (render/soft/soft_impl.h describes marks). Private to soft/. */
 #ifndef RENDER_SOFT_PIXEL_MARKS_H
 #define RENDER_SOFT_PIXEL_MARKS_H
 #include "render/soft/soft_impl.h"
 #include "render/soft/lanes.h"
 
 struct mark_ink {
-    int32_t last_row; /* of the colormap */
+    int32_t last_row; /* last row of the colour map */
     float pattern_px;
-    bool rich; /* there are lines, or the scale is logarithmic */
+    bool rich; /* there are isolines, or the scale is logarithmic */
     bool log;
     float low, over;    /* logarithmic scales: place = (log2(value) - low) * over */
-    float line_px;      /* width; 0: there are none */
-    const float *lines; /* as struct raster */
+    float line_px;      /* width of isolines; 0: there are none */
+    const float *lines; /* nearest isoline by position on the scale, from struct raster */
 };
 
 SOFT_INLINE struct mark_ink ink_of(const struct raster *raster)
@@ -48,7 +48,7 @@ SOFT_INLINE lanes_int context_mark(lanes ambient, lanes sun, uint32_t mark)
     return a << 8 | s | (int32_t)mark;
 }
 
-/* Diagonal stripes, as hatch in shaders/field.glsl: -1 on the dark ones. */
+/* Diagonal hatch, as hatch() in shaders/field.glsl: returns -1 in dark stripes. */
 SOFT_INLINE lanes_int hatch(lanes x, float y, float pattern_px)
 {
     lanes at = (x + y) * (1 / (pattern_px * (float)HATCH_SLANT));
@@ -56,7 +56,7 @@ SOFT_INLINE lanes_int hatch(lanes x, float y, float pattern_px)
     return (phase < (float)-HATCH_EDGE) | (phase > (float)HATCH_EDGE);
 }
 
-/* Dots in rows, every second one moved by half, as stipple there. */
+/* Dots in rows, every other row shifted by half a cell, as stipple() in shaders/field.glsl. */
 SOFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
 {
     float row = y * (1 / pattern_px);
@@ -66,7 +66,7 @@ SOFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
     return across * across + down * down < (float)STIPPLE_RADIUS * (float)STIPPLE_RADIUS;
 }
 
-/* As field_color in shaders/field.glsl, but for patterns. value_x, value_y: by how much the value grows from pixel to pixel. */
+/* Computes marks as field_color() in shaders/field.glsl does, without patterns. value_x, value_y: change of the value per pixel. */
 SOFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lanes row, const struct mark_ink *ink)
 {
     const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack), first = 1 + slack * columns, farthest = 1e6f;
@@ -92,14 +92,14 @@ SOFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lanes
     return marks | lanes_whole(part * MARK_LINE_WHOLE + 0.5f) << MARK_LINE;
 }
 
-/* Level lines, wide apart, as rule there. */
+/* Horizontal lines, widely spaced, as rule() in shaders/field.glsl. */
 SOFT_INLINE bool rule(float y, float pattern_px)
 {
     float at = y * (1 / pattern_px), phase = at - (float)(int)at - 0.5f;
     return phase < (float)-RULE_EDGE || phase > (float)RULE_EDGE;
 }
 
-/* Corners differ in their flags, or say that there is no data or that it is uncertain. */
+/* Adds the patterns for no data, uncertain and no limits to marks. Needed where corners differ in flags or have a pattern's flag. */
 SOFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_int uncertain, lanes_int no_limits, lanes row, lanes x,
                                     float y, const struct mark_ink *ink)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The steps of a preview. */
+/* Draws a software preview step by step. */
 #include "render/soft/soft.h"
 
 #include <string.h>
@@ -11,13 +11,13 @@
 #include "render/gl/ghosts.h"
 #include "render/pick/markers.h"
 
-/* Lines are worked out with the triangles: such a picture is drawn anew each time. */
+/* Returns whether isolines are drawn. Isolines are computed with the triangles, so such a preview is never recoloured. */
 static bool has_lines(const struct frame_context *context)
 {
     return context->colormap.lines || view_is_operator(context->view);
 }
 
-/* Rows end in whole lanes. */
+/* Allocates the raster's buffers; rows are padded to whole lanes. */
 bool raster_make_room(struct raster *raster, const struct frame *frame)
 {
     raster->width_px = frame->width_px;
@@ -43,7 +43,7 @@ static bool complain(const struct raster *raster)
     return false;
 }
 
-/* True: the last pictures had this shape already, so that the camera stands still. */
+/* Returns whether one of the last previews had this shape, that is the camera stands still. Remembers the shape. */
 static bool is_still(struct soft *soft, uint64_t shape)
 {
     for (size_t i = 0; i < SOFT_SHAPES; i++)
@@ -86,7 +86,7 @@ static bool draw_ghosts(struct raster *raster, struct visibility_buffer *buffer)
     return true;
 }
 
-/* keep: to colour it again, if there is room for that. */
+/* keep: also fills a visibility buffer for recolouring, if memory allows. */
 static bool draw_all(struct raster *raster, const struct isoline_points *points, struct frame *frame, bool keep)
 {
     if (keep)
@@ -105,7 +105,7 @@ static bool draw_all(struct raster *raster, const struct isoline_points *points,
     return good;
 }
 
-/* Rows: the colours that the middle one has, in each step of light: GLOSSY in shaders/preview.frag. */
+/* Fills the glossy colour map: each row holds the middle row's colours in one brightness step, as GLOSSY in shaders/preview.frag. */
 static void make_glossy(struct soft *soft, const struct shaded_colormap *colormap)
 {
     if (soft->glossy_version == colormap->version)
@@ -128,7 +128,7 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
                   struct frame *frame)
 {
     struct raster *raster = &soft->preview;
-    bool lined = has_lines(context) || points->count > 0; /* of what is kept, depths are not */
+    bool lined = has_lines(context) || points->count > 0; /* kept visibility buffers have no depth, which labels need */
     if (!lined && soft_resolve_again(soft, context, points, frame))
         return true;
     raster->context = context;
@@ -140,7 +140,7 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
     if (!raster_make_room(raster, frame))
         return complain(raster);
     frame_uniforms_fill(&raster->block, context);
-    if (context->view->look == LOOK_GLOSSY) { /* rows are steps of light */
+    if (context->view->look == LOOK_GLOSSY) { /* rows of the glossy colour map are brightness steps */
         raster->block.shade[0] = COLORMAP_ROWS - 1;
         raster->block.shade[1] = 0.5f;
     }

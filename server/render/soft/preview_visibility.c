@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A moving picture whose camera stands still, taken apart, so that it can be coloured again (render/buffer.h). */
+/* Fills the visibility buffer of a preview whose camera stands still, so that it can be recoloured (render/soft/visibility_buffer.h). */
 #include <string.h>
 
 #include "base/mem.h"
@@ -11,15 +11,15 @@ struct keeping {
     struct visibility_buffer *buffer;
 };
 
-struct preview_triangle { /* a triangle, in the picture */
+struct preview_triangle { /* a triangle as seen in the frame */
     uint32_t id;
-    uint32_t number;      /* in the band */
-    double weights[3][3]; /* of x, y and 1: of its corners, up to a factor */
+    uint32_t number;      /* number in the band */
+    double weights[3][3]; /* planes (of x, y and 1) of its corner weights, up to a factor */
 };
 
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3])
 {
-    double at[3][3]; /* x w, y w, w */
+    double at[3][3]; /* x w and y w in pixels, w */
     static const int rows[3] = { 0, 1, 3 };
     for (int i = 0; i < 3; i++) {
         const float *p = mesh->file->positions_m[vertices[i]];
@@ -61,19 +61,19 @@ static uint32_t weights_at(const struct preview_triangle *spot, double x, double
         double part = sum != 0 ? w[i + 1] / sum : 0;
         out[i] = part <= 0 ? 0 : part >= 1 ? 65535 : (uint32_t)(part * 65535 + 0.5);
     }
-    if (out[0] + out[1] > 65535) /* by rounding */
+    if (out[0] + out[1] > 65535) /* rounding may exceed the sum */
         out[1] = 65535 - out[0];
     return out[0] | out[1] << 16;
 }
 
 static void keep_band(const struct keeping *keeping, int number)
 {
-    enum { SPOTS = 256 };
+    enum { CACHED_TRIANGLES = 256 };
     const struct raster *raster = keeping->raster;
     struct visibility_buffer *buffer = keeping->buffer;
     struct visibility_band *band = &buffer->bands[number];
-    struct preview_triangle spots[SPOTS]; /* by id: neighbours in a row, and the rows above, show the same triangles */
-    for (int i = 0; i < SPOTS; i++)
+    struct preview_triangle spots[CACHED_TRIANGLES]; /* cache by id: neighbouring pixels mostly show the same triangles */
+    for (int i = 0; i < CACHED_TRIANGLES; i++)
         spots[i].id = UINT32_MAX;
     int end = (number + 1) * buffer->band_rows < buffer->height_px ? (number + 1) * buffer->band_rows : buffer->height_px;
     for (int y = number * buffer->band_rows; y < end; y++) {
@@ -85,7 +85,7 @@ static void keep_band(const struct keeping *keeping, int number)
                 buffer->surfaces[to + x] = VISIBILITY_FIXED | (out[x] & 0xffffff);
                 continue;
             }
-            struct preview_triangle *spot = &spots[(id ^ id >> 8) % SPOTS];
+            struct preview_triangle *spot = &spots[(id ^ id >> 8) % CACHED_TRIANGLES];
             if (spot->id != id)
                 find_spot(keeping, band, id, spot);
             buffer->surfaces[to + x] = spot->number;
@@ -159,6 +159,6 @@ bool soft_resolve_again(struct soft *soft, const struct frame_context *context, 
     frame->markers = mem_array(buffer->marker_count, sizeof(*frame->markers));
     frame->marker_count = buffer->marker_count;
     memcpy(frame->markers, buffer->markers, buffer->marker_count * sizeof(*buffer->markers));
-    markers_measure(context, frame); /* distances may be others meanwhile */
+    markers_measure(context, frame); /* distances may have changed since the buffer was kept */
     return true;
 }

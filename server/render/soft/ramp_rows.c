@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows are sorted by what they are told apart by; the first of equal ones is kept. */
+/* Finds equal ramps by sorting the rows; the first of equal rows is kept. */
 #include "render/soft/ramp_rows.h"
 
 #include <stdbool.h>
@@ -8,12 +8,12 @@
 
 #include "base/mem.h"
 
-enum { WHOLE = 8 }; /* bits of a channel */
+enum { WHOLE = 8 }; /* bits of a colour channel */
 
 struct ramp_search {
     const uint32_t *muted, *own;
     size_t steps;
-    int bits; /* WHOLE: by all their colours; fewer: by so many bits of the brightest ones */
+    int bits; /* WHOLE: rows are compared in all colours; fewer: only in so many bits of their brightest colour */
 };
 
 static int by_number(uint32_t a, uint32_t b)
@@ -42,7 +42,7 @@ static int compare(const void *a, const void *b, void *arg)
     return order ? order : by_number(one, other);
 }
 
-/* Writes for each row the first that looks the same; returns how many differ. */
+/* Writes for each row the first row that looks the same. Returns the number of distinct rows. */
 static size_t find_first(const struct ramp_search *rows, size_t count, uint32_t *order, uint32_t *first)
 {
     size_t different = 0;
@@ -65,7 +65,7 @@ size_t ramp_rows_pack(uint32_t *muted, uint32_t *own, size_t count, size_t steps
         rows.bits--;
     size_t packed = 0;
     for (size_t i = 0; i < count; i++) {
-        if (first[i] != i) { /* which came before */
+        if (first[i] != i) { /* that row was packed before */
             row_of_material[i] = row_of_material[first[i]];
             continue;
         }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Materials in more and more light. */
+/* Computes the colours of materials from dark to bright. */
 #include "render/soft/ramps.h"
 
 #include "base/image/srgb.h"
@@ -14,7 +14,7 @@ static uint32_t color_of(vec linear, int i, bool muted)
     return (uint32_t)(255 * c.z[0] + 0.5f) | (uint32_t)(255 * c.y[0] + 0.5f) << 8 | (uint32_t)(255 * c.x[0] + 0.5f) << 16 | 0xff000000;
 }
 
-/* Facing up, seen from a usual direction. */
+/* Shades a surface that faces up, seen from a typical direction. */
 void ramp_fill(const struct environment_light *sky, const double up[3], const struct ramp_material *material, bool muted, int steps,
                uint32_t *colors)
 {
@@ -29,7 +29,8 @@ void ramp_fill(const struct environment_light *sky, const double up[3], const st
     for (int first = 0; first < steps; first += LANES) {
         lanes light = (LANES_IOTA + (float)first) * (1 / (float)(steps - 1));
         lanes sun = most_of(light - 0.45f, all(0)) * (1 / 0.55f);
-        surface.open = (light - (float)LIGHT_SUN * sun) * (1 / (float)LIGHT_AMBIENT); /* the usual mixture at that light */
+        /* sky share of a typical mixture of sun and sky at that brightness */
+        surface.open = (light - (float)LIGHT_SUN * sun) * (1 / (float)LIGHT_AMBIENT);
         vec c = plus(sky_shade(&around, &surface), times(surface.base, sun * ((1 - 0.5f * material->metallic) * (float)SUN_LIGHT)));
         c = tone_map(plus(c, glow));
         for (int i = 0; i < LANES; i++)

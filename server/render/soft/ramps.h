@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colours that previews look up: of each material by light, and of the colormap where it is glossy. Pure. */
+/* Colour ramps that previews look up: each material's colours by brightness, and the glossy colour map. Pure. */
 #ifndef RENDER_SOFT_RAMPS_H
 #define RENDER_SOFT_RAMPS_H
 #include <stdbool.h>
@@ -8,14 +8,14 @@
 #include "render/light/environments.h"
 
 struct ramp_material {
-    float mean[3]; /* base colour with its texture's mean, linear */
+    float mean[3]; /* base colour times the mean of its texture, linear */
     float metallic, roughness, emissive[3];
 };
-/* Fills `steps` colours (a multiple of 8) from dark to bright: blue | green << 8 | red << 16 | 0xff000000. up: of the plant. muted: as
-   context is shown. */
+/* Fills `steps` colours (a multiple of 8) from dark to bright: blue | green << 8 | red << 16 | 0xff000000. up: the plant's up direction.
+   muted: greyed as context. */
 void ramp_fill(const struct environment_light *sky, const double up[3], const struct ramp_material *material, bool muted, int steps,
                uint32_t *colors);
-/* Colours in the steps of light of a glossy preview. */
+/* Fills `steps` colours, `stride` apart: the colour in each brightness of a glossy preview. */
 void ramp_fill_glossy(uint32_t color, int steps, uint32_t *colors, int stride);
 
 #endif

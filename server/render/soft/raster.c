@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The faces of a part into a tile: which is nearest at each pixel, and its mark there. Small ones are set up eight at a time.
-
-   A pixel on an edge that two triangles share belongs to exactly one of them: both compute the edge from the same end in the same way,
-   and one takes what is not negative, the other what is. */
+/* Rasterizes the faces of a part into a tile: the nearest face at each pixel and its mark. Small faces are set up eight at a time. A pixel
+   on an edge that two triangles share belongs to exactly one of them: both compute the edge function from the same end in the same way; one
+   takes non-negative values, the other negative ones. */
 #include "render/soft/kernels.h"
 #include "render/soft/section_colors.h"
 #include "render/soft/sixteen.h"
 
-/* Which triangle a pixel shows, where that is asked for. */
+/* Stores which triangle a pixel shows, if ids are wanted. */
 SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face, size_t at,
                          lanes_int seen)
 {
@@ -20,13 +19,13 @@ SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_sample 
 /* --- any face --------------------------------------------------------------------------------------------------------------- */
 
 struct setup {
-    float x, y; /* of the first corner: what planes start from */
+    float x, y; /* the first corner, origin of the planes */
     struct raster_edge edges[3];
     struct plane depth, a, b, inverse_w;
-    struct plane no_data, uncertain, no_limits; /* where flags are set; as struct near_patterns */
+    struct plane no_data, uncertain, no_limits; /* set where flags are; as struct near_patterns */
     uint32_t mark, flags;
-    bool flat; /* no perspective to speak of */
-    bool thin; /* so much so that rounding may lead out of what lies between its corners */
+    bool flat; /* perspective is negligible */
+    bool thin; /* so thin that rounding may leave the range of the corners' values */
 };
 
 SOFT_INLINE struct soft_vertex vertex_of(const struct soft_corners *corners, int i)
@@ -35,7 +34,7 @@ SOFT_INLINE struct soft_vertex vertex_of(const struct soft_corners *corners, int
                                  corners->a[i], corners->b[i], corners->flags[i] };
 }
 
-/* part: of each corner, 0..1. */
+/* part: value at each corner, 0..1. */
 SOFT_INLINE struct plane part_plane(const struct slopes *slopes, const struct soft_vertex v[3], const float part[3], bool flat)
 {
     float at[3];
@@ -76,18 +75,18 @@ SOFT_INLINE void setup_init(struct setup *setup, const struct soft_vertex v[3], 
     if (setup->flat) {
         setup->a = plane_of(&slopes, v[0].a, v[1].a, v[2].a);
         setup->b = plane_of(&slopes, v[0].b, v[1].b, v[2].b);
-        setup->inverse_w = setup->depth; /* not looked at */
+        setup->inverse_w = setup->depth; /* unused */
     } else {
         setup->a = plane_of(&slopes, v[0].a * v[0].inverse_w, v[1].a * v[1].inverse_w, v[2].a * v[2].inverse_w);
         setup->b = plane_of(&slopes, v[0].b * v[0].inverse_w, v[1].b * v[1].inverse_w, v[2].b * v[2].inverse_w);
         setup->inverse_w = plane_of(&slopes, v[0].inverse_w, v[1].inverse_w, v[2].inverse_w);
     }
-    setup->no_data = setup->uncertain = setup->no_limits = setup->depth; /* not looked at */
+    setup->no_data = setup->uncertain = setup->no_limits = setup->depth; /* unused */
     if (setup->flags)
         setup_patterns(setup, &slopes, v, patterns);
 }
 
-/* w: 1 over inverse_w there; looked at if there is perspective. */
+/* w: 1 / inverse_w at the pixels; used with perspective only. */
 SOFT_INLINE lanes_int field_marks(const struct setup *setup, const struct mark_ink *ink, lanes a, lanes b, lanes w)
 {
     lanes none = { 0 }, x = none + setup->a.dx, y = none + setup->a.dy;
@@ -127,7 +126,7 @@ SOFT_INLINE lanes_int marks_at(const struct setup *setup, const struct mark_ink 
     return pattern_marks(marks, none > 0.5f, little > 0.5f, (free > 0.5f) & -(int32_t)ink->rich, b, x, y, ink);
 }
 
-/* Narrows the row to where edges let pixels be; one too many at each end. */
+/* Narrows a row to the pixels that the edges allow, plus one at each end. */
 SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *right)
 {
     for (int e = 0; e < 3; e++) {
@@ -143,7 +142,7 @@ SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *righ
     }
 }
 
-/* Of eight pixels from column on: those that are no holes. */
+/* Clears the lanes of pixels that are holes in the texture. */
 SOFT_INLINE lanes_int leave_out_holes(const struct soft_cutout *cutout, lanes x, float y, lanes_int seen)
 {
     for (uint32_t bits = lanes_bits(seen); bits; bits &= bits - 1) {
@@ -153,12 +152,12 @@ SOFT_INLINE lanes_int leave_out_holes(const struct soft_cutout *cutout, lanes x,
     return seen;
 }
 
-/* cutout: NULL: it has no holes. */
+/* cutout NULL: the face has no holes. */
 SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                            const struct setup *setup, const struct soft_cutout *cutout, const struct mark_ink *ink)
 {
     bool wide = face->right - face->left >= 2 * LANES;
-    int last = tile->rect.right + 1 - LANES; /* beyond the tile another thread draws */
+    int last = tile->rect.right + 1 - LANES; /* outside the tile another thread draws */
     for (int row = face->top; row <= face->bottom; row++) {
         size_t start = place_in(tile, tile->rect.left, row);
         float y = (float)row + 0.5f + sample->y, from_y = y - setup->y, sides[3];
@@ -199,7 +198,7 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sampl
 
 /* --- small ones ------------------------------------------------------------------------------------------------------------- */
 
-/* What is at most four wide, two rows of it. */
+/* Draws a face of at most 4 x 2 pixels in one stamp. */
 SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                              const struct small *small, int l, int top, uint32_t mark, const struct mark_ink *ink)
 {
@@ -208,8 +207,8 @@ SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sam
     draw_stamp(tile, sample, face, small, l, left, top < last_top ? top : last_top, mark, ink, true, true);
 }
 
-/* Kind by kind, or the processor would guess wrong with each. In this order on every machine: of what lies at one depth the last one
-   stays. */
+/* Draws faces kind by kind, which keeps branches predictable. The order is the same on every machine, because at equal depth the last face
+   wins. */
 SOFT_INLINE void draw_kinds(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
                             const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct mark_ink *ink)
 {
@@ -263,7 +262,7 @@ static void draw_any(const struct soft_tile *tile, const struct soft_face *face,
         draw_face(tile, &tile->samples[s], face, &setup, has_holes ? &cutout : NULL, ink);
 }
 
-/* Of the inner side of what is cut. */
+/* Returns the mark of the inner side of a cut mesh. */
 static uint32_t mark_of_back(const struct soft_tile *tile, const struct soft_face *face)
 {
     const float *planes = soft_part_planes(tile->parts, tile->part) + (face->triangle & FACE_TRIANGLE), *turn = tile->mesh->turn;
@@ -316,7 +315,7 @@ static void count_face(const struct soft_tile *tile, const struct soft_face *fac
         float sides[3];
         for (int e = 0; e < 3; e++)
             sides[e] = edge_row(&edges[e], (float)row + 0.5f);
-        for (int column = face->left / LANES * LANES; column <= face->right; column += LANES) { /* each pixel once */
+        for (int column = face->left / LANES * LANES; column <= face->right; column += LANES) { /* counts each pixel once */
             lanes x = LANES_IOTA + ((float)column + 0.5f);
             lanes_int side = edge_side(&edges[0], sides[0], x) | edge_side(&edges[1], sides[1], x) | edge_side(&edges[2], sides[2], x);
             *(lanes_int *)(counts + column) += (side >= 0) & by;

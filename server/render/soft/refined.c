@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The steps of a refined frame. */
+/* Draws a refined frame step by step. */
 #include "render/soft/soft.h"
 
 #include <math.h>
@@ -12,9 +12,9 @@
 #include "render/soft/refined_impl.h"
 #include "render/gl/ghosts.h"
 
-/* Of a step, for each core: some milliseconds' worth. */
+/* Bands per core and step, a few milliseconds each: of shading, and of other work. */
 enum { SHADED_BANDS = 1, BANDS = 8 };
-static const double OFF_SURFACE_TEXELS = 1 + SUN_SPREAD; /* as sun_visibility in shaders/shadow.glsl */
+static const double OFF_SURFACE_TEXELS = 1 + SUN_SPREAD; /* as sun_visibility() in shaders/shadow.glsl */
 
 /* --- life -------------------------------------------------------------------------------------------------------------------- */
 
@@ -79,7 +79,7 @@ static void aim(struct refined *refined, const struct light *light)
     double off_m = OFF_SURFACE_TEXELS * context->light->texel_m, matrix[16];
     raster_aim(raster, light);
     for (int c = 0; c < 4; c++)
-        for (int r = 0; r < 4; r++) /* a preview moves surfaces towards the sun, here they step off along their normals */
+        for (int r = 0; r < 4; r++) /* previews move surfaces towards the sun; refined frames move them along their normals instead */
             refined->sun_from_pixel[c][r] =
                 raster->sun_from_pixel[c][r] - (r == 2 ? (float)frame_sun_slack(context) * raster->sun_from_pixel[c][3] : 0);
     for (int c = 0; c < 3; c++)
@@ -94,7 +94,7 @@ static void aim(struct refined *refined, const struct light *light)
     copy_columns(matrix, refined->sun_from_ground);
 }
 
-/* Others drew meanwhile. */
+/* Continues the frame after other frames were drawn meanwhile. */
 static bool take_up(struct refined *refined, const struct frame_context *context, struct frame *frame)
 {
     struct raster *raster = &refined->raster;
@@ -109,13 +109,13 @@ static bool take_up(struct refined *refined, const struct frame_context *context
     raster_aim_cuts(raster);
     raster->out = frame->bgrx;
     raster->out_stride_bytes = (size_t)frame->stride_bytes;
-    if (refined->step > REFINED_FIND && refined->step < REFINED_INK) /* those of its caps are gone by then */
+    if (refined->step > REFINED_FIND && refined->step < REFINED_INK) /* the meshes of the section caps are gone by then */
         for (size_t m = 0; m < raster->mesh_count; m++)
             raster->meshes[m].baked = (const uint8_t(*)[4])raster->light->baked[raster->meshes[m].asset];
     return true;
 }
 
-/* What was found, with what a refined frame needs of it besides. */
+/* Computes what a refined frame needs of each found mesh. */
 static void note_meshes(struct refined *refined)
 {
     const struct raster *raster = &refined->raster;
@@ -151,7 +151,7 @@ static bool find(struct refined *refined, const struct frame *frame, const struc
     return true;
 }
 
-/* Which samples of each pixel a body that is cut open covers: those of one number, by a picture that is moved so far. */
+/* Finds which pixels are covered by section caps at one sample number, by drawing the frame shifted to that sample. */
 static bool find_caps(struct refined *refined, const struct frame *frame, size_t sample)
 {
     struct raster *raster = &refined->raster;
@@ -174,7 +174,7 @@ static bool find_caps(struct refined *refined, const struct frame *frame, size_t
     return true;
 }
 
-/* For labels of isolines, and arrows. */
+/* Stores depth for isoline labels and arrows. */
 static bool keep_depth(struct refined *refined)
 {
     const struct raster *raster = &refined->raster;
@@ -218,7 +218,7 @@ static void ink_some(void *arg, size_t begin, size_t end)
         piece->refined->raster.soft->kernels->ink_band(piece->refined, (int)(piece->first + band));
 }
 
-/* The next of `all` pieces of work, so many for each core. True: that was the last. */
+/* Takes the next `some` pieces per core of the `all` pieces of work. Returns true when they are the last. */
 static bool advance(struct refined *refined, size_t all, size_t some, size_t *begin, size_t *end)
 {
     some *= (size_t)workers_count(refined->raster.soft->workers);
@@ -228,7 +228,7 @@ static bool advance(struct refined *refined, size_t all, size_t some, size_t *be
     return *end == all;
 }
 
-/* Of the selected asset. */
+/* Draws the rim of the selected asset. */
 static bool mark(struct refined *refined, const struct frame *frame)
 {
     struct raster *raster = &refined->raster;

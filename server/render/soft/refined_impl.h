@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the steps of a refined frame hand to each other. Private to soft/. */
+/* Data that the steps of a refined frame pass on. Private to soft/. */
 #ifndef RENDER_SOFT_REFINED_IMPL_H
 #define RENDER_SOFT_REFINED_IMPL_H
 #include "render/soft/soft_impl.h"
@@ -9,15 +9,15 @@
 #include "render/soft/tones.h"
 
 enum { REFINED_ROWS = 16, SAMPLES = VISIBILITY_MOST_PARTS };
-/* From a pixel's middle: a square turned so that edges of any slant take all steps. */
+/* Sample positions relative to the pixel's centre: a rotated square, so that edges of any slope cross the samples one by one. */
 extern const float refined_samples[SAMPLES][2];
 
-/* Of samples, besides those of triangles (render/soft/tile.h). */
+/* Ids of samples that show no triangle (triangle ids: render/soft/tile.h). */
 #define ID_NOTHING 0xffffffffu
-#define ID_CAP 0xfffffffeu /* a body that is cut open */
+#define ID_CAP 0xfffffffeu /* a section cap: a closed body that is cut open */
 
-enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* of a vertex, in `lanes`: eight numbers */
-enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE };           /* of a material, likewise */
+enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* indices of vertex attributes, eight per vertex */
+enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE };           /* indices of material attributes, eight per material */
 
 struct refined {
     struct raster raster;
@@ -33,37 +33,37 @@ struct refined {
         REFINED_COLOR,
         REFINED_DONE
     } step;
-    size_t at; /* in the step */
+    size_t at; /* work done within the step */
     bool failed;
-    float (*normals)[9]; /* per mesh, columns: plant from file */
+    float (*normals)[9]; /* per mesh: matrix that turns normals from file to plant, columns */
     size_t mesh_capacity;
-    uint8_t *caps; /* per pixel, rows of pitch_px: a bit for each sample. NULL: nothing is cut */
+    uint8_t *caps; /* one bit per sample, rows of pitch_px: the sample shows a section cap. NULL: nothing is cut */
     struct visibility_buffer *buffer;
     /* --- of the picture, worked out anew at each step */
     const struct frame_context *context;
     struct environment_light surroundings;
-    float sun_from_pixel[4][4], sun_from_ground[4][4]; /* columns */
-    float sun_from_normal[3][3];                       /* columns; a step off the surface */
-    float ground_step[3];                              /* likewise off the ground */
+    float sun_from_pixel[4][4], sun_from_ground[4][4]; /* matrices, as columns */
+    float sun_from_normal[3][3]; /* columns: from a normal to the offset on the sun's map that lifts the point off its surface */
+    float ground_step[3];                              /* offset on the sun's map that lifts points off the ground */
 };
 
-struct refined_item { /* a surface in a pixel */
+struct refined_item { /* one surface within a pixel */
     struct soft_triangle triangle;
-    float x, y;     /* in the picture, where it is shaded */
-    uint16_t share; /* of VISIBILITY_SHARES */
+    float x, y;     /* where it is shaded, in pixels of the frame */
+    uint16_t share; /* its part of the pixel, of VISIBILITY_SHARES */
 };
 
-struct shaded_items { /* per item of the field */
+struct shaded_items { /* results per item that shows the field */
     uint32_t *triangles, *weights;
     uint8_t *rows;
     struct visibility_gloss *gloss;
 };
 
-/* Which triangle is nearest at each sample of a band; rows of pitch_px. fragments: of what is blended before it. */
+/* Finds the nearest triangle at each sample of a band; rows of pitch_px. fragments: receives the blended triangles in front of it. */
 void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES],
                          struct soft_fragments *fragments);
 bool refined_shade_band(const struct refined *refined, int band); /* false: out of memory */
-/* Keeps the number in the band of the item's triangle, and where on it the item is: at that place of `out`. */
+/* Adds the item's triangle to the band, and writes the triangle's number and the item's weights to index `at` of `out`. */
 void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct refined_item *item, float w1, float w2,
                         const struct shaded_items *out, size_t at);
 

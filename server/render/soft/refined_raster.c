@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which triangle is nearest at each sample of a band: tile by tile, into rows of the whole width. */
+/* Finds the nearest triangle at each sample of a band, tile by tile, into rows of full width. */
 #include <string.h>
 
 #include "render/soft/refined_impl.h"
 
 const float refined_samples[SAMPLES][2] = { { -0.125f, -0.375f }, { 0.375f, -0.125f }, { -0.375f, 0.125f }, { 0.125f, 0.375f } };
-static const float REACH_PX = 0.375f;
+static const float MAX_SAMPLE_OFFSET_PX = 0.375f;
 
-/* They hide what is behind them. */
+/* Draws section caps first: they hide what is behind them. */
 static void draw_caps(const struct refined *refined, int top, int bottom, const struct soft_sample samples[SAMPLES])
 {
     size_t pitch = (size_t)refined->raster.pitch_px;
@@ -45,6 +45,6 @@ void refined_raster_band(const struct refined *refined, int band, const struct s
             of_tile[s].depth += left;
             of_tile[s].ids += left;
         }
-        raster_samples(raster, &(struct soft_rect){ left, top, right, bottom }, of_tile, raster->pitch_px, REACH_PX, fragments);
+        raster_samples(raster, &(struct soft_rect){ left, top, right, bottom }, of_tile, raster->pitch_px, MAX_SAMPLE_OFFSET_PX, fragments);
     }
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From what vertices carry to the colours of pixels. */
+/* Colours pixels of a visibility buffer from the values that its vertices carry. */
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@ struct coloring {
     const uint32_t *colormap;
     struct resolve_lines lines;
     float pattern_px;
-    bool log, rich; /* rich: there are lines, or the scale is logarithmic */
+    bool log, rich; /* rich: there are isolines, or the scale is logarithmic */
     struct frame *frame;
     size_t first_band;
 };
@@ -29,7 +29,7 @@ static uint32_t mix(uint32_t a, uint32_t b, float part)
     return out;
 }
 
-/* As hatch and stipple in shaders/field.glsl; over 0.5 on the dark parts. */
+/* As hatch() and stipple() in shaders/field.glsl; the result exceeds 0.5 in dark stripes and dots. */
 static float hatch(float x, float y, float pattern_px)
 {
     float phase = (x + y) / (pattern_px * (float)HATCH_SLANT);
@@ -42,7 +42,7 @@ static float stipple(float x, float y, float pattern_px)
     return ((float)STIPPLE_RADIUS - hypotf(column - floorf(column) - 0.5f, row - floorf(row) - 0.5f)) * pattern_px + 0.5f;
 }
 
-/* Over 0.5 on the lines. */
+/* Exceeds 0.5 on the lines. */
 static float rule(float y, float pattern_px)
 {
     float at = y / pattern_px;
@@ -51,9 +51,9 @@ static float rule(float y, float pattern_px)
 
 /* --- isolines: field_color in shaders/field.glsl once more ----------------------------------------------------------------------- */
 
-static const float LEAST_SLOPE = 1e-7f, MOST_LINE = (float)ISOLINE_MOST;
+static const float MIN_SLOPE = 1e-7f, MAX_LINE_COVERAGE = (float)ISOLINE_MOST;
 
-/* By how much the place on the scale changes from pixel to pixel. carried: of the corners; here: at the pixel. */
+/* Returns how much the position on the scale changes per pixel. carried: at the corners; here: at the pixel. */
 static float slope_at(const struct coloring *coloring, const struct visibility_slopes *slopes, const float carried[3], float w1, float w2,
                       float here, float x, float y)
 {
@@ -66,12 +66,12 @@ static float slope_at(const struct coloring *coloring, const struct visibility_s
     return slope * (1 / COLUMNS_OF_RANGE);
 }
 
-/* How much of a line there is. column: with its part. */
+/* Returns a pixel's coverage by an isoline, 0..1. column: with its fraction. */
 static float line_part(const struct coloring *coloring, float column, float slope)
 {
     float place = (column - (1 + SLACK * COLUMNS_OF_RANGE)) * (1 / COLUMNS_OF_RANGE);
     float nearest = coloring->lines.nearest[(int)clamped(column - 1, 0, COLORMAP_PLACES - 1)];
-    return slope > LEAST_SLOPE ? clamped(0.5f * coloring->lines.line_px + 0.5f - fabsf(place - nearest) / slope, 0, 1) : 0;
+    return slope > MIN_SLOPE ? clamped(0.5f * coloring->lines.line_px + 0.5f - fabsf(place - nearest) / slope, 0, 1) : 0;
 }
 
 static uint32_t packed(double red, double green, double blue)
@@ -84,7 +84,7 @@ static uint32_t lined(uint32_t color, float part)
     float blue = (float)(color & 0xff), green = (float)(color >> 8 & 0xff), red = (float)(color >> 16 & 0xff);
     bool bright = (float)GREY_RED * red + (float)GREY_GREEN * green + (float)GREY_BLUE * blue > (float)ISOLINE_BRIGHT * 255;
     uint32_t line = bright ? packed(ISOLINE_DARK_RGB) : packed(ISOLINE_LIGHT, ISOLINE_LIGHT, ISOLINE_LIGHT);
-    return mix(color, line, MOST_LINE * part);
+    return mix(color, line, MAX_LINE_COVERAGE * part);
 }
 
 static inline float column_of_carried(const struct coloring *coloring, float carried)
@@ -92,7 +92,7 @@ static inline float column_of_carried(const struct coloring *coloring, float car
     return coloring->log ? column_of(lanes_log2((lanes){ 0 } + carried)[0], coloring->scale) : carried;
 }
 
-struct pixel_place { /* the corners whose field a pixel shows, with their weights */
+struct pixel_place { /* corners of the triangle that a pixel shows, and their weights */
     float carried[3], weights[3];
     uint32_t flags[3];
     const struct visibility_slopes *slopes;
@@ -126,7 +126,7 @@ static uint32_t color_of_place(const struct coloring *coloring, const struct pix
     return lined(color, line_part(coloring, column, slope_at(coloring, place->slopes, place->carried, w[1], w[2], carried, x, y)));
 }
 
-/* Where a corner has flags, or a line may run. */
+/* Colours one pixel slowly: a corner has flags, or an isoline may cross. */
 static uint32_t flagged_color(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, uint32_t weights,
                               uint8_t row, float x, float y)
 {
@@ -141,8 +141,8 @@ static uint32_t flagged_color(const struct coloring *coloring, const struct visi
     return color_of_place(coloring, &place);
 }
 
-/* Four rows of four, the first three columns of them. */
-SOFT_INLINE void turn(const quad rows[4], quad columns[3])
+/* Transposes four rows of four into the first three columns. */
+SOFT_INLINE void transpose(const quad rows[4], quad columns[3])
 {
     quad low = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5), high = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
     columns[0] = __builtin_shufflevector(low, high, 0, 1, 4, 5);
@@ -151,7 +151,7 @@ SOFT_INLINE void turn(const quad rows[4], quad columns[3])
     columns[2] = __builtin_shufflevector(low, high, 0, 1, 4, 5);
 }
 
-/* What these pixels of the field carry, as field_color has it. */
+/* Interpolates the carried values of eight pixels, as field_color() in shaders/field.glsl does. */
 SOFT_INLINE lanes carried_by(const struct visibility_band *band, lanes_int triangles, lanes_int weights)
 {
     quad columns[2][3];
@@ -159,7 +159,7 @@ SOFT_INLINE lanes carried_by(const struct visibility_band *band, lanes_int trian
         quad rows[4];
         for (int i = 0; i < 4; i++)
             rows[i] = *(const quad *)band->corners[triangles[4 * half + i]];
-        turn(rows, columns[half]);
+        transpose(rows, columns[half]);
     }
     lanes of[3];
     for (int i = 0; i < 3; i++)
@@ -169,13 +169,13 @@ SOFT_INLINE lanes carried_by(const struct visibility_band *band, lanes_int trian
     return of[0] + w1 * of[1] + w2 * of[2];
 }
 
-/* As column_of. */
+/* Does what column_of() does, for eight values on a logarithmic scale. */
 SOFT_INLINE lanes columns_of_logs(lanes values, const float *scale)
 {
     return (lanes_log2(values) - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE);
 }
 
-/* Which of eight pixels a line may cover some of, by how fast the field changes there. */
+/* Returns which of eight pixels an isoline may touch, judged by the field's slope there. */
 SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles,
                                    lanes_int weights, int x, int y)
 {
@@ -212,7 +212,7 @@ SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct
     return ~(away > slope * (0.5f * coloring->lines.line_px + 0.51f));
 }
 
-/* Colours of eight places of the field. known: false where a corner has flags. */
+/* Returns the colours of eight pixels of the field. *known is false where a corner has flags. */
 SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles,
                                    lanes_int weights, uint64_t rows, lanes_int *known)
 {
@@ -230,15 +230,16 @@ SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct
 
 /* --- pixels of several surfaces ---------------------------------------------------------------------------------------------- */
 
-typedef uint64_t sums __attribute__((vector_size(32), aligned(8))); /* blue and red from bit 0 and 16 on, green from bit 32 on */
+/* 64-bit colour sums: blue from bit 0, red from bit 16, green from bit 32 */
+typedef uint64_t sums __attribute__((vector_size(32), aligned(8)));
 
-/* Parts are coloured ahead, eight at a time: pixels need them in the order in which they lie. */
+/* Parts are coloured in advance, eight at a time; pixels use them in the order of storage. */
 enum { PARTS_AHEAD = 64 };
 struct ahead {
     size_t first, end;
-    bool all_known;                                   /* no corner has flags */
-    uint32_t known[PARTS_AHEAD];                      /* 0: one has */
-    uint64_t colors[PARTS_AHEAD + VISIBILITY_MOST_PARTS]; /* times share */
+    bool all_known;                                   /* no corner of these parts has flags, and there are no isolines */
+    uint32_t known[PARTS_AHEAD];                      /* 0: a corner has flags */
+    uint64_t colors[PARTS_AHEAD + VISIBILITY_MOST_PARTS]; /* colour times share */
 };
 
 static inline uint64_t spread(uint32_t color)
@@ -284,7 +285,7 @@ SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visib
     ahead->all_known = !lanes_any(~all_known) && !(coloring->lines.line_px > 0);
 }
 
-/* gloss: NULL: the colour stays. */
+/* gloss NULL: returns the colour unchanged. */
 SOFT_INLINE uint32_t glossed(const struct coloring *coloring, uint32_t color, const struct visibility_gloss *gloss)
 {
     struct visibility_gloss all_of[LANES];
@@ -309,7 +310,7 @@ static uint64_t flagged_sum(const struct coloring *coloring, const struct visibi
     return sum;
 }
 
-/* After all others: over what was written there. */
+/* Colours pixels with several surfaces, after color_lanes() wrote arbitrary values there. */
 SOFT_INLINE void color_mixed(const struct coloring *coloring, const struct visibility_band *band, int top)
 {
     static const sums wanted[] = { { 0 }, { -1ull }, { -1ull, -1ull }, { -1ull, -1ull, -1ull }, { -1ull, -1ull, -1ull, -1ull } };
@@ -334,14 +335,14 @@ SOFT_INLINE void color_mixed(const struct coloring *coloring, const struct visib
 
 /* --- pixels ------------------------------------------------------------------------------------------------------------------ */
 
-/* A bit for each byte that is not 0, the lowest first. */
+/* Returns one bit per nonzero byte; the lowest byte gives bit 0. */
 SOFT_INLINE uint32_t bits_of_bytes(uint64_t x)
 {
     uint64_t low = 0x7f7f7f7f7f7f7f7f, tops = ((x & low) + low) | x;
     return (uint32_t)((tops >> 7 & 0x0101010101010101) * 0x0102040810204080 >> 56);
 }
 
-/* Eight pixels in a row; of those of several surfaces, anything. */
+/* Returns the colours of eight pixels in a row; pixels with several surfaces get arbitrary values. */
 SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct visibility_band *band, size_t at, int x, int y)
 {
     const struct visibility_buffer *buffer = coloring->buffer;
@@ -374,7 +375,7 @@ SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct 
     return colors;
 }
 
-/* Rows that are no multiple of eight end with pixels of which some were there before. */
+/* In rows whose length is no multiple of eight, the last eight pixels overlap the previous ones. */
 SOFT_KERNEL static void color_band(const struct coloring *coloring, int number)
 {
     const struct visibility_buffer *buffer = coloring->buffer;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Light on what shows the field, and on sky and ground, eight pixels at a time: shaders/refined.frag, shadow.glsl, sky.frag and ground.frag
-   once more. */
+/* Shades field surfaces, sky and ground of refined frames, eight pixels at a time; ports shaders/refined.frag, shadow.glsl, sky.frag and
+   ground.frag. */
 #include "render/soft/kernels.h"
 #include "render/soft/surface_points.h"
 
@@ -51,7 +51,7 @@ SOFT_INLINE lanes open_at(const struct refined *refined, lanes u, lanes v)
     return out * (1 / 255.0f);
 }
 
-/* What shadow leaves of the ground's brightness, 0..256: shaders/ground.frag. */
+/* Returns the brightness that shadow leaves the ground, 0..256, as shaders/ground.frag. */
 SOFT_INLINE lanes_int ground_at(const struct refined *refined, lanes x, float y)
 {
     const float(*g)[3] = refined->raster.ground_from_pixel;

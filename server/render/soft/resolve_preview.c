@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A rectangle of the picture: from marks to colours. Only what is seen comes here: the sun's shadow and the backdrop are looked up per
-   pixel. */
+/* Colours a rectangle of a preview from its marks. Only visible pixels look up shadow and backdrop. */
 #include <string.h>
 
 #include "render/soft/kernels.h"
 #include "render/soft/lookups.h"
 #include "render/soft/section_colors.h"
 
-/* How many pixels ahead of those being coloured the bounds of shadows are asked for, and what these leave open: they lie far apart in
-   memory. Aims are kept from when they are made until their pixels are coloured. */
+/* Prefetch distances in pixels: first the shadow bounds, then the texels that the bounds leave undecided; both are scattered in memory.
+   AIMS: ring buffer of lookups between their start and the colouring. */
 enum { BOUNDS_AHEAD = 8 * LANES, SHADOWS_AHEAD = 4 * LANES, AIMS = 16 };
 
-/* The place on the sun's map, 0..1, and the depth there. */
+/* Computes positions on the sun's map, 0..1, and their depths. */
 SOFT_INLINE void sun_place(const struct raster *raster, lanes x, float y, lanes depth, lanes place[3])
 {
     const float(*m)[4] = raster->sun_from_pixel;
@@ -23,7 +22,7 @@ SOFT_INLINE void sun_place(const struct raster *raster, lanes x, float y, lanes 
         place[r] = s[r] * over;
 }
 
-/* Finds where the shadows on what is drawn there are; what faces away from the sun needs none. */
+/* Starts the shadow lookups of eight pixels. Surfaces that face away from the sun need none. */
 SOFT_INLINE void aim_at_sun(const struct raster *raster, int column, int row, struct sun_aim *aim)
 {
     size_t place = (size_t)row * (size_t)raster->pitch_px + (size_t)column;
@@ -62,7 +61,7 @@ SOFT_INLINE lanes_int context_color(const struct raster *raster, lanes_int marks
     return lanes_whole((float)GREY_BLUE * blue + (float)GREY_GREEN * green + (float)GREY_RED * red + 0.5f) * 0x010101 | (int32_t)0xff000000;
 }
 
-/* Where isolines run, as field_color in shaders/field.glsl. */
+/* Draws isolines over eight colours, as field_color() in shaders/field.glsl. */
 static void draw_lines(const uint32_t marks[LANES], uint32_t colors[LANES])
 {
     static const float grey_parts[3] = { (float)GREY_BLUE, (float)GREY_GREEN, (float)GREY_RED };
@@ -92,7 +91,7 @@ SOFT_INLINE lanes_int lined(const uint32_t *marks, lanes_int color)
     return color;
 }
 
-/* What shadow leaves of the ground's brightness, 0..256. */
+/* Returns the brightness that shadow leaves the ground, 0..256. */
 SOFT_INLINE lanes_int ground_at(const struct raster *raster, lanes x, float y)
 {
     const float(*m)[3] = raster->ground_from_pixel;
@@ -124,7 +123,7 @@ SOFT_INLINE lanes_int sky_color(const struct raster *raster, const struct height
     return darkened(color, ground_at(raster, LANES_IOTA + ((float)column + 0.5f), (float)row + 0.5f));
 }
 
-/* What a cut opens. */
+/* Returns the colours of section cuts. */
 SOFT_INLINE lanes_int section_color(const struct raster *raster, lanes_int marks, lanes x, float y)
 {
     const float(*m)[3] = raster->ray_from_pixel;
@@ -141,7 +140,7 @@ SOFT_INLINE lanes_int section_color(const struct raster *raster, lanes_int marks
     return lanes_choose_int(is_cap, cap_color(x, y, raster->block.scale[3]), inside_color(v, n, raster->block.up)) | (int32_t)0xff000000;
 }
 
-/* All eight of a field, or all empty: as most are. */
+/* Colours eight pixels. Fast paths: all show the field, or all are empty, as is usual. */
 SOFT_INLINE lanes_int color_at(const struct raster *raster, const struct heights *heights, const struct sun_aim *aim, int column, int row)
 {
     size_t place = (size_t)row * (size_t)raster->pitch_px + (size_t)column;
@@ -170,11 +169,11 @@ SOFT_INLINE lanes_int color_at(const struct raster *raster, const struct heights
     return color;
 }
 
-/* out: where the row begins. */
+/* out: beginning of the row. */
 SOFT_INLINE void color_row(const struct raster *raster, int left, int right, int row, uint8_t *out)
 {
     struct heights heights = { 0 };
-    struct sun_aim aims[AIMS]; /* by column */
+    struct sun_aim aims[AIMS]; /* by column, modulo AIMS */
     for (int column = left - BOUNDS_AHEAD; column <= right; column += LANES) {
         int aimed = column + BOUNDS_AHEAD, bounded = column + SHADOWS_AHEAD;
         if (aimed <= right)

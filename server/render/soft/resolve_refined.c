@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One band of a refined frame: from samples to what each pixel shows. Triangles that share an edge are one surface: a pixel that shows no
-   other is shaded once. What is blended is shaded triangle by triangle, and laid over them sample by sample. */
+/* Resolves one band of a refined frame: from samples to what each pixel shows. Triangles that share an edge count as one surface; a pixel
+   that shows a single surface is shaded once. Blended triangles are shaded one by one and composited per sample. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,29 +9,29 @@
 #include "render/soft/refined_impl.h"
 #include "render/soft/section_colors.h"
 
-struct sample_group { /* samples of a pixel that show one surface */
+struct sample_group { /* samples of a pixel that show the same surface */
     const struct soft_triangle *triangle;
-    float x, y; /* sums of where they are */
+    float x, y; /* sums of the sample positions */
     int count;
     uint16_t share;
 };
 
 enum { SAMPLE_SHARE = VISIBILITY_SHARES / SAMPLES };
 
-struct mixed { /* a pixel with several surfaces: its items in the row */
+struct mixed { /* a pixel with several surfaces, and its items in the row */
     int column;
     uint8_t field_count, surface_count;
-    uint16_t sky, cap; /* shares */
-    uint16_t over[3];  /* blue, green, red of what is blended, times share */
+    uint16_t sky, cap; /* shares of the pixel, of VISIBILITY_SHARES */
+    uint16_t over[3];  /* colour of blended triangles times share: blue, green, red */
     uint32_t first_field, first_surface;
 };
 
-struct refined_row { /* a row of pixels; all arrays hold SAMPLES for each */
+struct refined_row { /* a row of pixels; item arrays hold SAMPLES per pixel */
     struct refined_item *field, *surfaces;
-    int *field_columns, *surface_columns; /* of pixels that show nothing else; -1: of a mixed one */
+    int *field_columns, *surface_columns; /* column of the item's pixel, if the pixel shows nothing else; -1: a mixed pixel */
     struct mixed *mixed;
-    uint8_t *sky;  /* per pixel: some of it is seen */
-    uint8_t *caps; /* per pixel: all samples show one */
+    uint8_t *sky;  /* per pixel: 1 if some of the sky is visible */
+    uint8_t *caps; /* per pixel: 1 if all samples show a section cap */
     size_t field_count, surface_count, mixed_count;
     bool any_sky, any_cap;
     uint32_t *triangles, *weights, *colors, *sky_colors;
@@ -69,16 +69,16 @@ static bool row_init(struct refined_row *row, int pitch_px)
 
 /* --- triangles ----------------------------------------------------------------------------------------------------------------- */
 
-enum { RECENT = 512 };
-struct recent { /* by id: neighbours in a row, and the rows above, show the same triangles */
+enum { RECENT_TRIANGLES = 512 };
+struct recent { /* cache of triangles by id: neighbouring pixels mostly show the same ones */
     const struct refined *refined;
-    uint32_t mesh; /* of the last one that was looked up */
-    struct soft_triangle triangles[RECENT];
+    uint32_t mesh; /* mesh of the last triangle looked up */
+    struct soft_triangle triangles[RECENT_TRIANGLES];
 };
 
 static const struct soft_triangle *triangle_of(struct recent *recent, uint32_t id)
 {
-    struct soft_triangle *triangle = &recent->triangles[(id ^ id >> 9) % RECENT];
+    struct soft_triangle *triangle = &recent->triangles[(id ^ id >> 9) % RECENT_TRIANGLES];
     if (triangle->id != id) {
         triangle->mesh = recent->mesh;
         raster_find_triangle(&recent->refined->raster, id, triangle);
@@ -96,7 +96,8 @@ static bool share_edge(const struct soft_triangle *a, const struct soft_triangle
     return a->mesh == b->mesh && shared >= 2;
 }
 
-/* under: shares of the samples. triangles: room for those of the groups. */
+/* Groups the samples of a pixel by surface. under: share of each sample. triangles: storage for the groups' triangles. Returns the number
+   of groups. */
 static int group_samples(struct recent *recent, const struct soft_sample samples[SAMPLES], size_t at, const uint16_t under[SAMPLES],
                          struct soft_triangle triangles[SAMPLES], struct sample_group groups[SAMPLES])
 {
@@ -124,9 +125,9 @@ static int group_samples(struct recent *recent, const struct soft_sample samples
 
 /* --- what is blended ----------------------------------------------------------------------------------------------------------- */
 
-struct layers {                      /* of a band */
-    struct soft_fragments fragments; /* pixel by pixel, nearest first */
-    struct refined_item *items;      /* by layer: a triangle in a pixel */
+struct layers {                      /* blended triangles of a band */
+    struct soft_fragments fragments; /* sorted by pixel, nearest first */
+    struct refined_item *items;      /* per layer: one triangle in one pixel */
     uint32_t *colors;
     float *alphas;
     size_t count, item_capacity, color_capacity, alpha_capacity;
@@ -146,7 +147,7 @@ static int by_depth(const void *a, const void *b)
     return x->depth != y->depth ? (x->depth < y->depth ? 1 : -1) : (x->layer > y->layer) - (x->layer < y->layer);
 }
 
-/* Also hides edges of what is behind it: it has a depth. */
+/* Shades the blended triangles. Their depth replaces that of surfaces behind, so that feature edges there are hidden, too. */
 static void shade_layers(struct recent *recent, struct layers *layers, int top, const struct soft_sample samples[SAMPLES])
 {
     const struct refined *refined = recent->refined;
@@ -183,7 +184,7 @@ static void layers_finish(struct layers *layers)
     mem_free(layers->alphas);
 }
 
-/* over: what these fragments of a pixel show, times their shares; under: what they leave of those of the samples. */
+/* Composites the fragments of one pixel. over: their colour times share; under: the share that each sample keeps. */
 static void blend(const struct layers *layers, size_t first, size_t end, uint16_t over[3], uint16_t under[SAMPLES])
 {
     float left[SAMPLES] = { 1, 1, 1, 1 }, sum[3] = { 0 }, gone = 0;
@@ -218,7 +219,7 @@ static void add_item(const struct refined *refined, struct refined_row *row, con
     }
 }
 
-/* first, end: what is blended over it. */
+/* first, end: range of the blended fragments over this pixel. */
 static void add_mixed(struct recent *recent, struct refined_row *row, const struct soft_sample samples[SAMPLES], size_t at, int column,
                       int y, const struct layers *layers, size_t first, size_t end)
 {
@@ -234,7 +235,7 @@ static void add_mixed(struct recent *recent, struct refined_row *row, const stru
         float over = 1.0f / (float)groups[g].count;
         float at_x = (float)column + 0.5f + groups[g].x * over, at_y = (float)y + 0.5f + groups[g].y * over;
         struct refined_item item = { *groups[g].triangle, at_x, at_y, groups[g].share };
-        if (item.share == VISIBILITY_SHARES) { /* one surface after all */
+        if (item.share == VISIBILITY_SHARES) { /* a single surface after all */
             row->mixed_count--;
             add_item(recent->refined, row, &item, column);
             return;
@@ -251,7 +252,7 @@ static void add_mixed(struct recent *recent, struct refined_row *row, const stru
     row->any_sky |= mixed->sky > 0;
 }
 
-/* layered: the first of the layers' fragments in this row; moved on. */
+/* Sorts the pixels of a row by what they show. layered: index of the next blended fragment; advanced past this row. */
 static void sort_row(struct recent *recent, struct refined_row *row, const struct soft_sample samples[SAMPLES], size_t start, int y,
                      const struct layers *layers, size_t *layered)
 {
@@ -400,7 +401,7 @@ bool refined_shade_band(const struct refined *refined, int number)
     struct recent *recent = mem_new(sizeof(*recent));
     bool good = row_init(&row, refined->raster.pitch_px) && memory;
     recent->refined = refined;
-    for (int i = 0; i < RECENT; i++)
+    for (int i = 0; i < RECENT_TRIANGLES; i++)
         recent->triangles[i].id = ID_NOTHING;
     for (int s = 0; s < SAMPLES && good; s++)
         samples[s] = (struct soft_sample){ .depth = memory + (size_t)s * pixels,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Light on surfaces, eight at a time, but for fields whose light is a row of the colour map: shaders/refined.frag, light.glsl, pbr.glsl and
-   environment.glsl once more. */
+/* Shades surfaces of refined frames, eight at a time, except fields whose light is a row of the colour map; ports shaders/refined.frag,
+   light.glsl, pbr.glsl and environment.glsl. */
 #include "render/soft/kernels.h"
 #include "render/soft/pbr.h"
 #include "render/soft/section_colors.h"
@@ -8,7 +8,7 @@
 
 /* --- textures ------------------------------------------------------------------------------------------------------------------ */
 
-/* How the place on the plant changes from pixel to pixel. */
+/* Computes the change of the surface point in plant coordinates per pixel. */
 static void place_slopes(const struct refined *refined, const struct soft_triangle *triangle, const float by[3], float out[3])
 {
     const struct soft_mesh *mesh = &refined->raster.meshes[triangle->mesh];
@@ -32,7 +32,7 @@ static float dot_of(const float a[3], const float b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* As mapped_normal in shaders/refined.frag. */
+/* As mapped_normal() in shaders/refined.frag. */
 static void map_normal(const float dx[3], const float dy[3], float uv[3][2], const float texel[4], float scale, float n[3])
 {
     float cross_y[3], cross_x[3], t[3], b[3], m[3];
@@ -92,7 +92,7 @@ static void wear_maps(const struct refined *refined, const struct soft_triangle 
     }
 }
 
-/* What textures make of these surfaces. alphas: NULL: not asked for. */
+/* Applies textures to these surfaces. alphas may be NULL. */
 SOFT_INLINE void wear(const struct refined *refined, const struct refined_item *items, size_t count, const struct eight_points *spot,
                       struct pbr_surface *surface, vec *glow, float *alphas)
 {
@@ -118,10 +118,10 @@ SOFT_INLINE void wear(const struct refined *refined, const struct refined_item *
 struct lit { /* eight surfaces */
     struct eight_points spot;
     struct pbr_surface surface;
-    vec v, l, glow; /* towards the eye and the sun */
+    vec v, l, glow; /* v, l: unit vectors towards the eye and the sun; glow: emitted light */
 };
 
-/* alphas: NULL: not asked for. */
+/* alphas may be NULL. */
 SOFT_INLINE void see(const struct refined *refined, const struct refined_item *items, size_t count, struct lit *lit, float *alphas)
 {
     struct eight_points *spot = &lit->spot;
@@ -147,7 +147,7 @@ SOFT_INLINE void see(const struct refined *refined, const struct refined_item *i
 void refined_shade_surfaces(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas)
 {
     const struct soft_tones *tones = refined->raster.soft->tones;
-    float bright = refined->raster.block.up[3]; /* of context; 0: as it is */
+    float bright = refined->raster.block.up[3]; /* context's brightness; 0: unchanged */
     bool greys = view_is_operator(refined->context->view);
     for (size_t first = 0; first < count; first += LANES) {
         struct lit lit;
@@ -181,7 +181,7 @@ SOFT_INLINE vec glossy_light(const struct lit *lit, const struct sky_light *sky,
                 times(sun_shade(&surface, lit->v, lit->l), all((float)GLOSSY_SUN)));
 }
 
-/* What comes back of a surface that is no metal is linear in its colour. */
+/* Light reflected from a non-metal is linear in its colour, so black and white surfaces suffice. */
 void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                          const struct shaded_items *out)
 {

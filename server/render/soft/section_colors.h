@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a cut opens, eight pixels at a time: shaders/section.glsl once more. Private to soft/. */
+/* Colours of section cuts, for eight pixels at a time; ports shaders/section.glsl. Private to soft/. */
 #ifndef RENDER_SOFT_SECTION_COLORS_H
 #define RENDER_SOFT_SECTION_COLORS_H
 #include <math.h>
@@ -10,7 +10,7 @@
 
 enum { NORMAL_BITS = 14, NORMAL_MOST = (1 << NORMAL_BITS) - 1 };
 
-/* Of a body that is solid as far as the model says. */
+/* Returns the colour of a section cap: a closed body cut open. */
 SOFT_INLINE lanes_int cap_color(lanes x, float y, float pattern_px)
 {
     lanes phase = (x - y) * (1 / ((float)CAP_PERIOD * pattern_px)), whole = __builtin_convertvector(lanes_whole(phase), lanes);
@@ -22,7 +22,7 @@ SOFT_INLINE lanes_int cap_color(lanes x, float y, float pattern_px)
     return pack_color(cap[0] - stripe * part, cap[1] - stripe * part, cap[2] - stripe * part);
 }
 
-/* Of the inner side of a surface. v: towards the viewer, of unit length; n: of the surface, to either side, of any length. */
+/* Returns the colour of a surface's inner side. v: unit vectors towards the viewer; n: normals of any length and either sign. */
 SOFT_INLINE lanes_int inside_color(const lanes v[3], const lanes n[3], const float up[3])
 {
     lanes none = { 0 }, square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2], towards = n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
@@ -34,7 +34,7 @@ SOFT_INLINE lanes_int inside_color(const lanes v[3], const lanes n[3], const flo
     return pack_color(inside[0] * bright, inside[1] * bright, inside[2] * bright);
 }
 
-/* A normal of any length as a mark of the inner side: folded flat from an octahedron. */
+/* Encodes a normal of any length as a mark of a surface's inner side, by octahedral mapping. */
 static inline uint32_t inside_mark(const float n[3])
 {
     float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]), over = sum > 0 ? 1 / sum : 0, x = n[0] * over, y = n[1] * over;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Small faces by stamps of sixteen pixels, where registers hold so many. The same bits as by stamps of eight. Private to
-   raster.c. */
+/* Draws small faces in stamps of 16 pixels, on machines with 512-bit registers. Bit-identical to stamps of eight. Private to raster.c. */
 #ifndef RENDER_SOFT_SIXTEEN_H
 #define RENDER_SOFT_SIXTEEN_H
 #include "render/soft/small.h"
@@ -12,7 +11,7 @@ typedef int32_t sixteen_int __attribute__((vector_size(64), aligned(4)));
 
 enum { MANY = 16 };
 
-/* width of a stamp: 4, 8 or 16; a constant. */
+/* width: of a stamp, 4, 8 or 16; a compile-time constant. */
 SOFT_INLINE sixteen many_floats(const float *at, size_t pitch, int width)
 {
     if (width == MANY)
@@ -40,7 +39,7 @@ SOFT_INLINE void many_put_floats(float *at, size_t pitch, int width, sixteen val
     }
 }
 
-/* Where seen; the others are not even read. seen: a bit for each. */
+/* Stores the lanes whose bit in `seen` is set; other pixels are not accessed. */
 SOFT_INLINE void many_put_ints(uint32_t *at, size_t pitch, int width, uint32_t seen, sixteen_int value)
 {
     __m512i all = (__m512i)value;
@@ -88,14 +87,14 @@ SOFT_INLINE sixteen many_value(const struct small *small, int l, int p, sixteen 
     return (sixteen)_mm512_min_ps(high, _mm512_max_ps(low, (__m512)value)); /* as lanes_clamp */
 }
 
-/* Towards 0; 0 to high. */
+/* Truncates towards 0 and clamps to 0..high. */
 SOFT_INLINE sixteen_int many_within(sixteen x, int32_t high)
 {
     __m512i whole = _mm512_max_epi32(_mm512_cvttps_epi32((__m512)x), _mm512_setzero_si512());
     return (sixteen_int)_mm512_min_epi32(whole, _mm512_set1_epi32(high));
 }
 
-/* As draw_stamp. */
+/* Does for 16 pixels what draw_stamp() does for eight. */
 SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                            const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, int width,
                            bool thin)
@@ -137,7 +136,7 @@ SOFT_INLINE void draw_by_many(const struct soft_tile *tile, const struct soft_sa
     }
 }
 
-/* There is room for a stamp of any shape, and no line to be drawn. */
+/* Returns whether the tile is large enough for a stamp of any shape, and there are no isolines. */
 SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct mark_ink *ink)
 {
     return !ink->rich && tile->rect.right - tile->rect.left >= MANY - 1 && tile->rect.bottom - tile->rect.top >= 3;

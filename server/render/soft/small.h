@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Small faces without flags and perspective: set up eight at a time, drawn by stamps of eight pixels, or of sixteen. Private to
-   raster.c. */
+/* Small faces without flags and perspective: set up eight at a time and drawn in stamps of 8 or 16 pixels. Private to raster.c. */
 #ifndef RENDER_SOFT_SMALL_H
 #define RENDER_SOFT_SMALL_H
 #include "render/soft/pixel_marks.h"
@@ -9,13 +8,13 @@
 
 enum { SMALL_PX = 4 * LANES };
 
-/* Low ones may be as wide as they like: there is little beside them. */
+/* Faces one or two pixels high may have any width: their stamps cover few pixels in vain. */
 SOFT_INLINE bool is_small(const struct soft_face *face)
 {
     return face->bottom - face->top < SMALL_PX && (face->right - face->left < SMALL_PX || face->bottom - face->top < 2);
 }
 
-/* Nothing of it needs more than draw_eight does. */
+/* Returns whether draw_eight() suffices: no perspective over the face, no patterns. */
 SOFT_INLINE bool is_plain(const struct soft_corners *corners, const struct soft_face *face)
 {
     int i = face->corners[0], j = face->corners[1], k = face->corners[2];
@@ -27,17 +26,17 @@ SOFT_INLINE bool is_plain(const struct soft_corners *corners, const struct soft_
     return !corners->all_flags || !((corners->flags[i] | corners->flags[j] | corners->flags[k]) & SOFT_PATTERNS);
 }
 
-struct small { /* eight of them: a row of lanes is one number of each */
+struct small { /* eight faces; each row of lanes is one number of each */
     lanes x, y;
-    lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3]; /* as struct raster_edge; edge_row: of dy x */
+    lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3]; /* as struct raster_edge; edge_row: dy times x */
     lanes_int negative[3];
-    lanes at[3], dx[3], dy[3], low[3], high[3]; /* planes of depth, a, b */
+    lanes at[3], dx[3], dy[3], low[3], high[3]; /* depth, a and b as planes */
     lanes_int thin;
 };
 
-struct eight_faces { /* their numbers, a lane for each face */
+struct eight_faces { /* corner numbers and sizes of eight faces, one lane each */
     lanes_int corners[3];
-    lanes_int width, height; /* less one */
+    lanes_int width, height; /* in pixels, less one */
 };
 
 SOFT_INLINE struct eight_faces read_faces(const struct soft_face *const faces[LANES])
@@ -45,7 +44,7 @@ SOFT_INLINE struct eight_faces read_faces(const struct soft_face *const faces[LA
     lanes_int pairs[4], words[4];
     for (int i = 0; i < 4; i++)
         pairs[i] = __builtin_shufflevector(*(const quad_int *)faces[i], *(const quad_int *)faces[i + 4], 0, 1, 2, 3, 4, 5, 6, 7);
-    for (int i = 0; i < 4; i += 2) { /* columns of what is four high and as wide, twice */
+    for (int i = 0; i < 4; i += 2) { /* transposes eight faces of four words each */
         words[i] = __builtin_shufflevector(pairs[i], pairs[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
         words[i + 1] = __builtin_shufflevector(pairs[i], pairs[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
     }
@@ -60,7 +59,7 @@ SOFT_INLINE struct eight_faces read_faces(const struct soft_face *const faces[LA
     };
 }
 
-/* shaded: with a and b. */
+/* shaded: also sets up a and b. */
 SOFT_INLINE void small_init(struct small *small, const struct soft_corners *corners, const lanes_int at[3], bool shaded)
 {
     lanes x[3], y[3];
@@ -95,7 +94,7 @@ SOFT_INLINE void small_init(struct small *small, const struct soft_corners *corn
     }
 }
 
-/* Eight pixels: a row of them, or two rows of four. two: a constant. */
+/* Loads eight pixels: a row of eight, or with `two` two rows of four. two: a compile-time constant. */
 SOFT_INLINE lanes stamp_floats(const float *at, size_t pitch, bool two)
 {
     if (!two)
@@ -142,13 +141,13 @@ SOFT_INLINE lanes small_value(const struct small *small, int l, int p, lanes fro
     return thin ? lanes_clamp(value, small->low[p][l], small->high[p][l]) : value;
 }
 
-/* Of a pixel of the picture, in the samples' rows. */
+/* Returns the index of a pixel of the frame in the samples' rows. */
 SOFT_INLINE size_t place_in(const struct soft_tile *tile, int column, int row)
 {
     return (size_t)(row - tile->rect.top) * (size_t)tile->pitch_px + (size_t)(column - tile->rect.left);
 }
 
-/* left, top: of the stamp. two, thin: constants. */
+/* left, top: of the stamp, in the frame. two, thin: compile-time constants. */
 SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                             const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, bool two,
                             bool thin)
@@ -160,7 +159,8 @@ SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_samp
     lanes_int side = small_side(small, l, 0, x, y) | small_side(small, l, 1, x, y) | small_side(small, l, 2, x, y);
     lanes depth = stamp_floats(sample->depth + place, pitch, two), here = small_value(small, l, 0, from_x, from_y, thin), none = { 0 };
     lanes_int seen = (side >= 0) & (here >= depth);
-    if (!LANES_CHOOSE_AT_ONCE && !lanes_any(seen)) /* else all else costs less than a wrong guess: nearly half of them show nothing */
+    /* nearly half of all stamps show nothing. With one-instruction choices the remaining work costs less than a branch misprediction */
+    if (!LANES_CHOOSE_AT_ONCE && !lanes_any(seen))
         return;
     if (sample->marks) {
         lanes a = small_value(small, l, 1, from_x, from_y, thin), b = small_value(small, l, 2, from_x, from_y, thin);
@@ -180,7 +180,8 @@ SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_samp
                                         stamp_ints(sample->ids + place, pitch, two)));
 }
 
-/* Stamps do not leave the tile, where another thread draws: the last ones cover some pixels twice, which changes nothing. */
+/* Stamps stay within the tile, because other threads draw outside. The last stamps of a row or column therefore overlap earlier ones, which
+   changes nothing. */
 SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                             const struct small *small, int l, uint32_t mark, const struct mark_ink *ink, bool two)
 {
@@ -198,9 +199,9 @@ SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_samp
     }
 }
 
-struct kinds {          /* a bit for each of eight */
-    uint32_t one, four; /* at most four wide and two high; else at most four high */
-    uint32_t two, low;  /* fewer stamps of two rows cover it than of one row; else one row high */
+struct kinds {          /* sizes of eight faces, one bit each */
+    uint32_t one, four; /* one: at most 4 wide and 2 high; four: else, at most 4 wide and 4 high */
+    uint32_t two, low;  /* two: else, fewer stamps of two rows than of one cover the face; low: else, one pixel high */
 };
 
 SOFT_INLINE struct kinds kinds_of(const struct soft_tile *tile, const struct eight_faces *eight, int count)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What all frames share, and what is kept between them: how much it is, and giving it back. */
+/* State that all frames of the software renderer share: creates it, measures its memory and frees it. */
 #include "render/soft/soft.h"
 
 #include <string.h>
@@ -9,10 +9,10 @@
 #include "render/soft/ramp_rows.h"
 #include "render/soft/tones.h"
 
-/* Some five previews of 1920x1080, and some ten refined frames. */
+/* About five previews of 1920x1080, and ten refined frames. */
 static const size_t PREVIEWS_BYTES = (size_t)128 << 20, REFINED_BYTES = (size_t)256 << 20;
 
-/* The widest ones that this machine has. */
+/* Returns the kernels of the widest instruction set that this machine has. */
 static const struct soft_kernels *choose_kernels(void)
 {
 #ifdef __x86_64__
@@ -31,7 +31,7 @@ static lanes shading_of(const struct asset_material *material)
                     material->roughness,     material->emissive[0],   material->emissive[1],   material->emissive[2] };
 }
 
-/* Of all models; ramps that are equal once. */
+/* Copies the materials of all models; equal ramps are stored once. */
 static void copy_materials(struct soft *soft)
 {
     const struct gpu_scene *gpu_scene = soft->gpu_scene;
@@ -65,7 +65,8 @@ struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_sc
     soft->environments = environments;
     soft->kept[TIER_PREVIEW].bound_bytes = PREVIEWS_BYTES;
     soft->kept[TIER_REFINED].bound_bytes = REFINED_BYTES;
-    soft->kept[TIER_REFINED].keeps_newest = true; /* readings that changed while it was made are shown by it, however large it is */
+    /* changed readings can then always be shown by recolouring the newest refined frame, however large it is */
+    soft->kept[TIER_REFINED].keeps_newest = true;
     soft->parts = mem_array(gpu_scene->model_count, sizeof(*soft->parts));
     soft->backdrops = sky->texels[0];
     soft->preview.soft = soft;

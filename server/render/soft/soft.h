@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames on machines without a GPU: from triangles to pixels on all cores, with SIMD, where a software GL would bring every triangle
-   through one thread. Previews show what shaders/preview.* show, refined frames what shaders/refined.frag shows, within rounding.
-
-   Parts of models that can be seen are drawn into tiles, nearest first, and pixels are then coloured by the triangles that they show: what
-   is hidden is never coloured. The order of tiles and threads does not matter to the result.
-   Thread: the one of the GL context; it spreads its work over `workers`. */
+/* Software renderer for machines without a GPU: rasterizes on all cores with SIMD, where a software GL would process triangles on one
+   thread. Previews look like shaders/preview.*, refined frames like shaders/refined.frag, within rounding.
+   Visible parts of models are drawn into tiles, nearest first; pixels are then coloured by the triangles they show, so that hidden surfaces
+   are never shaded. The result does not depend on the order of tiles and threads.
+   Thread: the one of the GL context; work is spread over `workers`. */
 #ifndef RENDER_SOFT_H
 #define RENDER_SOFT_H
 #include "base/workers.h"
@@ -14,37 +13,39 @@
 #include "render/frame_context.h"
 #include "render/pick/isolines.h"
 
-struct soft;    /* what all frames share */
+struct soft;    /* shared by all frames */
 struct refined; /* a refined frame that is drawn in steps */
 
-/* Returns NULL when out of memory, logged. All arguments must outlive it. */
+/* Returns NULL when out of memory, logged. All arguments must outlive the renderer. */
 struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky,
                          const struct environments *environments);
-void soft_destroy(struct soft **soft); /* &NULL is fine; leaves NULL */
+void soft_destroy(struct soft **soft); /* &NULL is fine; sets it to NULL */
 
-void soft_bound(struct soft *soft, enum tier tier, size_t bytes); /* of frames of that tier from cameras that stand still */
-size_t soft_kept_bytes(const struct soft *soft);                  /* of all these */
-size_t soft_room_bytes(const struct soft *soft);                  /* to draw in, but for refined frames that are under way */
-size_t soft_light_bytes(const struct soft *soft);                 /* read back */
-void soft_drop_spare(struct soft *soft);                          /* room to draw in, of refined frames */
-void soft_rest(struct soft *soft);                                /* drops all of these */
+/* sets the bound of visibility buffers that a tier keeps for still cameras */
+void soft_bound(struct soft *soft, enum tier tier, size_t bytes);
+size_t soft_kept_bytes(const struct soft *soft);                  /* bytes of kept visibility buffers */
+size_t soft_room_bytes(const struct soft *soft);                  /* bytes of working memory, except that of refined frames under way */
+size_t soft_light_bytes(const struct soft *soft);                 /* bytes of baked light copied from the GPU */
+void soft_drop_spare(struct soft *soft);                          /* frees the working memory that refined frames left for reuse */
+void soft_rest(struct soft *soft);                                /* frees working memory, copied light and kept visibility buffers */
 
 /* Draws pixels, markers and labels. Returns false when out of memory; logged. */
 bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,
                   struct frame *frame);
 
 struct refined *refined_begin(struct soft *soft);
-/* Draws a bit of it: four samples to a pixel say which triangles it shows, then each surface in a pixel is shaded once. context: the same
-   at each step, with its light and colour map. Returns true when nothing is left to do. */
+/* Draws one step of a refined frame: four samples per pixel find the visible triangles, then each surface in a pixel is shaded once.
+   context: the same at each step, with its light and colour map. Returns true when no step is left. */
 bool refined_step(struct refined *refined, const struct frame_context *context, const struct light *light, struct frame *frame);
-/* When nothing is left to do: labels its isolines, whose points these are, and keeps what it takes to colour the frame again. Returns false
-   when the frame failed, for want of memory; logged. */
+/* Ends a refined frame after its last step: labels its isolines at `points` and keeps its visibility buffer for recolouring. Returns false
+   when the frame failed because memory ran out; logged. */
 bool refined_keep(struct refined *refined, const struct frame_context *context, const struct isoline_points *points, struct frame *frame);
-void refined_end(struct refined **refined); /* &NULL is fine; leaves NULL */
+void refined_end(struct refined **refined); /* &NULL is fine; sets it to NULL */
 
-/* Returns whether a refined frame that differs in values and colours only was drawn, and is kept. */
+/* Returns whether the visibility buffer of a refined frame is kept that differs only in values and colours. */
 bool soft_has_refined(struct soft *soft, const struct frame_context *context);
-/* Colours a frame that is kept again: pixels, markers and labels. points: of its isolines. Returns false when it is not kept. */
+/* Colours a frame from a kept visibility buffer: pixels, markers and labels. points: of its isolines. Returns false when no buffer is
+   kept. */
 bool soft_resolve_again(struct soft *soft, const struct frame_context *context, const struct isoline_points *points, struct frame *frame);
 
 #endif

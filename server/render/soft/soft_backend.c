@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames drawn in software: a preview in one go, a refined frame step by step, or its resolve once more. */
+/* The software render backend: draws a preview at once, a refined frame in steps, or recolours a kept refined frame. */
 #include "base/clock.h"
 #include "base/mem.h"
 #include "render/render_backend.h"
@@ -8,7 +8,7 @@
 #include "render/soft/soft.h"
 
 struct soft_job {
-    struct refined *refined; /* NULL: a preview, or one that is kept */
+    struct refined *refined; /* NULL: a preview, or a recoloured frame */
 };
 
 static bool init(struct renderer *renderer)
@@ -54,7 +54,7 @@ static void abandon(struct renderer *renderer, struct render_job *job)
     job->of.soft = NULL;
 }
 
-/* Others drew meanwhile. */
+/* Continues a job after other frames were drawn meanwhile. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     if (!renderer_light_job(renderer, job))
@@ -63,12 +63,12 @@ static bool take_up(struct renderer *renderer, struct render_job *job)
     return true;
 }
 
-/* A step on all cores takes some milliseconds; the next one may take twice as long as the last. */
+/* A step on all cores takes a few milliseconds; the next one may take twice as long as the last. */
 static bool step(struct renderer *renderer, struct render_job *job, int64_t budget_ns)
 {
     struct refined *refined = job->of.soft->refined;
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
-    bool done = !refined || !take_up(renderer, job); /* end fails likewise */
+    bool done = !refined || !take_up(renderer, job); /* if take_up fails, end fails as well */
     while (!done && spent_ns + 2 * last_ns <= budget_ns) {
         done = refined_step(refined, &job->context, &renderer->light, job->frame);
         last_ns = clock_mono_ns() - start_ns - spent_ns;

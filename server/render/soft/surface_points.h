@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Spots of surfaces, eight at a time: where they are, which way they look, and how much of the sun they see. Private to soft/. */
+/* Surface points, eight at a time: position, normal, and visibility of the sun. Private to soft/. */
 #ifndef RENDER_SOFT_SURFACE_POINTS_H
 #define RENDER_SOFT_SURFACE_POINTS_H
 #include <math.h>
@@ -9,26 +9,26 @@
 #include "render/soft/refined_impl.h"
 #include "render/soft/vectors.h"
 
-struct eight_points {    /* eight of them */
-    lanes attributes[8]; /* NORMAL_X ... */
+struct eight_points {    /* eight surface points */
+    lanes attributes[8]; /* NORMAL_X, ... of refined_impl.h */
     lanes material[8];
-    lanes x, y, depth; /* in the picture */
+    lanes x, y, depth; /* position in the frame */
     lanes weights[3];
-    lanes_int back;     /* -1: looks away */
-    lanes_int mirrored; /* -1: of a mesh that is turned inside out */
-    lanes_int cut;      /* with the material: -1: what looks away shows the inner side of what is cut */
+    lanes_int back;     /* -1: the surface looks away */
+    lanes_int mirrored; /* -1: of a mesh that is mirrored */
+    lanes_int cut;      /* set with the material; -1: the mesh is cut, so back faces show the inner side */
     vec normal;
 };
 
 /* --- where ------------------------------------------------------------------------------------------------------------------- */
 
-struct corners {                    /* of eight triangles, seen from the spots: what the weights are made of */
-    float a[3][LANES], b[3][LANES]; /* to the corner, in pixels; by w where the corner has no place in the picture */
-    float w[3][LANES];              /* 1/w, or 1 */
-    float z[3][LANES], g[3][LANES]; /* depth times g, and g: 1, or w */
+struct corners {                    /* corners of eight triangles relative to the points, from which weights are computed */
+    float a[3][LANES], b[3][LANES]; /* vector to the corner in pixels; times w if a corner of the triangle cannot be projected */
+    float w[3][LANES];              /* 1/w; 1 if a corner cannot be projected */
+    float z[3][LANES], g[3][LANES]; /* z: depth times g; g: 1, or w if a corner cannot be projected */
 };
 
-/* As place_part in faces.c; a corner that has no place in the picture may lie behind the eye. */
+/* Projects corners as soft_place_part() in faces.c does. A corner that cannot be projected may lie behind the eye. */
 SOFT_INLINE void see_corners(const struct refined *refined, const struct refined_item *item, int i, struct corners *out)
 {
     const struct raster *raster = &refined->raster;
@@ -59,8 +59,9 @@ SOFT_INLINE lanes load(const float at[LANES])
     return *(const lanes *)at;
 }
 
-/* e: twice the areas to the corners, negative where the spot lies beyond an edge: it moves to the nearest place of the rim. Weights that
-   are just cut off at 0 would be those of a place far along a sliver. Triangles that were cut are cut off all the same. */
+/* Moves points outside their triangle to the nearest point on its rim. e: twice the areas opposite to the corners, negative outside an
+   edge. Clamping weights at 0 instead would give a point far along a sliver. Triangles with corners that cannot be projected are clamped
+   all the same. */
 SOFT_INLINE void keep_within(const struct corners *corners, lanes e[3])
 {
     lanes_int outside = (e[0] < 0.0f) | (e[1] < 0.0f) | (e[2] < 0.0f);
@@ -82,7 +83,8 @@ SOFT_INLINE void keep_within(const struct corners *corners, lanes e[3])
         e[k] = lanes_choose(outside, best[k], most_of(e[k], all(0)));
 }
 
-/* Weights of the corners with perspective, kept within the triangle; the spot moves to the place that they have. */
+/* Computes perspective-correct weights of the corners, clamped to the triangle, and moves the point to the position that the weights
+   give. */
 SOFT_INLINE void weigh(struct eight_points *spot, const struct corners *corners)
 {
     lanes e[3], sum, depth = all(0), over = all(0), x = all(0), y = all(0);
@@ -127,7 +129,7 @@ SOFT_INLINE quad quad_of_bytes(const uint8_t bytes[4])
     return __builtin_shufflevector(all_of, all_of, 0, 1, 2, 3);
 }
 
-/* NORMAL_X ... of a place on a triangle. */
+/* Interpolates the vertex attributes NORMAL_X, ... at a point of the triangle. */
 SOFT_INLINE void attributes_at(const struct refined *refined, const struct soft_triangle *triangle, const float weights[3], bool with_tint,
                                float out[8])
 {
@@ -154,7 +156,7 @@ SOFT_INLINE void attributes_at(const struct refined *refined, const struct soft_
     out[OPEN] = baked[2] * (1 / 255.0f);
 }
 
-/* Up to eight items; the last one fills what is left. */
+/* Computes surface points of up to eight items; the last item fills the remaining lanes. */
 SOFT_INLINE void look(const struct refined *refined, const struct refined_item *items, size_t count, bool with_material,
                       struct eight_points *spot)
 {
@@ -193,7 +195,7 @@ SOFT_INLINE vec view_of(const struct refined *refined, const struct eight_points
     return unit((vec){ ray[0], ray[1], ray[2] });
 }
 
-/* Two-sided surfaces from behind, and those whose normals are of the other side: -1. */
+/* Returns -1 for points whose normal must be flipped: two-sided surfaces seen from behind, and normals that point away from the viewer. */
 SOFT_INLINE lanes_int is_turned(const struct eight_points *spot, vec view)
 {
     lanes towards = dot(spot->normal, view);
@@ -207,7 +209,7 @@ SOFT_INLINE vec facing(const struct eight_points *spot, vec view)
 
 /* --- the sun ----------------------------------------------------------------------------------------------------------------- */
 
-/* Four taps on a turned square. s, t, depth: 0..1 over the map, a step off the surface. Outside it nothing stands in the light. */
+/* Averages four lookups on a rotated square. s, t, depth: 0..1 over the map, lifted off the surface. Points outside the map are lit. */
 SOFT_INLINE lanes sun_visible(const struct soft_light *light, lanes s, lanes t, lanes depth)
 {
     static const float turn[2] = { SUN_TURN };

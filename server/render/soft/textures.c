@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Textures in memory, with levels half as large each, and what they show at a place. */
+/* Textures in memory: makes mipmap levels, each half the size of the last, and samples them. */
 #include "render/soft/textures.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ static quad texel(const struct soft_texture *texture, const uint8_t at[4])
     return (quad){ texture->linear[at[0]], texture->linear[at[1]], texture->linear[at[2]], (float)at[3] * (1 / 255.0f) };
 }
 
-/* x: no farther than one from the texture. */
+/* Wraps or clamps a coordinate. x: at most one texel outside. */
 static int within(int x, int side, bool repeat)
 {
     if (repeat)
@@ -28,7 +28,7 @@ static int within(int x, int side, bool repeat)
     return x < 0 ? 0 : x < side ? x : side - 1;
 }
 
-/* x, y: in texels of the level, from the middle of the first one. */
+/* x, y: in texels of the level, from the centre of the first texel. */
 static quad between_texels(const struct soft_texture *texture, int level, float x, float y)
 {
     int width = side_of(texture->width_px, level), height = side_of(texture->height_px, level);
@@ -47,7 +47,7 @@ static quad between_texels(const struct soft_texture *texture, int level, float 
 
 struct texture_making {
     struct soft_materials *materials;
-    uint8_t bytes[1 << 14]; /* sRGB, of linear light 0..1 */
+    uint8_t bytes[1 << 14]; /* sRGB byte by linear light, 0..1 */
 };
 
 static void make_level(const struct texture_making *making, const struct soft_texture *texture, int level, uint8_t (*out)[4])
@@ -187,7 +187,7 @@ void soft_spread_coordinates(const float (*coordinates)[2], const uint32_t verti
     }
 }
 
-/* The texture's level whose texels are as large as pixels; between two of them. */
+/* Returns the fractional mipmap level whose texels are as large as pixels. */
 static float level_at(const struct soft_texture *texture, float uv[3][2])
 {
     float square = 0;
@@ -201,7 +201,7 @@ static float level_at(const struct soft_texture *texture, float uv[3][2])
 static float place_on(const struct soft_texture *texture, float x)
 {
     x = texture->repeat ? x - floorf(x) : fminf(x, 1);
-    return x > 0 ? x : 0; /* of no number, too */
+    return x > 0 ? x : 0; /* also 0 for NAN */
 }
 
 void soft_texture_color(const struct soft_texture *texture, float uv[3][2], float rgba[4])

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Materials and their textures, sampled as GL does: bilinear, between two levels. Immutable once made; any thread. Private to soft/. */
+/* Materials and textures, sampled like GL: bilinear within a mipmap level, linear between two levels. Immutable once made; any thread.
+   Private to soft/. */
 #ifndef RENDER_SOFT_TEXTURES_H
 #define RENDER_SOFT_TEXTURES_H
 #include "base/workers.h"
@@ -8,9 +9,9 @@
 enum { TEXTURE_LEVELS = 16 };
 
 struct soft_texture {
-    const uint8_t (*levels[TEXTURE_LEVELS])[4]; /* the finest one is the file's */
-    uint8_t (*coarse)[4];                       /* the others, its own */
-    const float *linear;                        /* linear light by byte; or the byte, 0..1 */
+    const uint8_t (*levels[TEXTURE_LEVELS])[4]; /* mipmap levels; the finest one points into the file */
+    uint8_t (*coarse)[4];                       /* memory of the coarser levels; owned */
+    const float *linear;                        /* table from byte to 0..1: linear light for sRGB textures, else proportional */
     int width_px, height_px, level_count;
     bool repeat;
 };
@@ -18,9 +19,9 @@ struct soft_texture {
 struct soft_material {
     const struct asset_material *of;
     const struct soft_texture *maps[MODEL_MAPS]; /* NULL: none */
-    bool mapped;                                 /* it has one */
+    bool mapped;                                 /* at least one map is set */
     bool blended;
-    bool cut_out; /* its base colour's alpha cuts holes */
+    bool cut_out; /* the alpha of the base colour cuts holes */
 };
 
 struct soft_materials {
@@ -30,22 +31,22 @@ struct soft_materials {
     float linear[256], plain[256];
 };
 
-/* Makes the materials of all models, one after another, with the coarser levels of their textures; the models must outlive them. Returns
-   false when out of memory; call soft_materials_finish() in both cases. */
+/* Creates the materials of all models, one model after another, with mipmaps of their textures. The models must outlive the materials.
+   Returns false when out of memory; call soft_materials_finish() in either case. */
 bool soft_materials_init(struct soft_materials *materials, const struct gl_model *models, size_t model_count, struct workers *workers);
 void soft_materials_finish(struct soft_materials *materials);
 
-/* Weights of a triangle's corners at a place of the picture, and how they change from pixel to pixel there. */
+/* Weights of a triangle's corners at a point of the frame, and their change per pixel in x and y. */
 struct soft_spread {
     float at[3], by_x[3], by_y[3];
 };
-/* weights: of soft_weights(). */
+/* weights: planes from soft_weights(). */
 void soft_spread_at(const double weights[3][3], double x, double y, struct soft_spread *spread);
-/* Coordinates of a texture there, and how they change along rows and columns. coordinates: by vertex of the file; NULL: all 0. */
+/* Computes texture coordinates at a point, and their change per pixel in x and y. coordinates: by vertex of the file; NULL: all 0. */
 void soft_spread_coordinates(const float (*coordinates)[2], const uint32_t vertices[3], const struct soft_spread *spread, float uv[3][2]);
-/* Colour of a texture there, 0..1: in linear light, and alpha. */
+/* Samples a texture: linear red, green, blue, and alpha, all 0..1. */
 void soft_texture_color(const struct soft_texture *texture, float uv[3][2], float rgba[4]);
-/* Alpha of a surface there: of its material, its vertices and its texture. */
+/* Returns the alpha of a surface point: material times vertex colour times texture. */
 float soft_alpha(const struct soft_material *material, const struct asset_view *file, const uint32_t vertices[3],
                  const struct soft_spread *spread);
 

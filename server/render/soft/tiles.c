@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tile by tile: the parts that may be seen in it, nearest first; what lies behind what was drawn is left out. */
+/* Draws tile by tile: in each the parts that may be visible, nearest first, skipping those behind what is drawn. */
 #include "render/soft/kernels.h"
 
 #include <stdlib.h>
@@ -7,8 +7,8 @@
 
 #include "base/mem.h"
 
-struct tile_entry { /* an entry of a tile's list */
-    uint64_t order; /* nearest first; then as found */
+struct tile_entry { /* a part in the list of a tile */
+    uint64_t order; /* sort key: nearest first, then in the order of finding */
     uint32_t mesh, item;
 };
 
@@ -49,11 +49,11 @@ static void fill_list(const struct soft_tile *tile, struct tile_list *list)
                 list->entries[list->count++] = (struct tile_entry){ order, (uint32_t)m, (uint32_t)i };
             }
     }
-    if (list->count > 1) /* where there is none, there may be no array */
+    if (list->count > 1) /* without entries the array may be NULL */
         qsort(list->entries, list->count, sizeof(*list->entries), by_order);
 }
 
-/* In blocks of the tile. */
+/* Returns the blocks of the tile that a rectangle touches. */
 static struct soft_rect blocks_of(const struct soft_tile *tile, const struct soft_rect *rect)
 {
     const struct soft_rect *all = &tile->rect;
@@ -74,7 +74,7 @@ static bool is_hidden(const struct soft_tile *tile, const struct soft_rect *bloc
     return true;
 }
 
-/* Where its faces are. */
+/* Returns the rectangle that encloses all listed faces. */
 static struct soft_rect faces_rect(const struct soft_tile *tile)
 {
     struct soft_rect rect = { INT16_MAX, INT16_MAX, 0, 0 };
@@ -97,7 +97,7 @@ static void begin_part(struct soft_tile *tile, const struct soft_found *found, c
     tile->cuts = cuts;
 }
 
-/* What is not shaded here: nothing is carried, nor are there patterns. */
+/* Prepares vertices of a pass without colours: nothing is carried, no patterns. */
 static void carry_nothing(struct soft_tile *tile)
 {
     size_t count = (size_t)tile->corners.count;
@@ -142,7 +142,7 @@ static void draw_part(struct soft_tile *tile, const struct soft_found *found, co
     kernels->look_again(tile, &blocks);
 }
 
-/* A field is never blended: it would mix its colours. */
+/* Returns whether this pass draws the part. A part that shows the field is never blended, since that would mix its colours. */
 static bool is_drawn(const struct soft_tile *tile)
 {
     bool blended = tile->part->blended && !tile->mesh->has_field;
@@ -170,7 +170,7 @@ static void look_at_all(struct soft_tile *tile)
     tile->raster->soft->kernels->look_again(tile, &blocks);
 }
 
-/* Before all else: what is behind a body that is cut open is hidden. */
+/* Draws section caps first: they hide everything behind them. */
 static void draw_caps(struct soft_tile *tile, const struct tile_list *list)
 {
     const struct raster *raster = tile->raster;
@@ -201,7 +201,7 @@ static int columns_of(const struct raster *raster)
 
 static void draw_tile(const struct raster *raster, int number, enum soft_output output, struct tile_list *list)
 {
-    struct soft_tile tile; /* not set to anything: corners and faces are large, and few are used */
+    struct soft_tile tile; /* left uninitialised: corners and faces are large, and only few are used */
     int left = number % columns_of(raster) * TILE_WIDTH_PX, top = number / columns_of(raster) * TILE_HEIGHT_PX;
     tile.raster = raster;
     tile.rect = (struct soft_rect){ left, top, left + TILE_WIDTH_PX - 1, top + TILE_HEIGHT_PX - 1 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of tones, and light in 32 bits. */
+/* Fills tables of tones, and packs light into 32 bits. */
 #include "render/soft/tones.h"
 
 #include <math.h>
@@ -16,12 +16,12 @@ void soft_tones_init(struct soft_tones *tones)
 
 uint32_t soft_pack_light(const float light[3])
 {
-    const float least = 0x1p-16f, most_light = 65408; /* of what the exponent reaches */
-    float most = fmaxf(fmaxf(light[0], light[1]), fmaxf(light[2], least));
+    const float min_light = 0x1p-16f, max_light = 65408; /* range of the shared exponent */
+    float brightest = fmaxf(fmaxf(light[0], light[1]), fmaxf(light[2], min_light));
     int exponent;
-    frexpf(fminf(most, most_light) * (1 + 0x1p-9f), &exponent); /* what would be rounded up to 512 has the next one */
+    frexpf(fminf(brightest, max_light) * (1 + 0x1p-9f), &exponent); /* values that would round up to 512 take the next exponent */
     uint32_t packed = (uint32_t)(exponent + 15) << 27;
     for (int c = 0; c < 3; c++)
-        packed |= (uint32_t)(ldexpf(fminf(fmaxf(light[c], 0), most_light), 9 - exponent) + 0.5f) << (9 * c);
+        packed |= (uint32_t)(ldexpf(fminf(fmaxf(light[c], 0), max_light), 9 - exponent) + 0.5f) << (9 * c);
     return packed;
 }

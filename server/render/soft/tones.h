@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From linear light to colours, eight at a time: shaders/light.glsl once more. And light on glossy fields, kept apart from their colours.
-   Private to soft/. */
+/* Conversion of linear light to colours, for eight pixels at a time; ports shaders/light.glsl. Also light on glossy fields, stored apart
+   from their colours. Private to soft/. */
 #ifndef RENDER_SOFT_TONES_H
 #define RENDER_SOFT_TONES_H
 #include "render/soft/vectors.h"
@@ -10,8 +10,8 @@ struct visibility_gloss;
 
 enum { TONES = 4096 };
 struct soft_tones {
-    float srgb[TONES + 1]; /* of linear light, 0..1 */
-    float linear[256];     /* the other way round, of bytes */
+    float srgb[TONES + 1]; /* sRGB by linear light; both 0..1 */
+    float linear[256];     /* linear light by sRGB byte */
 };
 void soft_tones_init(struct soft_tones *tones);
 
@@ -40,7 +40,7 @@ SOFT_INLINE vec tone_map(vec c)
     return (vec){ lanes_choose(low, c.x, rolled.x), lanes_choose(low, c.y, rolled.y), lanes_choose(low, c.z, rolled.z) };
 }
 
-/* Returns light of 0..65408 in nine bits for each channel and an exponent that they share, as GL_RGB9_E5. */
+/* Packs light of 0..65408 into nine bits per channel and a shared exponent, as GL_RGB9_E5. */
 uint32_t soft_pack_light(const float light[3]);
 
 SOFT_INLINE vec unpack_light(lanes_int packed)
@@ -50,7 +50,7 @@ SOFT_INLINE vec unpack_light(lanes_int packed)
                   __builtin_convertvector(packed >> 18 & 511, lanes) * scale };
 }
 
-/* Returns what glossy surfaces of these colours look like: GLOSSY in shaders/refined.frag. gloss: of eight. */
+/* Returns the colours of glossy surfaces with these base colours, as GLOSSY in shaders/refined.frag. gloss: eight elements. */
 SOFT_INLINE lanes_int glossy_colors(const struct soft_tones *tones, lanes_int colors, const struct visibility_gloss *gloss)
 {
     lanes_int halves[2];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vectors of three, eight at a time. Private to soft/. */
+/* 3-vectors, eight at a time. Private to soft/. */
 #ifndef RENDER_SOFT_VECTORS_H
 #define RENDER_SOFT_VECTORS_H
 #include <math.h>
@@ -68,7 +68,7 @@ SOFT_INLINE vec unit(vec a)
     return times(a, 1.0f / root(most_of(dot(a, a), all(1e-30f))));
 }
 
-/* Returns colours, blue lowest, of 0..1. */
+/* Packs colours of 0..1 into 24 bits, blue lowest. */
 SOFT_INLINE lanes_int pack_color(lanes red, lanes green, lanes blue)
 {
     return lanes_whole(blue * 255.0f + 0.5f) | lanes_whole(green * 255.0f + 0.5f) << 8 | lanes_whole(red * 255.0f + 0.5f) << 16;

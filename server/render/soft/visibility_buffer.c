@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From readings to what the vertices of a kept picture carry. */
+/* Visibility buffers: creates, completes and frees them, and reads fields into their vertices. */
 #include "render/soft/visibility_buffer.h"
 
 #include <math.h>
@@ -116,7 +116,7 @@ void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct v
 
 struct band_settling {
     struct visibility_buffer *buffer;
-    uint32_t *numbers; /* by vertex of the picture: 0: of no triangle that is seen; then one more than its number here */
+    uint32_t *numbers; /* per vertex of the frame: 0: not visible; else one more than its number among the kept vertices */
 };
 
 static void settle_inks(struct visibility_buffer *buffer, size_t begin, size_t end)
@@ -155,7 +155,7 @@ static void number_bands(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Of those that are seen, mesh by mesh. */
+/* Numbers the visible vertices, mesh by mesh. */
 static void number_vertices(struct visibility_buffer *buffer, uint32_t *numbers)
 {
     uint32_t count = 0;
@@ -213,7 +213,7 @@ static float carried_of(const struct scalar *scalar, const float *scale)
 
 struct reading_job {
     struct visibility_buffer *buffer;
-    const struct scalar *scalars; /* NULL: no data anywhere */
+    const struct scalar *scalars; /* NULL: the whole asset has no data */
     const float *scale;
     uint32_t first_vertex;
 };

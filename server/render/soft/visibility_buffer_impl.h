@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From what vertices carry to columns of the colormap. Private to soft/. */
+/* Helpers of the visibility buffer: positions on the scale as colour map columns, and ink over colours. Private to soft/. */
 #ifndef RENDER_SOFT_VISIBILITY_BUFFER_IMPL_H
 #define RENDER_SOFT_VISIBILITY_BUFFER_IMPL_H
 #include <string.h>
@@ -18,7 +18,7 @@ static inline float clamped(float x, float low, float high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* As carry_field in place.c. x: the value, or log2 of it. */
+/* Returns the column of a position on the scale, as carry_field() in faces.c does. x: the value, or log2 of it. */
 static inline float column_of(float x, const float *scale)
 {
     const float farthest = 1e6f;
@@ -36,7 +36,7 @@ static inline bool has_ink(const struct visibility_buffer *buffer, size_t pixel)
     return buffer->ink[pixel] || (buffer->veil && buffer->veil[pixel]);
 }
 
-/* A line, ghosts or a rim over a pixel. */
+/* Returns the colour of a pixel with feature edge, ghost line or rim over it. */
 static inline uint32_t inked(const struct visibility_buffer *buffer, size_t pixel, uint32_t color)
 {
     typedef uint8_t octets __attribute__((vector_size(4)));
