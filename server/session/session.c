@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One client: its view, what it is owed, what it may have. */
+/* One client's session: acts on its messages, ticks and limits. */
 #include "session/session_impl.h"
 #include "session/view/resume.h"
 #include "session/view/view_token.h"
@@ -167,7 +167,7 @@ static bool on_resize(struct session *session, const struct message *message, st
     if (session_is_tile(session))
         session_tile_fit(session, &session->tile.place, message->width_px, message->height_px, &session->view, &session->tile.layout);
     session_scope_fit(session, &session->view);
-    if (session->scope.named[0] && session->identity.holder.views[0]) /* its author may have left the camera to the size */
+    if (session->scope.named[0] && session->identity.holder.views[0]) /* the view's author may have left the camera to the picture's size */
         return session_look(session, session->scope.named, &session->view, error);
     if (message->pixel_ratio > 0)
         session->pixel_ratio = message->pixel_ratio;
@@ -186,7 +186,7 @@ static bool on_ack(struct session *session, const struct message *message, int64
     return false;
 }
 
-/* Answered only: the camera is the client's. */
+/* Answers `fit` with a camera without moving the view: the client owns its camera. */
 static void on_fit(struct session *session, const struct message *message)
 {
     struct camera camera = session->view.camera;
@@ -229,7 +229,8 @@ void session_on_pick(struct session *session, const struct pick_answer *answer)
     session_reply(session, reply_picked_text(session->context->plant, &cache));
 }
 
-/* Whoever signed in is called what the identity provider says; a token may be that of a desk at which many sit. */
+/* Removes the name that a signed-in user put into a message: the identity provider's name counts. A token may belong to a desk that
+   several people share, so there the name stays. */
 static void clear_claimed_name(const struct session *session, struct message *message)
 {
     if (!session->identity.holder.signed_in)
@@ -290,7 +291,7 @@ bool session_may_be(struct session *session, const struct wall_place *place, str
     return false;
 }
 
-/* From now on it is told where desks point. */
+/* Makes the session a wall display, which is sent the pointers of desks from now on. */
 static bool on_display(struct session *session, const struct message *message, struct message_error *error)
 {
     if (!session_may_be(session, &message->wall.place, error))
@@ -383,12 +384,12 @@ static bool in_order(const struct session *session, const struct message *messag
         message_fail(error, "hello_first", "the first message is hello");
         return false;
     }
-    /* What hello may say, its token decides. */
+    /* the token decides what hello may contain */
     return message->type == MESSAGE_HELLO ||
            (role_may_send(session->identity.role, message, error) && session_scope_allows(session, message, error));
 }
 
-/* On a renderer. Returns whether it is somebody else's to do. */
+/* On a renderer: forwards messages that the core must act on. Returns whether the message was dealt with. */
 static bool hand_on(struct session *session, const struct message *message, const char *text)
 {
     const struct session_context *context = session->context;
@@ -412,7 +413,8 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
     session_reply_error(session, &error);
 }
 
-/* What was read beyond a second's messages counts for those after it: whoever writes without a pause is read at that pace. */
+/* Messages read beyond the allowed number of a second count for the following seconds, so that a client that writes without a pause is
+   read at the allowed rate. */
 static void begin_second(struct message_rate *rate, int64_t most, int64_t now_ns)
 {
     int64_t seconds = (now_ns - rate->begin_ns) / NS_PER_S, allowed = seconds * most;
@@ -445,7 +447,7 @@ static bool parse(const struct session *session, const char *text, size_t count,
     struct message_error other;
     if (message_parse(known, text, count, message, error))
         return true;
-    /* A hello that brings a token may name tags: its token decides afterwards what the role may see. */
+    /* A hello that carries a token may name tags; the token decides afterwards what the role may see. */
     return known != plant && !session->hello && message_parse(plant, text, count, message, &other) && message->token[0];
 }
 
@@ -454,7 +456,7 @@ void session_on_message(struct session *session, const char *text, size_t count,
     struct message message;
     struct message_error error;
     count_message(session, now_ns);
-    if (!login_is_good(session->identity.login)) /* it is being closed */
+    if (!login_is_good(session->identity.login)) /* the connection is being closed */
         return;
     bool good = parse(session, text, count, &message, &error);
     if (good)
@@ -476,9 +478,10 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns)
     session_reply_error(session, &error);
 }
 
-static const int64_t TOKEN_NS = 3600 * NS_PER_S; /* told anew, however long the view stands still */
+static const int64_t TOKEN_NS = 3600 * NS_PER_S; /* interval at which a view token is sent again although the view has not changed */
 
-/* So that another daemon can go on where this one was killed; it believes a day's tokens, and the keys of two starts of the core. */
+/* Sends the client a new view token if its view changed, so that another daemon can go on where this one was killed. View tokens are
+   accepted for a day, and across one restart of the core. */
 static void tell_token(struct session *session, int64_t now_ns)
 {
     struct session_identity *identity = &session->identity;
@@ -496,7 +499,7 @@ static void tell_token(struct session *session, int64_t now_ns)
     mem_free(token);
 }
 
-/* Returns whether a picture is due, asked for, under way or waiting. */
+/* Returns whether a picture is due, requested, in flight or ready to send. */
 static bool is_owed(const struct session *session)
 {
     const struct frame_demand *demand = &session->demand;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One client's session: what it is shown and sent, and what it may have. Its state is in session_state.h. Pure: no socket, no clock, no GL;
-   time is handed in. Thread: the loop. */
+/* One client's session: the view it is shown, the messages it is sent and the resources it uses. Its state is in session_state.h. Pure:
+   no socket, no clock, no GL; the caller passes the time. Thread: the event loop. */
 #ifndef SESSION_SESSION_H
 #define SESSION_SESSION_H
 #include <jansson.h>
@@ -10,167 +10,173 @@
 #include "session/session_state.h"
 #include "session/view/session_view.h"
 
-#define SESSION_MAX_INPUT_BYTES (1024 * 1024) /* beyond that the connection is closed */
+#define SESSION_MAX_INPUT_BYTES (1024 * 1024) /* bytes of one message; a longer one closes the connection */
 
-/* --- life ------------------------------------------------------------------------------------------------------------- */
+/* --- life cycle ------------------------------------------------------------------------------------------------------ */
 
 /* Makes the session of a new connection. Never NULL. */
 struct session *session_create(const struct session_context *context, uint64_t id, int64_t now_ns);
-void session_destroy(struct session **session); /* &NULL is fine; leaves NULL */
-/* Says who connected; copies it, but client->share must outlive the session. Without it the client may do anything. From then on the first
-   frame waits for session_begin, for a second at most. */
+void session_destroy(struct session **session); /* &NULL is allowed; sets *session to NULL */
+/* Tells the session who connected. Copies `client`, but client->share must outlive the session. A session that was never introduced may
+   do everything. After the introduction the first frame waits for session_begin(), for a second at most. */
 void session_introduce(struct session *session, const struct session_client *client);
-/* Notes that its connection is lost, before session_destroy: gives its pixels back, and has its leader told. keep: its view is kept for the
-   client's return. */
+/* Notes that the session's connection is lost; call it before session_destroy(). Returns the view's pixels to the admission budget and
+   tells the leader. keep: keep the view for the client's return. */
 void session_leave(struct session *session, bool keep, int64_t now_ns);
-/* Records its end in the audit trail. why: static; NULL: the client went. */
+/* Records the end of the session in the audit trail. why: static text; NULL: the client left by itself. */
 void session_record_leave(const struct session *session, const char *why);
-/* Queues answers to actions that are on disk by now, or cannot be kept. Returns whether it queued any. */
+/* Queues the answers to actions that are on disk by now or can never be written. Returns whether it queued any. */
 bool session_settle(struct session *session);
-/* Has the connection closed once the texts owed are sent. text: static. The first reason stands. */
+/* Asks the event loop to close the connection once all queued texts are sent. text: static. If called more than once, the first reason
+   counts. */
 void session_close(struct session *session, int code, const char *text);
-/* Returns whether nobody was at the page for longer than the server waits (--lock-after), with *error saying so. A person may be at another
-   page of theirs, which openid/ knows: no person is locked here. */
+/* Returns whether the user has been inactive for longer than --lock-after allows, with *error saying so. Always false for a person who
+   signed in with OpenID Connect: access/openid watches that person across several pages. */
 bool session_left_alone(const struct session *session, int64_t now_ns, struct message_error *error);
-/* Closes the session if its token was revoked or has expired; else updates its role. */
+/* Closes the session if its token was revoked or has expired; otherwise updates the session's role from the token. */
 void session_check_token(struct session *session, int64_t now_ns, int64_t now_utc_ns);
-/* Returns the last state of pacing: a client that takes nothing is first sent nothing, then to be disconnected. */
+/* Returns the pacer's state. A client that acknowledges nothing is first sent no more frames (PACER_STALLS), then disconnected
+   (PACER_DEAD). */
 enum pacer_state session_state(const struct session *session, int64_t now_ns);
 
-/* --- the plant is loaded anew ----------------------------------------------------------------------------------------- */
+/* --- plant reload ---------------------------------------------------------------------------------------------------- */
 
-/* Releases all that belongs to the plant. Returns the parameters of its view, as text, for session_take_plant; mem_free. NULL: it has no
-   view. */
+/* Releases everything that belongs to the old plant. Returns the parameters of the session's view as text for session_take_plant(); the
+   caller frees it with mem_free. NULL: the session has no view. */
 char *session_carry(struct session *session);
-/* Takes the plant that the context now has. carried: what session_carry returned; it is applied as far as its names still exist. */
+/* Switches to the plant that the context now has. carried: the text from session_carry(); names that the new plant lacks are skipped. */
 void session_take_plant(struct session *session, const char *carried);
-/* Writes the view that the session will have in the plant of another context. */
+/* Writes into *out the view that the session will have in the plant of another context. */
 void session_view_in(const struct session *session, const struct session_context *context, struct view *out);
 
 /* --- input ------------------------------------------------------------------------------------------------------------ */
 
-/* Takes a text message of the client, acts on it, and queues answers. */
+/* Parses a text message of the client, acts on it, and queues answers. */
 void session_on_message(struct session *session, const char *text, size_t count, int64_t now_ns, int64_t now_utc_ns);
-/* Refuses a message of so many bytes, too long to be kept. */
+/* Refuses a message of `count` bytes, which was too long to be stored. */
 void session_on_oversize(struct session *session, size_t count, int64_t now_ns);
-/* Tells the client that it sends too much; the loop reads nothing more from it until this second is over. whose: "" or
-   "of this address ". */
+/* Tells the client that it sent `count` messages, too many for one second; the event loop reads nothing more from it until this second
+   is over. whose: "" or "of this address ". */
 void session_too_fast(struct session *session, int64_t count, const char *whose);
-/* Does what time alone brings. To be called every 100 ms or so, or once a second while all sessions rest. */
+/* Does what depends on time alone. Call it about every 100 ms, or once a second while session_rests() is true for all sessions. */
 void session_on_tick(struct session *session, int64_t now_ns);
-/* Returns since when, on the monotonic clock, the client may not show what is newest: now or a moment ago where it answers and nothing is
-   owed to it, else when that was last so, or when the last picture was sent that it acknowledged, whichever is later. */
+/* Returns the monotonic time up to which the client's display is known to be current. If nothing is owed to the client, that is when its
+   last message arrived. Otherwise it is the later of two times: when nothing was owed last, and when the last acknowledged picture was
+   sent. */
 int64_t session_fresh_ns(const struct session *session);
-/* Returns whether session_on_tick() has nothing to do within the next second: no frame is wanted or under way, and no text is due. */
+/* Returns whether session_on_tick() has nothing to do within the next second: no frame is wanted or in flight, and no text is due. */
 bool session_rests(const struct session *session, int64_t now_ns);
-/* Notes that a reading which it is shown changed at data_ns. */
+/* Notes that a reading shown in this session changed at data_ns (monotonic). */
 void session_on_data(struct session *session, int64_t data_ns);
-/* Notes that sources were connected or lost. */
+/* Notes that connections to data sources were made or lost. */
 void session_on_links(struct session *session);
-/* Returns whether its client moved within the last second. */
+/* Returns whether the client moved its camera within the last second. */
 bool session_moves(const struct session *session, int64_t now_ns);
 
 /* --- frames ----------------------------------------------------------------------------------------------------------- */
 
-/* Returns true if a frame is wanted now, with the request in *request. Then, if the render service takes it, call session_requested. */
+/* Returns true if a frame is wanted now, with the request in *request. If the render service accepts that request, call
+   session_requested(). */
 bool session_next_request(const struct session *session, int64_t now_ns, struct frame_request *request);
-/* Notes that the render service took the request; replaced: in place of an earlier one. */
+/* Notes that the render service accepted the request. replaced: it replaced an earlier request of this session. */
 void session_requested(struct session *session, const struct frame_request *request, bool replaced);
-/* Has the client told, once, why a frame that it wants signed is not. */
+/* Tells the client, once, why a frame that it wants signed comes unsigned. */
 void session_not_signed(struct session *session, const struct message_error *why);
-/* Takes over an encoded frame, or the news that there is none. */
+/* Takes ownership of an encoded frame, or of the result that says that there is no frame. */
 void session_on_frame(struct session *session, struct encoded_frame *encoded);
-/* Returns whether session_next_frame would return one now. */
+/* Returns whether session_next_frame() would return a frame now. */
 bool session_has_frame(const struct session *session);
-/* Takes out the next frame to send, which the caller then owns, and writes its number. NULL: none is ready. To be followed by
-   session_wrote for each part of it. */
+/* Takes out the next frame to send and writes its sequence number to *seq. The caller owns the frame. NULL: none is ready. Call
+   session_wrote() after each part of the frame is written. */
 struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq);
-/* Notes that the socket took a part of that frame; all: its end. */
+/* Notes that the socket accepted a part of the frame being sent. all: it was the last part. */
 void session_wrote(struct session *session, bool all, int64_t now_ns);
-/* Returns whether the frame that is being sent is not worth its remaining bytes: the view of a refined frame has changed, or nothing is
-   taken at all. */
+/* Returns whether the rest of the frame being sent is not worth sending: the view of a refined frame has changed, or the client
+   acknowledges nothing at all. */
 bool session_gives_up(const struct session *session, const struct encoded_frame *sending, size_t bytes_left, int64_t now_ns);
-/* Notes that the frame was cut short. */
+/* Notes that the frame being sent was cut short. */
 void session_gave_up(struct session *session);
-/* Takes the first measure of the bandwidth: so many bytes of texts had arrived after took_ns. The first frame is made accordingly. */
+/* Takes the first bandwidth measurement: `bytes` bytes of texts had arrived after took_ns. Chooses the quality of the first frame by it. */
 void session_begin(struct session *session, size_t bytes, int64_t took_ns);
-/* Returns the pacer if its `acked` is a frame that the client has shown since the last call; else NULL. */
+/* Returns the pacer if the client has newly acknowledged a frame (pacer->acked) since the last call; otherwise NULL. */
 const struct pacer *session_take_shown(struct session *session);
-/* Takes a measured round trip. */
+/* Records a measured round-trip time. */
 void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns);
 
-/* Returns the views that a token of some views is for, as [{id, title}]. */
+/* Returns the plant file's views that a narrowed token allows, as a JSON array of {id, title}. The caller owns it. */
 json_t *session_scope_views(const struct session *session);
 
 /* --- texts ------------------------------------------------------------------------------------------------------------ */
 
-/* Returns whether session_next_text would return one now. */
+/* Returns whether session_next_text() would return a text now. */
 bool session_has_text(const struct session *session, int64_t now_ns);
-/* Returns whether that text may list readings: the context's snapshot should be up to date. */
+/* Returns whether the next text may list readings, so that the caller refreshes the context's snapshot first. */
 bool session_tags_due(const struct session *session, int64_t now_ns);
 /* Appends the next text message to send to `out`. Returns false if none is due. */
 bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_ns, struct text *out);
-/* Queues a text about something that the client asked for. */
+/* Queues a copy of a text that answers a request of the client. */
 void session_say(struct session *session, const char *text);
 
-/* --- picks ------------------------------------------------------------------------------------------------------------ */
+/* --- picks (what is at a pixel) -------------------------------------------------------------------------------------- */
 
-/* Returns true if a pixel is to be asked about now, with the question in *query. */
+/* Returns true if a pick is due, with the query for the render service in *query. */
 bool session_next_pick(struct session *session, struct pick_query *query);
-/* Queues the answer. */
+/* Queues the answer to a pick for the client. */
 void session_on_pick(struct session *session, const struct pick_answer *answer);
 
 /* --- time travel ------------------------------------------------------------------------------------------------------ */
 
-/* Returns true if readings of an instant are to be loaded now, with it in *at_us. Advances play, which may end in the present. */
+/* Returns true if the readings of an instant should be loaded now, with the instant in *at_us. Advances playback, which may end in the
+   present. */
 bool session_wants_historical_snapshot(struct session *session, int64_t now_ns, int64_t now_utc_ns, int64_t *at_us);
-/* Shows the instant, whose readings are in the cache now, if the session waits for any instant: for this one, or for another that it
-   travels to. Does nothing if it waits for none. good false (they could not be read), or no longer in the cache: replies with the error
-   no_history, stops playing and goes on showing what it showed. */
+/* Call it when loading the readings of at_us has ended. If the session waits for an instant, shows at_us, also when the session has
+   moved on to another instant meanwhile; otherwise does nothing. If `good` is false (loading failed) or the snapshot is no longer in the
+   cache, replies with the error no_history, stops playback and leaves the view unchanged. */
 void session_on_historical_snapshot(struct session *session, int64_t at_us, bool good, int64_t now_ns);
 
 /* --- following -------------------------------------------------------------------------------------------------------- */
 
-/* Shows the leader's view from now on; NULL: its own. */
+/* Shows the leader's view from now on; leader NULL: shows the session's own view. */
 void session_follow(struct session *session, struct session *leader, int64_t now_ns);
-/* Refuses to follow: there is no such session. */
+/* Replies that the session to follow does not exist. */
 void session_follow_nobody(struct session *session);
 /* Notes that the leader's view changed. */
 void session_on_leader(struct session *session, int64_t now_ns);
-/* Notes that the leader is being destroyed: its last view stays, until the client follows another, or nobody. */
+/* Notes that the leader is about to be destroyed. Its last view stays on show until the client follows another session or nobody. */
 void session_leader_gone(struct session *session, int64_t now_ns);
-/* Gives the heir the view of the session, at the heir's own size. */
+/* Copies the view of `session` to the heir, at the heir's own size. */
 void session_inherit(struct session *heir, const struct session *session);
-/* Refuses to hand over the lead to `heir`: that session does not follow this one. */
+/* Replies that the lead cannot be handed to session number `heir`, because that session does not follow this one. */
 void session_lead_nobody(struct session *session, uint64_t heir);
 /* Takes out what the client asked about following since the last call. */
 struct follow_request session_take_follow_request(struct session *session);
-/* Three steps by which all who see one view take the same step of the quality ladder: each of them is to be called for all sessions before
-   the next one is. */
+/* Give all sessions that see one view a common step of the quality ladder. Call each of the three functions for all sessions before the
+   next one: clear, count, choose. */
 void session_clear_steps(struct session *session);
 void session_count_step(struct session *session);
 void session_choose_step(struct session *session);
-/* Has the client told who follows it, by numbers. */
+/* Queues the list of the session's followers, given by session number, for the client. */
 void session_say_followers(struct session *session, const uint64_t *sessions, size_t count, int64_t now_ns);
 
-/* --- tiles of one picture (tile_sync.h) ---------------------------------------------------------------------------- */
+/* --- tiles of a picture over many displays (tile_sync.h) -------------------------------------------------------------- */
 
 bool session_is_tile(const struct session *session);
-/* Moves what the display shows of the picture, with the next one, which is sent for that. */
+/* Shifts the part of the picture that this display shows, as burn-in protection. The shift takes effect with the next picture, which is
+   requested for it. */
 void session_tile_move(struct session *session, struct burn_shift shift, int64_t now_ns);
-/* Leaves the session out if it has held up the others for too long, and lets it in again after a while. Returns whether that changed. */
+/* Drops the tile from its wall if it has delayed the others for too long, and readmits it after a pause. Returns whether that changed. */
 bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc_ns);
-/* Tells the session which displays of its wall are there, if that changed. there, late_us: by display, from 0; late_us: since when it is
-   left out, UTC, 0: it is not. */
+/* Tells the client which displays of its wall are connected, if that changed. there, late_us: arrays indexed by display - 1. late_us:
+   UTC microseconds since when that tile is dropped; 0: it takes part. leads: this session leads the wall. */
 void session_tile_tell(struct session *session, const bool *there, const int64_t *late_us, bool leads);
 
 /* --- placing sensors -------------------------------------------------------------------------------------------------- */
 
-/* Shows new places of its sensors, if distances for them were computed. */
+/* Redraws the session's trial sensor positions once distances for them were computed. */
 void session_on_placed(struct session *session, int64_t now_ns);
-/* Takes out the tag list that is to be put in force; the caller then owns it. NULL: none. */
+/* Takes out the tag list that is to be put in force; the caller owns it. NULL: none. */
 struct tag_save *session_take_save(struct session *session);
-/* Queues the answer to `gaps`. */
+/* Queues the answer to the message `gaps` (sensor coverage). */
 void session_on_coverage(struct session *session, const struct sensor_coverage_answer *answer);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A session's answers, and what an input and the end of its connection change. */
+/* Functions that queue a session's answers, note inputs and close the session. */
 #include <string.h>
 
 #include "base/mem.h"
@@ -16,7 +16,7 @@ void session_close(struct session *session, int code, const char *text)
 
 void session_reply(struct session *session, char *text)
 {
-    if (session->owed.reply_count == SESSION_MAX_REPLIES) { /* it does not read: the oldest answer is worth least */
+    if (session->owed.reply_count == SESSION_MAX_REPLIES) { /* the client reads nothing: the oldest answer is the least useful */
         mem_free(session->owed.replies[0]);
         memmove(session->owed.replies, session->owed.replies + 1, sizeof(session->owed.replies) - sizeof(session->owed.replies[0]));
         session->owed.reply_count--;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the audit trail is told of a session's messages: who changed what, and who was refused. */
+/* Audit trail entries for a session's messages: which user changed what, and which requests were refused. */
 #include <jansson.h>
 #include <string.h>
 
@@ -75,7 +75,7 @@ void session_record_loop_check(const struct session *session, const struct messa
     json_decref(said);
 }
 
-/* Takes what was done. The answer says whether it was kept, and why not. */
+/* Records an action; takes ownership of `what` (mem_free). The answer says whether the action was kept, and why not. */
 static void record_kept(const struct session *session, const char *event, char *what, const char *answer)
 {
     json_t *said = json_loads(answer, 0, NULL);
@@ -164,7 +164,8 @@ void session_record_params(const struct session *session, const struct message *
     record_baseline(session, &message->split.right);
 }
 
-/* A page that is dragged says so many times a second; whoever may see some views only is not told of each. */
+/* Returns whether a refusal is not worth recording: dragging a page sends camera and params many times a second, and a token narrowed to
+   views is refused each time. */
 static bool is_idle(const struct session *session, const char *about)
 {
     return session->identity.holder.views[0] && (!strcmp(about, "camera") || !strcmp(about, "params"));

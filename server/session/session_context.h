@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What all sessions have in common. Thread: the loop. */
+/* State that all sessions share: the plant, its services and the server's limits. Thread: the event loop. */
 #ifndef SESSION_SESSION_CONTEXT_H
 #define SESSION_SESSION_CONTEXT_H
 #include "access/openid/openid.h"
@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "session/session_state.h"
 
-/* Set by the loop; sessions change only the members that say so. */
+/* The event loop sets the members; sessions change only those whose comments say so. */
 struct view_token_keys;
 
 enum audience_lists { LISTS_NAMED, LISTS_OPEN, LISTS_VIEWS, LISTS };
@@ -19,47 +19,48 @@ struct session_context {
     const struct snapshot *snapshot; /* the newest readings */
     struct baselines *baselines;
     struct snapshot_cache *snapshot_cache; /* readings of past instants; NULL: nothing is recorded */
-    int64_t history_first_us;              /* where recorded history begins; 0: nothing is recorded yet */
+    int64_t history_first_us;              /* UTC microseconds at which recorded history begins; 0: nothing is recorded yet */
     int64_t changed_ns;                    /* monotonic: when a snapshot last differed from the one before */
     struct alarm_service *alarm_service;   /* NULL: no alarms */
-    struct alarm_text_cache *alarm_texts;  /* NULL: each text is made anew */
+    struct alarm_text_cache *alarm_texts;  /* cache of alarm texts; NULL: no caching */
     struct placing *placing;               /* NULL: sensors cannot be placed */
-    const char *tag_list;                  /* the text in force; NULL: it could not be read */
-    bool saving;                           /* a saved list is being put in force */
-    struct loop_checks *loop_checks;       /* NULL: loops cannot be checked */
+    const char *tag_list;                  /* text of the tag list in force; NULL: it could not be read */
+    bool saving;                           /* a saved tag list is being put in force */
+    struct loop_checks *loop_checks;       /* loop check records; NULL: loops cannot be checked */
     struct named_views *named_views;       /* changed by save_view and remove_view */
     struct notes *notes;                   /* changed by note and remove_note */
     struct wall_remote *wall_remote;       /* changed by send_to_wall and point */
     struct pairings *pairings;             /* changed by pair and unpair */
-    /* On a renderer: hands a message of a session on to the core, which answers later. Returns false if there is no core now. NULL: this
-       daemon does it itself. */
+    /* On a renderer: forwards a session's message to the core, which answers later. Returns false if the core is not connected. NULL:
+       this daemon is no renderer and acts on messages itself. */
     bool (*hand_on)(void *arg, const struct session *session, const char *text);
     void *hand_on_arg;
-    bool core_up;                          /* likewise: readings come from the core */
-    const struct view_token_keys *token_keys; /* NULL: views are not told as tokens */
-    const bool *links_up;                  /* by source */
-    bool imports;                          /* engineers may bring plants in */
-    const char *signing_key;               /* the id of the key that signs pictures; NULL: none does */
-    bool live;                             /* a source is connected */
-    struct clock_state clock;              /* how right the wall clock is */
-    int64_t moving_until_ns;               /* some camera moves until then; refined frames of others would make it stutter */
-    bool overloaded;                       /* refined frames for all, at each change of readings, are more than can be drawn */
-    unsigned codecs;                       /* a bit, 1 << enum wire_codec, for each that works here; 0: JPEG and PNG */
-    double cpu_used;                       /* share of all processors of the machine, 0..1 */
-    const char *node; /* this daemon's name among those that a load balancer stands before; NULL: it is alone */
+    bool core_up;                          /* on a renderer: the core sends readings */
+    const struct view_token_keys *token_keys; /* keys that sign view tokens; NULL: clients get no view tokens */
+    const bool *links_up;                  /* connection state of each data source, by source index */
+    bool imports;                          /* engineers may import plants */
+    const char *signing_key;               /* id of the key that signs pictures; NULL: pictures are not signed */
+    bool live;                             /* at least one source is connected */
+    struct clock_state clock;              /* whether the wall clock is set, and its error */
+    /* monotonic: until then some camera counts as moving, and refined frames of other sessions would make it stutter */
+    int64_t moving_until_ns;
+    bool overloaded; /* refining every session at each change of readings would take more than the render thread has */
+    unsigned codecs;                       /* bit mask of the codecs that work here (1 << enum wire_codec); 0: JPEG and PNG */
+    double cpu_used;                       /* busy share of all processors of the machine, 0..1 */
+    const char *node; /* this daemon's name behind a load balancer; NULL: it runs alone */
     const char *version;
     const struct quotas *quotas;
     const struct tokens *tokens;           /* NULL: none are configured */
-    struct openid *openid;                 /* NULL: nobody signs in */
-    int64_t lock_ns;                       /* who was not at the page for so long has to say again who it is; 0: nobody has to */
+    struct openid *openid;                 /* sign-in with OpenID Connect; NULL: off */
+    int64_t lock_ns;                       /* monotonic duration without user activity after which the user must sign in again; 0: never */
     struct login_throttle *login_throttle; /* changed by hello; NULL: wrong tokens are not counted */
-    struct audit *audit;                   /* NULL: nothing is recorded */
-    bool *kept_answers;                    /* set where an answer waits for the disk: session_settle() is due soon; may be NULL */
+    struct audit *audit;                   /* the audit trail; NULL: nothing is recorded */
+    bool *kept_answers; /* set to true when an answer waits for the disk, so that session_settle() is due soon; may be NULL */
     struct resumes *resumes;               /* changed by hello */
-    struct admission *admission;           /* its pixels are changed by hello, resize and visible */
-    struct tag_text_cache *tag_texts;      /* NULL: each text is made anew */
-    /* Parts of `welcome` that sessions share, by enum audience_lists: for clients with names, for open viewers, for tokens narrowed to
-       views. NULL: each text is made again. */
+    struct admission *admission;           /* admission budget; its pixel counts are changed by hello, resize and visible */
+    struct tag_text_cache *tag_texts;      /* cache of `tags` messages; NULL: no caching */
+    /* Cached parts of `welcome`, by enum audience_lists: for clients with names, for open viewers, for tokens narrowed to views. NULL:
+       no caching. */
     char **lists_said;
 };
 

@@ -1,25 +1,28 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which frames a session wants, and what becomes of those that come. */
+/* Decides which frames a session wants next, and what to do with those that arrive. */
 #include "base/clock.h"
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-static const int64_t STILL_NS = 200 * NS_PER_MS;         /* nothing moved for so long: refine */
-static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS; /* likewise, when not all can be refined */
-static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;     /* but after so long without one, however often readings change */
-static const int64_t PATIENCE_NS = 10 * NS_PER_S;        /* others may move for so long before one is refined all the same */
-static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;    /* refined frames that take the network longer come in two stages */
-static const int64_t CALM_NS = 1000 * NS_PER_MS;         /* the second one after so long */
-static const int64_t START_NS = 1000 * NS_PER_MS;        /* the network is not waited for any longer */
-static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;       /* what is left of a refined frame, when its view has changed */
-static const int64_t AGAIN_NS = 2000 * NS_PER_MS;        /* what there was no memory for is tried again after so long */
-static const double STILL_OVER_MOVING = 3;               /* in bytes, before one was seen */
+static const int64_t STILL_NS = 200 * NS_PER_MS;         /* a refined frame is due after this long without movement */
+static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS; /* the same while the render thread is overloaded */
+/* while overloaded: a refined frame is due after this long without one, even if readings keep changing */
+static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;
+static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S; /* a refined frame is postponed for at most this long while other cameras move */
+/* refined frames that the network needs longer for come in two stages: draft, then full quality */
+static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;
+static const int64_t FULL_QUALITY_DELAY_NS = 1000 * NS_PER_MS; /* delay before the second stage */
+static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;     /* maximum wait for the first bandwidth measurement */
+/* a refined frame whose view has changed is cut short if the rest would take longer than this */
+static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;
+static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before a frame that failed for lack of memory is requested again */
+static const double STILL_OVER_MOVING = 3; /* assumed ratio of refined to preview size in bytes before a refined frame was sent */
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
-static const int64_t SOON_NS = 120 * NS_PER_MS; /* cameras of one movement follow each other so soon */
-enum { SMALL_PX = 128 };                        /* sides that are not made smaller */
+static const int64_t CAMERA_INTERVAL_NS = 120 * NS_PER_MS; /* cameras of one movement arrive closer together than this */
+enum { SMALL_PX = 128 }; /* shortest side of a picture in pixels; the quality ladder does not shrink it further */
 
-/* The one who already has a frame keeps it; a new one would look at nothing. */
+/* Handles a frame that could not be drawn. A session that already shows a frame keeps it; a new session would see nothing and is closed. */
 static void on_failure(struct session *session, const struct frame_request *request)
 {
     struct message_error error = { 0 };
@@ -36,7 +39,8 @@ static void on_failure(struct session *session, const struct frame_request *requ
     session_reply_error(session, &error);
 }
 
-/* What came may be less refined than what was asked for, or more: readings overtake a refined frame, which shows them in the end. */
+/* Notes whether the shown picture now has full quality. The frame that arrived need not be the newest request: it may be a preview sent
+   in place of a refined frame, or a refined frame requested before a reading changed. */
 static void note_refined(struct session *session, const struct frame_request *request)
 {
     struct view view = session_shown(session);
@@ -51,8 +55,8 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     if (encoded->failed)
         on_failure(session, &encoded->request);
     bool late = encoded->number < session->delivery.newest_number;
-    /* Whatever was refined before: also what came while this one was drawn, and also where it looks like the preview that is shown already,
-       and so none comes. */
+    /* A preview replaces any refined picture. This also holds if a refined frame arrived while the preview was drawn, or if the preview
+       equals the frame already shown and therefore has no packet. */
     if (encoded->request.view.tier == TIER_PREVIEW && !late)
         session->demand.refined = REFINED_NOT;
     if (!encoded->packet || late) {
@@ -69,7 +73,7 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     note_refined(session, &encoded->request);
     if (session_is_tile(session))
         session_tile_came(session, &encoded->request, encoded->made_ns);
-    if (encoded_frame_stands_alone(encoded)) /* newer than what the socket has not yet taken */
+    if (encoded_frame_stands_alone(encoded)) /* a frame that decodes on its own makes frames not sent yet obsolete */
         session_drop_ready(session);
     struct encoded_frame **last = &session->delivery.ready;
     while (*last)
@@ -97,7 +101,7 @@ void session_on_data(struct session *session, int64_t data_ns)
 
 /* --- requests --------------------------------------------------------------------------------------------------------- */
 
-/* A refined frame would hold up for long what comes after it. */
+/* Returns whether a refined frame would block the network for longer than SLOW_STILL_NS. */
 static bool is_slow(const struct session *session)
 {
     double bytes =
@@ -108,23 +112,23 @@ static bool is_slow(const struct session *session)
 static bool is_calm(const struct session *session, int64_t now_ns)
 {
     int64_t last_ns = session->demand.preview_ns > session->demand.refined_ns ? session->demand.preview_ns : session->demand.refined_ns;
-    return session->delivery.pacer.flight_count == 0 && !session->demand.data && now_ns - last_ns >= CALM_NS;
+    return session->delivery.pacer.flight_count == 0 && !session->demand.data && now_ns - last_ns >= FULL_QUALITY_DELAY_NS;
 }
 
 static bool refine_due(const struct session *session, int64_t now_ns)
 {
     const struct session_context *context = session->context;
-    bool others_move = now_ns < context->moving_until_ns && now_ns - session->demand.input_ns < PATIENCE_NS;
+    bool others_move = now_ns < context->moving_until_ns && now_ns - session->demand.input_ns < MAX_POSTPONE_NS;
     bool short_of = context->overloaded || is_slow(session);
     bool data_moves =
         short_of && now_ns - session->demand.preview_ns < LOADED_STILL_NS && now_ns - session->demand.refined_ns < LOADED_SHARE_NS;
-    bool failed = session->demand.failed_ns && now_ns - session->demand.failed_ns < AGAIN_NS;
+    bool failed = session->demand.failed_ns && now_ns - session->demand.failed_ns < RETRY_DELAY_NS;
     if (session->demand.refined == REFINED_FULL || session->delivery.pacer.asked > 0 || others_move || data_moves || failed)
         return false;
     return session->demand.refined == REFINED_DRAFT ? is_calm(session, now_ns) : now_ns - session->demand.input_ns >= STILL_NS;
 }
 
-/* The data's frame is refined at once where all can be. */
+/* Returns whether the render thread can refine a frame for each change of readings in all sessions, and no camera moves. */
 static bool all_can_be_refined(const struct session *session, int64_t now_ns)
 {
     return !session->context->overloaded && now_ns >= session->context->moving_until_ns;
@@ -156,8 +160,8 @@ static void make_still(const struct session *session, struct frame_request *requ
     request->quality = request->draft ? DRAFT : STILL;
 }
 
-/* Whoever looks at a refined frame keeps it when readings change, if it is quick to colour again. Where it is not there yet, readings that
-   have waited for it long enough (render_thread_next.c) are shown by a preview: it may take a minute, as where light is baked first. */
+/* Requests a refined frame for changed readings, if that is as quick as a preview; otherwise a preview (or_moving). A refined frame can
+   take a minute, for example while lighting is baked; render_thread_next.c shows a preview once readings have waited too long. */
 static void make_refreshed(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
     const struct quality_ladder *ladder = &session->delivery.pacer.ladder;
@@ -167,10 +171,10 @@ static void make_refreshed(const struct session *session, int64_t now_ns, struct
     request->moving_quality.quality = quality_ladder_rung(ladder, quality_ladder_step(ladder, session->delivery.common_step)).quality;
 }
 
-/* A camera that moves, if not fast, brings new readings with its next frame: they need none of their own. */
+/* Returns whether the next camera of a slow movement will show the new readings with its own frame. */
 static bool next_camera_brings(const struct session *session, int64_t now_ns)
 {
-    return session->demand.refined == REFINED_NOT && now_ns - session->demand.input_ns < SOON_NS;
+    return session->demand.refined == REFINED_NOT && now_ns - session->demand.input_ns < CAMERA_INTERVAL_NS;
 }
 
 static bool wants(const struct session *session, int64_t now_ns, struct frame_request *request)
@@ -182,7 +186,8 @@ static bool wants(const struct session *session, int64_t now_ns, struct frame_re
         make_moving(session, request);
     } else if (refine_due(session, now_ns)) {
         request->view.input_ns = now_ns;
-        request->always = session->demand.refined == REFINED_DRAFT; /* the same, but better */
+        /* send the frame even if it shows the same content: its quality is better */
+        request->always = session->demand.refined == REFINED_DRAFT;
         make_still(session, request);
     } else if (session->demand.data && !next_camera_brings(session, now_ns)) {
         request->view.input_ns = session->demand.data_ns;
@@ -270,11 +275,12 @@ void session_choose_again(struct session *session, int64_t now_ns)
 
 bool session_begun(const struct session *session, int64_t now_ns)
 {
-    bool starts = session->demand.starting && now_ns - session->demand.starting_ns < START_NS;
+    bool starts = session->demand.starting && now_ns - session->demand.starting_ns < MAX_START_WAIT_NS;
     return !starts && (!session->travel.first || session->following.leader);
 }
 
-/* What is being refined takes nothing of the network yet: readings do not wait for it, however slow the client is. */
+/* Returns whether a frame may be requested. A refined frame still being drawn does not use the network yet, so new readings need not
+   wait for it, however slow the client is. */
 static bool may_ask(const struct session *session, int64_t now_ns)
 {
     const struct pacer *pacer = &session->delivery.pacer;
@@ -292,7 +298,7 @@ bool session_next_request(const struct session *session, int64_t now_ns, struct 
     return true;
 }
 
-/* Lossless, and with what it is drawn from. */
+/* Makes the request lossless and adds the record of its inputs, if the client wants such frames signed. */
 static void make_signed(const struct session *session, struct frame_request *request)
 {
     enum signed_frames frames = session->codec.signed_frames;
@@ -311,7 +317,7 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
 {
     *request = (struct frame_request){ .view = session_shown(session), .codec = session->codec.current, .asked_ns = now_ns };
     request->account = session->room.share ? session->room.share->account : 0;
-    request->read_ns = request->view.at_us ? 0 : session->context->changed_ns; /* what was does not change */
+    request->read_ns = request->view.at_us ? 0 : session->context->changed_ns; /* readings of a past instant never change */
     request->view.camera_seq = session->view.camera_seq;
     request->view.params_seq = session->view.params_seq;
     bool wanted = wants(session, now_ns, request);
@@ -330,9 +336,9 @@ void session_requested(struct session *session, const struct frame_request *requ
         session->demand.refined_ns = request->asked_ns;
 }
 
-/* --- on its way ------------------------------------------------------------------------------------------------------- */
+/* --- frames in flight --------------------------------------------------------------------------------------------------- */
 
-/* A tile is sent one at a time: what says when to show it is not to wait behind the next. */
+/* Tiles send one frame at a time, so that the message that says when to show a frame does not queue behind the next frame. */
 bool session_has_frame(const struct session *session)
 {
     return session->delivery.ready && (!session_is_tile(session) || session->delivery.pacer.flight_count == 0);
@@ -365,7 +371,7 @@ void session_wrote(struct session *session, bool all, int64_t now_ns)
 
 bool session_gives_up(const struct session *session, const struct encoded_frame *sending, size_t bytes_left, int64_t now_ns)
 {
-    if (sending->packet->codec == WIRE_CODEC_H264) /* the next would have to stand alone, and be larger */
+    if (sending->packet->codec == WIRE_CODEC_H264) /* the next H.264 frame would have to be a key frame, which is larger */
         return false;
     if (pacer_state(&session->delivery.pacer, now_ns) != PACER_FLOWS || session->hidden)
         return true;
@@ -373,7 +379,7 @@ bool session_gives_up(const struct session *session, const struct encoded_frame 
     return moved && pacer_is_slower(&session->delivery.pacer, (double)bytes_left, GIVE_UP_NS);
 }
 
-/* The render thread takes it for shown: the next is drawn whatever it shows. */
+/* The render thread takes a cut frame for shown, so the next frame must be drawn even if its content is the same. */
 void session_gave_up(struct session *session)
 {
     pacer_gave_up(&session->delivery.pacer);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The first message of a session: who it is, whether there is room for it, and what it looks at. */
+/* Acts on `hello`: verifies the client, admits the session and sets its first view. */
 #include <string.h>
 
 #include "scene/scene_create.h"
@@ -33,7 +33,7 @@ static bool judge_token(struct session *session, const char *token, int64_t now_
     return true;
 }
 
-/* With a token, its holder's role counts, even where none is needed. */
+/* Checks the token and the role. If a token is given, its role counts, even if no token is required. */
 static bool identify(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns,
                      struct message_error *error)
 {
@@ -48,7 +48,7 @@ static bool identify(struct session *session, const struct message *message, int
     return false;
 }
 
-/* A tile takes its part of the picture: all of them share that. */
+/* Reserves pixels for the session. A tile counts only its own display, because all tiles share one picture. */
 static bool admit(struct session *session, const struct message *message, const struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -63,7 +63,8 @@ static bool admit(struct session *session, const struct message *message, const 
     return false;
 }
 
-/* A tile may lead all the others, and they wait for it: it takes the token of that display, or an engineer's. */
+/* Starts the session as a tile. A tile may lead its wall and can delay it, so this requires the token of that display or the role
+   engineer. */
 static bool begin_tile(struct session *session, const struct message *message, struct view *view, struct message_error *error)
 {
     const struct wall_place *place = &message->tile;
@@ -83,7 +84,7 @@ static bool begin_tile(struct session *session, const struct message *message, s
     return true;
 }
 
-/* The view to begin with: the one it left, or the plant's own. */
+/* Sets the first view: the resumed one, or the plant's default. */
 static bool begin_view(struct session *session, const struct message *message, const struct resumed *resumed, struct view *view,
                        struct message_error *error)
 {
@@ -141,7 +142,8 @@ static void take_over(struct session *session, const struct resumed *resumed, co
         session_close(resumed->live, 1000, "a new connection has taken this view over");
 }
 
-/* By the secret alone, where the view was left here; else by the view in the token, wherever it was signed. */
+/* Finds the view to resume: by the secret if this daemon kept the view; otherwise from the signed view token, which any daemon may have
+   made. */
 static bool find_resumed(const struct session *session, const char *token, int64_t now_ns, int64_t now_utc_ns,
                          char secret[RESUME_CHARS + 1], struct resumed *out)
 {
@@ -161,7 +163,7 @@ bool session_hello(struct session *session, const struct message *message, int64
     struct view view;
     if (!identify(session, message, now_ns, now_utc_ns, error))
         return false;
-    if (message->idle_ms >= 0) /* a connection that comes back is no sign of a person */
+    if (message->idle_ms >= 0) /* an automatic reconnection is no sign of user activity */
         session->identity.active_ns = now_ns - (int64_t)(message->idle_ms * 1e6);
     if (session->identity.holder.role != ROLE_NOBODY && session_left_alone(session, now_ns, error))
         return false;
@@ -169,7 +171,7 @@ bool session_hello(struct session *session, const struct message *message, int64
     session_scope_begin(session);
     char secret[RESUME_CHARS + 1];
     bool back = !message->tile.display && find_resumed(session, message->resume, now_ns, now_utc_ns, secret, &resumed);
-    const struct resumed *before = back && !message->anew ? &resumed : NULL; /* of which the view is taken, too */
+    const struct resumed *before = back && !message->anew ? &resumed : NULL; /* NULL if the client asked for a new view */
     if (!begin_view(session, message, before, &view, error) ||
         !session_choose_codec(session, message->codecs.count ? &message->codecs : &resumed.codecs, error) ||
         !session_choose_signed(session, message->signed_frames, error) ||

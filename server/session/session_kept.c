@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers to actions that wait until the action is on disk: the answer waits, the loop does not. */
+/* Answers that wait until their action is on disk. Only the answer waits, not the event loop. */
 #include <errno.h>
 #include <jansson.h>
 
@@ -11,13 +11,14 @@
 #include "session/session_impl.h"
 
 struct kept_answer {
-    char *text, *what; /* what: an alarm's action for the audit trail, or NULL */
-    const struct alarm_service *alarms; /* that did it; NULL: nothing was done to alarms */
+    char *text, *what; /* what: description of an action on alarms for the audit trail; NULL: no alarm action */
+    const struct alarm_service *alarms; /* alarm service that carried out the action; NULL: no alarm action */
     struct settling_ticket journal, audit;
     struct kept_answer *next;
 };
 
-/* A plant that is loaded again has another journal: what the old one did not write by then counts as not kept. */
+/* Returns whether the journal has the action on disk: 0, -EINPROGRESS or an error. After a plant reload there is a new journal, and what
+   the old one had not written counts as not kept (-ECANCELED). */
 static int journal_state(const struct session *session, const struct kept_answer *kept)
 {
     struct alarm_service *service = session->context->alarm_service;
@@ -49,7 +50,8 @@ static void answer_now(struct session *session, struct kept_answer *kept, int jo
     mem_free(kept);
 }
 
-/* Answers if the disk has said something, or without waiting for it with `now`. Returns whether it did; then *at is the next one. */
+/* Queues the answer if the disk result is known, or without waiting for it if `now`. Returns whether it did; *at is then the next
+   answer. */
 static bool try_to_answer(struct session *session, struct kept_answer **at, bool now)
 {
     struct kept_answer *kept = *at;

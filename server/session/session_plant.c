@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A session whose plant is another from now on: its view goes on by names, as far as they are still there. */
+/* Moves a session to a reloaded plant: its view continues by names, as far as the new plant has them. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,7 +7,8 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-/* What is seen, by names, as `params` of the server says it; `start`: of assets that start otherwise than shown, how. */
+/* Describes the view by names, in the form of the server's `params` message. The extra object `start` gives the initial state of assets
+   that do not start as shown. */
 char *session_carried_text(const struct session_context *context, const struct view *view)
 {
     char *said = reply_params_text(context, view, 0, false);
@@ -18,7 +19,7 @@ char *session_carried_text(const struct session_context *context, const struct v
     json_object_set_new(o, "start", start);
     double low, high;
     field_default_range(context->scene, &view->field, &low, &high);
-    if (view->range_min == low && view->range_max == high) /* the group's own, which may be another one from now on */
+    if (view->range_min == low && view->range_max == high) /* the range was the group's default; the new plant may have another default */
         json_object_del(o, "range");
     char *dumped = json_dumps(o, JSON_COMPACT), *carried = mem_strdup(dumped);
     free(dumped);
@@ -35,7 +36,7 @@ char *session_carry(struct session *session)
     return session->hello ? session_carried_text(session->context, &session->view) : NULL;
 }
 
-/* The same as a client would ask for it. */
+/* Turns the description into a client's request with the same content. */
 static json_t *request_of(const char *carried)
 {
     static const char *const said_only[] = { "type", "seq", "baselines", "unit" };
@@ -60,7 +61,7 @@ static bool apply(struct session *session, const json_t *request)
            session_apply_params(session, &message, &session->view, &error);
 }
 
-/* Assets that are gone are not in its lists any more; the others stay hidden, or ghosts. */
+/* Removes assets that no longer exist from the lists of hidden, isolated and ghosted assets. */
 static void forget_gone(const struct plant *plant, json_t *o)
 {
     static const char *const sets[] = { "hidden", "isolate", "ghost" };
@@ -80,7 +81,8 @@ static size_t place_in(const json_t *list, const char *id)
     return n;
 }
 
-/* Who left an asset as it started before sees it as it starts now; an asset that is new was shown to nobody. */
+/* Applies changed initial states: if the user had left an asset in its old initial state, it gets its new one; new assets also get their
+   initial state. */
 static void start_anew(const struct plant *plant, json_t *o)
 {
     static const char *const sets[] = { [PLANT_START_SHOWN] = "", [PLANT_START_GHOST] = "ghost", [PLANT_START_HIDDEN] = "hidden" };
@@ -104,7 +106,7 @@ static void start_anew(const struct plant *plant, json_t *o)
     json_decref(before);
 }
 
-/* All of it, or each that still means something. */
+/* Applies the carried view as a whole; if that fails, applies each member separately and skips the invalid ones. */
 static void apply_carried(struct session *session, const char *carried)
 {
     json_t *o = request_of(carried), *value;
@@ -158,17 +160,17 @@ void session_take_plant(struct session *session, const char *carried)
     session->owed.loop_checks_sent = 0;
     session->owed.views_sent = session->owed.notes_sent = session->owed.walls_sent = session->owed.pointers_sent = 0;
     session->demand.refined = REFINED_NOT;
-    while (session->delivery.pacer.asked > 0) /* what was asked for does not come */
+    while (session->delivery.pacer.asked > 0) /* requests to the old plant's render service get no answer */
         pacer_dropped(&session->delivery.pacer);
     if (!session->hello)
         return;
     session->owed.following |= session->following.left != 0;
-    session->following.left = 0; /* what is beneath is of the plant before */
+    session->following.left = 0; /* the left leader's last view belongs to the old plant */
     session_look_again(session, &before, carried);
     const bool had_pictures = !session->scope.tags;
     session_scope_begin(session);
     if (had_pictures != !session->scope.tags)
-        session_close(session, 1012, "the display has other panes now"); /* of another size of picture */
+        session_close(session, 1012, "the display has other panes now"); /* the client's picture would have another size */
     struct message_error error = { 0 };
     if (session->identity.holder.views[0] && !session_scope_view(session, session->scope.named, &session->view, &error))
         session_reply_error(session, &error);

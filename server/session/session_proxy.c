@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A session that lives for one message. */
+/* A session that exists for one forwarded message. */
 #include "session/session_proxy.h"
 
 #include <stdio.h>

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What people do at one daemon, done by another: a renderer hands it on, its core does it. Thread: the loop. */
+/* Carries out users' actions that another daemon forwarded: a renderer sends them, its core does them. Thread: the event loop. */
 #ifndef SESSION_SESSION_PROXY_H
 #define SESSION_SESSION_PROXY_H
 #include "session/session.h"
 
-struct session_person {                /* the person who sent the message */
-    const struct token_holder *holder; /* as this daemon verified */
-    const char *refusal;               /* why nobody could be verified; NULL: somebody was */
-    const char *from;                  /* the address, as the other daemon says */
-    const char *through;               /* the other daemon and its token, for the audit trail */
+struct session_person {                /* the user who sent the message */
+    const struct token_holder *holder; /* the user's token or sign-in, as this daemon verified it */
+    const char *refusal;               /* why the user could not be verified; NULL: verified */
+    const char *from;                  /* the user's address, as the other daemon reports it */
+    const char *through;               /* name of the other daemon and of its token, for the audit trail */
 };
-/* Does what the message says, as that person: the answer says where it is no message that is handed on, or that person may not send.
-   Returns a session that holds the answers, for session_answers_of(). */
+/* Acts on the message in that person's name. If the message is not one that renderers forward, or the person may not send it, the answer
+   is an error. Returns a session that holds the answers, for session_answers_of(). */
 struct session *session_do_for(const struct session_context *context, const struct session_person *person, const char *text, int64_t now_ns,
                                int64_t now_utc_ns);
-/* Ends the session and returns its answers, JSON texts, once none waits for the disk; until then NULL. */
+/* Returns NULL while an answer still waits for the disk; afterwards ends the session and returns its answers, a JSON array of texts. */
 json_t *session_answers_of(struct session **session);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The state of one client's session, in parts by concern. The loop reads it; only functions of session.h change it. Thread: the loop. */
+/* The state of one client's session, grouped by concern. The event loop reads it; only functions of session.h change it. Thread: the
+   event loop. */
 #ifndef SESSION_SESSION_STATE_H
 #define SESSION_SESSION_STATE_H
 #include "access/login_throttle.h"
@@ -16,189 +17,191 @@
 
 enum { SESSION_MAX_REPLIES = 64 };
 
-/* Who the client is, as far as `hello` has told. */
+/* The client's identity, as given by `hello` and by the connection. */
 struct session_identity {
-    uint64_t number; /* by which other clients name this session; random; a resumed session keeps the number it had */
+    uint64_t number; /* random number by which other clients refer to this session; a resumed session keeps its number */
     enum role role;
-    uint8_t address[16];                  /* of the client, as in struct address_usage */
-    char from[64];                        /* likewise, as text; "": not known */
-    enum login login;                     /* the verdict on the token in hello */
-    struct token_holder holder;           /* of that token; role ROLE_NOBODY: no token was given, or none was accepted */
-    char token[TOKEN_MAX_CHARS + 1];      /* of a client of a renderer, for its core; "": none, or it is not handed on */
-    char through[192];                    /* at a core: the node and the token that handed the message on; "": nobody did */
-    char resume_secret[RESUME_CHARS + 1]; /* lets the client take its view up again over another connection */
-    int64_t active_ns;                    /* monotonic: when somebody was last at the page; 0: not since it came */
-    bool tokens;                          /* the client takes its view as a token whenever it changed */
-    struct view token_view;               /* as last told in one */
-    int64_t token_ns;                     /* monotonic: when that was */
-    bool resumed;                         /* this session took up another's view, as `welcome` says */
-    bool returned;                        /* likewise, and its followers have yet to be moved here */
+    uint8_t address[16];                  /* address of the client, as in struct address_usage */
+    char from[64];                        /* the same address as text; "": not known */
+    enum login login;                     /* verdict on the token in hello */
+    struct token_holder holder;           /* holder of the token; role ROLE_NOBODY: no token was given, or it was not accepted */
+    char token[TOKEN_MAX_CHARS + 1];      /* on a renderer: the client's token, for the core; "": none, or it is not forwarded */
+    char through[192];                    /* on a core: the node and the token that forwarded the message; "": not forwarded */
+    char resume_secret[RESUME_CHARS + 1]; /* secret with which the client can resume its view over another connection */
+    int64_t active_ns;                    /* monotonic: when the user was last active at the page; 0: not since it connected */
+    bool tokens;                          /* the client wants its view as a signed view token after each change */
+    struct view token_view;               /* the view in the last view token that was sent */
+    int64_t token_ns;                     /* monotonic: when the last view token was sent */
+    bool resumed;                         /* this session resumed another session's view, as `welcome` says */
+    bool returned;                        /* as `resumed`, and the followers have yet to be moved to this session */
 };
 
-/* Who connected. */
+/* The client at the other end of a new connection, for session_introduce(). */
 struct session_client {
-    uint64_t number; /* as in struct session_identity */
+    uint64_t number; /* number of the session, as in struct session_identity */
     const uint8_t *address;
-    const char *from; /* the same as text */
+    const char *from; /* the address as text */
     enum role role;
     const struct token_holder *holder;
-    const char *token; /* that the holder gave; "": none */
+    const char *token; /* the holder's token; "": none */
     struct address_share *share;
 };
 
-/* Why the connection is to be closed once the texts owed have been sent. */
+/* Why the connection is to be closed once all queued texts are sent. */
 struct session_close {
-    int code;         /* WebSocket close code; 0: it stays open */
-    const char *text; /* static */
+    int code;         /* WebSocket close code; 0: the connection stays open */
+    const char *text; /* reason, static text */
 };
 
-/* The pixels that the session's view takes of the server's limits (session_admission.c). */
+/* The pixels that the session's view takes from the admission budget (session_admission.c). */
 struct session_room {
-    struct address_share *share; /* of the client's address; NULL: none */
-    int64_t pixels;              /* counted in the admission's totals; 0: given back while the page was hidden */
-    int64_t hidden_ns, shown_ns; /* when the page was last hidden; when it was last shown again, 0: never */
+    struct address_share *share; /* share of the client's address; NULL: none */
+    int64_t pixels;              /* pixels counted in the admission totals; 0: returned while the page was hidden */
+    int64_t hidden_ns, shown_ns; /* monotonic: when the page was last hidden; when it was last shown again, 0: never */
 };
 
-/* Which codec frames are encoded with. */
+/* The codec that encodes the session's frames. */
 struct session_codec {
-    struct codec_list list; /* what the client decodes */
+    struct codec_list list; /* codecs that the client decodes */
     enum wire_codec current;
-    struct codec_choice choice; /* where the server may choose */
+    struct codec_choice choice; /* the server's choice, where the client leaves it to the server */
     enum signed_frames signed_frames;
-    bool unsigned_said; /* the client was told why its frames are not signed, since one was */
+    bool unsigned_said; /* the client was told why its frames are unsigned; reset by the next signed frame */
 };
 
-/* Why the next frame is wanted, and how refined the view is shown (session_frames.c). */
+/* Why the next frame is wanted, and how refined the shown picture is (session_frames.c). */
 struct frame_demand {
-    bool input, data, any;          /* the view changed; a reading changed; a frame is due even if it shows the same, and stands alone */
-    int64_t input_ns;               /* newest change of the view */
-    int64_t data_ns;                /* oldest change of a reading that no frame was requested for */
-    int64_t preview_ns, refined_ns; /* when the newest frame of each tier was requested */
-    enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* the best refined frame requested of the view as it is */
-    bool refining; /* of what was requested and is not there yet, one is drawn between the frames of others, and may take a minute */
-    double refined_bytes;                                      /* size of the last frame of full quality; 0: none was acknowledged */
-    bool starting; /* the first frame waits until session_begin tells the bandwidth, for a second at most */
+    /* input: the view changed; data: a reading changed; any: a frame is due even if it shows the same, and must decode on its own */
+    bool input, data, any;
+    int64_t input_ns;               /* monotonic time of the newest change of the view */
+    int64_t data_ns;                /* monotonic time of the oldest changed reading for which no frame was requested */
+    int64_t preview_ns, refined_ns; /* monotonic: when the newest frame of each tier was requested */
+    enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* best refined frame requested for the present view */
+    bool refining; /* a requested refined frame is outstanding; it is drawn between other sessions' frames and may take a minute */
+    double refined_bytes; /* size in bytes of the last frame of full quality; 0: none was acknowledged */
+    bool starting; /* the first frame waits for the bandwidth from session_begin(), for a second at most */
     int64_t starting_ns;
-    bool failure_said; /* the client was told that the view as it is cannot be drawn */
-    int64_t failed_ns; /* when the newest frame that there was no memory for was requested; 0: none */
+    bool failure_said; /* the client was told that the present view cannot be drawn */
+    int64_t failed_ns; /* monotonic: when the newest frame that failed for lack of memory was requested; 0: none */
 };
 
-/* Frames on their way to the client (session_frames.c). */
+/* Frames between the render service and the client (session_frames.c). */
 struct frame_delivery {
     struct pacer pacer;
-    uint64_t newest_number;          /* of the frames that were received from the render service */
-    struct encoded_frame *ready;     /* to be sent next, oldest first: a frame that stands alone replaces all before it */
+    uint64_t newest_number;          /* number of the newest frame received from the render service */
+    struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all before it */
     bool measured;                   /* pacer.acked is new (session_take_shown) */
-    int steps[QUALITY_LADDER_STEPS]; /* how many who see this view, itself too, are at each step of the quality ladder */
-    int common_step;                 /* the step that they share; negative: each its own */
+    int steps[QUALITY_LADDER_STEPS]; /* number of viewers of this view, this session included, at each step of the quality ladder */
+    int common_step;                 /* ladder step that all viewers share; negative: each viewer uses its own */
 };
 
-/* What a client asked about following, by numbers of sessions. The loop finds those. */
+/* What a client asked about following, by session numbers. The event loop finds those sessions. */
 struct follow_request {
-    bool returned;   /* it took up another's view: whose followers are to follow it again */
-    uint64_t heir;   /* who is to have the lead; 0: it stays */
-    bool asked;      /* to follow `wanted` */
-    uint64_t wanted; /* 0: nobody */
+    bool returned;   /* the session resumed another one, whose followers should follow it again */
+    uint64_t heir;   /* number of the session that is to take the lead; 0: the lead stays */
+    bool asked;      /* the client asked to follow session `wanted` */
+    uint64_t wanted; /* number of the session to follow; 0: none */
 };
 
-/* Who is shown whose view (session_follow.c). */
+/* Whose view the session is shown (session_follow.c). */
 struct session_following {
-    struct session *leader;   /* whose view is shown; NULL: its own. Kept right by the loop */
-    bool asked;               /* the client asked to follow `wanted` */
+    struct session *leader;   /* session whose view is shown; NULL: its own view. The event loop keeps it valid */
+    bool asked;               /* the client asked to follow session `wanted` */
     uint64_t wanted;          /* a session's number; 0: nobody */
-    uint64_t left;            /* number of the leader who has gone and whose last view is shown; 0: none */
-    struct view own_view;     /* its own view meanwhile */
-    uint64_t heir_wanted;     /* who is to have the lead, as asked; 0: it stays */
-    bool followers_changed;   /* the list of its followers is to be sent again */
-    int64_t followers_ns;     /* when it was last made */
-    char *followers_text;     /* that text, to be sent; NULL: none */
-    uint32_t told_params_seq; /* of the leader's view, as the client was last told */
+    uint64_t left;            /* number of a leader who has gone and whose last view is still shown; 0: none */
+    struct view own_view;     /* the session's own view while it follows a leader */
+    uint64_t heir_wanted;     /* number of the session that is to take the lead, as the client asked; 0: the lead stays */
+    bool followers_changed;   /* the list of followers changed and is to be sent */
+    int64_t followers_ns;     /* monotonic: when the list of followers was last built */
+    char *followers_text;     /* list of followers, to be sent; NULL: none */
+    uint32_t told_params_seq; /* params_seq of the leader's view, as last sent to the client */
     int told_size_px[2];
 };
 
-/* Where in time the session is (session_time.c). What it shows is view.at_us and `historical`. */
+/* The instant that the session shows (session_time.c). The shown instant itself is view.at_us with the readings in `historical`. */
 struct travel {
-    const struct historical_snapshot *historical; /* a reference; NULL: readings of now are shown */
-    int64_t wanted_us;                            /* the instant that it moves to; 0: it is there */
-    bool asked;                                   /* that is being read */
-    bool first;                                   /* nothing is drawn until it is there: the session began at an instant */
-    double speed;                                 /* of play, seconds in a second; 0: stands */
-    int64_t from_us, from_ns;                     /* play was at from_us when the monotonic clock was at from_ns */
+    const struct historical_snapshot *historical; /* a reference to the readings of that instant; NULL: current readings are shown */
+    int64_t wanted_us;                            /* instant to which the session is moving, UTC microseconds; 0: it has arrived */
+    bool asked;                                   /* the readings of wanted_us are being loaded */
+    bool first;                                   /* the session began at an instant: nothing is drawn until its readings are loaded */
+    double speed;                                 /* playback speed, recorded seconds per second; 0: paused */
+    int64_t from_us, from_ns;                     /* playback was at from_us when the monotonic clock was at from_ns */
     int64_t stepped_ns;
 };
 
-/* Texts that the client has yet to be sent (session_texts.c). */
+/* Texts that are still to be sent to the client (session_texts.c). */
 struct owed_texts {
-    bool welcome, params, following, tags_all, tags, status, time, loop_checks; /* loop_checks: all of them */
-    uint32_t params_seq;                                                        /* to be answered by `params` */
-    int64_t tags_ns;                                                            /* when tags were last sent */
+    bool welcome, params, following, tags_all, tags, status, time, loop_checks; /* loop_checks: the complete list of them */
+    uint32_t params_seq;                                                        /* sequence number that the next `params` answers */
+    int64_t tags_ns;                                                            /* monotonic: when tags were last sent */
     uint32_t *tag_changes;                                                      /* reading.changes as last sent, by tag */
-    bool alarms_sent;                                                           /* at least once */
-    uint64_t alarms_number;                                                     /* of the last change of alarms that was sent */
-    uint64_t views_sent, notes_sent, walls_sent, pointers_sent; /* likewise of views with names, notes, what desks sent, pointers */
-    int64_t notes_at_us;                                                        /* the instant whose notes were sent; 0: now */
+    bool alarms_sent;                                                           /* alarms were sent at least once */
+    uint64_t alarms_number;                                                     /* number of the last change of alarms that was sent */
+    /* numbers of the last changes that were sent: named views, notes, desks' messages to walls, pointers */
+    uint64_t views_sent, notes_sent, walls_sent, pointers_sent;
+    int64_t notes_at_us; /* instant whose notes were sent, UTC microseconds; 0: the present */
     uint64_t loop_checks_sent;                                                  /* number of the newest loop check that was sent */
-    int64_t told_at_us;                                                         /* the instant that is shown, as last told; 0: now */
-    bool told_beginning;                                                        /* the last `time` said where recorded history begins */
-    char *replies[SESSION_MAX_REPLIES];                                         /* answers, oldest first */
+    int64_t told_at_us; /* shown instant as last sent, UTC microseconds; 0: the present */
+    bool told_beginning; /* the last `time` message included the beginning of recorded history */
+    char *replies[SESSION_MAX_REPLIES];                                         /* answers to be sent, oldest first */
     int reply_count;
 };
 
 /* Sensors that an engineer moves on trial (session_place.c). */
 struct session_placement {
-    struct place_set *set; /* of this session; NULL: nothing was moved */
-    uint32_t seq;          /* of the newest `place` */
-    struct tag_save *save; /* a tag list that is to be put in force (session_take_save) */
+    struct place_set *set; /* trial positions of this session; NULL: nothing was moved */
+    uint32_t seq;          /* sequence number of the newest `place` message */
+    struct tag_save *save; /* tag list that is to be put in force (session_take_save); NULL: none */
 };
 
-struct session_pick { /* a question about a pixel */
-    bool pending;     /* `query` has yet to be asked */
+struct session_pick { /* a query for what is at a pixel */
+    bool pending;     /* `query` is not sent to the render service yet */
     struct pick_query query;
 };
 
-/* A tile of one picture over many displays (tiles/tile_sync.c). */
+/* A tile of one picture that spans many displays (tiles/tile_sync.h). */
 enum { TILE_HELD = 8 };
 struct session_tile {
-    struct wall_place place;   /* display 0: it is none */
-    struct tile_layout layout; /* by the size of its own display; that of who leads counts */
+    struct wall_place place;   /* display of the wall; display 0: the session is no tile */
+    struct tile_layout layout; /* computed from the size of this display; the leader's layout is used */
     struct tile_held {
-        uint64_t picture; /* of the wall */
-        uint32_t seq;     /* of the frame of this session that shows it */
-    } held[TILE_HELD];    /* sent and not presented, oldest first */
+        uint64_t picture; /* number of the wall's picture */
+        uint32_t seq;     /* sequence number of this session's frame that shows the picture */
+    } held[TILE_HELD];    /* frames sent and not presented yet, oldest first */
     int held_count;
-    bool moved;         /* since a picture was asked for: it is to be sent though nothing in it changed */
-    uint64_t unchanged; /* the picture that is the same as the frame that is awaited; 0: none */
+    bool moved;         /* the burn-in shift changed since a picture was requested: the picture is sent even if its content is the same */
+    uint64_t unchanged; /* number of a picture that equals the frame still on its way; 0: none */
     uint32_t presented_seq;
-    int64_t made_ns;       /* how long the server takes for a preview from when it is asked for, smoothed; 0: not known */
-    int64_t late_us;       /* since when it is left out, UTC; 0: it is not */
-    int64_t out_ns, in_ns; /* for how long it is left out; when it may come in again, or came */
-    char *told;            /* the last `tiles`; NULL: none */
+    int64_t made_ns;       /* time from request to encoded preview, smoothed; 0: not known */
+    int64_t late_us;       /* UTC microseconds since when the tile is dropped from the wall; 0: it takes part */
+    int64_t out_ns, in_ns; /* out_ns: how long the tile is dropped; in_ns: monotonic, when it may be readmitted, or was */
+    char *told;            /* the last `tiles` message sent; NULL: none */
 };
 
 struct message_rate {
-    int64_t begin_ns; /* of the second that is counted */
+    int64_t begin_ns; /* monotonic start of the second being counted */
     int count;
-    bool exceeded; /* the loop reads nothing more until that second is over */
+    bool exceeded; /* the event loop reads nothing more until that second is over */
 };
 
-struct session_stats { /* for the log and the counters */
+struct session_stats { /* counts for the log and the metrics */
     int64_t messages, errors, dropped;
 };
 
-/* What a narrowed token is good for (session_scope.c). */
+/* Restrictions of a narrowed token (session_scope.c). */
 struct session_scope {
-    char named[NAMED_VIEW_ID_BYTES]; /* the view of the plant file that is shown; "": none of them */
-    bool *tags;                      /* of a paired display without pictures: those that it shows; NULL: all */
+    char named[NAMED_VIEW_ID_BYTES]; /* id of the plant file's view that is shown; "": none */
+    bool *tags;                      /* for a paired display without pictures: which tags it shows, by tag; NULL: all */
 };
 
 struct session {
-    uint64_t id; /* within this process */
+    uint64_t id; /* unique within this process */
     const struct session_context *context;
     struct session_identity identity;
     int64_t opened_ns;
-    bool hello, hidden; /* hello was accepted; the client's page is not visible */
-    double pixel_ratio; /* device pixels per pixel of the page */
-    struct view view;   /* its own */
+    bool hello, hidden; /* hello: `hello` was accepted; hidden: the client's page is not visible */
+    double pixel_ratio; /* device pixels per CSS pixel of the page */
+    struct view view;   /* the session's own view */
     struct session_close close;
     struct session_room room;
     struct session_codec codec;
@@ -214,13 +217,13 @@ struct session {
     struct message_rate rate;
     struct session_stats stats;
     struct session_scope scope;
-    struct wall_place display; /* that it is; display 0: none */
+    struct wall_place display; /* wall display that this client is; display 0: none */
     struct session_tile tile;
-    int64_t heard_ns;          /* when the client last said anything */
-    int64_t settled_ns;        /* the last time at which nothing was owed to it */
+    int64_t heard_ns;          /* monotonic: when the client's last message arrived */
+    int64_t settled_ns;        /* value of heard_ns at the last tick at which nothing was owed to the client */
 };
 
-/* Returns whether it has no token and is let in to look only: it gets frames, and no readings, tags or names of people. */
+/* Returns whether the session has no token and may only watch: it gets frames, but no readings, tags or names of people. */
 static inline bool session_is_open(const struct session *session)
 {
     return session->identity.role == ROLE_OPEN;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether one more session can be served. */
+/* Decides whether one more session can be admitted. */
 #include "session/pacing/admission.h"
 
 #include <string.h>
@@ -7,7 +7,8 @@
 #include "base/clock.h"
 
 static const int64_t WINDOW_NS = NS_PER_S;
-static const int64_t LONGEST_DATA_WAIT_NS = NS_PER_S; /* readings come once a second: later than that, some are never drawn */
+/* readings arrive once a second: if one waits longer for its frame, some readings are never drawn */
+static const int64_t LONGEST_DATA_WAIT_NS = NS_PER_S;
 enum { BUSY_PERCENT = 85 };
 
 void admission_join(struct admission *admission, struct address_share *share)
@@ -89,9 +90,9 @@ const char *admission_refuses_pixels(const struct admission *admission, const st
     return NULL;
 }
 
-/* --- when drawing is busy --------------------------------------------------------------------------------------------- */
+/* --- whether drawing is too busy for another moving camera ----------------------------------------------------------------- */
 
-/* 0: not known. */
+/* Reads one figure of an address's share; 0: not known. */
 typedef int64_t of_share(const struct address_share *share);
 
 static int64_t cost_of(const struct address_share *share)
@@ -112,7 +113,7 @@ static int count_below(const struct admission *admission, of_share *of, int64_t 
     return below;
 }
 
-/* The lower median over addresses: what one of them does, or is done to, does not shift it. 0: of none it is known. */
+/* Returns the lower median of a figure over all addresses, so that a single address cannot shift it. 0: no address has the figure. */
 static int64_t usual(const struct admission *admission, of_share *of)
 {
     int64_t found = 0;
@@ -123,8 +124,8 @@ static int64_t usual(const struct admission *admission, of_share *of)
     return found;
 }
 
-struct moving_sessions {  /* sessions whose cameras move */
-    int own, all, others; /* sessions of the address; of all; other addresses */
+struct moving_sessions {  /* number of sessions whose camera moves */
+    int own, all, others; /* own: sessions of this address; all: sessions of all addresses; others: other addresses that have any */
 };
 
 static struct moving_sessions count_crowd(const struct admission *admission, const struct address_share *own)
@@ -137,7 +138,8 @@ static struct moving_sessions count_crowd(const struct admission *admission, con
     return crowd;
 }
 
-/* With one more session of that address, which time is shared with as addresses share it. */
+/* Returns whether frame rates would fall below QUOTA_LEAST_FPS with one more moving session of the address `own`. Render time is shared
+   equally among addresses. */
 static bool slows_too_far(const struct admission *admission, const struct address_share *own)
 {
     const struct admission_window *newest = &admission->windows[ADMISSION_WINDOWS - 1];

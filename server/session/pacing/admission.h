@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Admission: decides whether one more session can be served, by limits and by what drawing costs on this machine, as measured from the
-   frames that come back. Capacity is shared equally among addresses, then among their sessions, so that no address keeps others out.
-   Pure: time is handed in. Thread: the loop. */
+/* Admission: decides whether the server can take one more session, by configured limits and by the drawing cost measured from finished
+   frames. Capacity is shared equally among client addresses, then among each address's sessions, so that one address cannot exhaust it.
+   Pure: the caller passes the time. Thread: the event loop. */
 #ifndef SESSION_PACING_ADMISSION_H
 #define SESSION_PACING_ADMISSION_H
 #include "service/encoded_frame.h"
@@ -9,19 +9,19 @@
 
 enum { ADMISSION_WINDOWS = 3, ADMISSION_RETRY_S = 10 };
 
-struct admission_window { /* a second of drawing */
-    int64_t drawing_ns;   /* of frames that somebody waits for: not refined ones, which give way */
-    int64_t moving_ns;    /* likewise, of those for cameras that moved */
-    int64_t drawn;        /* how many such; sharing a frame adds none */
-    int64_t moving;       /* frames that went to sessions whose cameras moved */
-    int64_t data_wait_ns; /* the longest wait of a changed reading; 0: there was no frame for one */
+struct admission_window { /* measurements of one second of drawing */
+    int64_t drawing_ns;   /* render time of frames that a client waits for; excludes refined frames, which yield to others */
+    int64_t moving_ns;    /* the part of drawing_ns spent on frames of moving cameras */
+    int64_t drawn;        /* number of frames in moving_ns; a frame shared by several sessions counts once */
+    int64_t moving;       /* number of frames delivered to sessions with a moving camera */
+    int64_t data_wait_ns; /* longest time from a changed reading to its frame; 0: no frame was due to a reading */
 };
 
-struct address_share {  /* of one address; zero-initialise */
-    uint64_t account;   /* frame_request.account of its sessions */
-    bool exempt_pixels; /* the limit on the pixels of one address does not hold */
-    int64_t pixels;     /* of its views */
-    int moving;         /* its sessions that moved within the last second */
+struct address_share {  /* the use of one client address; zero-initialise */
+    uint64_t account;   /* value of frame_request.account in the address's sessions */
+    bool exempt_pixels; /* the limit on the pixels of one address does not apply */
+    int64_t pixels;     /* pixels of all views of the address */
+    int moving;         /* sessions of the address whose camera moved within the last second */
     int sessions;
     struct admission_window newest, now;
     struct address_share *next;
@@ -29,25 +29,26 @@ struct address_share {  /* of one address; zero-initialise */
 
 struct admission {
     const struct quotas *quotas;
-    struct admission_window windows[ADMISSION_WINDOWS], now; /* newest last */
-    int64_t begin_ns;                                        /* of `now` */
-    uint64_t last_content;                                   /* of the last frame: clients that share one come one after the other */
-    int64_t pixels;                                          /* of all views */
-    struct address_share *shares;                            /* of addresses that have sessions */
+    struct admission_window windows[ADMISSION_WINDOWS], now; /* finished windows, newest last; `now`: the current one */
+    int64_t begin_ns;                                        /* monotonic start of `now` */
+    uint64_t last_content;        /* content number of the last frame: clients that share a frame report it one after the other */
+    int64_t pixels;               /* pixels of all views of all addresses */
+    struct address_share *shares; /* linked list of the addresses that have sessions */
 };
 
-/* Count one session more, or less, of that address. The share must outlive its sessions. */
+/* Count one session more, or one less, of an address. The share must outlive its sessions. */
 void admission_join(struct admission *admission, struct address_share *share);
 void admission_leave(struct admission *admission, struct address_share *share);
-/* Counts what a frame cost. share: of the client's address; NULL: of none. */
+/* Counts the cost of a frame. share: of the client's address; NULL: the frame belongs to no address. */
 void admission_on_frame(struct admission *admission, struct address_share *share, const struct encoded_frame *encoded);
-/* Closes a window of measurement when its second is over. */
+/* Closes the current measuring window when its second is over. */
 void admission_on_tick(struct admission *admission, int64_t now_ns);
-/* Returns how much of the render thread's time moving frames took, in the quietest of the last windows. */
+/* Returns the percentage of the render thread's time spent on awaited frames, in the least busy of the last windows. */
 int admission_busy_percent(const struct admission *admission);
-/* Returns NULL if a view may have so many pixels, in place of `before`; else the reason (static) why not. share NULL: of no address. */
+/* Returns NULL if a view may grow from `before` to `pixels` pixels; otherwise the reason (static text). share NULL: only the total limit
+   applies. */
 const char *admission_refuses_pixels(const struct admission *admission, const struct address_share *share, int64_t before, int64_t pixels);
-/* Returns NULL if a session with a view of so many pixels can be added; else the reason (static) why not. */
+/* Returns NULL if a session with a view of `pixels` pixels can be added; otherwise the reason (static text). */
 const char *admission_refuses(const struct admission *admission, const struct address_share *share, int64_t pixels);
 
 #endif

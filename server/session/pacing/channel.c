@@ -1,26 +1,30 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Round trip, bandwidth and decoding time of one client. */
+/* Estimates round trip, bandwidth and decoding time of one client. */
 #include "session/pacing/channel.h"
 
 #include "base/clock.h"
 
-static const int64_t RTT_NS = 15 * NS_PER_S;      /* a measured round trip is good for so long, and for as long again */
-static const int64_t RTT_MOST_NS = 1 * NS_PER_S;  /* more is a queue */
-static const int64_t SHORTEST_NS = NS_PER_MS / 4; /* transfers that took less say only that there is enough */
-static const int64_t WAITED_NS = 1 * NS_PER_MS;   /* decoding that began so soon after the frame before had waited for it */
-static const size_t SMALL_BYTES = 4096;           /* frames in which little changed say at most that there is more bandwidth */
-static const double SHARE = 0.25;                 /* of a new sample in what is smoothed */
+static const int64_t RTT_WINDOW_NS =
+    15 * NS_PER_S; /* length of a measuring window: a measured round trip counts for this window and the next */
+static const int64_t MAX_RTT_NS = 1 * NS_PER_S;       /* a longer round trip is a queue somewhere, not the network's delay */
+static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4; /* shorter transfers show only that bandwidth is plentiful */
+/* if decoding began this soon after the previous acknowledgement, the frame had waited for the decoder */
+static const int64_t WAITED_NS = 1 * NS_PER_MS;
+static const size_t SMALL_BYTES = 4096;   /* smaller frames may only raise the bandwidth estimate, not lower it */
+static const double SAMPLE_WEIGHT = 0.25; /* weight of a new sample in smoothed values */
 
 static void smooth(double *value, double sample)
 {
-    *value = *value > 0 ? *value + SHARE * (sample - *value) : sample;
+    *value = *value > 0 ? *value + SAMPLE_WEIGHT * (sample - *value) : sample;
 }
 
-/* The least of the last `most`. The first few say what is known; after them it is smoothed. */
-static void note(double *value, struct channel_last *last, int most, double sample)
+/* Adds a sample and updates *value with the minimum of the last `most` samples. Until there are more than `most` samples, *value is that
+   minimum itself; afterwards it is smoothed. */
+static void add_sample(double *value, struct channel_last *last, int most, double sample)
 {
     last->at[last->count % CHANNEL_LAST] = sample;
-    last->count = last->count < 2 * CHANNEL_LAST ? last->count + 1 : CHANNEL_LAST + 1; /* it goes round */
+    /* keeps the count small and above CHANNEL_LAST; the ring index stays right */
+    last->count = last->count < 2 * CHANNEL_LAST ? last->count + 1 : CHANNEL_LAST + 1;
     double least = sample;
     for (int back = 1; back <= most && back <= last->count; back++) {
         double one = last->at[(last->count - back) % CHANNEL_LAST];
@@ -44,8 +48,8 @@ static int64_t less(int64_t a, int64_t b)
 
 void channel_on_pong(struct channel *channel, int64_t rtt_ns, int64_t now_ns)
 {
-    int64_t sample_ns = less(more(rtt_ns, 1), RTT_MOST_NS);
-    if (!channel->rtt_ns[0] || now_ns - channel->rtt_begin_ns >= RTT_NS) {
+    int64_t sample_ns = less(more(rtt_ns, 1), MAX_RTT_NS);
+    if (!channel->rtt_ns[0] || now_ns - channel->rtt_begin_ns >= RTT_WINDOW_NS) {
         channel->rtt_ns[1] = channel->rtt_ns[0];
         channel->rtt_ns[0] = sample_ns;
         channel->rtt_begin_ns = now_ns;
@@ -60,11 +64,11 @@ int64_t channel_rtt_ns(const struct channel *channel)
 
 bool channel_rtt_is_old(const struct channel *channel, int64_t now_ns)
 {
-    return channel->rtt_ns[0] && now_ns - channel->rtt_begin_ns >= RTT_NS;
+    return channel->rtt_ns[0] && now_ns - channel->rtt_begin_ns >= RTT_WINDOW_NS;
 }
 
-/* The client says when it had the frame: it acknowledges after decoding. On our clock that is later by the way back, as is all that is
-   kept here; differences are what counts. */
+/* The client acknowledges a frame after decoding it and reports the decoding time, which gives the time of arrival. On the server's
+   clock every arrival is late by the return path; only differences between arrivals are used, so that cancels. */
 void channel_on_ack(struct channel *channel, const struct channel_ack *ack)
 {
     int64_t rtt_ns = channel_rtt_ns(channel), took_ns = more(ack->now_ns - ack->sent_ns, 0);
@@ -73,23 +77,23 @@ void channel_on_ack(struct channel *channel, const struct channel_ack *ack)
     int64_t transfer_ns = arrived_ns - more(ack->sent_ns + rtt_ns, channel->arrived_ns);
     channel->decoding = decode_ns > WAITED_NS && arrived_ns - channel->acked_ns < WAITED_NS;
     if (ack->decode_ns >= 0)
-        note(&channel->decode_ns, &channel->last_decode_ns, CHANNEL_LAST, (double)decode_ns);
+        add_sample(&channel->decode_ns, &channel->last_decode_ns, CHANNEL_LAST, (double)decode_ns);
     channel->acked_ns = ack->now_ns;
     channel->arrived_ns = arrived_ns;
     if (channel->decoding)
         return;
-    note(&channel->lag_ns, &channel->last_lag_ns, 2, (double)more(arrived_ns - ack->sent_ns - rtt_ns, 1));
-    double ns_per_byte = (double)more(transfer_ns, SHORTEST_NS) / (double)(ack->bytes + 1);
+    add_sample(&channel->lag_ns, &channel->last_lag_ns, 2, (double)more(arrived_ns - ack->sent_ns - rtt_ns, 1));
+    double ns_per_byte = (double)more(transfer_ns, MIN_TRANSFER_NS) / (double)(ack->bytes + 1);
     if (ack->bytes >= SMALL_BYTES)
-        note(&channel->ns_per_byte, &channel->last_ns_per_byte, 2, ns_per_byte);
+        add_sample(&channel->ns_per_byte, &channel->last_ns_per_byte, 2, ns_per_byte);
     else if (ns_per_byte < channel->ns_per_byte)
         smooth(&channel->ns_per_byte, ns_per_byte);
 }
 
 void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns)
 {
-    int64_t transfer_ns = more(took_ns - channel_rtt_ns(channel), SHORTEST_NS);
-    channel->ns_per_byte = (double)transfer_ns / (double)(bytes + 1); /* a guess, while the client begins: frames tell */
+    int64_t transfer_ns = more(took_ns - channel_rtt_ns(channel), MIN_TRANSFER_NS);
+    channel->ns_per_byte = (double)transfer_ns / (double)(bytes + 1); /* a rough first value: frames measure the bandwidth better */
 }
 
 int64_t channel_transfer_ns(const struct channel *channel, double bytes)

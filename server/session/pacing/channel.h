@@ -1,49 +1,50 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The channel estimate of one client, from its acknowledgements and pongs: round trip, bandwidth and decoding time. The time that the
-   client reports for decoding is subtracted, so that a slow decoder is not taken for a slow network. Pure; time is handed in. Thread: the
-   loop. */
+/* The channel estimate of one client, from its acknowledgements and pongs: round trip, bandwidth and decoding time. The decoding time
+   that the client reports is subtracted, so that a slow decoder does not look like a slow network. Pure; the caller passes the time.
+   Thread: the event loop. */
 #ifndef SESSION_PACING_CHANNEL_H
 #define SESSION_PACING_CHANNEL_H
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-/* A client that is busy for a moment (while its page loads, or a decoder starts) looks like a slow network once or twice; a slow network
-   does so again and again. So the least of the last two samples counts, of decoding the least of three. */
+/* Number of recent samples kept. A client that is busy for a moment (its page loads, a decoder starts) looks like a slow network for one
+   or two samples; a slow network does so all the time. So the minimum of the last two samples counts, and of the last three for
+   decoding. */
 enum { CHANNEL_LAST = 3 };
-struct channel_last { /* zero-initialise */
+struct channel_last { /* ring of the last samples; zero-initialise */
     double at[CHANNEL_LAST];
-    int count; /* of all samples so far */
+    int count; /* samples so far; see channel.c for how it wraps */
 };
 
-struct channel {                     /* zero-initialise; 0: not known yet */
-    int64_t rtt_ns[2], rtt_begin_ns; /* minimum of the current window, and of the one before */
-    double ns_per_byte;              /* smoothed; slowing down is noticed sooner than recovering */
-    double lag_ns;                   /* from sent to acknowledged, without round trip and decoding: what the network adds; smoothed */
-    double decode_ns;                /* smoothed */
+struct channel {                     /* zero-initialise; in all members 0 means not measured yet */
+    int64_t rtt_ns[2], rtt_begin_ns; /* rtt_ns: minimum of the current measuring window, and of the previous one */
+    double ns_per_byte;              /* smoothed; reacts faster to a slowdown than to a recovery */
+    double lag_ns;    /* time from sending to acknowledgement, minus round trip and decoding, smoothed: the delay that the network adds */
+    double decode_ns; /* decoding time of a frame, smoothed */
     struct channel_last last_ns_per_byte, last_lag_ns, last_decode_ns;
     int64_t arrived_ns, acked_ns;
-    bool decoding; /* the client decodes without a pause: frames wait there */
+    bool decoding; /* the client decodes without a pause, so frames queue up there */
 };
 
 struct channel_ack {
-    size_t bytes;    /* of this frame and those that the acknowledgement stands for */
-    int64_t sent_ns; /* of the first of them */
+    size_t bytes;    /* bytes of this frame and of the earlier frames that the acknowledgement covers */
+    int64_t sent_ns; /* when the first of these frames was sent */
     int64_t now_ns;
-    int64_t decode_ns; /* as reported by the client; negative: not */
+    int64_t decode_ns; /* decoding time as reported by the client; negative: not reported */
 };
 
 /* Updates the estimate with an acknowledgement. */
 void channel_on_ack(struct channel *channel, const struct channel_ack *ack);
-/* Updates the estimate: so many bytes of other messages had arrived after took_ns. */
+/* Updates the bandwidth estimate: `bytes` bytes of other messages had arrived after took_ns. */
 void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns);
-/* Updates the round trip. */
+/* Updates the round-trip estimate with one measurement. */
 void channel_on_pong(struct channel *channel, int64_t rtt_ns, int64_t now_ns);
-/* Returns the round trip; 0: not known. */
+/* Returns the round-trip time; 0: not measured yet. */
 int64_t channel_rtt_ns(const struct channel *channel);
-/* Returns whether the round trip was measured so long ago that it is to be measured again, with nothing else under way. */
+/* Returns whether the round-trip time should be measured again because it is old. Measure it only while nothing else is in flight. */
 bool channel_rtt_is_old(const struct channel *channel, int64_t now_ns);
-/* Returns how long the client's bandwidth takes for so many bytes, without the round trip; 0: the bandwidth is not known. */
+/* Returns the time that the client's bandwidth needs for `bytes` bytes, without the round trip; 0: the bandwidth is not known. */
 int64_t channel_transfer_ns(const struct channel *channel, double bytes);
 
 #endif

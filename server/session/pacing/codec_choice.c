@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bytes against work. */
+/* Chooses between H.264 (fewer bytes) and JPEG (less processor time). */
 #include "session/pacing/codec_choice.h"
 
 #include <inttypes.h>
@@ -7,17 +7,21 @@
 
 #include "base/clock.h"
 
-static const double JPEG_BYTES_PER_PX = 0.1, RATE_HZ = 30;                  /* measured: 196 kB at 1920x1080, quality 78 */
-static const double PLENTY = 4, SCARCE = 2;                                 /* times what JPEG needs */
-static const double SHORT = 0.15, EASY = 0.4;                               /* processors free */
-static const int64_t TO_JPEG_NS = 5 * NS_PER_S, TO_H264_NS = 30 * NS_PER_S; /* a change costs a frame that stands alone */
+/* bytes per pixel of a JPEG frame (196 kB at 1920x1080, quality 78), and frames per second */
+static const double JPEG_BYTES_PER_PX = 0.1, RATE_HZ = 30;
+/* bandwidth as a multiple of what JPEG needs: above the first value JPEG is possible, below the second it is given up */
+static const double PLENTY = 4, SCARCE = 2;
+/* idle share of the processors: below the first value JPEG is wanted, above the second H.264 */
+static const double BUSY_IDLE_SHARE = 0.15, FREE_IDLE_SHARE = 0.4;
+/* time for which the facts must favour the other codec; long, as a switch costs a key frame */
+static const int64_t TO_JPEG_NS = 5 * NS_PER_S, TO_H264_NS = 30 * NS_PER_S;
 
 static bool speaks_for_other(const struct codec_choice *choice, const struct codec_facts *facts)
 {
     double need = (double)facts->pixels * JPEG_BYTES_PER_PX * RATE_HZ;
     if (choice->jpeg)
-        return facts->bytes_per_s < SCARCE * need || facts->cpu_free > EASY;
-    return facts->bytes_per_s > PLENTY * need && facts->cpu_free < SHORT;
+        return facts->bytes_per_s < SCARCE * need || facts->cpu_free > FREE_IDLE_SHARE;
+    return facts->bytes_per_s > PLENTY * need && facts->cpu_free < BUSY_IDLE_SHARE;
 }
 
 void codec_choice_update(struct codec_choice *choice, const struct codec_facts *facts, int64_t now_ns)

@@ -1,30 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The choice of codec for a client that decodes both: H.264 takes half the bytes or less, JPEG half the work. So H.264, unless the network
-   has capacity to spare and the processors have none. Pure; time is handed in. Thread: the loop. */
+/* Chooses the codec for a client that decodes both H.264 and JPEG: H.264 takes at most half the bytes, JPEG half the processor time.
+   JPEG is chosen only if the network has spare capacity and the processors have none. Pure; the caller passes the time. Thread: the
+   event loop. */
 #ifndef SESSION_PACING_CODEC_CHOICE_H
 #define SESSION_PACING_CODEC_CHOICE_H
 #include <stdbool.h>
 #include <stdint.h>
 
 struct codec_facts {
-    double bytes_per_s; /* bandwidth; 0: not known */
-    double cpu_free;    /* of all processors of the machine, 0..1 */
-    long pixels;        /* of a frame */
+    double bytes_per_s; /* the client's bandwidth in bytes per second; 0: not known */
+    double cpu_free;    /* idle share of all processors of the machine, 0..1 */
+    long pixels;        /* pixels of one frame */
 };
 
-struct codec_choice { /* zero-initialise: H.264 */
+struct codec_choice { /* zero-initialise, which chooses H.264 */
     bool jpeg;
-    int64_t against_ns; /* since when all facts have spoken for the other codec; 0: they do not */
+    int64_t against_ns; /* monotonic time since when codec_facts have favoured the other codec; 0: they favour the current one */
 };
 
-/* Changes the choice once the facts have spoken for the other codec long enough. */
+/* Switches the codec once the facts have favoured the other one for long enough. */
 void codec_choice_update(struct codec_choice *choice, const struct codec_facts *facts, int64_t now_ns);
 
-struct cpu_meter {       /* zero-initialise */
-    uint64_t busy, idle; /* at the last reading */
+struct cpu_meter {       /* reads the processors' load from /proc/stat; zero-initialise */
+    uint64_t busy, idle; /* ticks of /proc/stat at the last reading */
 };
-/* Returns the share of the machine's processor time that was idle since the last call; 1 at the first call, and where it is not known.
-   stat: the text of /proc/stat. */
+/* Returns the idle share of the machine's processor time since the last call; 1 at the first call, and if it is unknown. stat: the text
+   of /proc/stat. */
 double cpu_meter_free(struct cpu_meter *meter, const char *stat);
 
 #endif

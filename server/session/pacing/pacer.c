@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames under way to one client, by our own records. */
+/* Counts the frames in flight to one client from the server's own records. */
 #include "session/pacing/pacer.h"
 
 #include <assert.h>
@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 
-static const int64_t AHEAD_NS = 33 * NS_PER_MS;                        /* of bandwidth beside the round trip */
+static const int64_t AHEAD_NS = 33 * NS_PER_MS; /* bandwidth-time product allowed in flight, in addition to one round trip */
 static const int64_t STALL_NS = PACER_STALL_S * NS_PER_S, DEAD_NS = 15 * NS_PER_S; /* as in PROTOCOL.md */
 
 void pacer_init(struct pacer *pacer)
@@ -35,7 +35,8 @@ static int most_frames(const struct pacer *pacer)
     return most > PACER_MOST ? PACER_MOST : (int)most;
 }
 
-/* What is asked for is expected to have the size that frames have at that step. */
+/* Returns whether another requested frame fits into the window. Requested frames count with the expected size of a preview at the
+   present ladder step. */
 static bool fits_window(const struct pacer *pacer)
 {
     int64_t window_ns = AHEAD_NS + channel_rtt_ns(&pacer->channel);
@@ -96,7 +97,7 @@ void pacer_gave_up(struct pacer *pacer)
     pacer->cut = true;
 }
 
-/* The first `count` of those in flight arrived. */
+/* Records that the first `count` frames in flight were acknowledged. */
 static void arrived(struct pacer *pacer, int count, int64_t decode_ns, int64_t now_ns)
 {
     struct channel_ack ack = { .sent_ns = pacer->flight[0].sent_ns, .now_ns = now_ns, .decode_ns = decode_ns };

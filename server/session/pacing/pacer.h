@@ -1,41 +1,41 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pacer: limits how many frames may be under way to one client (requested, waiting, sent and not acknowledged), and keeps its channel
-   estimate and quality ladder. Unacknowledged are at most the bytes that the bandwidth carries in 33 ms and a round trip, or one frame;
-   nothing is queued behind that. Pure; time is handed in. Thread: the loop. */
+/* The pacer: limits how many frames may be under way to one client (requested, waiting, sent and not acknowledged), and owns the
+   client's channel estimate and quality ladder. Unacknowledged frames together may take the bytes that the bandwidth carries in 33 ms
+   plus one round trip, or be one frame; nothing queues behind them. Pure; the caller passes the time. Thread: the event loop. */
 #ifndef SESSION_PACING_PACER_H
 #define SESSION_PACING_PACER_H
 #include "session/pacing/quality_ladder.h"
 
-enum { PACER_LEAST = 2, PACER_MOST = 8 }; /* frames, whatever the bandwidth */
+enum { PACER_LEAST = 2, PACER_MOST = 8 }; /* minimum and maximum number of frames under way, for any bandwidth */
 
-struct pacer_note {    /* what is to be known of a frame when it is acknowledged */
-    bool moving, full; /* a preview, at `step` of the ladder; of full quality */
+struct pacer_note {    /* facts about a frame that are needed when it is acknowledged */
+    bool moving, full; /* moving: the frame is a preview, at ladder step `step`; full: it has full quality */
     int step;
-    bool of_data;              /* made for a changed reading, else for an input */
-    int64_t input_ns, made_ns; /* monotonic: when that happened; when it was encoded */
+    bool of_data;              /* true: made because of a changed reading; false: because of an input */
+    int64_t input_ns, made_ns; /* monotonic: when the input or the changed reading happened; when the frame was encoded */
 };
 
 struct pacer_flight {
     uint32_t seq;
     size_t bytes;
-    bool written;                /* completely */
-    int64_t sent_ns, written_ns; /* when its first byte, its last byte was written */
+    bool written;                /* all its bytes were written to the socket */
+    int64_t sent_ns, written_ns; /* monotonic: when the first byte was written; when the last byte was written */
     struct pacer_note note;
 };
 
-struct pacer {                              /* pacer_init */
-    int asked;                              /* frames requested and not sent yet */
-    struct pacer_flight flight[PACER_MOST]; /* sent and not acknowledged, oldest first */
+struct pacer {                              /* initialise with pacer_init() */
+    int asked;                              /* number of frames requested and not sent yet */
+    struct pacer_flight flight[PACER_MOST]; /* frames sent and not acknowledged, oldest first */
     int flight_count;
     uint32_t last_seq;
     bool cut;                  /* a frame was given up, and the end of its message is not written yet */
-    int64_t moved_on_ns;       /* when the client last acknowledged, or its socket last took bytes */
-    struct pacer_flight acked; /* the newest frame that was acknowledged */
+    int64_t moved_on_ns;       /* monotonic: when the client last acknowledged a frame, or its socket last accepted bytes */
+    struct pacer_flight acked; /* the newest acknowledged frame */
     struct channel channel;
     struct quality_ladder ladder;
 };
 
-enum { PACER_STALL_S = 2 }; /* without an acknowledgement, as in PROTOCOL.md */
+enum { PACER_STALL_S = 2 }; /* seconds without an acknowledgement after which a client counts as stalled (PROTOCOL.md) */
 enum pacer_state { PACER_FLOWS, PACER_STALLS, PACER_DEAD };
 enum pacer_ack { PACER_ACK_NEW, PACER_ACK_OLD, PACER_ACK_NEVER_SENT };
 
@@ -44,21 +44,22 @@ void pacer_init(struct pacer *pacer);
 bool pacer_may_ask(const struct pacer *pacer, int64_t now_ns);
 /* Counts a frame that was requested. */
 void pacer_asked(struct pacer *pacer);
-/* Counts a requested frame that does not come, or is not sent. */
+/* Counts a requested frame that never arrives or is not sent. */
 void pacer_dropped(struct pacer *pacer);
-/* Counts a frame whose first byte is being sent. Returns its number in the session. */
+/* Counts a frame whose first byte is being sent. Returns the frame's sequence number in the session. */
 uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *note, int64_t now_ns);
-/* Notes that the socket took a part of the newest frame; all: its end. */
+/* Notes that the socket accepted a part of the newest frame; all: it was the last part. */
 void pacer_wrote(struct pacer *pacer, bool all, int64_t now_ns);
-/* Notes that the newest frame was cut short: it will not be acknowledged. */
+/* Notes that the newest frame was cut short: the client will not acknowledge it. */
 void pacer_gave_up(struct pacer *pacer);
-/* Takes an acknowledgement, which stands for all frames before it too, and updates channel and ladder. decode_ns: the client's time of
-   decoding; negative: not said. Returns whether that frame was newly acknowledged, was before, or was never sent. */
+/* Records the acknowledgement of frame seq, which covers all earlier frames too, and updates channel and ladder. decode_ns: decoding
+   time reported by the client; negative: not reported. Returns whether that frame was newly acknowledged, was acknowledged before, or
+   was never sent. */
 enum pacer_ack pacer_acked(struct pacer *pacer, uint32_t seq, int64_t decode_ns, int64_t now_ns);
-/* Returns whether frames flow; PACER_STALLS: nothing was taken for too long and no more is to be sent; PACER_DEAD: the client is to be
+/* Returns PACER_FLOWS; PACER_STALLS if the client acknowledged nothing for PACER_STALL_S (send no more); or PACER_DEAD if it should be
    disconnected. */
 enum pacer_state pacer_state(const struct pacer *pacer, int64_t now_ns);
-/* Returns whether the network would take longer than limit_ns for a frame of so many bytes. */
+/* Returns whether the network would take longer than limit_ns to carry `bytes` bytes. */
 bool pacer_is_slower(const struct pacer *pacer, double bytes, int64_t limit_ns);
 
 #endif

@@ -5,8 +5,8 @@
 #include "base/clock.h"
 #include "session/session_impl.h"
 
-/* A page that is hidden for longer, or again within that time of being shown, gives up its pixels. Shown again, it is admitted as a new
-   session is. */
+/* A page hidden for longer than this, or hidden again within this time of being shown, loses its pixels. When it is shown again, it is
+   admitted like a new session. */
 static const int64_t HIDDEN_NS = 15 * NS_PER_S;
 
 static void hold(struct session *session, int64_t pixels)
@@ -18,7 +18,7 @@ static void hold(struct session *session, int64_t pixels)
     session->room.pixels = pixels;
 }
 
-/* A tile takes those of its own display: all of them share the picture. */
+/* Returns the pixels that the session occupies. A tile counts only the pixels of its own display, because all tiles share one picture. */
 static int64_t pixels_of(const struct session *session)
 {
     const int *display_px = session->tile.layout.display_px;
@@ -63,7 +63,7 @@ static bool take_again(struct session *session, const char **why)
     return !*why;
 }
 
-/* A session that is not admitted is told so, and gets pictures once there is capacity. */
+/* If a newly visible session is not admitted, it is told so, and gets pictures once there is capacity. */
 void session_on_visible(struct session *session, bool visible, int64_t now_ns)
 {
     struct message_error error = { 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Short answers: who follows, what is at a pixel, what was wrong. */
+/* Short answers: followers, picks, cameras and errors. */
 #include "session/reply/reply_impl.h"
 
 #include "base/text/json_text.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of all assets in one list. */
+/* Lists the sensors of all assets and their neighbour estimates as one JSON list. */
 #include "session/reply/reply_neighbours.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texts about the plant: what never changes while it is loaded. */
+/* Texts about the plant that do not change while it is loaded. */
 #include "session/reply/reply_impl.h"
 
 #include <libwebsockets.h>
@@ -80,7 +80,7 @@ static json_t *colormaps(void)
     json_t *list = json_array();
     for (size_t i = 0; i < colormap_count(); i++) {
         const struct colormap *map = colormap_at(i);
-        char base64[sizeof(map->rgb) / 3 * 4 + 8]; /* lws wants some room to spare */
+        char base64[sizeof(map->rgb) / 3 * 4 + 8]; /* lws_b64_encode_string needs a few spare bytes */
         lws_b64_encode_string((const char *)map->rgb, sizeof(map->rgb), base64, sizeof(base64));
         json_array_append_new(list, json_pack("{s:o,s:o,s:o,s:o,s:b}", "name", string(map->name), "rgb", string(base64), "below",
                                               colour(map->below), "above", colour(map->above), "safe", map->safe));
@@ -186,7 +186,8 @@ static void set_home(json_t *object, const struct session_context *context, int 
     json_object_set_new(object, "plant", plant_object(context, &home.camera));
 }
 
-/* Long, and the same for everybody who has a role; open: for anyone who looks on, without what people and tags are called. */
+/* Adds the long lists that are the same for all clients of one audience. open: for clients without a token; leaves out the names of
+   people and tags. */
 static void set_lists(json_t *object, const struct session_context *context, bool open)
 {
     json_object_set_new(object, "groups", groups(context->plant));
@@ -208,12 +209,12 @@ static char *lists_text(const struct session_context *context, enum audience_lis
     bool open = kind != LISTS_NAMED;
     json_t *object = json_object();
     set_lists(object, context, open);
-    if (kind == LISTS_VIEWS) /* what is not in them is not told of */
+    if (kind == LISTS_VIEWS) /* a token narrowed to views must not learn about assets outside of them */
         json_object_set_new(object, "assets", json_array());
     return json_text(object, DIGITS);
 }
 
-/* One object of both; takes them. */
+/* Joins two JSON objects into one text; frees both. */
 static char *join(char *first, char *second)
 {
     char *both = mem_printf("%.*s,%s", (int)strlen(first) - 1, first, second + 1);
@@ -222,7 +223,7 @@ static char *join(char *first, char *second)
     return both;
 }
 
-/* Kept for the next who comes. mem_free. */
+/* Returns the cached lists of an audience, building them on first use; the caller frees the text with mem_free. */
 static char *lists_said(const struct session_context *context, enum audience_lists kind)
 {
     if (!context->lists_said)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texts about readings, and about the sources that they come from. */
+/* Texts about readings and their data sources. */
 #include "session/reply/reply_impl.h"
 
 #include "base/text/json_text.h"
@@ -22,7 +22,7 @@ static json_t *alarm_of(const struct reading *reading)
     return string(alarm_kind_name((enum alarm_kind)reading->alarm));
 }
 
-/* Nothing to be said but its value. */
+/* Returns whether the reading has nothing to report but its value: good quality and no alarm. */
 static bool is_plain(const struct reading *reading)
 {
     return reading->quality == QUALITY_GOOD && !reading->alarm;
@@ -39,7 +39,7 @@ static void add_alarm(const struct plant *plant, size_t tag, const struct readin
 char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all)
 {
     json_t *values = json_array();
-    int64_t oldest_ns = 0; /* of those whose row is short */
+    int64_t oldest_ns = 0; /* age of the oldest reading among those sent in the short form */
     for (size_t i = 0; i < snapshot->count; i++) {
         const struct reading *r = &snapshot->readings[i];
         if (!all && sent[i] == r->changes)
@@ -70,7 +70,7 @@ char *reply_status_text(const struct session_context *context, int64_t now_utc_n
             json_object_set_new(link, "simulated", json_true());
         json_array_append_new(links, link);
     }
-    if (context->hand_on) /* a renderer: what comes from no device comes from there */
+    if (context->hand_on) /* a renderer reports its link to the core as one more source */
         json_array_append_new(links, json_pack("{s:s,s:b}", "source", "core", "up", context->core_up));
     json_t *status = json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", context->live,
                                "clock_set", context->clock.set);
@@ -81,7 +81,7 @@ char *reply_status_text(const struct session_context *context, int64_t now_utc_n
     return json_text(status, DIGITS);
 }
 
-/* Of the readings that are not bad; null: all are. */
+/* Returns the age of the oldest reading that is not bad; JSON null if all are bad. */
 static json_t *oldest_age_ms(const struct snapshot *snapshot)
 {
     const struct reading *oldest = NULL;

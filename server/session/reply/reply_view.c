@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texts about what a session is shown: parameters, whose view, when, from where. */
+/* Texts about what a session is shown: parameters, leader, instant, camera. */
 #include "session/reply/reply_impl.h"
 
 #include "base/text/json_text.h"
@@ -53,7 +53,7 @@ static json_t *baselines(const struct session_context *context)
     return all;
 }
 
-/* What one half shows. */
+/* Adds what one half of a split view (or the whole view) shows. */
 static void set_shown(json_t *object, const struct session_context *context, const struct view *view)
 {
     const struct plant *plant = context->plant;
@@ -104,7 +104,7 @@ static void set_params(json_t *object, const struct session_context *context, co
     visibility_print(plant, &view->visibility, object);
 }
 
-/* Names that people gave, and of tags: not for anyone who looks on. */
+/* Removes names that people or tags have, for clients without a token. */
 static void hide_names(json_t *object)
 {
     json_t *split = json_object_get(object, "split");
@@ -173,7 +173,7 @@ char *reply_camera_text(const struct camera *camera, uint32_t seq)
     return json_text(object, DIGITS);
 }
 
-/* --- views with names -------------------------------------------------------------------------------------------------------- */
+/* --- named views --------------------------------------------------------------------------------------------------------------- */
 
 void reply_add_wrong(const struct session_context *context, json_t *view, const char *address)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a session is to be told in words, and when. */
+/* Decides which texts a session is sent next, and when. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -10,7 +10,7 @@
 #include "session/reply/tag_text_cache.h"
 #include "session/session_impl.h"
 
-static const int64_t TAGS_NS = 500 * NS_PER_MS; /* changed values, at most this often */
+static const int64_t TAGS_NS = 500 * NS_PER_MS; /* minimum time between two `tags` messages */
 
 static void add_owned(const struct session *session, struct text *out, char *text)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One text of tags for many sessions. */
+/* Shares one `tags` text among many sessions. */
 #include "session/reply/tag_text_cache.h"
 
 #include <string.h>

@@ -16,7 +16,7 @@ int tile_layout_height(const struct tile_layout *layout)
     return layout->rows * layout->height_px + (layout->rows - 1) * layout->gap_px[1] + 2 * layout->margin_px[1];
 }
 
-/* Even: what an encoder of half the colours makes of an odd one would end in the next tile's pixels. */
+/* Scales a side to an even number of pixels: encoders with chroma subsampling would blend an odd column with the next tile's pixels. */
 static int scaled(int px, double scale)
 {
     int less = (int)(px * scale) & ~1;
@@ -28,7 +28,7 @@ struct tile_layout tile_layout_scale(const struct tile_layout *layout, double sc
     struct tile_layout out = *layout;
     out.width_px = scaled(layout->width_px, scale);
     out.height_px = scaled(layout->height_px, scale);
-    /* What lies between tiles gets smaller with them, and also where they can be no smaller. */
+    /* Gaps and margins shrink with the tiles, also when the tiles have reached their minimum size. */
     double across = fmin(scale, (double)out.width_px / layout->width_px), down = fmin(scale, (double)out.height_px / layout->height_px);
     out.gap_px[0] = (int)lround(layout->gap_px[0] * across);
     out.gap_px[1] = (int)lround(layout->gap_px[1] * down);
@@ -53,11 +53,12 @@ void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int w
     double scale = fmin(1, fmin(VIEW_MAX_SIDE_PX / side, sqrt((double)most_px / (width * height))));
     *layout = tile_layout_scale(&full, scale);
     while (scale > 0.01 && (tile_layout_width(layout) > VIEW_MAX_SIDE_PX || tile_layout_height(layout) > VIEW_MAX_SIDE_PX ||
-                            (int64_t)tile_layout_width(layout) * tile_layout_height(layout) > most_px)) /* gaps were rounded up */
+                            /* rounding up the gaps may exceed the limit again */
+                            (int64_t)tile_layout_width(layout) * tile_layout_height(layout) > most_px))
         *layout = tile_layout_scale(&full, scale *= 0.99);
 }
 
-/* As much smaller as the tiles are: the margin's pixels where the display's are BURN_SHIFT_PX. */
+/* Scales the shift to the tiles' size: a shift of BURN_SHIFT_PX display pixels is margin_px picture pixels. */
 static int shift_within(int shift_px, int margin_px)
 {
     return (int)lround((double)shift_px * margin_px / BURN_SHIFT_PX);

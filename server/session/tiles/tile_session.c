@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One tile of a picture over many displays: its size, what it has, whether it keeps up. */
+/* One tile of a picture over many displays: its size, the pictures it has, and whether it keeps up. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -7,9 +7,10 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-static const int64_t LATE_NS = 3 * NS_PER_S;                               /* so long the others wait for one */
-static const int64_t OUT_NS = 10 * NS_PER_S, OUT_MOST_NS = 320 * NS_PER_S; /* so long it is left out; twice as long each time */
-static const int64_t KEPT_UP_NS = 60 * NS_PER_S;                           /* who keeps up for so long begins anew */
+static const int64_t LATE_NS = 3 * NS_PER_S; /* the other tiles wait this long for a slow one before it is dropped */
+/* how long a slow tile is dropped; doubles each time, up to the maximum */
+static const int64_t OUT_NS = 10 * NS_PER_S, MAX_OUT_NS = 320 * NS_PER_S;
+static const int64_t KEPT_UP_NS = 60 * NS_PER_S; /* after keeping up for this long, the next drop starts with OUT_NS again */
 
 bool session_is_tile(const struct session *session)
 {
@@ -39,7 +40,7 @@ void session_tile_move(struct session *session, struct burn_shift shift, int64_t
     session->tile.moved = true;
     if (!session->demand.data)
         session->demand.data_ns = now_ns;
-    session->demand.data = true; /* the picture as it is, cut anew */
+    session->demand.data = true; /* requests the same picture, cut at another position */
 }
 
 void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq)
@@ -50,8 +51,8 @@ void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq)
     tile->held[tile->held_count++] = (struct tile_held){ picture, seq };
 }
 
-/* What is unchanged is so from the frame that was drawn before, which may still be on its way from the encoder: the answer without a frame
-   overtakes it, and is then that frame's. */
+/* Records that the tile's content in this picture equals the frame drawn before. That frame may still be on its way from the encoder,
+   because an answer without a frame overtakes it; then the picture number is attached to that frame when it arrives. */
 void session_tile_unchanged(struct session *session, uint64_t picture)
 {
     struct session_tile *tile = &session->tile;
@@ -80,7 +81,7 @@ void session_tile_came(struct session *session, struct frame_request *request, i
     session->tile.unchanged = 0;
 }
 
-/* --- who keeps up ---------------------------------------------------------------------------------------------------------- */
+/* --- tiles that keep up, and tiles that do not ----------------------------------------------------------------------------- */
 
 bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc_ns)
 {
@@ -93,7 +94,7 @@ bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc
         if (!waits)
             return false;
         tile->late_us = now_utc_ns / 1000;
-        tile->out_ns = !tile->out_ns ? OUT_NS : 2 * tile->out_ns < OUT_MOST_NS ? 2 * tile->out_ns : OUT_MOST_NS;
+        tile->out_ns = !tile->out_ns ? OUT_NS : 2 * tile->out_ns < MAX_OUT_NS ? 2 * tile->out_ns : MAX_OUT_NS;
         tile->in_ns = now_ns + tile->out_ns;
         session_drop_ready(session);
         return true;

@@ -8,7 +8,8 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-static const int64_t FLIP_NS = 25 * NS_PER_MS, FLIP_MOST_NS = NS_PER_S; /* beyond a round trip: until all show it */
+/* time added to the slowest round trip until all tiles show a picture; MAX_FLIP_NS: maximum */
+static const int64_t FLIP_NS = 25 * NS_PER_MS, MAX_FLIP_NS = NS_PER_S;
 
 bool session_tile_takes_part(const struct session *session, int64_t now_ns)
 {
@@ -18,7 +19,7 @@ bool session_tile_takes_part(const struct session *session, int64_t now_ns)
 
 /* --- requests --------------------------------------------------------------------------------------------------------------- */
 
-/* A preview before a refined picture: somebody moves, or has just come. */
+/* Returns whether request a goes before b: a preview before a refined picture, because somebody moves or has just connected. */
 static bool goes_first(const struct frame_request *a, const struct frame_request *b)
 {
     if (a->view.tier != b->view.tier)
@@ -26,7 +27,7 @@ static bool goes_first(const struct frame_request *a, const struct frame_request
     return a->urgency < b->urgency;
 }
 
-/* In the worst quality that one of them needs: tiles of two qualities would look like two pictures. */
+/* Returns the worst quality that any member needs: tiles of different quality would look like two pictures. */
 static struct rung worst_rung(const struct session_tiles *tiles, int *step)
 {
     struct quality_ladder worst = tiles->members[0]->delivery.pacer.ladder;
@@ -40,7 +41,7 @@ static struct rung worst_rung(const struct session_tiles *tiles, int *step)
     return quality_ladder_rung(&worst, worst.step);
 }
 
-/* While nothing moves nothing is learned. */
+/* Adjusts the picture size to the server's speed; only while something moves, as a still picture measures nothing. */
 static void follow_server(const struct session_tiles *tiles, bool moving, int64_t now_ns)
 {
     int64_t made_ns = 0;
@@ -87,7 +88,7 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
     first.view.width_px = tile_layout_width(&layout);
     first.view.height_px = tile_layout_height(&layout);
     first.always = always;
-    first.only_replace = !may_add; /* a refined picture that is under way is given up where somebody moves */
+    first.only_replace = !may_add; /* a refined picture in flight is abandoned when the view moves */
     first.picture = number;
     for (size_t i = 0; i < tiles->count; i++) {
         const struct session *member = tiles->members[i];
@@ -97,15 +98,15 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
         requests[i].codec = member->codec.current;
         requests[i].account = member->room.share ? member->room.share->account : 0;
         requests[i].view.camera_seq = member->view.camera_seq;
-        requests[i].view.params_seq = tiles->leader->view.params_seq; /* as `following` says it */
+        requests[i].view.params_seq = tiles->leader->view.params_seq; /* the number that `following` reported to the client */
         requests[i].part = tile_layout_part(&layout, member->tile.place.display);
     }
     return true;
 }
 
-/* --- who has which picture ------------------------------------------------------------------------------------------------ */
+/* --- which tile has which picture -------------------------------------------------------------------------------------------- */
 
-/* Its number among the client's frames, once the client has it; 0: it has not. */
+/* Returns the sequence number of the session's frame that shows the wall's picture, once the client has acknowledged it; otherwise 0. */
 static uint32_t seq_of(const struct session *session, uint64_t picture)
 {
     for (int i = session->tile.held_count - 1; i >= 0; i--)
@@ -123,7 +124,7 @@ static void drop_to(struct session_tile *tile, uint64_t picture)
     tile->held_count = kept;
 }
 
-/* The newest picture that all have; 0: none. */
+/* Returns the number of the newest picture that all members have; 0: none. */
 static uint64_t common(const struct session_tiles *tiles, uint64_t presented)
 {
     const struct session_tile *first = tiles->count > 0 ? &tiles->members[0]->tile : NULL;
@@ -138,8 +139,8 @@ static uint64_t common(const struct session_tiles *tiles, uint64_t presented)
     return 0;
 }
 
-/* Where nothing is under way and somebody has a frame that is not shown, as where a request was replaced for one and no longer for
-   another, what they show would stay as it is: all are sent a picture anew. */
+/* Requests another picture for all members if nothing is in flight and some member has a frame that was never presented. This happens if
+   a request was replaced for one member but came too late to be replaced for another. */
 static void ask_anew(const struct session_tiles *tiles)
 {
     bool any = false;
@@ -166,7 +167,7 @@ void session_tiles_present(const struct session_tiles *tiles, uint64_t *presente
         int64_t rtt_ns = channel_rtt_ns(&tiles->members[i]->delivery.pacer.channel);
         wait_ns = rtt_ns > wait_ns ? rtt_ns : wait_ns;
     }
-    wait_ns = wait_ns + FLIP_NS < FLIP_MOST_NS ? wait_ns + FLIP_NS : FLIP_MOST_NS;
+    wait_ns = wait_ns + FLIP_NS < MAX_FLIP_NS ? wait_ns + FLIP_NS : MAX_FLIP_NS;
     for (size_t i = 0; i < tiles->count; i++) {
         struct session *member = tiles->members[i];
         uint32_t seq = seq_of(member, picture);

@@ -1,28 +1,28 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sessions that are tiles of one picture over many displays (`tile` of the plant file). One of them leads: the others follow it. The
-   picture is asked for by all at once, drawn once, cut, and shown once all have it, at one instant: no tile is ever ahead of the others.
-   Who takes too long is left out for a while, and told so. Pure; time is handed in. Thread: the loop. */
+/* Synchronises sessions that are tiles of one picture over many displays (`tile` of the plant file). One session leads and the others
+   follow it. All request a picture together; it is drawn once, cut into tiles, and shown at one instant once every client has it, so no
+   tile is ahead of the others. A tile that delays the rest is dropped for a while and told so. Pure; the caller passes the time. Thread:
+   the event loop. */
 #ifndef SESSION_TILES_TILE_SYNC_H
 #define SESSION_TILES_TILE_SYNC_H
 #include "session/session.h"
 
-/* Returns whether a tile takes part now: it is on a screen, and keeps up. */
+/* Returns whether a tile takes part now: its page is visible, and it keeps up. */
 bool session_tile_takes_part(const struct session *session, int64_t now_ns);
 
-struct session_tiles { /* of one wall: those that take part, and one that leads */
+struct session_tiles { /* the participating tiles of one wall, and the session that leads */
     struct session *const *members;
     size_t count;
     const struct session *leader;
-    struct quality_ladder *made; /* of the wall: its size follows how long the server takes for pictures of it */
+    struct quality_ladder *made; /* the wall's ladder: its picture size follows how long the server takes to make pictures */
 };
 
-/* Returns whether all may be sent another picture, or another in place of one under way, and one of them wants it; then with everyone's
-   request: equal views, in the quality that the slowest can take, the
-   server among them. number: of that picture, larger than before. Once the service takes
-   them, session_requested() is to be called. */
+/* Returns true if a new picture may be requested (or may replace one in flight) and a member wants it; fills requests[] with one request
+   per member. All requests have the same view and the quality that the slowest client, or the server, can keep up with. number: of the
+   new picture, larger than the last. Call session_requested() once the render service accepts them. */
 bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t number, int64_t now_ns, struct frame_request requests[]);
-/* Has all show the newest picture that all have, if that is newer than *presented, at one instant. Where nothing is under way and some have
-   pictures that others have not, all want another one. */
+/* Makes all members show, at one instant, the newest picture that all of them have, if it is newer than *presented. If nothing is in
+   flight and some members have pictures that others lack, requests another picture for all. */
 void session_tiles_present(const struct session_tiles *tiles, uint64_t *presented, int64_t now_ns, int64_t now_utc_ns);
 
 #endif

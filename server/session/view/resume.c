@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Views that are kept for clients who come back. */
+/* Keeps the views of disconnected clients for their return. */
 #include "session/view/resume.h"
 
 #include <openssl/crypto.h>
@@ -14,11 +14,11 @@ struct kept_view {
     char secret[RESUME_CHARS + 1];
     struct token_holder holder;
     struct resumed what;
-    int64_t until_ns; /* once its connection is gone */
+    int64_t until_ns; /* expiry of the view, set when its connection is lost */
 };
 
 struct resumes {
-    struct kept_view *kept; /* in the order in which their clients left */
+    struct kept_view *kept; /* in the order in which the clients disconnected */
     size_t count, capacity;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A session that is shown the view of another one. Its own camera, parameters and size go on beneath. */
+/* A session that is shown another session's view. Its own camera, parameters and size are kept meanwhile. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -9,13 +9,13 @@
 
 void session_ask_follow(struct session *session, const struct message *message)
 {
-    if (session_is_tile(session)) /* it follows who leads the others */
+    if (session_is_tile(session)) /* a tile always follows its wall's leader */
         return;
     session->following.wanted = message->follow;
     session->following.asked = true;
 }
 
-/* What it was shown of a leader who has gone ends. */
+/* Ends showing the view of a leader who has gone, and returns to the session's own view. */
 static void come_to_own(struct session *session)
 {
     const struct view shown = session->view;
@@ -35,7 +35,7 @@ void session_leader_gone(struct session *session, int64_t now_ns)
     uint64_t called = session->following.leader->identity.number;
     session->following.own_view = session->view;
     session_inherit(session, session->following.leader);
-    view_set_trial(&session->view, 0); /* what somebody tried out went with him */
+    view_set_trial(&session->view, 0); /* the leader's trial sensor positions went with the leader */
     session_follow(session, NULL, now_ns);
     session->following.left = called;
 }
@@ -56,7 +56,7 @@ void session_follow(struct session *session, struct session *leader, int64_t now
 
 void session_ask_lead(struct session *session, const struct message *message)
 {
-    if (!session_is_tile(session)) /* tiles have their leader from where they stand */
+    if (!session_is_tile(session)) /* the leader of tiles follows from their positions */
         session->following.heir_wanted = message->follow;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A session whose engineer places and proves sensors. Nobody else sees what is tried out. */
+/* Placing and checking sensors in an engineer's session. Other sessions do not see trial positions. */
 #include "base/mem.h"
 #include "message/place_message.h"
 #include "message/loop_check_message.h"
@@ -26,7 +26,7 @@ static bool can_place(const struct session *session, struct message_error *error
     return false;
 }
 
-/* The view shows it, and the client is told. */
+/* Shows the trial positions in the view and tells the client. */
 static void show(struct session *session, int64_t now_ns)
 {
     view_set_trial(&session->view, place_set_trial(session->placement.set));

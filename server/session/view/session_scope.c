@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a session may see whose token is narrowed: to views of the plant file, or, that of a device which was paired, to its display. */
+/* What a session with a narrowed token may see and send: a token narrowed to views of the plant file, or a paired device restricted to
+   its display. */
 #include <jansson.h>
 #include <stdio.h>
 #include <string.h>
@@ -30,7 +31,7 @@ static const struct named_view *find_view(const struct session *session, const c
     return named;
 }
 
-/* As its author wrote it, who may say all that there is to say; the size stays. */
+/* Reads a view as its author wrote it, with the author's rights; the size of `view` stays. */
 static bool read_view(const struct session *session, const struct named_view *named, struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -52,7 +53,7 @@ static bool read_view(const struct session *session, const struct named_view *na
     view->camera_seq = before.camera_seq;
     view->params_seq = before.params_seq;
     view->tier = before.tier;
-    view_set_instant(view, before.at_us, before.field.slot); /* who looks into the past goes on doing so */
+    view_set_instant(view, before.at_us, before.field.slot); /* a session that shows a past instant goes on doing so */
     view_set_trial(view, before.field.trial);
     return true;
 }
@@ -66,7 +67,7 @@ bool session_look(struct session *session, const char *id, struct view *view, st
     return true;
 }
 
-/* The first of the token's views that the plant file has. */
+/* Returns the id of the first view that the token allows and the plant file has; NULL: none. */
 static const char *first_view(const struct session *session)
 {
     const struct plant *plant = session->context->plant;
@@ -103,7 +104,7 @@ json_t *session_scope_views(const struct session *session)
     return list;
 }
 
-/* --- a display ------------------------------------------------------------------------------------------------------------ */
+/* --- a paired display ------------------------------------------------------------------------------------------------------- */
 
 static const struct wall_display *display_of(const struct session *session)
 {
@@ -158,7 +159,7 @@ static bool is_own(const struct session *session, const json_t *item)
            json_integer_value(json_object_get(item, "display")) == session->identity.holder.display;
 }
 
-/* Of its panes; what is for a picture over many displays stands under the first of them. */
+/* Returns whether a list item concerns this display's panes. Items for a picture over many displays are listed under its first display. */
 static bool is_ours(const struct session *session, const json_t *item)
 {
     const char *id = json_string_value(json_object_get(item, "wall"));
@@ -179,11 +180,11 @@ static bool shows_note(const struct session *session, const json_t *item)
     return !session->scope.tags;
 }
 
-/* What of a message is told item by item, and which items are. */
+/* Messages that are filtered item by item: type, name of the list, and which items are kept. */
 static const struct {
     const char *type, *list;
     bool (*keeps)(const struct session *session, const json_t *item);
-    bool of_tags; /* only where the display shows no pictures */
+    bool of_tags; /* filter only if the display shows no pictures */
 } filters[] = {
     { "tags", "values", shows_row, true },  { "alarms", "alarms", shows_alarm, true }, { "views", "list", shows_view, false },
     { "notes", "list", shows_note, false }, { "walls", "list", is_ours, false },       { "walls", "displays", is_own, false },
@@ -218,7 +219,7 @@ char *session_scope_text(const struct session *session, char *text)
     return json_text(message, FILTERED_DIGITS);
 }
 
-/* --- what may be sent ------------------------------------------------------------------------------------------------------- */
+/* --- which messages may be sent --------------------------------------------------------------------------------------------- */
 
 static bool is_in(enum message_type type, const enum message_type *list, size_t count)
 {
@@ -239,7 +240,8 @@ bool session_scope_allows(const struct session *session, const struct message *m
     if (holder->views[0] && !is_in(message->type, views, sizeof(views) / sizeof(views[0])))
         message_fail(error, "not_allowed", "this token is for pictures of the views %.150s: hello or look names one", holder->views);
     else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])) &&
-             (message->type != MESSAGE_PICK || session->scope.tags)) /* where there are pictures it looks for a side of an alarm's place */
+             /* a display with pictures picks to find a free side for an alarm's label */
+             (message->type != MESSAGE_PICK || session->scope.tags))
         message_fail(error, "not_allowed", "this token is that of display %d of wall %s, and does what that does", holder->display,
                      holder->wall);
     else

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A session that travels in time: where it goes, how it plays, and how it comes back. */
+/* Time travel of a session: going to an instant, playback, and the return to the present. */
 #include <math.h>
 
 #include "base/clock.h"
 #include "history/history.h"
 #include "session/session_impl.h"
 
-static const int64_t STEP_NS = 100 * NS_PER_MS;      /* of play, at most so often */
-static const int64_t SLOW_STEP_NS = 500 * NS_PER_MS; /* likewise, where little happens in so little time */
+static const int64_t STEP_NS = 100 * NS_PER_MS;      /* minimum time between two steps of playback */
+static const int64_t SLOW_STEP_NS = 500 * NS_PER_MS; /* the same at low speeds, where little changes from step to step */
 static const double SLOW_SPEED = 10;
 
 void session_tell_time(struct session *session)
@@ -15,7 +15,8 @@ void session_tell_time(struct session *session)
     int64_t at_us = session_view(session)->at_us;
     session->owed.time = true;
     session->owed.tags = true;
-    session->owed.tags_all |= (at_us != 0) != (session->owed.told_at_us != 0); /* changes are counted otherwise */
+    /* the change counters of current and historical readings are unrelated, so all tags are sent again */
+    session->owed.tags_all |= (at_us != 0) != (session->owed.told_at_us != 0);
     session->owed.told_at_us = at_us;
 }
 
@@ -117,7 +118,7 @@ bool session_on_time(struct session *session, const struct time_request *request
     return true;
 }
 
-/* False: it has come back to the present. */
+/* Advances playback. Returns false if it has reached the present. */
 static bool step(struct session *session, int64_t now_ns, int64_t now_utc_ns)
 {
     struct travel *travel = &session->travel;
@@ -160,7 +161,7 @@ static void on_failure(struct session *session)
     session->owed.time = true;
 }
 
-/* One that was asked for before, on the way to another, is shown too: who drags a slider sees something all the way. */
+/* Also shows an instant that was requested earlier on the way to another one, so that dragging a slider shows pictures all the way. */
 void session_on_historical_snapshot(struct session *session, int64_t at_us, bool good, int64_t now_ns)
 {
     struct travel *travel = &session->travel;

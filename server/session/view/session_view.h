@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a session is shown: its own view or its leader's, of now or of an instant. Thread: the loop. */
+/* The view that a session is shown: its own or its leader's, with readings of the present or of an instant. Thread: the event loop. */
 #ifndef SESSION_VIEW_SESSION_VIEW_H
 #define SESSION_VIEW_SESSION_VIEW_H
 #include "session/session_state.h"
 
-/* Returns the view that it is shown: its own, or its leader's. */
+/* Returns the view that the session is shown: its own or its leader's. */
 const struct view *session_view(const struct session *session);
-/* Returns the view to draw: session_view, without what a leader has moved on trial. */
+/* Returns the view to draw: session_view(), without the leader's trial sensor positions. */
 struct view session_shown(const struct session *session);
-/* Returns the readings that it is shown: of now, or of an instant. */
+/* Returns the readings that the session is shown: of the present, or of an instant. */
 const struct snapshot *session_snapshot(const struct session *session);
 
 #endif

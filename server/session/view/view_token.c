@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* SECRET.BODY.MAC: body JSON in base64, mac HMAC-SHA-256 of secret and body. */
+/* View tokens have the form SECRET.BODY.MAC: BODY is JSON in base64, MAC is the HMAC-SHA-256 of SECRET.BODY. */
 #include "session/view/view_token.h"
 
 #include <openssl/crypto.h>
@@ -16,7 +16,8 @@
 #include "session/session_impl.h"
 
 enum { MAC_BYTES = 32, DIGITS = 17 };
-static const int64_t KEPT_NS = 86400 * NS_PER_S, SKEW_NS = 7200 * NS_PER_S; /* the clock of who made it may be so far ahead */
+/* lifetime of a token; how far ahead the clock of the daemon that made it may be */
+static const int64_t KEPT_NS = 86400 * NS_PER_S, SKEW_NS = 7200 * NS_PER_S;
 
 void view_token_add_key(struct view_token_keys *keys, const uint8_t key[VIEW_TOKEN_KEY_BYTES])
 {
@@ -27,7 +28,7 @@ void view_token_add_key(struct view_token_keys *keys, const uint8_t key[VIEW_TOK
     keys->count += keys->count < VIEW_TOKEN_KEYS;
 }
 
-/* Over all of the text before its end. */
+/* Writes the MAC of `text`, the token up to its last dot. */
 static bool sign(const uint8_t key[VIEW_TOKEN_KEY_BYTES], const char *text, size_t count, char mac[2 * MAC_BYTES + 1])
 {
     uint8_t bytes[MAC_BYTES];
@@ -85,7 +86,7 @@ char *view_token_make(const struct view_token_keys *keys, const struct session *
     return token;
 }
 
-/* The length of what is signed; 0: by none of the keys. */
+/* Returns the length of the signed part of a token, or 0 if no key has signed it. */
 static size_t find_signed(const struct view_token_keys *keys, const char *token)
 {
     const char *end = strrchr(token, '.');
@@ -104,7 +105,7 @@ static json_t *decode_body(const char *token, size_t count)
     size_t length = begin ? count - (size_t)(begin + 1 - token) : 0;
     uint8_t *bytes = mem_array(length + 4, 1);
     int got = length ? EVP_DecodeBlock(bytes, (const uint8_t *)begin + 1, (int)length) : -1;
-    while (got > 0 && bytes[got - 1] == 0) /* what filled up the last three */
+    while (got > 0 && bytes[got - 1] == 0) /* strips the zero bytes that base64 padding decodes to */
         got--;
     json_t *body = got > 0 ? json_loadb((const char *)bytes, (size_t)got, 0, NULL) : NULL;
     mem_free(bytes);
