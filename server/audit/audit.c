@@ -17,29 +17,29 @@ enum { MOST_WAITING = 10000, FILE_BYTES = 64 << 20 };
 static const int64_t RETRY_NS = NS_PER_S;
 
 struct queued_entry {
-    struct audit_entry entry; /* its texts lie behind it */
+    struct audit_entry entry; /* its texts are stored behind the struct */
     int64_t utc_us;
-    bool said; /* in the log, since it could not be written */
+    bool said; /* logged already, because the file could not be written */
     struct queued_entry *next;
 };
 
 struct audit {
     struct audit_params params;
     char *path;
-    struct audit_file file; /* of the thread */
+    struct audit_file file; /* used only by the thread */
     struct audit_syslog *syslog;
-    bool failing; /* of the thread */
+    bool failing; /* used only by the thread */
     counter *good, *lines, *lost;
     struct thread thread;
-    /* --- below: under thread.lock */
+    /* --- below: protected by thread.lock */
     struct queued_entry *first, **last;
     size_t count;
-    int64_t lost_count; /* since entries were last written */
+    int64_t lost_count; /* entries lost since the last successful write */
     struct settling settling;
     pthread_cond_t settled;
 };
 
-/* --- entries that wait ---------------------------------------------------------------------------------------------------- */
+/* --- queued entries ----------------------------------------------------------------------------------------------------------- */
 
 static struct queued_entry *copy_entry(const struct audit_entry *entry)
 {
@@ -151,7 +151,7 @@ static void say_written(struct audit *audit, const char *why)
     counter_set(audit->good, !audit->failing);
 }
 
-/* Returns 0, or -errno if the entry is not on disk. */
+/* Appends an entry to the file, the log and syslog. Returns 0, or -errno if the entry is not on disk. */
 static int write_entry(struct audit *audit, const struct audit_entry *entry, int64_t utc_us)
 {
     struct text line = { 0 };
@@ -174,7 +174,7 @@ static int write_entry(struct audit *audit, const struct audit_entry *entry, int
     return error;
 }
 
-/* Under the lock. */
+/* Removes the first queued entry. The caller holds the lock. */
 static void free_first(struct audit *audit)
 {
     struct queued_entry *first = audit->first;
@@ -185,7 +185,7 @@ static void free_first(struct audit *audit)
     mem_free(first);
 }
 
-/* Those that came while the file cannot be written. Under the lock; only this thread takes entries out. */
+/* Logs the queued entries that the file cannot take now. The caller holds the lock; only this thread removes entries. */
 static void log_waiting(struct audit *audit)
 {
     for (struct queued_entry *waiting = audit->first; waiting; waiting = waiting->next) {
@@ -195,7 +195,7 @@ static void log_waiting(struct audit *audit)
     }
 }
 
-/* Under the lock. */
+/* Records how many entries were lost. The caller holds the lock. */
 static void say_lost(struct audit *audit)
 {
     int64_t lost = audit->lost_count;
@@ -241,7 +241,7 @@ static void *run(void *arg)
     return NULL;
 }
 
-/* --- life ----------------------------------------------------------------------------------------------------------------- */
+/* --- life cycle --------------------------------------------------------------------------------------------------------------- */
 
 static void finish(struct audit *audit)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The audit trail: a thread writes entries to the trail's file, the log and a syslog server. Only audit_wait() waits for the file. While
-   the file cannot be written, entries wait in memory, and the log and the metrics say so. */
+/* The audit trail: a thread writes entries to the trail's file, the log and a syslog server. Only audit_wait() blocks on the file. While
+   the file cannot be written, entries wait in memory, and the log and the metrics report that. */
 #ifndef AUDIT_AUDIT_H
 #define AUDIT_AUDIT_H
 #include "audit/audit_chain.h"
@@ -10,15 +10,16 @@
 struct audit;
 /* Opens the file and starts the thread. Returns NULL if that fails, already logged. */
 struct audit *audit_start(const struct audit_params *params);
-/* Writes what waits, if it can be written, and ends. &NULL is fine; leaves NULL. */
+/* Writes the queued entries, if possible, and ends the thread. &NULL is allowed; sets *audit to NULL. */
 void audit_stop(struct audit **audit);
-/* Tell whether entries that are recorded between begin and end are on disk (base/files/settling.h); none waits. audit NULL: they are. */
+/* Tell whether the entries that are recorded between audit_begin() and audit_end() are on disk (base/files/settling.h); none of the
+   three blocks. audit NULL: they count as on disk. */
 struct settling_ticket audit_begin(struct audit *audit);
 void audit_end(struct audit *audit, struct settling_ticket *ticket);
 int audit_settled(struct audit *audit, const struct settling_ticket *ticket);
-/* Waits until audit_settled() knows, a second at most, and returns the same. Any thread but the loop. */
+/* Waits until audit_settled() knows the result, for a second at most, and returns that result. Any thread but the event loop's. */
 int audit_wait(struct audit *audit, const struct settling_ticket *ticket);
-/* Records an entry, which is copied. audit NULL: does nothing. Any thread. */
+/* Records a copy of an entry. audit NULL: does nothing. Any thread. */
 void audit_say(struct audit *audit, const struct audit_entry *entry);
 
 #endif

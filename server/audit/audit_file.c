@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writing the audit trail's file. */
+/* Writes the audit trail's file. */
 #include "audit/audit_file.h"
 
 #include <errno.h>
@@ -21,7 +21,7 @@ static bool write_all(int fd, const char *bytes, size_t count)
     return true;
 }
 
-/* Finds the last whole line, and puts the chain's end there. Returns the bytes up to its end. */
+/* Finds the last complete line and sets the chain to it. Returns the offset of its end. */
 static size_t find_end(struct audit_file *file, size_t bytes, char **finding)
 {
     size_t window = bytes < 2 * AUDIT_LINE_BYTES ? bytes : 2 * AUDIT_LINE_BYTES;
@@ -40,7 +40,7 @@ static size_t find_end(struct audit_file *file, size_t bytes, char **finding)
     return bytes - window + end;
 }
 
-/* What a crash left of a line is cut off. */
+/* Sets the chain from the file; cuts off an incomplete line that a crash left. */
 static int find_chain(struct audit_file *file, char **finding)
 {
     struct stat st;
@@ -56,7 +56,7 @@ static int find_chain(struct audit_file *file, char **finding)
     return ftruncate(file->fd, (off_t)file->bytes) == 0 ? 0 : -errno;
 }
 
-/* Whether the trail up to its head was rotated away, and nothing was written since. */
+/* Returns whether the trail up to its head was rotated away and nothing was written since. */
 static bool is_rotated(const struct audit_file *file, const struct audit_chain *head)
 {
     char *full = mem_printf("%s.%012" PRIu64, file->path, head->seq);
@@ -65,7 +65,8 @@ static bool is_rotated(const struct audit_file *file, const struct audit_chain *
     return rotated;
 }
 
-/* Where the head says that there was more, numbers go on behind it: the gap stays visible. */
+/* Compares the file with PATH.head. If the head says that there were more lines, numbering continues after them, so that the gap stays
+   visible. */
 static void compare_head(struct audit_file *file, char **finding)
 {
     struct audit_chain head;
@@ -106,7 +107,8 @@ void audit_file_close(struct audit_file *file)
     *file = (struct audit_file){ .fd = -1 };
 }
 
-/* Somebody else's program may have renamed it, which is fine, or cut it. */
+/* Checks whether the file at the path is still ours. Another program may rename it, which is fine; if it changed the content, *finding
+   says so. */
 static int look_at_path(struct audit_file *file, char **finding)
 {
     struct stat ours, there;
@@ -127,7 +129,7 @@ static int look_at_path(struct audit_file *file, char **finding)
     return error;
 }
 
-/* Nothing is overwritten: a name that is there stays. */
+/* Renames the full file. An existing file of that name is never overwritten. */
 static int rotate(struct audit_file *file)
 {
     char *full = mem_printf("%s.%012" PRIu64, file->path, file->chain.seq);
@@ -163,6 +165,7 @@ int audit_file_append(struct audit_file *file, const struct audit_entry *entry, 
     }
     file->chain = chain;
     file->bytes += count;
-    audit_head_write(file->head_path, &chain); /* if not, the next one does: a head that lags is not taken for a loss */
+    /* errors are ignored: the next write updates the head, and a head that lags behind is no loss */
+    audit_head_write(file->head_path, &chain);
     return 0;
 }

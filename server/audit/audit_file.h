@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The audit trail's file. PATH is written; full ones are kept beside it as PATH.NUMBER, after the number of their last line. PATH.head
-   says where the trail ends, so that removed last lines are noticed. Functions that return int return 0 or -errno. Thread: one. */
+/* The audit trail's file. PATH is being written; full files stay next to it as PATH.NUMBER, named after their last line's number.
+   PATH.head says where the trail ends, so that removed last lines are detected. Functions that return int return 0 or -errno. Thread:
+   one. */
 #ifndef AUDIT_AUDIT_FILE_H
 #define AUDIT_AUDIT_FILE_H
 #include <stddef.h>
@@ -9,17 +10,18 @@
 
 struct audit_file {
     char *path, *head_path;
-    int fd;                   /* -1: not open */
-    size_t bytes;             /* written so far */
-    size_t most_bytes;        /* beyond that it is rotated */
+    int fd;                   /* file descriptor; -1: not open */
+    size_t bytes;             /* size of the file so far */
+    size_t most_bytes;        /* size at which the file is rotated */
     struct audit_chain chain; /* where the trail ends */
 };
 
-/* Opens the file, or makes it. *finding: NULL, or what is wrong with the trail that is there, which is continued anyway (mem_free). */
+/* Opens the file, or creates it. *finding: NULL, or a description of what is wrong with the existing trail, which is continued anyway;
+   the caller frees it with mem_free. */
 int audit_file_open(struct audit_file *file, const char *path, size_t most_bytes, char **finding);
-void audit_file_close(struct audit_file *file); /* one that was never opened, zeroed, is fine */
-/* Appends an entry; all of it is on the disk, or none of it and the chain is as it was. line: its text, appended to. *finding: as above:
-   somebody changed the file meanwhile. */
+void audit_file_close(struct audit_file *file); /* also allowed for a zeroed struct that was never opened */
+/* Appends an entry. Either all of it is on disk, or none and the chain is unchanged. line: receives the entry's text, appended.
+   *finding: as in audit_file_open(), if another program changed the file meanwhile. */
 int audit_file_append(struct audit_file *file, const struct audit_entry *entry, int64_t utc_us, struct text *line, char **finding);
 
 struct audit_report {
@@ -27,10 +29,10 @@ struct audit_report {
     uint64_t first_seq;
     struct audit_chain end;
     bool good;
-    char *text; /* what is wrong, and where; NULL: nothing. mem_free */
+    char *text; /* what is wrong, and where; NULL: nothing. Free it with mem_free */
 };
-/* Verifies the trail: full files, PATH, and PATH.head. known: a line's number and hash that are kept elsewhere (seq 0: none); where the
-   trail ends before it, or has another there, that is found. */
+/* Verifies the trail: full files, PATH, and PATH.head. known: number and hash of a line, kept elsewhere (seq 0: none); reports a trail
+   that ends before that line or has another one there. */
 void audit_file_verify(const char *path, const struct audit_chain *known, struct audit_report *report);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the audit trail ends. */
+/* Reads and writes the file that says where the audit trail ends. */
 #include "audit/audit_head.h"
 
 #include <fcntl.h>

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* PATH.head: number and hash of the audit trail's last line, of a fixed length and overwritten in place, so that a full disk takes it,
-   too. Thread: one. */
+/* PATH.head: number and hash of the audit trail's last line. It has a fixed length and is overwritten in place, so that it can be
+   written on a full disk, too. Thread: one. */
 #ifndef AUDIT_AUDIT_HEAD_H
 #define AUDIT_AUDIT_HEAD_H
 #include "audit/audit_chain.h"
 
-/* Parses `NUMBER HASH`, or `NUMBER:HASH`. Returns false if it is not that. */
+/* Parses `NUMBER HASH` or `NUMBER:HASH`. Returns false if the text is neither. */
 bool audit_head_parse(const char *text, struct audit_chain *head);
-/* Returns false if there is none, or it cannot be understood. */
+/* Returns false if the file does not exist or cannot be parsed. */
 bool audit_head_read(const char *path, struct audit_chain *head);
-/* Returns whether it was written. */
+/* Returns whether the file was written. */
 bool audit_head_write(const char *path, const struct audit_chain *head);
 
 #endif

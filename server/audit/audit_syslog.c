@@ -25,14 +25,14 @@ struct audit_syslog {
     char *url, host[256];
     pthread_t thread;
     counter *good, *lost;
-    CURL *connection; /* of the thread; NULL: none */
-    bool failing;     /* likewise */
+    CURL *connection; /* used only by the thread; NULL: not connected */
+    bool failing;     /* used only by the thread: the last line could not be sent */
     pthread_mutex_t lock;
     pthread_cond_t wake;
-    /* --- below: under lock */
+    /* --- below: protected by `lock` */
     struct framed *first, **last;
     size_t waiting;
-    int64_t stop_ns; /* 0: goes on */
+    int64_t stop_ns; /* monotonic: when the thread must end; 0: it goes on */
 };
 
 void audit_syslog_frame(struct text *out, const char *host, int pid, const char *event, bool good, int64_t utc_us, const char *line,
@@ -95,7 +95,8 @@ static bool connect_now(struct audit_syslog *syslog)
     return false;
 }
 
-/* A server that has gone is noticed before a line is given to a socket that nobody reads. */
+/* Returns whether the connection is still open. Checked before each line, so that no line is lost in the socket of a server that has
+   gone. */
 static bool is_alive(CURL *connection)
 {
     char byte;
@@ -160,7 +161,7 @@ static void *run(void *arg)
             pthread_cond_wait(&syslog->wake, &syslog->lock);
         if (syslog->stop_ns && (!syslog->first || clock_mono_ns() >= syslog->stop_ns))
             break;
-        struct framed *first = syslog->first; /* only this thread takes lines out */
+        struct framed *first = syslog->first; /* stays valid without the lock: only this thread removes lines */
         pthread_mutex_unlock(&syslog->lock);
         bool sent = deliver(syslog, &first->text);
         pthread_mutex_lock(&syslog->lock);

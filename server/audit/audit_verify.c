@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Verifying an audit trail. */
+/* Verifies an audit trail. */
 #include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
@@ -14,7 +14,7 @@
 struct audit_walk {
     struct audit_report *report;
     const struct audit_chain *known;
-    struct audit_chain head; /* seq 0: none */
+    struct audit_chain head; /* the trail's head; seq 0: none */
 };
 
 static void set_fault(struct audit_report *report, char *text)
@@ -26,7 +26,7 @@ static void set_fault(struct audit_report *report, char *text)
     report->good = false;
 }
 
-/* A line whose number is known from elsewhere must be the same one. */
+/* Reports a line whose hash differs from the one that is known from elsewhere. */
 static void compare(struct audit_walk *walk, const struct audit_chain *with, const char *path, const char *whose)
 {
     const struct audit_chain *end = &walk->report->end;

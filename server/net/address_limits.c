@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What each address has. */
+/* Counts what each client address uses, and compares it with the quotas. */
 #include "net/address_limits.h"
 
 #include <arpa/inet.h>
@@ -10,9 +10,9 @@
 
 struct address_limits {
     const struct quotas *quotas;
-    struct address_usage **all; /* some thousands at most, and looked up once per connection */
+    struct address_usage **all; /* a few thousand at most; searched once per connection */
     size_t count, capacity;
-    uint64_t payers; /* numbers given */
+    uint64_t payers; /* number of account ids given out so far */
     bool exempt;
 };
 
@@ -42,7 +42,8 @@ static void read_address(const char *text, struct address_usage *out)
     struct in6_addr six;
     struct in_addr four;
     char plain[64] = "";
-    memcpy(plain, text, strcspn(text, "%") < sizeof(plain) ? strcspn(text, "%") : 0); /* fe80::1%eth0 */
+    /* drops the zone of an address such as fe80::1%eth0 */
+    memcpy(plain, text, strcspn(text, "%") < sizeof(plain) ? strcspn(text, "%") : 0);
     if (inet_pton(AF_INET, plain, &four) == 1) {
         memcpy(out->address, mapped, sizeof(mapped));
         memcpy(out->address + 12, &four, 4);

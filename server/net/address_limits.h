@@ -1,40 +1,42 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Limits by address: how many connections, streams, requests and messages each address has. An address of IP version 6 counts by its
-   first 64 bits, which one customer has whole. Pure: time is handed in. Thread: the loop. */
+/* Limits per client address: how many connections, streams, requests and messages each has. An IPv6 address counts by its first 64 bits,
+   because one customer has all addresses of such a prefix. Pure: the caller passes the time. Thread: the event loop. */
 #ifndef NET_ADDRESS_LIMITS_H
 #define NET_ADDRESS_LIMITS_H
 #include "session/pacing/admission.h"
 
 struct address_usage {
-    uint8_t address[16]; /* version 4 as ::ffff:a.b.c.d */
-    bool local;          /* 127.x or ::1 */
+    uint8_t address[16]; /* IPv4 addresses as ::ffff:a.b.c.d */
+    bool local;          /* loopback: 127.x or ::1 */
     int refs, connections, sessions;
-    int named;               /* connections of a proxy whose last request it made */
-    int pictures, questions; /* of HTTP, that are being answered */
-    int64_t answer_bytes;    /* of HTTP answers that it has not read yet */
+    int named;               /* connections of a reverse proxy whose last request came from this address */
+    int pictures, questions; /* pictures and history queries over HTTP that are being answered */
+    int64_t answer_bytes;    /* bytes of HTTP answers that the client has not read yet */
     struct address_share share;
-    int64_t rate_begin_ns, messages; /* of streams, within the second that began then */
+    int64_t rate_begin_ns, messages; /* stream messages within the second that began at rate_begin_ns (monotonic) */
 };
 
 struct address_limits;
-/* exempt: addresses of this machine are held only to the limits on all together, unless a limit by address was given. Never NULL. */
+/* exempt: loopback addresses have no limits of their own unless the user set one; the server's total limits still apply. Never returns
+   NULL. */
 struct address_limits *address_limits_create(const struct quotas *quotas, bool exempt);
-void address_limits_destroy(struct address_limits **limits); /* &NULL is fine; leaves NULL */
+void address_limits_destroy(struct address_limits **limits); /* &NULL is allowed; sets *limits to NULL */
 
-/* Returns the usage of a numeric address, with a reference for the caller; added if need be. Whatever is no address counts as one. */
+/* Returns the usage of a numeric address, created if needed, with a reference that the caller must release. All texts that are no
+   address share one usage. */
 struct address_usage *address_limits_ref(struct address_limits *limits, const char *address);
-/* Gives a reference back. &NULL is fine; leaves NULL. */
+/* Releases a reference. &NULL is allowed; sets *usage to NULL. */
 void address_limits_unref(struct address_limits *limits, struct address_usage **usage);
 
-/* Return whether the address may have one more: connection; stream; connection of a proxy; question about history; `count` bytes of
-   answers; frame over HTTP. */
+/* Return whether the address may have one more: connection; stream; connection of a proxy; history query; answer of `count` bytes;
+   picture over HTTP. */
 bool address_limits_may_connect(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_stream(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_be_named(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_ask(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_hold(const struct address_limits *limits, const struct address_usage *usage, size_t count);
 bool address_limits_may_draw(const struct address_limits *limits, const struct address_usage *usage);
-/* Counts a message of a stream. Returns false if the address has sent too many within this second. */
+/* Counts a stream message. Returns false if the address has sent too many within this second. */
 bool address_limits_count_message(const struct address_limits *limits, struct address_usage *usage, int64_t now_ns);
 /* Returns how many addresses are known. */
 int address_limits_count(const struct address_limits *limits);

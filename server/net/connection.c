@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who is at the other end of a connection. */
+/* Determines the identity of the client at the other end of a connection. */
 #include "net/connection.h"
 
 #include <string.h>
@@ -11,8 +11,8 @@
 #include "message/names.h"
 #include "net/tls.h"
 
-static const char LOCAL[] = "local";            /* a user of this machine who needs no token */
-static const char SIGNED_IN[] = " (signed in)"; /* suffix of a person whose name somebody else has as well */
+static const char LOCAL[] = "local";            /* name of a user on this machine who needs no token */
+static const char SIGNED_IN[] = " (signed in)"; /* suffix for a signed-in user if a token has the same name */
 
 static const struct http_refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n" };
 static const struct http_refusal WRONG_HOST = { 403, "this server is not asked for by that name (Host); --host NAME lets it\n" };
@@ -39,7 +39,8 @@ bool connection_may_open(struct server_context *server, int fd)
     char address[64] = "";
     if (server->connection_count >= server->quotas->at[QUOTA_CONNECTIONS])
         return count_refusal(server, false);
-    if (server->params.access.behind_proxy) /* all come from one address there; sessions are counted by what it says */
+    /* behind a proxy all connections come from one address; sessions are counted by the forwarded address */
+    if (server->params.access.behind_proxy)
         return true;
     lws_get_peer_simple_fd(fd, address, sizeof(address));
     struct address_usage *usage = address_limits_ref(server->limits, address);
@@ -116,7 +117,8 @@ static bool is_named(const struct access_params *params, const char *name)
     return false;
 }
 
-/* A page of a foreign name that leads here (DNS rebinding) may not ask; addresses cannot be led elsewhere. */
+/* Returns whether the Host header names this server. A web page of another domain whose DNS name was made to point here (DNS rebinding)
+   is refused; numeric addresses cannot be rebound. */
 static bool is_ours(const struct server_context *server, const char *name)
 {
     const struct access_params *params = &server->params.access;
@@ -128,7 +130,8 @@ static bool is_ours(const struct server_context *server, const char *name)
            (server->tls && tls_is_called(server->tls, name));
 }
 
-/* What a proxy adds to the requests of others. lws knows some of these names, and those it does not find among the custom ones. */
+/* Returns whether the request has headers that a proxy adds. libwebsockets parses some of these names itself and does not find those
+   with its function for custom headers. */
 static bool has_forwarding(struct lws *wsi)
 {
     static const enum lws_token_indexes known[] = { WSI_TOKEN_X_FORWARDED_FOR, WSI_TOKEN_HTTP_X_REAL_IP, WSI_TOKEN_HTTP_VIA };
@@ -142,7 +145,7 @@ static bool has_forwarding(struct lws *wsi)
     return false;
 }
 
-/* Behind a proxy its connections are those of whom it names. False: *refusal. */
+/* Finds the client's address; behind a proxy, the address that the proxy forwards. Returns false with *refusal set. */
 static bool find_client(struct server_context *server, struct lws *wsi, struct connection *connection, struct http_refusal *refusal)
 {
     bool proxied = server->params.access.behind_proxy && connection->usage->local;
@@ -161,14 +164,14 @@ static bool find_client(struct server_context *server, struct lws *wsi, struct c
 
 static bool has_token_in_query(struct lws *wsi)
 {
-    char argument[4096]; /* more than lws keeps of all headers together */
+    char argument[4096]; /* larger than all headers together that libwebsockets keeps */
     for (int i = 0; lws_hdr_fragment_length(wsi, WSI_TOKEN_HTTP_URI_ARGS, i) > 0; i++)
         if (lws_hdr_copy_fragment(wsi, argument, sizeof(argument), WSI_TOKEN_HTTP_URI_ARGS, i) > 0 && access_argument_is_token(argument))
             return true;
     return false;
 }
 
-/* False: a header is too long. "": there is no token. */
+/* Finds the request's token; token "": none. Returns false if a header is too long. */
 static bool find_token(struct lws *wsi, char token[TOKEN_MAX_CHARS + 1])
 {
     char text[512];
@@ -206,7 +209,8 @@ void connection_record(const struct server_context *server, struct lws *wsi, con
                                                            .why = why });
 }
 
-/* Those that are held are counted: whoever tries thousands does not fill the trail. */
+/* Records a login in the audit trail. Tokens that were not checked because the address is throttled are only counted, so that thousands
+   of attempts do not fill the trail. */
 static void record_login(struct server_context *server, const struct connection *connection, const char *way,
                          const struct token_holder *holder, enum login login)
 {
@@ -250,13 +254,13 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
                  LOGIN_WAIT_S);
 }
 
-/* NULL: it is let in, and connection->holder is whose it is. */
+/* Checks a token. Returns NULL and sets connection->holder if it is accepted; otherwise the refusal. */
 static const struct http_refusal *judge_token(struct server_context *server, struct lws *wsi, const char *token)
 {
     struct connection *connection = connection_of(wsi);
     struct token_holder holder;
     bool good = tokens_find(server->tokens, token, clock_utc_ns(), &holder);
-    bool stream = lws_hdr_total_length(wsi, WSI_TOKEN_UPGRADE) > 0; /* one that is let in is noted at its hello */
+    bool stream = lws_hdr_total_length(wsi, WSI_TOKEN_UPGRADE) > 0; /* an accepted token of a stream is recorded at its `hello` */
     enum login login =
         login_throttle_judge(server->login_throttle, connection->client->address, good ? holder.hash : NULL, clock_mono_ns());
     if (!stream || !login_is_good(login))
@@ -266,7 +270,7 @@ static const struct http_refusal *judge_token(struct server_context *server, str
     return login_is_good(login) ? NULL : login == LOGIN_HELD ? &HELD : &BAD_TOKEN;
 }
 
-/* The suffix has characters that no token's name has. */
+/* Appends a suffix with characters that no token's name can have. */
 void connection_tell_apart(const struct server_context *server, struct token_holder *person)
 {
     size_t length = strlen(person->name), most = sizeof(person->name) - sizeof(SIGNED_IN);
@@ -274,7 +278,7 @@ void connection_tell_apart(const struct server_context *server, struct token_hol
         memcpy(person->name + (length < most ? length : most), SIGNED_IN, sizeof(SIGNED_IN));
 }
 
-/* Finds the person who is signed in with the request's cookie. A cookie whose session has ended counts as none. */
+/* Sets connection->holder to the user who signed in with the request's cookie. A cookie of an ended session is ignored. */
 static void find_person(struct server_context *server, struct lws *wsi, struct connection *connection)
 {
     char cookie[64];
@@ -284,7 +288,7 @@ static void find_person(struct server_context *server, struct lws *wsi, struct c
         connection_tell_apart(server, &connection->holder);
 }
 
-/* Somebody on this machine, who asks for it by a local name, and whom no token is wanted from. */
+/* Returns whether the client needs no token: it is on this machine and uses a local host name. */
 static bool is_trusted(const struct server_context *server, const struct connection *connection, const char *name)
 {
     const struct access_params *params = &server->params.access;

@@ -1,51 +1,53 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Connection identity: who is at the other end of a connection, by its address and the headers of its requests. Thread: the loop. */
+/* Connection identity: the user and the address at the other end of a connection, from its socket and its request headers. Thread: the
+   event loop. */
 #ifndef NET_CONNECTION_H
 #define NET_CONNECTION_H
 #include "net/server_context.h"
 
 struct connection {               /* lives as long as the connection */
-    struct address_usage *usage;  /* of the address that connected; a reference */
-    struct address_usage *client; /* of the client: behind a proxy, the address that the last request names; a reference */
-    char address[64];             /* the client's, for the log */
-    enum role role;               /* by the last request's headers */
+    struct address_usage *usage;  /* usage of the address that opened the connection; a reference */
+    struct address_usage *client; /* usage of the client's address: behind a proxy, the address that the last request names; a reference */
+    char address[64];             /* the client's address as text, for the log */
+    enum role role;               /* role according to the last request's headers */
     struct token_holder holder;
-    char token[TOKEN_MAX_CHARS + 1]; /* of the last request; "": none */
-    bool answered; /* nothing that it asked waits for an answer */
-    uint64_t received_before_head; /* bytes, when the wait for the next request began; UINT64_MAX: none (http/stuck_head.h) */
+    char token[TOKEN_MAX_CHARS + 1]; /* token of the last request; "": none */
+    bool answered; /* no request of this connection waits for its answer */
+    /* bytes received when the wait for the next request began; UINT64_MAX: not waiting (http/stuck_head.h) */
+    uint64_t received_before_head;
 };
 
-/* Decides about a socket before a connection is made of it. Returns false if it is to be closed. */
+/* Decides about an accepted socket before libwebsockets makes a connection of it. Returns false if it must be closed. */
 bool connection_may_open(struct server_context *server, int fd);
-/* Adds and removes the identity of a connection. */
+/* Create and destroy the identity of a connection. */
 void connection_open(struct server_context *server, struct lws *wsi);
 void connection_close(struct server_context *server, struct lws *wsi);
-/* Notes whether all that it asked was answered, so that a server that goes down waits for those where it was not. */
+/* Notes whether all requests of the connection are answered; a server that shuts down waits for the unanswered ones. */
 void connection_set_answered(struct server_context *server, struct lws *wsi, bool answered);
-/* Returns the identity of an open connection. */
+/* Returns the identity of an open connection; it is owned by the connection. */
 struct connection *connection_of(struct lws *wsi);
 
 struct http_refusal {
     int status;
-    const char *text; /* static */
+    const char *text; /* body of the answer, static text */
 };
-/* Reads the headers of a request and sets role, client and holder by them. Returns false with *refusal holding the answer. */
+/* Reads the headers of a request and sets role, client and holder. Returns false with the answer in *refusal. */
 bool connection_identify(struct server_context *server, struct lws *wsi, struct http_refusal *refusal);
-/* Adds a suffix to the name of a person who is signed in if a token has the same name, or if it is `local`: journals and the audit trail
-   must tell them apart. */
+/* Appends a suffix to the name of a signed-in user if a token has the same name, or if it is `local`, so that journals and the audit
+   trail can tell them apart. */
 void connection_tell_apart(const struct server_context *server, struct token_holder *person);
-/* Returns the name of whoever made the last request, for journals and lists; "local" without one. */
+/* Returns the name of the user who made the last request, for journals and lists; "local" if there is none. */
 const char *connection_who(const struct connection *connection);
-/* Records what a request of somebody who is known was about. result: as in struct audit_entry; why: of a refusal, or NULL. */
+/* Records a request of an identified user in the audit trail. result: as in struct audit_entry; why: the reason of a refusal, or NULL. */
 void connection_record(const struct server_context *server, struct lws *wsi, const char *event, const char *result, const char *path,
                        const char *why);
-/* Logs and counts what became of a token, or of a session that needed none. way: static; holder: of the token; role ROLE_NOBODY: it is
-   not in the file. */
+/* Logs and counts the verdict on a token, or a session that needed no token. way: static text; holder: of the token; role ROLE_NOBODY:
+   the token is unknown. */
 void connection_log_login(struct server_context *server, struct lws *wsi, const char *way, const struct token_holder *holder,
                           enum login login);
-/* Copies a header into out; "" if there is none. Returns false if it is too long. */
+/* Copies a request header into out; "" if it is missing. Returns false if it is too long. */
 bool connection_header(struct lws *wsi, enum lws_token_indexes token, char *out, int size);
-/* Finds the machine's own host name, under which it may be asked for. Once, at the start. */
+/* Looks up the machine's host name, which clients may use in the Host header. Call it once, at the start. */
 void connection_learn_host_name(struct server_context *server);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A renderer's sessions and its core. */
+/* Connects a renderer's sessions with its core. */
 #include "net/core_end.h"
 
 #include <string.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* libwebsockets 4.1 opens its listening sockets itself, so this one is a file to it, and each connection is given to it. */
+/* Accepts connections from a listening socket that systemd passed. libwebsockets 4.1 can only listen on its own sockets, so this one is
+   registered as a plain file, and each accepted connection is adopted. */
 #include "net/handed_socket.h"
 
 #include <arpa/inet.h>
@@ -48,7 +49,7 @@ int handed_socket_callback(struct lws *wsi, enum lws_callback_reasons reason, vo
         return 0;
     struct server_context *server = server_context_of(wsi);
     if (atomic_load(&lws_container_of(server, struct net, server)->stopping)) {
-        lws_rx_flow_control(wsi, 0); /* who comes now waits for the next start; accepted here, it would be cut off */
+        lws_rx_flow_control(wsi, 0); /* new connections wait for the next start of the daemon; accepted now, they would be cut off */
         return 0;
     }
     for (int i = 0; i < ACCEPTED_AT_ONCE; i++) {
@@ -56,7 +57,7 @@ int handed_socket_callback(struct lws *wsi, enum lws_callback_reasons reason, vo
         if (fd < 0)
             break;
         if (connection_may_open(server, fd))
-            lws_adopt_socket_vhost(lws_get_vhost(wsi), fd); /* which closes it if it fails */
+            lws_adopt_socket_vhost(lws_get_vhost(wsi), fd); /* closes the socket itself if it fails */
         else
             close(fd);
     }

@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A listening socket that the service manager has opened: connections wait in it while the daemon is started again, so none is refused. */
+/* A listening socket that the service manager (systemd) has opened. Connections wait in it while the daemon restarts, so none is
+   refused. */
 #ifndef NET_HANDED_SOCKET_H
 #define NET_HANDED_SOCKET_H
 #include "net/net_impl.h"
 
 enum { HANDED_ADDRESS_BYTES = 64 };
-/* Finds where the socket listens: a numeric address and a port. Returns false if it is no listening TCP socket. Any thread. */
+/* Finds where the socket listens: a numeric address and a port. Returns false if it is not a listening TCP socket. Any thread. */
 bool handed_socket_find(int fd, char address[HANDED_ADDRESS_BYTES], int *port);
-/* Has the loop accept connections from server.params.socket_fd. Returns false if it cannot, logged. Thread: the loop's, before it runs. */
+/* Makes the event loop accept connections from server.params.socket_fd. Returns false if it cannot; logged. Thread: the event loop's,
+   before it runs. */
 bool handed_socket_listen(struct net *net);
-/* libwebsockets' callback for it. */
+/* libwebsockets callback of the listening socket. */
 int handed_socket_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Durations of the latency stages. */
+/* Measures the durations of the latency stages. */
 #include "net/latency_stages.h"
 
 #include "base/mem.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Latency stages: histograms, for /metrics, of where the time goes from an input, or a changed reading, to the frame that shows it.
-   Thread: the loop. */
+/* Latency stages: histograms for /metrics that show where time is spent between an input or a changed reading and the frame that shows
+   it. Thread: the event loop. */
 #ifndef NET_LATENCY_STAGES_H
 #define NET_LATENCY_STAGES_H
 #include "base/metrics/counters.h"
@@ -10,14 +10,14 @@
 enum { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_QUEUE, STAGE_WRITE, STAGE_NETWORK, STAGE_DECODE, STAGE_COUNT };
 struct latency_stages {
     struct histogram *of[STAGE_COUNT];
-    struct histogram *input, *sensor; /* from an input, from a reading, to the acknowledgement */
+    struct histogram *input, *sensor; /* total time from an input, and from a changed reading, to the acknowledgement */
 };
 
-/* Adds the histograms to the counters. */
+/* Registers the histograms with the counters. */
 void latency_stages_init(struct latency_stages *stages, struct counters *counters);
-/* Notes the stages of a frame whose first byte is being sent. */
+/* Records the stages of a frame whose first byte is being sent. */
 void latency_stages_sent(struct latency_stages *stages, const struct encoded_frame *encoded, int64_t now_ns);
-/* Notes the stages of the frame that was acknowledged last (pacer->acked). */
+/* Records the stages of the frame that was acknowledged last (pacer->acked). */
 void latency_stages_shown(struct latency_stages *stages, const struct pacer *pacer);
 
 #endif

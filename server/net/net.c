@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop: its context, its tick, its end. */
+/* The event loop: its libwebsockets context, its ticks and its shutdown. */
 #include "net/net.h"
 
 #include <arpa/inet.h>
@@ -25,12 +25,13 @@
 #include "net/wall_displays.h"
 #include "session/view/resume.h"
 
-static const int64_t SETTLE_NS = 5 * NS_PER_MS; /* between looks at whether an action is on disk */
-static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S; /* between ticks; when no session waits for anything */
-static const int64_t GOODBYE_NS = 500 * NS_PER_MS;                  /* for close frames and answers to leave */
-static const int64_t HELD_NS = 60 * NS_PER_S;                       /* between two lines on tokens that were held */
-static const int64_t LOOK_NS = NS_PER_S;                            /* at the files of tokens and certificate, so often */
-enum { SPARE_FILES = 256 };                                         /* beside connections: models, sources, the database */
+static const int64_t SETTLE_NS = 5 * NS_PER_MS; /* interval between checks whether an action is on disk */
+/* interval between ticks; REST_NS: when no session waits for anything */
+static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S;
+static const int64_t GOODBYE_NS = 500 * NS_PER_MS;                  /* time for close frames and answers to be sent at shutdown */
+static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S;                       /* minimum time between two audit entries about tokens not checked */
+static const int64_t FILE_CHECK_INTERVAL_NS = NS_PER_S;                            /* interval between checks of the token and certificate files */
+enum { SPARE_FILES = 256 }; /* file descriptors for other uses than connections: models, sources, the database */
 
 static const struct lws_protocols protocols[] = {
     { .name = "http", .callback = http_callback, .per_session_data_size = sizeof(void *) },
@@ -42,7 +43,7 @@ static const struct lws_protocols protocols[] = {
 
 static const lws_retry_bo_t idle_policy = { .secs_since_valid_ping = 20, .secs_since_valid_hangup = 40 };
 
-/* lws has one place for its log in a process: ours has one loop. */
+/* libwebsockets has one log function per process, and a process has one event loop. */
 static struct log *_Atomic lws_log_to;
 
 static void lws_log_line(int level, const char *line)
@@ -52,14 +53,15 @@ static void lws_log_line(int level, const char *line)
         log_at(log, level == LLL_ERR ? LOG_WARN : LOG_DEBUG, "lws: %.*s", (int)strcspn(line, "\n"), line);
 }
 
-/* --- what happens by itself ------------------------------------------------------------------------------------------- */
+/* --- periodic work ---------------------------------------------------------------------------------------------------- */
 
-/* Twice, if need be: a file counts as changed once it has stopped changing. */
+/* Checks the files of tokens and certificate. A file counts as changed only once it has stopped changing, so a second look may be
+   needed. */
 static void look_at_files(struct net *net, int64_t now_ns)
 {
     struct server_context *server = &net->server;
     bool asked = atomic_exchange(&net->look, false);
-    if (!asked && now_ns - server->looked_ns < LOOK_NS)
+    if (!asked && now_ns - server->looked_ns < FILE_CHECK_INTERVAL_NS)
         return;
     server->looked_ns = now_ns;
     if (asked && server->params.reload)
@@ -68,7 +70,8 @@ static void look_at_files(struct net *net, int64_t now_ns)
         tls_look(server->tls);
     if (server->tokens) {
         tokens_look(server->tokens);
-        streams_check_tokens(server, clock_utc_ns()); /* and people's rights, who sign in only where there are tokens, too */
+        /* also ends sessions of signed-in users whose rights ended; sign-in needs configured tokens */
+        streams_check_tokens(server, clock_utc_ns());
     }
 }
 
@@ -82,17 +85,17 @@ static void record_sum(const struct server_context *server, int64_t *count, cons
     *count = 0;
 }
 
-/* Once a minute. */
+/* Records tokens and log-in answers that were not checked, once a minute. */
 static void record_held(struct server_context *server, int64_t now_ns)
 {
-    if ((!server->logins_held && !server->unasked) || now_ns - server->held_ns < HELD_NS)
+    if ((!server->logins_held && !server->unasked) || now_ns - server->held_ns < RECORD_INTERVAL_NS)
         return;
     record_sum(server, &server->logins_held, "tokens of slowed addresses were not looked at");
     record_sum(server, &server->unasked, "answers of the identity provider belonged to no log-in, could not be looked at, or were errors");
     server->held_ns = now_ns;
 }
 
-/* Once a second: what the machine has left, and which displays are there. */
+/* Once a second: reads the processor load and updates which displays are connected. */
 static void look_around(struct net *net, int64_t now_ns)
 {
     char stat[512] = "";
@@ -123,7 +126,7 @@ static void say_status(const struct server_context *server)
                                                        });
 }
 
-/* As long as it took to get ready is how long it may take to come back. */
+/* Measures how long the daemon took to start: clients are told to come back after as long. */
 static void time_start(struct server_context *server, int64_t now_ns)
 {
     if (!server->start_s && render_service_ready(server->params.plant.render_service))
@@ -155,7 +158,7 @@ static void tick(struct net *net, int64_t now_ns)
     net->ticked_ns = now_ns;
 }
 
-/* lws runs timers that are due before it waits: so that it does not wait then, with no timer set, it is woken at once. */
+/* libwebsockets runs due timers before it waits. Without a timer it would then wait for long, so this wakes it at once. */
 static void on_timer(lws_sorted_usec_list_t *sul)
 {
     struct net *net = lws_container_of(sul, struct net, timer);
@@ -172,9 +175,9 @@ static void set_timer(struct net *net, int64_t at_ns)
     lws_sul_schedule(net->server.lws, 0, &net->timer, on_timer, at_ns > now_ns ? (at_ns - now_ns) / 1000 + 1 : 1);
 }
 
-/* Does what is due by now, and has the loop woken for what is due next. lws waits by whole milliseconds, rounded down, and asks again and
-   again in the last one: so what is due within that one is done already. */
-/* Returns when to look again; INT64_MAX: no answer waits. */
+/* Does what is due now, and schedules the wake-up for what is due next. libwebsockets waits in whole milliseconds, rounded down, and
+   polls repeatedly in the last one; so whatever is due within a millisecond is done at once. */
+/* Returns the monotonic time of the next check; INT64_MAX: no answer waits for the disk. */
 static int64_t settle_answers(struct server_context *server, int64_t now_ns)
 {
     if (!server->kept_answers)
@@ -297,7 +300,7 @@ static void collect(struct net *net)
     do_what_is_due(net);
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------- */
+/* --- life cycle --------------------------------------------------------------------------------------------------------- */
 
 static void raise_file_limit(struct log *log, const struct quotas *quotas)
 {
@@ -315,7 +318,7 @@ static void raise_file_limit(struct log *log, const struct quotas *quotas)
         log_warn(log, "files: the limit stays as it is: %s", strerror(errno));
 }
 
-/* lws does not say why it cannot listen; this does. */
+/* Checks that the port can be bound, because libwebsockets does not report why it cannot listen. */
 bool net_port_free(struct log *log, const char *address, int port)
 {
     struct sockaddr_in6 six = { .sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port) };
@@ -392,7 +395,7 @@ static bool open_context(struct net *net)
         info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
         info.ssl_cert_filepath = server->params.access.tls_cert_path;
         info.ssl_private_key_filepath = server->params.access.tls_key_path;
-        info.alpn = "http/1.1"; /* in HTTP/2 a request would be no connection, and could have a stream in it */
+        info.alpn = "http/1.1"; /* no HTTP/2: there a request is not a connection, and could carry a WebSocket */
     }
     lws_set_log_level(LLL_ERR | LLL_WARN, lws_log_line);
     atomic_store(&lws_log_to, server->params.log);
@@ -506,7 +509,7 @@ void net_destroy(struct net **net_ptr)
     if (!net)
         return;
     lws_sul_cancel(&net->timer);
-    history_queries_destroy(&net->server.history_queries); /* before what they wake */
+    history_queries_destroy(&net->server.history_queries); /* its threads wake the event loop, so they end first */
     picture_signer_destroy(&net->server.picture_signer);
     history_loader_destroy(&net->server.history_loader);
     openid_stop(&net->server.openid);

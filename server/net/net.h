@@ -1,51 +1,54 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop: HTTP and WebSocket on one port, sessions, timers. Thread: the one that calls net_run, for functions that say "in the loop";
-   net_wake, net_stop and net_call from any. */
+/* The event loop: HTTP and WebSocket on one port, sessions, timers. Thread: the one that calls net_run(), for functions below "in the
+   event loop"; net_wake, net_stop and net_call: any thread. */
 #ifndef NET_NET_H
 #define NET_NET_H
 #include "net/net_params.h"
 
 struct net;
-/* Returns whether the port can be bound now; if not, the reason is logged. For before the slow part of starting. */
+/* Returns whether the port can be bound now; if not, the reason is logged. Call it before the slow part of the start. */
 bool net_port_free(struct log *log, const char *address, int port);
 /* Returns whether the configured tokens and certificate can be used; if not, the reason is logged. */
 bool net_access_good(struct log *log, const struct access_params *access);
-/* Binds the port. Returns NULL on failure, already logged. What params point at must outlive it. */
+/* Binds the port. Returns NULL on failure, already logged. Everything that params point to must outlive the loop. */
 struct net *net_create(const struct net_params *params);
-/* Closes all. &NULL is fine; leaves NULL. */
+/* Closes all connections and frees the loop. &NULL is allowed; sets *net to NULL. */
 void net_destroy(struct net **net);
 /* Returns the port that is bound. */
 int net_port(const struct net *net);
-/* Serves until net_stop, then closes the connections of clients. */
+/* Serves until net_stop() is called, then closes the clients' connections. */
 void net_run(struct net *net);
-/* Lets the loop collect frames and answers. Any thread. */
+/* Makes the event loop collect frames and answers. Any thread. */
 void net_wake(struct net *net);
 /* Ends net_run. Any thread; safe in a signal handler. */
 void net_stop(struct net *net);
-/* Sends all sessions elsewhere from now on, one after the other: each is closed at some instant of 10 s, after a load balancer had 2 s
-   to hear of it (net_status.drains). Any thread; safe in a signal handler. */
+/* Sends all sessions to other daemons, one after the other: each is closed at some instant within 10 s, after load balancers had 2 s to
+   notice (net_status.drains). Any thread; safe in a signal handler. */
 void net_drain(struct net *net);
-/* Has the loop call what(arg), and returns once that is done. Any thread but the loop. Returns false if the loop has ended. */
+/* Makes the event loop call what(arg), and returns once that is done. Any thread but the event loop's. Returns false if the event loop
+   has ended. */
 bool net_call(struct net *net, void (*what)(void *arg), void *arg);
-/* Has the files of tokens and certificate read again soon, and the plant reloaded. Any thread; safe in a signal handler. */
+/* Makes the event loop read the files of tokens and certificate again soon, and reload the plant. Any thread; safe in a signal handler. */
 void net_check_credentials(struct net *net);
 
-/* --- in the loop, while the plant is loaded anew --- */
+/* --- in the event loop, during a plant reload --- */
 
-/* Lets go of the plant's historian and notifier, which end before the rest of it. */
+/* Drops the pointers to the plant's historian and notifier, which are destroyed before the rest of the plant. */
 void net_release_recording(struct net *net);
-/* Releases all that belongs to the plant, which is to be destroyed. Sessions stay. */
+/* Releases everything that belongs to the plant, which is about to be destroyed. Sessions stay. */
 void net_release_plant(struct net *net);
-/* The core that was followed is gone, and its link halted: takes what is there of the same plant without it. */
+/* Called when this standby takes over because the core it followed is gone and their link has stopped. plant: the same plant without the
+   link. */
 void net_lead(struct net *net, const struct net_plant *plant);
-/* Takes another plant, in which sessions look at what is still there by the same name. Returns false if history cannot be read any more,
-   already logged. */
+/* Switches to another plant; sessions keep showing what the new plant has under the same names. Returns false if history cannot be read
+   any more, already logged. */
 bool net_take_plant(struct net *net, const struct net_plant *plant);
-/* Writes the views that sessions will have in the next plant, each once, into out. Returns how many. next->render_service may be NULL. */
+/* Writes to `out` the distinct views that sessions will have in the next plant, `most` at most. Returns how many. next->render_service
+   may be NULL. */
 size_t net_views(struct net *net, const struct net_plant *next, struct view *out, size_t most);
-/* Tells those who asked for a reload what came of it. */
+/* Answers all requests for a reload with its result. */
 void net_report_reload(struct net *net, bool good, const char *text);
-/* Sends a client the text that says what became of the tag list it saved. */
+/* Sends a client the text with the result of saving its tag list. */
 void net_report_save(struct net *net, uint64_t client, const char *text);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Calls into the loop from other threads. */
+/* Calls from other threads into the event loop. */
 #include <pthread.h>
 
 #include "net/net.h"
@@ -44,7 +44,7 @@ void net_calls_run(struct net *net)
     pthread_mutex_unlock(&net->call.lock);
     if (!what)
         return;
-    what(arg); /* who asked waits, and so changes nothing */
+    what(arg); /* without the lock: the calling thread is waiting, so nothing changes meanwhile */
     pthread_mutex_lock(&net->call.lock);
     net->call.what = NULL;
     pthread_cond_signal(&net->call.done);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the loop is given: the plant that it serves, where it listens, and who is let in. */
+/* Parameters of the event loop: the plant that it serves, where it listens, and how clients gain access. */
 #ifndef NET_NET_PARAMS_H
 #define NET_NET_PARAMS_H
 #include <stdbool.h>
@@ -20,7 +20,7 @@
 #include "placing/tag_file.h"
 #include "service/render_service.h"
 
-struct net_plant { /* what belongs to one loaded plant; a reload brings another */
+struct net_plant { /* everything that belongs to one loaded plant; a reload replaces it */
     const struct scene *scene;
     struct store *store;
     struct render_service *render_service;
@@ -33,48 +33,51 @@ struct net_plant { /* what belongs to one loaded plant; a reload brings another 
     struct other_plants *other_plants; /* NULL: the plant file names none */
     struct pairings *pairings;
     struct named_views *named_views;
-    struct core_link *core_link;     /* of a renderer; NULL: this daemon reads its devices itself */
+    struct core_link *core_link;     /* on a renderer: its link to the core; NULL: this daemon reads its devices itself */
     struct historian *historian;     /* NULL: nothing is recorded */
-    struct notifier *notifier;       /* NULL: nobody is told of alarms */
+    struct notifier *notifier;       /* sends alarm notifications; NULL: none are sent */
     struct loop_checks *loop_checks; /* NULL: loops cannot be checked */
-    const char *tag_list;            /* the text in force; NULL: not known */
+    const char *tag_list;            /* text of the tag list in force; NULL: not known */
     const char *history_folder;      /* NULL: nothing is recorded */
 };
 
-struct net_status { /* what the loop says of itself with each tick */
+struct net_status { /* state of the event loop, reported with each tick */
     struct render_service *render_service;
     size_t sessions;
-    int busy_percent;            /* of the render thread's time, for moving pictures */
-    bool has_core;               /* readings come; true without --role render */
-    bool lacks_standby;          /* this core leads one of two, and the other does not follow */
-    bool drains;                 /* sessions are being sent elsewhere */
-    int64_t certificate_ends_s; /* seconds of UTC since 1970; 0: there is none */
+    int busy_percent;            /* percentage of the render thread's time spent on awaited frames */
+    bool has_core;               /* readings arrive from the core; always true without --role render */
+    bool lacks_standby;          /* this core leads a pair, and the other core does not follow it */
+    bool drains;                 /* sessions are being sent to other daemons */
+    int64_t certificate_ends_s; /* expiry of the certificate in force, seconds of UTC since 1970; 0: no certificate */
 };
 
 struct net_params {
     struct log *log;
     struct net_plant plant;
     struct counters *counters;
-    struct audit *audit; /* NULL: nothing is recorded */
-    const char *address; /* to listen on, numeric */
-    int port;            /* 0: any that is free */
-    int socket_fd;       /* which listens there already (net/handed_socket.h); -1: none */
+    struct audit *audit; /* the audit trail; NULL: nothing is recorded */
+    const char *address; /* numeric address to listen on */
+    int port;            /* port to listen on; 0: any free one */
+    int socket_fd;       /* socket that listens already (net/handed_socket.h); -1: none */
     int64_t begun_ns;    /* monotonic: when the daemon began to start */
     struct access_params access;
     const struct signing_key *signing_key; /* NULL: pictures are not signed */
-    unsigned codecs;        /* a bit, 1 << enum wire_codec, for each that works here */
-    const char *web_folder; /* the page's files; NULL: no page is served */
+    unsigned codecs;        /* bit mask of the codecs that work here (1 << enum wire_codec) */
+    const char *web_folder; /* folder of the web client's files; NULL: no page is served */
     const char *version;
     const char *node;       /* as in struct session_context */
-    bool is_core;           /* renderers may connect */
-    const char *node_name;  /* this daemon's among others */
-    struct lease_keeper *keeper; /* of a core that has a standby, or is one; NULL: none */
-    void (*reload)(void *arg, const char *who);     /* called in the loop: load the plant anew, as who asks. NULL: it cannot be */
-    void (*save)(void *arg, struct tag_save *save); /* called in the loop: put another tag list in force; takes it. NULL: it cannot be */
-    struct plant_import *import;                    /* NULL: plants are not brought in here */
-    void (*import_ordered)(void *arg, const char *who); /* called in the loop: an order was taken. Only with import */
-    void (*tick)(void *arg, const struct net_status *status); /* called in the loop, once a second or more often. NULL: nobody asks */
-    void *reload_arg;                                         /* of these four */
+    bool is_core;           /* renderers may connect to this daemon */
+    const char *node_name;  /* this daemon's name among several */
+    struct lease_keeper *keeper; /* leadership lease of a core that has a standby, or is one; NULL: none */
+    /* reloads the plant for user `who`; called in the event loop. NULL: the plant cannot be reloaded */
+    void (*reload)(void *arg, const char *who);
+    /* puts a saved tag list in force and takes ownership of `save`; called in the event loop. NULL: not possible */
+    void (*save)(void *arg, struct tag_save *save);
+    struct plant_import *import;                    /* imports plants; NULL: import is off */
+    /* an import order of user `who` was accepted; called in the event loop. Set only with `import` */
+    void (*import_ordered)(void *arg, const char *who);
+    void (*tick)(void *arg, const struct net_status *status); /* called in the event loop once a second or more often; NULL: not needed */
+    void *reload_arg;                                         /* argument of the four callbacks above */
 };
 
 #endif

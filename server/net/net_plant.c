@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the loop has of one plant: its sessions' context, its history. */
+/* The event loop's state for one plant: the sessions' context and the history readers. */
 #include "access/tokens.h"
 #include "base/mem.h"
 #include "net/core_end.h"
@@ -30,7 +30,8 @@ bool net_open_history(struct net *net)
                                                           .snapshot_cache = plant->snapshot_cache,
                                                           .notify = wake,
                                                           .notify_arg = net };
-    bool any = plant->history_folder || (plant->core_link && !plant->scene->plant->history.off); /* a renderer asks its core */
+    /* a renderer reads history from its core */
+    bool any = plant->history_folder || (plant->core_link && !plant->scene->plant->history.off);
     server->session_context.snapshot_cache = any ? plant->snapshot_cache : NULL;
     if (!any)
         return true;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop while the plant is loaded anew: sessions and requests let go of the old one and take the new one. */
+/* The event loop during a plant reload: sessions and requests release the old plant and take the new one. */
 #include <pthread.h>
 
 #include "base/clock.h"
@@ -11,7 +11,7 @@
 #include "net/stream.h"
 #include "session/view/resume.h"
 
-/* --- what will be looked at ------------------------------------------------------------------------------------------- */
+/* --- views that sessions will have in the new plant ------------------------------------------------------------------- */
 
 static bool is_new(const struct view *view, const struct view *others, size_t count)
 {
@@ -40,7 +40,7 @@ size_t net_views(struct net *net, const struct net_plant *next, struct view *out
     return count;
 }
 
-/* --- the old one, the new one ----------------------------------------------------------------------------------------- */
+/* --- release the old plant, take the new one -------------------------------------------------------------------------- */
 
 void net_release_recording(struct net *net)
 {
@@ -52,13 +52,13 @@ void net_release_plant(struct net *net)
 {
     struct server_context *server = &net->server;
     for (struct stream *stream = server->streams; stream; stream = stream->next) {
-        session_settle(stream->session); /* the old journal has been written */
+        session_settle(stream->session); /* the old journal is complete on disk by now */
         stream->carried = session_carry(stream->session);
     }
     http_release_plant(server);
     if (server->picture_signer)
         picture_signer_settle(server->picture_signer);
-    core_end_collect(server); /* what was not answered any more */
+    core_end_collect(server); /* takes the core's last answers */
     renderers_close(server, "the core has another configuration from now on");
     net_unwatch_readings(net);
     history_queries_destroy(&server->history_queries);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two lists: what waits, and what is done. The quota on pictures keeps both short. */
+/* Signs pictures from a list of waiting ones into a list of finished ones. The quota on pictures keeps both short. */
 #include "net/picture_signer.h"
 
 #include "base/mem.h"
@@ -11,9 +11,10 @@ struct picture_signer {
     void (*notify)(void *arg);
     void *arg;
     pthread_cond_t settled;
-    struct packet *last, *last_signed; /* of the thread: sessions of one view get one packet */
+    /* used only by the thread: last packet and its signed form, so that sessions of one view share one signature */
+    struct packet *last, *last_signed;
     bool last_bare;
-    /* --- below: under thread.lock */
+    /* --- below: protected by thread.lock */
     struct signing *waiting, *done;
     bool busy;
 };
@@ -163,7 +164,7 @@ void picture_signer_settle(struct picture_signer *signer)
     signer->waiting = NULL;
     while (signer->busy)
         pthread_cond_wait(&signer->settled, &signer->thread.lock);
-    forget_last(signer); /* it is not busy: nobody else looks at it */
+    forget_last(signer); /* safe: the thread is idle, so nobody else uses last_signed */
     free_all(signer->done);
     signer->done = NULL;
     pthread_mutex_unlock(&signer->thread.lock);

@@ -1,30 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signs pictures on a thread of its own: the statement of 10,000 readings takes a tenth of a second, in which the loop would send nothing.
-   Thread: the loop. */
+/* Signs pictures on a thread of its own: the statement of 10,000 readings takes a tenth of a second, during which the event loop could
+   send nothing. Thread: the event loop. */
 #ifndef NET_PICTURE_SIGNER_H
 #define NET_PICTURE_SIGNER_H
 #include "provenance/signed_picture.h"
 #include "service/encoded_frame.h"
 
 struct signing {
-    struct encoded_frame *encoded; /* NULL: somebody took it */
-    struct picture_origin origin; /* its args are the signing's own */
-    bool good;                    /* signed: the frame's packet is the signed file now; else it cannot be */
+    struct encoded_frame *encoded; /* NULL: the receiver took the frame */
+    struct picture_origin origin; /* where the picture comes from; its args belong to this struct */
+    bool good;                    /* true: the frame's packet is now the signed file; false: it could not be signed */
     struct signing *next;
 };
-void signing_free(struct signing **signing); /* leaves NULL */
+void signing_free(struct signing **signing); /* sets *signing to NULL */
 
 struct picture_signer;
-/* Starts the thread; notify(arg) is called on it when a picture is signed. Returns NULL if it cannot start, already logged.
-   key must outlive it. */
+/* Starts the thread; it calls notify(arg) when a picture is signed. Returns NULL if it cannot start, already logged. key must outlive
+   it. */
 struct picture_signer *picture_signer_create(struct log *log, const struct signing_key *key, void (*notify)(void *arg), void *arg);
-/* Ends the thread. &NULL is fine; leaves NULL. */
+/* Ends the thread. &NULL is allowed; sets *signer to NULL. */
 void picture_signer_destroy(struct picture_signer **signer);
-/* Takes a frame that has a record, and copies the args. origin->scene must stay until picture_signer_settle. */
+/* Queues a frame that has a record of its inputs; takes the frame and copies the args. origin->scene must stay valid until
+   picture_signer_settle(). */
 void picture_signer_ask(struct picture_signer *signer, struct encoded_frame *encoded, const struct picture_origin *origin);
-/* Returns what was signed so far, oldest first; the caller owns it (signing_free). NULL: nothing. */
+/* Returns the list of pictures signed so far, oldest first; the caller frees each with signing_free(). NULL: none. */
 struct signing *picture_signer_collect(struct picture_signer *signer);
-/* Drops what waits, and returns once nothing of a plant is read any more. */
+/* Drops waiting pictures, and returns once the thread no longer reads anything of a plant. */
 void picture_signer_settle(struct picture_signer *signer);
 
 #endif

@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop's snapshot of the readings: taken when the store says that something changed, or when a reading gets stale, while there are
-   clients; and when a request reads it. */
+/* The event loop's snapshot of the readings. While there are clients, it is taken when the store reports a change or a reading becomes
+   stale; without clients, only when a request reads it. */
 #include "base/clock.h"
 #include "net/net.h"
 #include "net/net_impl.h"
 #include "net/renderers.h"
 #include "value/quality.h"
 
-static const int64_t BETWEEN_NS = 100 * NS_PER_MS; /* two snapshots at least, however often readings change */
-static const int64_t GATHER_NS = 10 * NS_PER_MS;   /* what a device sends in one go is shown by one frame */
+static const int64_t MIN_INTERVAL_NS = 100 * NS_PER_MS; /* minimum time between two snapshots, however often readings change */
+static const int64_t GATHER_NS = 10 * NS_PER_MS;        /* delay that collects all readings of one device message into one frame */
 
 static int64_t later(int64_t a_ns, int64_t b_ns)
 {
     return a_ns > b_ns ? a_ns : b_ns;
 }
 
-/* A reading that went stale changed just now, whenever it came in. */
+/* Returns when a reading changed. A reading that has just become stale changed now, whenever it was received. */
 static int64_t changed_ns(const struct snapshot *snapshot, const struct reading *reading)
 {
     bool usable = !quality_is_bad(reading->quality) && reading->age_ns < NS_PER_S;
@@ -75,8 +75,9 @@ static void take(struct net *net)
     if (data_changed || links_changed)
         renderers_on_change(server);
     render_service_wake(server->params.plant.render_service);
-    int64_t stale_ns = server->next_change_ns < INT64_MAX ? server->next_change_ns + NS_PER_MS : INT64_MAX; /* the loop may be early */
-    net->readings_ns = later(stale_ns, server->snapshot->taken_mono_ns + BETWEEN_NS);
+    /* 1 ms later, because the event loop may wake a little early */
+    int64_t stale_ns = server->next_change_ns < INT64_MAX ? server->next_change_ns + NS_PER_MS : INT64_MAX;
+    net->readings_ns = later(stale_ns, server->snapshot->taken_mono_ns + MIN_INTERVAL_NS);
 }
 
 static void on_change(void *arg)
@@ -100,7 +101,7 @@ void net_unwatch_readings(struct net *net)
 int64_t net_update_readings(struct net *net, int64_t now_ns)
 {
     if (atomic_exchange(&net->readings_changed, false))
-        net->readings_ns = later(now_ns + GATHER_NS, net->server.session_context.changed_ns + BETWEEN_NS);
+        net->readings_ns = later(now_ns + GATHER_NS, net->server.session_context.changed_ns + MIN_INTERVAL_NS);
     if (net->server.stream_count == 0 && !net->server.renderers)
         return INT64_MAX;
     if (now_ns >= net->readings_ns)
@@ -110,6 +111,6 @@ int64_t net_update_readings(struct net *net, int64_t now_ns)
 
 void net_refresh_readings(struct server_context *server)
 {
-    if (clock_mono_ns() - server->snapshot->taken_mono_ns > BETWEEN_NS)
+    if (clock_mono_ns() - server->snapshot->taken_mono_ns > MIN_INTERVAL_NS)
         take(lws_container_of(server, struct net, server));
 }

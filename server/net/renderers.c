@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One connection of a renderer: an introduction, then whatever is newer than what it was sent last. */
+/* The core's connections to its renderers: an introduction, then whatever is newer than what the renderer has. */
 #include "net/renderers.h"
 
 #include <openssl/rand.h>
@@ -20,49 +20,50 @@
 #include "net/core_end.h"
 #include "session/session_proxy.h"
 
-enum { BEAT_US = 200000, MOST_BYTES = 256 * 1024 /* of one message */, MOST_ANSWERS = 1024, PATIENCE_S = 5 };
-static const int64_t READINGS_NS = 500 * NS_PER_MS, PATIENT_NS = 2 * NS_PER_S;
+enum { TICK_US = 200000, MAX_MESSAGE_BYTES = 256 * 1024 /* maximum size of one message */, MAX_ANSWERS = 1024, SEND_TIMEOUT_S = 5 };
+static const int64_t MAX_READINGS_DELAY_NS = 500 * NS_PER_MS, STANDBY_TIMEOUT_NS = 2 * NS_PER_S;
 
 struct lists_seen {
     uint64_t views, notes, walls, pointed, pairings;
 };
 
 struct deed {
-    struct session *session; /* session_proxy.h */
-    json_t *id;              /* id of the message, for the answer */
+    struct session *session; /* session that carries the action out (session_proxy.h) */
+    json_t *id;              /* id of the renderer's message, repeated in the answer */
     struct deed *next;
 };
 
 struct renderer_peer {
     struct lws *wsi;
     struct renderer_peer *next;
-    char name[64];           /* of its node, as it says */
-    char lease[LEASE_NODE_BYTES]; /* of a standby: what tells it from others of its name */
-    struct text in, out;     /* out: what is being made, behind LWS_PRE bytes */
-    enum { RENDERER_NEW, RENDERER_TAKEN, RENDERER_VOTES, RENDERER_REFUSED } state; /* votes: is refused all but its promises */
-    char *refusal;           /* why; NULL: it is not refused */
-    bool refusal_sent;       /* to one that votes */
+    char name[64];           /* name of the renderer's node, as it reports it */
+    char lease[LEASE_NODE_BYTES]; /* on a standby's connection: identifies it among nodes with the same name */
+    struct text in, out;     /* in: message being received; out: message being built, after LWS_PRE spare bytes */
+    /* RENDERER_VOTES: a core that may not follow, but whose lease promises count */
+    enum { RENDERER_NEW, RENDERER_TAKEN, RENDERER_VOTES, RENDERER_REFUSED } state;
+    char *refusal;           /* why the peer is refused; NULL: it is not */
+    bool refusal_sent;       /* for a voting core: it has been told why it is refused */
     struct core_sent sent;
     bool alarms_sent, lists_sent, links_sent;
-    bool stands_by;          /* a core that follows this one, and takes its place */
-    bool samples_sent;       /* all of them, since the last readings */
-    bool asks;               /* it is to be asked for its promise */
-    struct core_samples *samples; /* that it is sent, for its history; NULL: none */
-    int64_t journal_utc_ns;  /* of a standby: the newest change that its journal has */
-    uint64_t told;           /* of a standby: likewise, of what the notifier keeps */
-    uint64_t rows;           /* of a standby: likewise, of the journal */
-    uint64_t alarms;         /* the number of the last change that was sent */
+    bool stands_by;          /* a standby: a core that follows this one and can take over */
+    bool samples_sent;       /* all samples since the last readings message were sent */
+    bool asks;               /* the peer is to be asked for its lease promise */
+    struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
+    int64_t journal_utc_ns;  /* standby: UTC time of the newest change that its journal has */
+    uint64_t told;           /* standby: number of the newest notifier state that it has */
+    uint64_t rows;           /* standby: number of rows that its journal has */
+    uint64_t alarms;         /* number of the last change of alarms that was sent */
     struct lists_seen lists;
-    bool *links;             /* by source, as sent */
-    json_t *hello;           /* who this core is, before anything else; NULL: it was sent */
-    json_t *answers;         /* that wait to be sent */
-    struct deed *deeds;      /* actions that are not on disk yet */
-    int64_t told_ns;         /* monotonic: when readings were sent last */
-    int64_t since_ns;        /* monotonic: since when something waits to be sent; 0: nothing */
-    const char *close_text;  /* NULL: it stays */
+    bool *links;             /* connection state of each source, as last sent; by source index */
+    json_t *hello;           /* this core's introduction, to be sent first; NULL: it was sent */
+    json_t *answers;         /* answers to be sent */
+    struct deed *deeds;      /* forwarded actions that are not on disk yet */
+    int64_t told_ns;         /* monotonic: when readings were last sent */
+    int64_t since_ns;        /* monotonic: since when something waits to be sent; 0: nothing waits */
+    const char *close_text;  /* reason to close the connection; NULL: it stays open */
 };
 
-/* Returns whether the peer is on this machine and needs no token; its role is engineer. */
+/* Returns whether the peer is on this machine and needs no token, which gives it the role engineer. */
 static bool is_local(const struct connection *connection)
 {
     return connection->role == ROLE_ENGINEER && !connection->holder.name[0];
@@ -84,7 +85,7 @@ void renderers_make_key(struct server_context *server)
     hex_print(key, sizeof(key), server->core_key);
 }
 
-/* --- coming and going --------------------------------------------------------------------------------------------------------- */
+/* --- connecting and disconnecting ----------------------------------------------------------------------------------------------------- */
 
 static struct core_identity own_identity(const struct server_context *server)
 {
@@ -92,19 +93,20 @@ static struct core_identity own_identity(const struct server_context *server)
     return (struct core_identity){ server->params.version, plant->name, plant->hash };
 }
 
-/* Returns whether promises of the other core count: with other files it is no standby, and as good a witness that it does not lead. */
+/* Returns whether the other core's lease promises count. A core with other files cannot be a standby, but it is as good a witness that
+   it does not lead. */
 static bool is_witness(const struct renderer_peer *renderer)
 {
     return renderer->stands_by && (renderer->state == RENDERER_TAKEN || renderer->state == RENDERER_VOTES);
 }
 
-/* Returns whether a core holds the standby's seat: it has this core's version, plant and configuration. */
+/* Returns whether a core has the standby's place: it has this core's version, plant and configuration. */
 static bool is_standby(const struct renderer_peer *renderer)
 {
     return renderer->stands_by && renderer->state == RENDERER_TAKEN;
 }
 
-/* Names the core whose promises count, of which there is one at most. */
+/* Tells the lease keeper which core's promises count; there is one at most. */
 static void name_standby(struct server_context *server)
 {
     const struct renderer_peer *witness = NULL;
@@ -136,7 +138,7 @@ static void on_open(struct server_context *server, struct lws *wsi, struct rende
     struct renderer_peer *renderer = mem_new(sizeof(*renderer));
     *renderer = (struct renderer_peer){ .wsi = wsi, .next = server->renderers, .answers = json_array() };
     server->renderers = *slot = renderer;
-    lws_set_timer_usecs(wsi, BEAT_US);
+    lws_set_timer_usecs(wsi, TICK_US);
 }
 
 static void end_deed(struct deed *deed)
@@ -146,7 +148,7 @@ static void end_deed(struct deed *deed)
     mem_free(deed);
 }
 
-/* Answers actions that are on disk, or cannot be kept. */
+/* Sends the answers to actions that are on disk, or can never be written. */
 static void settle(struct renderer_peer *renderer)
 {
     for (struct deed **at = &renderer->deeds, *deed; (deed = *at);) {
@@ -206,12 +208,12 @@ void renderers_close(struct server_context *server, const char *why)
 {
     for (struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next) {
         renderer->close_text = why;
-        core_samples_end(&renderer->samples); /* their store ends */
+        core_samples_end(&renderer->samples); /* the store of these samples is about to be destroyed */
         lws_callback_on_writable(renderer->wsi);
     }
 }
 
-/* --- what goes ---------------------------------------------------------------------------------------------------------------- */
+/* --- sending -------------------------------------------------------------------------------------------------------------------------- */
 
 static void begin(struct renderer_peer *renderer)
 {
@@ -220,17 +222,17 @@ static void begin(struct renderer_peer *renderer)
     text_add_bytes(&renderer->out, room, sizeof(room));
 }
 
-/* lws keeps what the socket does not take, and asks for nothing more until that is gone. */
+/* libwebsockets buffers what the socket does not accept, and calls back only once that is sent. */
 static bool send_out(struct renderer_peer *renderer, enum lws_write_protocol how)
 {
     size_t count = renderer->out.length - LWS_PRE;
     bool good = lws_write(renderer->wsi, (unsigned char *)renderer->out.at + LWS_PRE, count, how) >= (int)count;
-    if (renderer->out.capacity > MOST_BYTES)
+    if (renderer->out.capacity > MAX_MESSAGE_BYTES)
         text_finish(&renderer->out);
     return good;
 }
 
-/* Takes the message. */
+/* Sends a JSON message; takes ownership of it. */
 static bool send_message(struct renderer_peer *renderer, json_t *message)
 {
     char *text = json_text(message, 0);
@@ -240,7 +242,7 @@ static bool send_message(struct renderer_peer *renderer, json_t *message)
     return send_out(renderer, LWS_WRITE_TEXT);
 }
 
-/* It goes on looking for who leads. */
+/* Tells the renderer that this core is only a standby, so that it looks for the leading core. */
 static bool send_standby(struct renderer_peer *renderer)
 {
     renderer->close_text = "it stands by";
@@ -266,7 +268,7 @@ static bool send_refusal(struct renderer_peer *renderer)
     return send_message(renderer, json_pack("{s:s,s:s,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes));
 }
 
-/* Nothing else of this core is for one that votes. */
+/* A voting core gets nothing but its refusal and the questions for its promise. */
 static bool send_to_voter(const struct server_context *server, struct renderer_peer *renderer)
 {
     return !renderer->refusal_sent ? send_refusal(renderer) : !renderer->asks || send_question(server, renderer);
@@ -341,8 +343,8 @@ static bool send_answer(struct renderer_peer *renderer)
     return send_message(renderer, answer);
 }
 
-/* Once it has sent less than a whole message, readings are next, also where new samples have come meanwhile: else, on a slow network, new
-   ones always would have. */
+/* Sends samples to a standby. After a message that is not full, readings are sent next even if new samples have arrived; on a slow
+   network there would always be new samples. */
 static bool send_samples(const struct server_context *server, struct renderer_peer *renderer)
 {
     begin(renderer);
@@ -361,7 +363,7 @@ static bool send_readings(struct server_context *server, struct renderer_peer *r
     return send_out(renderer, LWS_WRITE_BINARY);
 }
 
-/* Of those that waited for a standby. */
+/* Wakes the connections that hold back answers until a standby has the same state. */
 static void wake_answers(const struct server_context *server)
 {
     for (const struct renderer_peer *one = server->renderers; one; one = one->next)
@@ -369,13 +371,14 @@ static void wake_answers(const struct server_context *server)
             lws_callback_on_writable(one->wsi);
 }
 
-/* Until the one that would take our place was sent what somebody did, nobody is told that it is done; a slow one is not waited for. */
+/* Returns whether a standby still lacks an action. Until it has been sent, no client is told that the action is done, because the
+   standby might take over. A standby that is too slow is not waited for. */
 static bool standby_lacks(const struct server_context *server)
 {
     struct lists_seen lists = lists_now(server);
     for (const struct renderer_peer *one = server->renderers; one; one = one->next)
         if (one->stands_by && one->state == RENDERER_TAKEN && !one->close_text && one->alarms_sent && one->lists_sent &&
-            clock_mono_ns() - one->told_ns < PATIENT_NS &&
+            clock_mono_ns() - one->told_ns < STANDBY_TIMEOUT_NS &&
             (memcmp(&lists, &one->lists, sizeof(lists)) != 0 || one->alarms != alarm_service_number(server->params.plant.alarm_service)))
             return true;
     return false;
@@ -388,8 +391,8 @@ static bool send_hello(struct renderer_peer *renderer)
     return send_message(renderer, hello);
 }
 
-/* One message at a time: what changed most rarely first, readings last, which so are never newer than the alarms beside them; but readings
-   that the others kept waiting come first, for without them the core counts as lost. */
+/* Sends one message. Rarely changing content goes first and readings last, so that readings are never newer than the alarms sent with
+   them. But readings that have waited too long go first: without them the renderer takes the core for lost. */
 static bool send_next(struct server_context *server, struct renderer_peer *renderer)
 {
     struct lists_seen lists = lists_now(server);
@@ -400,7 +403,7 @@ static bool send_next(struct server_context *server, struct renderer_peer *rende
         return send_to_voter(server, renderer);
     if (renderer->state == RENDERER_REFUSED)
         return renderer->refusal ? send_refusal(renderer) : send_standby(renderer);
-    bool good, more = true, waits = renderer->told_ns && clock_mono_ns() - renderer->told_ns > READINGS_NS;
+    bool good, more = true, waits = renderer->told_ns && clock_mono_ns() - renderer->told_ns > MAX_READINGS_DELAY_NS;
     if (renderer->hello)
         good = send_hello(renderer);
     else if (renderer->asks)
@@ -428,10 +431,10 @@ static bool send_next(struct server_context *server, struct renderer_peer *rende
     return good;
 }
 
-/* --- what comes --------------------------------------------------------------------------------------------------------------- */
+/* --- receiving ------------------------------------------------------------------------------------------------------------------------ */
 
-/* Returns why the peer's token has the wrong role, or NULL (mem_free). A renderer's token must not open the standby's seat, whose holder
-   takes over as core. */
+/* Returns why the peer's token has the wrong role, or NULL; the caller frees it with mem_free. A renderer's token must not get the
+   standby's place, whose holder takes over as core. */
 static char *role_refusal(const struct renderer_peer *one)
 {
     const struct connection *connection = connection_of(one->wsi);
@@ -443,8 +446,8 @@ static char *role_refusal(const struct renderer_peer *one)
                       name_of(names_role, (int)role), name_of(names_role, (int)role));
 }
 
-/* Returns why `one` cannot stand by, or NULL (mem_free). Names are unique and there is one standby, so that each promise has one author.
-   matches: `one` has this core's version and files, and may replace a core that only votes. */
+/* Returns why `one` cannot stand by, or NULL; the caller frees it with mem_free. Names are unique and there is only one standby, so that
+   each promise has one author. matches: `one` has this core's version and files, and may replace a core that only votes. */
 static char *standby_refusal(const struct server_context *server, struct renderer_peer *one, const char *id, bool matches)
 {
     if (!server->params.keeper)
@@ -459,7 +462,7 @@ static char *standby_refusal(const struct server_context *server, struct rendere
     return NULL;
 }
 
-/* It comes again every second. */
+/* Logs a refusal unless it equals the last one: a refused peer tries again every second. */
 static void say_refusal(struct server_context *server, const struct renderer_peer *renderer)
 {
     char said[sizeof(server->renderer_refused)];
@@ -484,8 +487,8 @@ static void end_voters(struct server_context *server)
         }
 }
 
-/* Of a standby of this plant that has other files, or another version, for it is loaded anew or replaced before or after this core, the
-   promise counts. */
+/* Decides whether a peer is accepted. A standby of this plant with other files or another version only votes: it may be about to be
+   upgraded or reloaded, before or after this core. */
 static void judge(struct server_context *server, struct renderer_peer *renderer, const json_t *message, const struct core_identity *own)
 {
     const char *plant = json_string_value(json_object_get(message, "plant")), *id = json_string_value(json_object_get(message, "id"));
@@ -532,8 +535,8 @@ static void introduce(struct server_context *server, struct renderer_peer *rende
     count(server);
 }
 
-/* Verifies who sent a message through a renderer. The renderer's own token grants no right to act. Returns NULL and the person in *out, or
-   the reason of the refusal (static). */
+/* Verifies the user who sent a message through a renderer. The renderer's own token grants no right to act. Returns NULL and the user in
+   *out, or the reason of the refusal (static text). */
 static const char *verify_person(const struct server_context *server, const struct renderer_peer *renderer, const json_t *message,
                                  struct token_holder *out)
 {
@@ -596,14 +599,14 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     else if (!strcmp(type, "pairing") && server->tokens)
         pairings_ask_for(server->params.plant.pairings, message, clock_mono_ns());
     json_decref(message);
-    return json_array_size(renderer->answers) > MOST_ANSWERS ? "it reads no answers" : why;
+    return json_array_size(renderer->answers) > MAX_ANSWERS ? "it reads no answers" : why;
 }
 
-/* Returns -1 if the connection is to end. */
+/* Handles received bytes. Returns -1 if the connection must end. */
 static int on_receive(struct server_context *server, struct renderer_peer *renderer, const void *bytes, size_t count_bytes)
 {
     const char *why = NULL;
-    if (renderer->in.length + count_bytes > MOST_BYTES)
+    if (renderer->in.length + count_bytes > MAX_MESSAGE_BYTES)
         why = "a message of more than 256 kB";
     else
         text_add_bytes(&renderer->in, bytes, count_bytes);
@@ -617,9 +620,9 @@ static int on_receive(struct server_context *server, struct renderer_peer *rende
     return why ? -1 : 0;
 }
 
-/* --- lws ---------------------------------------------------------------------------------------------------------------------- */
+/* --- libwebsockets events ------------------------------------------------------------------------------------------------------------- */
 
-/* Steady readings get older, too; and silence would mean that the core is lost. */
+/* Sends readings regularly even if nothing changes: their age grows, and silence would mean that the core is lost. */
 static int on_beat(struct server_context *server, struct renderer_peer *renderer)
 {
     int64_t now_ns = clock_mono_ns();
@@ -633,10 +636,10 @@ static int on_beat(struct server_context *server, struct renderer_peer *renderer
     renderer->asks = is_witness(renderer);
     renderer->since_ns = renderer->since_ns ? renderer->since_ns : now_ns;
     lws_callback_on_writable(renderer->wsi);
-    lws_set_timer_usecs(renderer->wsi, BEAT_US);
-    if (now_ns - renderer->since_ns < PATIENCE_S * NS_PER_S)
+    lws_set_timer_usecs(renderer->wsi, TICK_US);
+    if (now_ns - renderer->since_ns < SEND_TIMEOUT_S * NS_PER_S)
         return 0;
-    log_warn(server->params.log, "renderer %s: ended: it took nothing for %d s", renderer->name, PATIENCE_S);
+    log_warn(server->params.log, "renderer %s: ended: it took nothing for %d s", renderer->name, SEND_TIMEOUT_S);
     return -1;
 }
 

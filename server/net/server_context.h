@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The server context: what the parts of the loop share. Private to net/. Thread: the loop. */
+/* The server context: state shared by the parts of the event loop. Private to net/. Thread: the event loop. */
 #ifndef NET_SERVER_CONTEXT_H
 #define NET_SERVER_CONTEXT_H
 #include <libwebsockets.h>
@@ -25,94 +25,98 @@ struct stream;  /* stream.h */
 struct http_exchange; /* http_impl.h */
 struct web_site;      /* site.h */
 
-/* Displays of walls that were connected since the start (wall_displays.c). */
+/* Wall displays that have connected since the start (wall_displays.c). */
 enum { WALL_DISPLAYS_SEEN = 256 };
 struct wall_displays {
     struct wall_seen {
         char wall[NAMED_VIEW_ID_BYTES];
         int display;
-        int64_t connected_ns, fresh_ns; /* how fresh it is, 0: it is not connected; when it was, monotonic */
+        /* connected_ns: monotonic time for which the connected display is current, 0: not connected; fresh_ns: the last such time */
+        int64_t connected_ns, fresh_ns;
         counter *age;
     } at[WALL_DISPLAYS_SEEN];
     size_t count;
 };
 
-/* Pictures over many displays, each of one wall (tile_walls.c). */
+/* Pictures over many displays, one entry for each wall (tile_walls.c). */
 struct tile_wall {
-    char wall[NAMED_VIEW_ID_BYTES]; /* "": free */
-    uint64_t leader;                /* id of the session; 0: none */
-    uint64_t asked, presented;      /* numbers of pictures */
-    struct quality_ladder made;     /* its size: by how long pictures of it take */
+    char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": entry is free */
+    uint64_t leader;                /* id of the leading session; 0: none */
+    uint64_t asked, presented;      /* numbers of the wall's last requested and last presented picture */
+    struct quality_ladder made;     /* its picture size follows how long the server takes to make pictures */
 };
 
 enum { UPGRADE_REFUSALS = 16 };
 
 struct server_context {
     struct net_params params;
-    struct session_context session_context; /* what all sessions see */
+    struct session_context session_context; /* state that all sessions read */
     struct snapshot *snapshot;
     uint32_t *changes;      /* reading.changes in the last snapshot, by tag */
-    int64_t data_ns;        /* monotonic: when the oldest reading that the last snapshot showed to have changed came in */
-    int64_t next_change_ns; /* monotonic: when time alone changes a quality next; INT64_MAX: it does not */
-    bool *links_up;         /* by source */
+    int64_t data_ns;        /* monotonic: arrival of the oldest reading that the last snapshot showed as changed */
+    int64_t next_change_ns; /* monotonic: when a quality changes next by time alone; INT64_MAX: never */
+    bool *links_up;         /* connection state of each source, by source index */
     struct lws_context *lws;
     struct history_queries *history_queries; /* NULL: nothing is recorded */
-    struct history_loader *history_loader;   /* likewise */
+    struct history_loader *history_loader;   /* loads the readings of past instants; NULL: nothing is recorded */
     struct picture_signer *picture_signer;   /* NULL: pictures are not signed */
     char signing_key_id[SIGNING_KEY_ID_BYTES];
-    struct stream *streams, **by_client;     /* all connections to /stream; the same, by session id, ascending */
+    /* streams: list of all connections to /stream; by_client: the same, sorted by session id, ascending */
+    struct stream *streams, **by_client;
     size_t by_client_capacity;
-    struct view_token_keys token_keys;               /* of a renderer: by which views are signed */
-    char core_key[2 * VIEW_TOKEN_KEY_BYTES + 1];     /* of a core: the key that it gives its renderers, hexadecimal; "": none */
-    char renderer_refused[300]; /* which was refused last, and why, as logged */
-    struct renderer_peer *renderers;                 /* all connections to /core (renderers.c) */
-    struct http_exchange *snapshots;                 /* HTTP requests that wait for a frame, a pick or a reload */
-    int stream_count, picture_count, question_count; /* the latter two: of HTTP, that are being answered */
-    int64_t answer_bytes;                            /* of HTTP answers that their clients have not read yet */
-    int64_t upload_bytes;                            /* sizes of files that are being uploaded, together */
-    int uploads;                                     /* their number */
+    struct view_token_keys token_keys;               /* on a renderer: keys that sign view tokens */
+    char core_key[2 * VIEW_TOKEN_KEY_BYTES + 1];     /* on a core: the view token key for its renderers, hexadecimal; "": none */
+    char renderer_refused[300]; /* the last refusal of a renderer, as logged */
+    struct renderer_peer *renderers;                 /* list of all connections to /core (renderers.c) */
+    struct http_exchange *snapshots;                 /* list of HTTP requests that wait for a frame, a pick or a reload */
+    /* picture_count, question_count: HTTP requests for pictures and history that are being answered */
+    int stream_count, picture_count, question_count;
+    int64_t answer_bytes;                            /* bytes of HTTP answers that clients have not read yet */
+    int64_t upload_bytes;                            /* bytes of all files that are being uploaded, at their final size */
+    int uploads;                                     /* number of uploads in progress */
     const struct quotas *quotas;
     struct address_limits *limits;
-    int connection_count, unanswered_count; /* the latter: of those, connections that wait for an answer, or have not asked yet */
-    bool goes_down;                         /* no connection is kept for another request */
+    int connection_count, unanswered_count; /* unanswered_count: connections that wait for an answer or have not sent a request yet */
+    bool goes_down;                         /* the server shuts down: connections are closed after their answer */
     struct tokens *tokens; /* NULL: none are configured */
-    struct openid *openid; /* NULL: nobody signs in */
+    struct openid *openid; /* sign-in with OpenID Connect; NULL: off */
     struct login_throttle *login_throttle;
-    struct web_site *site; /* the page's files */
-    char *notice;         /* that is shown before somebody signs in; NULL: none */
-    char *content_policy; /* Content-Security-Policy of every answer */
+    struct web_site *site; /* the web client's files */
+    char *notice;         /* text shown before users sign in; NULL: none */
+    char *content_policy; /* header Content-Security-Policy of every answer */
     struct tls *tls;      /* NULL: no TLS */
     struct admission admission;
-    bool local_only;   /* bound to a loopback address, and no proxy is in front */
+    bool local_only;   /* bound to a loopback address, without a proxy in front */
     char machine[256]; /* the machine's host name; "": none */
-    int64_t logins_held, held_ns; /* tokens that were not judged, and not recorded yet; when such were recorded last */
-    int64_t unasked; /* answers of the identity provider that nobody waits for, or that could not be looked at; likewise */
-    int64_t drain_ns;  /* monotonic: since when sessions are sent elsewhere; 0: they are not */
-    int64_t looked_ns; /* when the files of tokens and certificate were last looked at */
+    /* logins_held: tokens not checked because of throttling and not recorded yet; held_ns: monotonic, when they were last recorded */
+    int64_t logins_held, held_ns;
+    int64_t unasked; /* identity provider's answers that no log-in awaited, or that failed, not recorded yet */
+    int64_t drain_ns;  /* monotonic: since when sessions are sent to other daemons; 0: they are not */
+    int64_t looked_ns; /* monotonic: when the files of tokens and certificate were last checked */
     uint64_t next_client;
-    char goodbye[64];                   /* what streams are closed with at the end */
-    int start_s;                        /* that the daemon took to get ready, rounded up; 0: it is not ready */
-    bool kept_answers;                  /* an answer waits until an action is on disk (session_kept.c) */
-    bool restless;                      /* a session waits for what time brings: a tick is due soon */
-    int64_t still_ns;                   /* what the last refined frame cost that was drawn anew */
-    uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
+    char goodbye[64];                   /* close reason that streams get at shutdown */
+    int start_s;                        /* seconds that the daemon took to start, rounded up; 0: it is not ready */
+    bool kept_answers;                  /* an answer waits until its action is on disk (session_kept.c) */
+    bool restless;                      /* a session has work that depends on time: a tick is due soon */
+    int64_t still_ns;                   /* render time of the last refined frame that was drawn and not shared */
+    uint8_t out[LWS_PRE + SLICE_BYTES]; /* libwebsockets writes its framing into the LWS_PRE bytes before the data */
     struct tag_text_cache tag_texts;
     char *lists_said[LISTS];
     struct alarm_text_cache alarm_texts;
-    uint64_t told_number;                  /* of the last change of what the notifier keeps that a standby was told of */
-    uint64_t alarms_number;                /* of the last change of alarms that sessions were told of */
-    struct marker_text_cache marker_lists; /* of the frame that was sent last */
+    uint64_t told_number;                  /* number of the last notifier state that a standby was sent */
+    uint64_t alarms_number;                /* number of the last change of alarms that sessions were sent */
+    struct marker_text_cache marker_lists; /* markers of the frame that was sent last */
     struct neighbour_text_cache neighbour_texts;
     struct {
-        struct log_pace pace; /* pace of log lines on requests for the stream without Upgrade */
+        struct log_pace pace; /* limits log lines about stream requests without Upgrade */
         struct upgrade_refusal {
             char address[64]; /* the client's address */
-            int64_t at_ns;    /* monotonic */
+            int64_t at_ns;    /* monotonic time of the refusal */
             char why[120];
-        } refused[UPGRADE_REFUSALS]; /* handshakes that were refused, in a ring */
+        } refused[UPGRADE_REFUSALS]; /* ring buffer of refused handshakes */
         unsigned count;              /* number of all refused handshakes */
     } upgrade;
-    struct log_pace stuck_heads; /* pace of log lines on requests whose heads did not end */
+    struct log_pace stuck_heads; /* limits log lines about requests whose head did not end */
     struct latency_stages latency;
     struct wall_displays displays;
     struct tile_wall tile_walls[WALLS];
@@ -123,71 +127,72 @@ struct server_context {
     } counters;
 };
 
-/* Returns the context of a connection's loop. */
+/* Returns the server context of a connection. */
 static inline struct server_context *server_context_of(struct lws *wsi)
 {
     return lws_context_user(lws_get_context(wsi));
 }
 
-/* Writes up to SLICE_BYTES to a connection. Returns false when it is gone. */
+/* Writes up to SLICE_BYTES to a connection. Returns false if the connection is gone. */
 bool net_write(struct server_context *server, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how);
 
 /* --- readings.c --- */
 
-/* Takes a new snapshot if the last one is older than 100 ms: to be called before its ages are told, or a message is acted on. */
+/* Takes a new snapshot if the last one is older than 100 ms. Call it before ages of readings are sent, or a message is acted on. */
 void net_refresh_readings(struct server_context *server);
 
 /* --- stream.c, stream_table.c: connections to /stream --- */
 
-/* Handles the events of a connection to /stream, for lws. */
+/* Handles the events of a connection to /stream, for libwebsockets. */
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
-/* Returns whether the client of that id is a connected stream, and not an HTTP request. */
+/* Returns whether the client with that id is a connected stream and not an HTTP request. */
 bool stream_owns(const struct server_context *server, uint64_t client);
-/* Hand an answer to the stream that asked, which must be connected. The encoded frame is taken over. */
+/* Pass an answer to the stream that asked, which must be connected. stream_on_frame() takes ownership of the frame. */
 void stream_on_frame(struct server_context *server, struct encoded_frame *encoded);
 void stream_on_pick(struct server_context *server, const struct pick_answer *answer);
-/* Sends a frame that is signed, if it could be; takes the frame, and leaves the rest. */
+/* Sends a frame, signed if that was possible; takes signing->encoded and leaves the rest of the struct to the caller. */
 void stream_on_signed(struct server_context *server, struct signing *signing);
 void stream_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
-/* Hand coverage of sensors, or a text, to the stream that asked, and copy it; do nothing if that has gone meanwhile. */
+/* Pass sensor coverage, or a text, to the stream that asked; copy it. Do nothing if the stream has gone. */
 void stream_on_coverage(struct server_context *server, const struct sensor_coverage_answer *answer);
 void stream_say(struct server_context *server, uint64_t client, const char *text);
-/* Tells sessions whose sensors are placed on trial that distances were computed. */
+/* Tells sessions with trial sensor positions that distances were computed. */
 void streams_on_placed(struct server_context *server);
-/* Lets all sessions act on the time, and notes in server->restless whether any waits for it. */
+/* Runs the tick of all sessions, and sets server->restless if any of them has work that depends on time. */
 void streams_on_tick(struct server_context *server);
-/* Tells all sessions that readings, or the states of links, changed. */
+/* Tells all sessions that readings, or the connection states of sources, changed. */
 void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed);
-/* Has changed alarms sent to all sessions. */
+/* Makes all sessions send changed alarms. */
 void streams_on_alarms(struct server_context *server);
-/* Sends answers to actions that are on disk by now, or cannot be kept. */
+/* Sends answers to actions that are on disk by now, or can never be written. */
 void streams_settle(struct server_context *server);
-/* Closes sessions whose token is not valid any more. */
+/* Closes sessions whose token is no longer valid. */
 void streams_check_tokens(struct server_context *server, int64_t now_utc_ns);
-/* Begins to close all connections: the server goes down. */
+/* Begins to close all connections, because the server shuts down. */
 void streams_close(struct server_context *server);
-/* Checks a request to become a stream. Returns 0 to go on; 1: it was answered with an HTTP error. */
+/* Checks a request for a stream. Returns 0 to go on; 1: it was answered with an HTTP error. */
 int stream_check_upgrade(struct server_context *server, struct lws *wsi);
 
 /* --- http/ --- */
 
-/* Handles the events of an HTTP connection, for lws. */
+/* Handles the events of an HTTP connection, for libwebsockets. */
 int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
-/* Hand an answer to the HTTP request that waits for it, if it still does. The encoded frame is taken over; the text may be. */
+/* Pass an answer to the HTTP request that waits for it; do nothing if it no longer waits. http_on_frame() takes ownership of the frame;
+   http_on_history_answer() may take the text. */
 void http_on_frame(struct server_context *server, struct encoded_frame *encoded);
 void http_on_signed(struct server_context *server, struct signing *signing);
 void http_on_pick(struct server_context *server, const struct pick_answer *answer);
 void http_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
 void http_on_history_answer(struct server_context *server, struct history_answer *piece);
-/* Answers browsers that came back from the identity provider. */
+/* Answers browsers that returned from the identity provider. */
 void http_on_sign_ins(struct server_context *server);
-/* Answers those who asked for a reload. */
+/* Answers the requests for a reload. */
 void http_on_reloaded(struct server_context *server, bool good, const char *text);
 /* Answers all requests that wait for the plant that is about to be replaced. */
 void http_release_plant(struct server_context *server);
 /* Answers requests that have waited too long. */
 void http_on_tick(struct server_context *server, int64_t now_ns);
-/* Sends a complete short answer in plain text. Returns what the lws callback is to return. */
+/* Sends a complete short answer in plain text. Returns the result for the libwebsockets callback. */
 int http_answer(struct lws *wsi, int status, const char *text);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* /stream: connections come and go, and what they say goes to their sessions. */
+/* Connections to /stream: opens and closes them, and passes their messages to their sessions. */
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <openssl/rand.h>
@@ -16,11 +16,11 @@
 
 enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2, BACK_MAX_S = 60, SILENT_S = 6 };
 static const int64_t SILENT_NS = SILENT_S * NS_PER_S;
-static const int64_t HEARD_OF_NS = 2 * NS_PER_S; /* so long load balancers take to hear that sessions are sent elsewhere */
+static const int64_t HEARD_OF_NS = 2 * NS_PER_S; /* time for load balancers to notice that sessions are sent to other daemons */
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
-static const int64_t MOVING_NS = 200 * NS_PER_MS; /* after an input somebody is taken to be moving */
+static const int64_t MOVING_NS = 200 * NS_PER_MS; /* a camera counts as moving for this long after an input */
 
-/* --- coming and going ------------------------------------------------------------------------------------------------- */
+/* --- connecting and disconnecting ------------------------------------------------------------------------------------- */
 
 static void tune_socket(struct lws *wsi)
 {
@@ -40,13 +40,14 @@ static void close_with(struct stream *stream, int code, const char *text)
 
 static void pump(struct server_context *server, struct stream *stream);
 
-/* Whoever has it may follow. 48 bits: more than anyone can try, and exact in any JSON. */
+/* Returns a random session number. A client that knows the number may follow the session; 48 bits are too many to guess, and exact in
+   any JSON parser. */
 static uint64_t new_number(const struct server_context *server)
 {
     uint64_t number = 0;
     while (number == 0 || stream_called(server, number)) {
         if (RAND_bytes((unsigned char *)&number, sizeof(number)) != 1)
-            return 0; /* then nobody follows it */
+            return 0; /* no randomness available: this session cannot be followed */
         number >>= 16;
     }
     return number;
@@ -93,7 +94,8 @@ static void count(struct server_context *server, struct stream *stream)
     stream->dropped = session->stats.dropped;
 }
 
-/* Who was sent away is not kept, but who could not be served any longer is. */
+/* Returns whether the view is kept for the client's return: not for clients that were refused (1008), but for those that could not be
+   served any longer. */
 static bool may_return(const struct stream *stream)
 {
     return stream->session->hello && stream->session->close.code != 1008;
@@ -130,7 +132,7 @@ static void on_close(struct server_context *server, struct stream **slot)
 
 /* --- after anything happened to a session ----------------------------------------------------------------------------- */
 
-/* Play goes on; those who follow come along. */
+/* Advances playback and its requests; followers are moved along. */
 static void travel(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     struct session *session = stream->session;
@@ -173,7 +175,8 @@ static void pump(struct server_context *server, struct stream *stream)
     server->restless |= stream->sending || stream->cut || !session_rests(session, now_ns);
 }
 
-/* When every session is refined for every change of a reading, and there is one each second. */
+/* Returns whether the render thread is overloaded: refining every session at each change of readings, once a second, would take more
+   than a second. */
 static bool is_loaded(const struct server_context *server)
 {
     int count = 0;
@@ -212,7 +215,7 @@ static void log_silence(struct server_context *server, struct stream *stream, in
              (unsigned long long)session->id, connection_of(stream->wsi)->address, display, SILENT_S + PACER_STALL_S);
 }
 
-/* A client that takes nothing is sent nothing; its session keeps only its view, and is closed in the end. */
+/* Watches a client that acknowledges nothing: it is sent nothing more, its session keeps only its view, and is closed in the end. */
 static void watch_stall(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     enum pacer_state state = session_state(stream->session, now_ns);
@@ -226,7 +229,7 @@ static void watch_stall(struct server_context *server, struct stream *stream, in
         return;
     counter_inc(server->counters.stalled, 1);
     close_with(stream, STREAM_CLOSE_STALLED, "nothing was acknowledged for 15 s");
-    lws_set_timeout(stream->wsi, PENDING_TIMEOUT_CLOSE_SEND, LAST_WORDS_S); /* its socket may take not even that */
+    lws_set_timeout(stream->wsi, PENDING_TIMEOUT_CLOSE_SEND, LAST_WORDS_S); /* the socket may not even accept the close frame */
 }
 
 void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed)
@@ -240,10 +243,11 @@ void streams_on_readings(struct server_context *server, bool data_changed, bool 
     }
 }
 
-/* Each at another instant: their pages come back at once, to another node. */
+/* Returns whether this session is to be closed by now while sessions are drained. Sessions are closed at different instants, because
+   their pages reconnect to other nodes at once. */
 static bool is_drained(const struct server_context *server, const struct stream *stream, int64_t now_ns)
 {
-    uint64_t spread = (stream->session->id + 1) * 0x9E3779B97F4A7C15u >> 32; /* golden ratio: spreads neighbours apart */
+    uint64_t spread = (stream->session->id + 1) * 0x9E3779B97F4A7C15u >> 32; /* multiplying by the golden ratio spreads consecutive ids */
     return server->drain_ns && now_ns - server->drain_ns > HEARD_OF_NS + (int64_t)(spread % 1000) * (DRAIN_NS / 1000);
 }
 
@@ -299,7 +303,7 @@ static void take_frame(struct server_context *server, struct stream *stream, str
     pump(server, stream);
 }
 
-/* Hands a frame that is wanted signed to the signer. Returns false if it cannot be signed: the client gets it as it is. */
+/* Passes a frame that is wanted signed to the signer. Returns false if it cannot be signed; the client then gets it unsigned. */
 static bool sign(struct server_context *server, struct stream *stream, struct encoded_frame *encoded)
 {
     const struct packet *packet = encoded->packet;
@@ -389,7 +393,7 @@ void stream_say(struct server_context *server, uint64_t client, const char *text
     pump(server, stream);
 }
 
-/* Once for each session that was let in, and for each token that was not. */
+/* Logs and records the login: once for each admitted session, and for each refused token. */
 static void note_login(struct server_context *server, struct stream *stream, bool was_in)
 {
     const struct session *session = stream->session;
@@ -400,12 +404,12 @@ static void note_login(struct server_context *server, struct stream *stream, boo
     if (good)
         holder.role = session->identity.role;
     if (!good)
-        counter_inc(server->counters.refused, session->identity.login != LOGIN_HELD); /* whoever gets 1013 is counted there */
+        counter_inc(server->counters.refused, session->identity.login != LOGIN_HELD); /* refusals with 1013 are counted elsewhere */
     if (!good || session->identity.role > ROLE_OPEN || holder.name[0])
         connection_log_login(server, stream->wsi, "stream", &holder, good ? LOGIN_GOOD_NEW : session->identity.login);
 }
 
-/* It goes to the thread that loads the plant anew. */
+/* Passes a tag list that is to be saved to the thread that reloads the plant. */
 static void save_resolve(struct server_context *server, struct session *session)
 {
     struct tag_save *save = session_take_save(session);
@@ -457,7 +461,7 @@ static bool is_utf8(const struct text *text)
     return length > 0;
 }
 
-/* libwebsockets would look at text itself, but after text at the bytes of a pong, too, which need be none. */
+/* Checks UTF-8 here: libwebsockets would check the bytes of a pong after a text, too, which need not be UTF-8. */
 static void on_receive(struct server_context *server, struct stream *stream, const void *bytes, size_t len)
 {
     if (stream->in_count == 0)
@@ -491,7 +495,7 @@ void stream_on_historical_snapshot(struct server_context *server, const struct h
     pump(server, stream);
 }
 
-/* --- lws -------------------------------------------------------------------------------------------------------------- */
+/* --- libwebsockets events --------------------------------------------------------------------------------------------- */
 
 static int on_writeable(struct server_context *server, struct stream *stream)
 {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who follows whom. A leader follows nobody: who follows a follower follows its leader. */
+/* Resolves which session follows which. A leader never follows: following a follower means following its leader. */
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/stream.h"
 
-static const int64_t TELL_NS = 500 * NS_PER_MS; /* between two lists of followers: hundreds may come at once */
+static const int64_t TELL_NS = 500 * NS_PER_MS; /* minimum time between two lists of followers, because hundreds may connect at once */
 
-/* Who followed the session that this one has resumed follows it. */
+/* Makes the followers of the resumed session follow the session that resumed it. */
 static void take_back(struct server_context *server, struct session *session)
 {
     for (struct stream *stream = server->streams; stream; stream = stream->next) {
@@ -18,7 +18,7 @@ static void take_back(struct server_context *server, struct session *session)
     }
 }
 
-/* The followers of one become those of another (NULL: of nobody). */
+/* Makes the followers of one session follow another; to NULL: nobody. */
 static void hand_over(struct server_context *server, const struct session *from, struct session *to)
 {
     for (struct stream *stream = server->streams; stream; stream = stream->next)
@@ -26,7 +26,7 @@ static void hand_over(struct server_context *server, const struct session *from,
             session_follow(stream->session, to, clock_mono_ns());
 }
 
-/* What all of them see does not change, but who moves it does. */
+/* Hands over the lead: the shown view stays the same, but the heir moves it now. */
 static void resolve_lead(struct server_context *server, struct session *session, uint64_t number)
 {
     const struct stream *other = stream_called(server, number);
@@ -80,7 +80,7 @@ bool follow_spread(struct server_context *server, const struct stream *leader)
 void follow_forget(struct server_context *server, const struct stream *leader)
 {
     const struct stream *newer = stream_called(server, leader->session->identity.number);
-    struct session *again = newer ? newer->session : NULL; /* has resumed it while it was still there */
+    struct session *again = newer ? newer->session : NULL; /* session that resumed the leader's view while the leader was still connected */
     for (struct stream *stream = server->streams; stream; stream = stream->next)
         if (stream->session->following.leader == leader->session && again && again != stream->session)
             session_follow(stream->session, again, clock_mono_ns());

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What goes to one client: texts and frames, one write per writeable callback, so that lws never has to keep what a socket does
-   not take. */
+/* Sends texts and frames to one client with one write per writeable callback, so that libwebsockets never has to buffer what the socket
+   does not accept. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -22,11 +22,11 @@ static const struct text *padded(struct text *text)
     return text;
 }
 
-/* False: the connection is gone. *wrote: there was something to say. */
+/* Sends the markers of the frame. Returns false if the connection is gone. *wrote: there was something to send. */
 static bool write_markers(struct server_context *server, struct stream *stream, bool *wrote)
 {
     struct text text = { 0 };
-    bool open = session_is_open(stream->session) || stream->session->scope.tags; /* it may not read what stands at each sensor */
+    bool open = session_is_open(stream->session) || stream->session->scope.tags; /* this client may not read the sensors' values */
     char *markers = open ? NULL : marker_text(stream->sending->packet->frame, stream->seq, &stream->known, &server->marker_lists);
     *wrote = markers != NULL;
     if (!markers)
@@ -55,7 +55,7 @@ static void camera_to_wire(const struct camera *camera, struct wire_frame *heade
     header_out->height_m = (float)camera->height_m;
 }
 
-/* --- the packets of a frame, and the parts of each -------------------------------------------------------------------- */
+/* --- the packets of a frame, and the parts of each packet ------------------------------------------------------------- */
 
 static const struct packet *packet_now(const struct stream *stream)
 {
@@ -131,7 +131,7 @@ static void part_sent(struct server_context *server, struct stream *stream)
     encoded_frame_destroy(&stream->sending);
 }
 
-/* The header goes with the first of the payload: each write is a call of the kernel, and a packet of its own. */
+/* Puts the header in front of the first bytes of the payload: a separate write would be a separate system call and network packet. */
 static size_t put_header(struct stream *stream, uint8_t *bytes)
 {
     struct wire_frame head = frame_header(stream);
@@ -172,7 +172,7 @@ static bool write_frame(struct server_context *server, struct stream *stream)
     return write_slice(server, stream);
 }
 
-/* --- frames that are not sent to their end ---------------------------------------------------------------------------- */
+/* --- frames that are given up ----------------------------------------------------------------------------------------- */
 
 void stream_give_up(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
@@ -185,7 +185,7 @@ void stream_give_up(struct server_context *server, struct stream *stream, int64_
     encoded_frame_destroy(&stream->sending);
 }
 
-/* The message ends before its header says. */
+/* Ends the frame's message early, before the length that its header gives. */
 static bool write_end(struct server_context *server, struct stream *stream)
 {
     stream->cut = false;
@@ -195,7 +195,8 @@ static bool write_end(struct server_context *server, struct stream *stream)
 
 /* --- round trips ------------------------------------------------------------------------------------------------------ */
 
-/* While frames go, and none is under way: a pong behind one would tell its transfer, not the round trip. */
+/* Returns whether a ping is due: only between frames, as a pong behind a frame would measure the frame's transfer and not the round
+   trip. */
 static bool ping_due(const struct stream *stream, int64_t now_ns)
 {
     const struct pacer *pacer = &stream->session->delivery.pacer;
@@ -232,7 +233,7 @@ void stream_on_pong(struct stream *stream, const void *bytes, size_t count)
     }
 }
 
-/* --- all of it -------------------------------------------------------------------------------------------------------- */
+/* --- one write at a time ---------------------------------------------------------------------------------------------- */
 
 bool stream_has_output(const struct stream *stream, int64_t now_ns)
 {
@@ -248,7 +249,7 @@ static void note_first(struct stream *stream, size_t bytes, int64_t now_ns)
         stream->first_bytes += bytes;
 }
 
-/* Texts go between frames, never into one. */
+/* Texts are sent between frames, never inside of one. */
 bool stream_send(struct server_context *server, struct stream *stream)
 {
     struct session *session = stream->session;

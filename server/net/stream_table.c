@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All connections to /stream, found by the number of their session. */
+/* All connections to /stream, searchable by session id. */
 #include <string.h>
 
 #include "base/mem.h"
 #include "net/stream.h"
 
-/* Where it is, or would be, in server->by_client. */
+/* Returns the index in server->by_client of that session, or where it would be inserted. */
 static size_t place_of(const struct server_context *server, uint64_t client)
 {
     size_t low = 0, high = (size_t)server->stream_count;
@@ -19,7 +19,7 @@ static size_t place_of(const struct server_context *server, uint64_t client)
     return low;
 }
 
-/* NULL: not connected. */
+/* Returns NULL if the session is not connected. */
 struct stream *stream_find(const struct server_context *server, uint64_t client)
 {
     size_t place = place_of(server, client);
@@ -45,7 +45,7 @@ void stream_table_add(struct server_context *server, struct stream *stream)
     stream->next = server->streams;
     server->streams = stream;
     mem_grow(&server->by_client, &server->by_client_capacity, (size_t)server->stream_count + 1, sizeof(struct stream *));
-    server->by_client[server->stream_count++] = stream; /* numbers go up */
+    server->by_client[server->stream_count++] = stream; /* session ids ascend, so the array stays sorted */
 }
 
 void stream_table_remove(struct server_context *server, const struct stream *stream)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who may open a stream: path, origin and subprotocol of the hand-shake. */
+/* Checks who may open a stream: path, origin and subprotocol of the handshake. */
 #include <stdio.h>
 #include <string.h>
 
@@ -20,7 +20,8 @@ static int refuse(struct server_context *server, struct lws *wsi, int status, co
     return http_answer(wsi, status, text) < 0 ? -1 : 1;
 }
 
-/* A page of another host must not use the browser of someone who may: same host, or no browser. */
+/* Returns whether the origin is allowed. A page of another host must not use the connection rights of its visitor: the origin is the
+   same host, or the client is no browser. */
 static bool origin_allowed(const struct server_context *server, struct lws *wsi)
 {
     char origin[256], host[256];
@@ -56,7 +57,7 @@ int stream_check_upgrade(struct server_context *server, struct lws *wsi)
         return refuse(server, wsi, 431, "a header is too long\n");
     if ((core || list[0]) && !access_list_has(list, spoken))
         return refuse_protocol(server, wsi, list, spoken);
-    if (!core && access_list_has(list, CORE_SUBPROTOCOL)) /* lws goes by the protocol, and not by the path */
+    if (!core && access_list_has(list, CORE_SUBPROTOCOL)) /* libwebsockets chooses the handler by subprotocol and not by path */
         return refuse_protocol(server, wsi, CORE_SUBPROTOCOL, spoken);
     return 0;
 }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tiles of a wall find each other here; what they do together is session/tiles/tile_sync.h. */
+/* Finds the sessions that are tiles of one wall; session/tiles/tile_sync.h makes them act together. */
 #include <string.h>
 
 #include "base/clock.h"
 #include "net/stream.h"
 #include "session/tiles/tile_sync.h"
 
-enum { MEMBERS = 4 * WALL_DISPLAYS }; /* a display may be looked at from several places, and come back before it was missed */
+enum { MEMBERS = 4 * WALL_DISPLAYS }; /* a display may be open in several places, and reconnect before its old connection is found dead */
 
 static bool is_of(const struct stream *stream, const char *wall)
 {
@@ -33,7 +33,7 @@ static struct tile_wall *find(struct server_context *server, const char *name)
     return free_one;
 }
 
-/* --- who leads -------------------------------------------------------------------------------------------------------------- */
+/* --- choosing the leader ------------------------------------------------------------------------------------------------------ */
 
 static bool may_lead(const struct stream *stream, const struct stream *leaving)
 {
@@ -41,8 +41,8 @@ static bool may_lead(const struct stream *stream, const struct stream *leaving)
     return stream != leaving && session->hello && !session->hidden && !session->close.code && !session->tile.late_us;
 }
 
-/* The first display that is there: the picture's title, which is on it, says what it chose. Of several who look at that one, who leads
-   goes on. */
+/* Chooses the leader: the first connected display, because the picture's title, with the chosen parameters, is on it. Among several
+   sessions of that display, the present leader stays. */
 static struct session *choose(struct server_context *server, const struct tile_wall *wall, const struct stream *leaving)
 {
     struct session *first = NULL;
@@ -60,7 +60,7 @@ static struct session *choose(struct server_context *server, const struct tile_w
 static void take_lead(const struct server_context *server, struct tile_wall *wall, struct session *leader, const struct stream *leaving)
 {
     const struct stream *before = wall->leader ? stream_find(server, wall->leader) : NULL;
-    if (leaving && leaving->session->id == wall->leader) /* it is in the table no more */
+    if (leaving && leaving->session->id == wall->leader) /* the leaving stream was already removed from the table */
         before = leaving;
     if (before)
         session_inherit(leader, before->session);
@@ -92,7 +92,7 @@ static void tell(struct server_context *server, const struct tile_wall *wall, co
         }
 }
 
-/* Before the first picture of one that has just come, too. */
+/* Applies the burn-in shift to all tiles of a wall; also before the first picture of a new tile. */
 static void move_all(struct server_context *server, const char *wall)
 {
     struct burn_shift shift = burn_shift_at(clock_plant_ns());

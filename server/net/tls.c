@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The certificate. */
+/* Loads, checks and serves the TLS certificate. */
 #include "net/tls.h"
 
 #include <errno.h>
@@ -20,9 +20,9 @@ struct tls {
     struct log *log;
     char *cert_path, *key_path;
     struct file_watch cert_watch, key_watch;
-    SSL_CTX *checked; /* ours: the newest that can be served */
-    SSL_CTX *served;  /* of lws */
-    time_t warned_s;  /* that it expires; 0: not yet */
+    SSL_CTX *checked; /* our own: the newest certificate that can be served */
+    SSL_CTX *served;  /* the context of libwebsockets */
+    time_t warned_s;  /* seconds of UTC: when the last warning about the expiry was logged; 0: none yet */
 };
 
 static const char *why(char out[200])
@@ -71,7 +71,7 @@ static void warn_of_end(struct tls *tls, time_t now_s)
                   tls->cert_path, (double)left_s / (left_s < DAY_S ? HOUR_S : DAY_S), left_s < DAY_S ? "hours" : "days");
 }
 
-/* Once a day, once an hour of its last, and when it is over. */
+/* Returns whether to warn: once a day, once an hour on the last day, and when the certificate expires. */
 static bool is_time_to_warn(const struct tls *tls, time_t now_s)
 {
     int64_t ends_s = tls_ends_s(tls);
@@ -87,7 +87,7 @@ static void warn(struct tls *tls)
     warn_of_end(tls, time(NULL));
 }
 
-/* False: logged. */
+/* Loads and checks the certificate. Returns false if it cannot be served; logged. */
 static bool check(struct tls *tls)
 {
     char text[200];
@@ -130,7 +130,7 @@ void tls_destroy(struct tls **tls_ptr)
 void tls_serve(struct tls *tls, SSL_CTX *context)
 {
     SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
-    SSL_CTX_set_cipher_list(context, "ECDHE+AESGCM:ECDHE+CHACHA20"); /* of TLS 1.2: no CBC; those of 1.3 are all good */
+    SSL_CTX_set_cipher_list(context, "ECDHE+AESGCM:ECDHE+CHACHA20"); /* for TLS 1.2: no CBC ciphers; all of TLS 1.3 are good */
     tls->served = context;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The TLS certificate: checked before it is served, and read again when its files change. Thread: the loop. */
+/* The TLS certificate: checked before it is served, and read again when its files change. Thread: the event loop. */
 #ifndef NET_TLS_H
 #define NET_TLS_H
 #include <openssl/ssl.h>
@@ -11,15 +11,15 @@
 struct tls;
 /* Reads both PEM files. Returns NULL if they cannot be served; the reason is logged. */
 struct tls *tls_create(struct log *log, const char *cert_path, const char *key_path);
-void tls_destroy(struct tls **tls); /* &NULL is fine; leaves NULL */
-/* Has the OpenSSL context use the certificate, now and whenever it changes. */
+void tls_destroy(struct tls **tls); /* &NULL is allowed; sets *tls to NULL */
+/* Makes the OpenSSL context use the certificate, now and after each change. */
 void tls_serve(struct tls *tls, SSL_CTX *context);
-/* Reads the files again if they changed. A certificate that cannot be served leaves the old one in force; logged. Warns once a day of one
-   that expires within 14 days. */
+/* Reads the files again if they changed. If the new certificate cannot be served, the old one stays in force; logged. Warns about a
+   certificate that expires within 14 days, once a day and more often on its last day. */
 void tls_look(struct tls *tls);
 /* Returns when the certificate in force expires, in seconds of UTC since 1970. */
 int64_t tls_ends_s(const struct tls *tls);
-/* Returns whether the certificate is for that host name. */
+/* Returns whether the certificate is valid for that host name. */
 bool tls_is_called(const struct tls *tls, const char *name);
 
 #endif

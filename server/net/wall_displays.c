@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A display is as fresh as the pane that is farthest behind. One that has gone stays known, so that its age tells of it. */
+/* Measures how current each wall display is, by its oldest pane. A display that disconnects stays listed, so that its age keeps growing. */
 #include "net/wall_displays.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* HTTP beside the stream: who may ask what, and the files of the web client. */
+/* HTTP requests other than the stream: access rights, routes, and the files of the web client. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -34,10 +34,10 @@ static int ready(struct server_context *server, struct http_exchange *request)
 
 #define NGINX_LINES "proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection \"upgrade\";"
 
-static const int64_t REFUSED_NS = 15 * NS_PER_S; /* the page asks why within seconds */
+static const int64_t REFUSED_NS = 15 * NS_PER_S; /* the page asks for the reason within seconds of its failed handshake */
 
-/* Logs a request for the stream without Upgrade. Proxies remove Upgrade and Connection, which concern one hop, and keep the other headers
-   of a handshake. */
+/* Logs a request for the stream without Upgrade. Proxies remove Upgrade and Connection, which concern one hop, and keep the other
+   headers of a handshake. */
 static void log_without_upgrade(struct server_context *server, struct lws *wsi, int64_t now_ns)
 {
     char more[LOG_PACE_BYTES], via[100], shown[48];
@@ -51,7 +51,8 @@ static void log_without_upgrade(struct server_context *server, struct lws *wsi, 
              named ? " (Via: " : "", named ? quoted(via, shown) : "", named ? ")" : "", NGINX_LINES, more);
 }
 
-/* Returns why a handshake of this client's address was refused last, within seconds; NULL: none was. Browsers ask by another connection. */
+/* Returns why the last stream handshake from this address was refused, within the last seconds; NULL: none was. A browser asks over
+   another connection, so the address identifies it. */
 static const char *last_refusal(const struct server_context *server, const char *address, int64_t now_ns)
 {
     for (unsigned i = 1; i <= UPGRADE_REFUSALS; i++) {
@@ -69,7 +70,8 @@ static int stream_without_upgrade(struct server_context *server, struct http_exc
                                "removed it. nginx needs: " NGINX_LINES "\n";
     int64_t now_ns = clock_mono_ns();
     const char *refused = last_refusal(server, connection_of(request->wsi)->address, now_ns);
-    if (lws_hdr_total_length(request->wsi, WSI_TOKEN_HTTP_URI_ARGS) == 0) /* the page asks with ?why, once its handshake has failed */
+    /* the page itself asks with ?why after a failed handshake: that is not worth a log line */
+    if (lws_hdr_total_length(request->wsi, WSI_TOKEN_HTTP_URI_ARGS) == 0)
         log_without_upgrade(server, request->wsi, now_ns);
     char *body = refused ? mem_printf("%srefused: %s", text, refused) : mem_strdup(text);
     return request_answer(request, 426, HTTP_TEXT, body, strlen(body), "upgrade:", "websocket");
@@ -84,7 +86,7 @@ static int file(struct server_context *server, struct http_exchange *request, co
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "not found\n");
     if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0 && !strcmp(seen, found->etag))
         return request_answer(request, HTTP_STATUS_NOT_MODIFIED, found->type, NULL, 0, "etag:", found->etag);
-    char *bytes = mem_array(found->count + 1, 1); /* the answer takes its own */
+    char *bytes = mem_array(found->count + 1, 1); /* the answer needs a copy that it can free */
     memcpy(bytes, found->bytes, found->count);
     return request_answer(request, HTTP_STATUS_OK, found->type, bytes, found->count, "etag:", found->etag);
 }
@@ -95,10 +97,10 @@ static const struct {
     const char *path;
     int (*serve)(struct server_context *server, struct http_exchange *request);
     enum role least;
-    unsigned narrowed; /* which tokens may ask that are good for some views, for one display, or for a renderer only */
+    unsigned narrowed; /* bit mask of narrowed tokens that may use this path: those for views, for one display, or for renderers */
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY, 0 },
-    { "/readyz", ready, ROLE_NOBODY, 0 }, /* the loop only runs once model, GL and store are there; GL may go again */
+    { "/readyz", ready, ROLE_NOBODY, 0 }, /* the event loop runs only once model, GL and store are ready; GL may be lost later */
     { "/stream", stream_without_upgrade, ROLE_NOBODY, 0 },
     { "/login", ask_login, ROLE_NOBODY, 0 },
     { "/login/callback", ask_login_callback, ROLE_NOBODY, 0 },
@@ -127,7 +129,7 @@ static const struct {
     { "/api/v1/import/report", api_import_report, ROLE_ENGINEER, 0 },
     { "/api/v1/import/matches", api_import_matches, ROLE_ENGINEER, 0 },
 };
-static const char RELOAD_PATH[] = "/api/v1/reload", LOGOUT_PATH[] = "/logout"; /* POST */
+static const char RELOAD_PATH[] = "/api/v1/reload", LOGOUT_PATH[] = "/logout"; /* paths of POST requests */
 
 static int refuse(struct http_exchange *request, const struct http_refusal *refusal)
 {
@@ -140,7 +142,7 @@ static int refuse(struct http_exchange *request, const struct http_refusal *refu
                           whose ? "Bearer realm=\"plantcast\"" : "5");
 }
 
-/* Pages of other sites may link to us, but not have us draw. */
+/* Returns whether another site's page sent the request. Other sites may link here, but may not embed our pictures. */
 static bool is_foreign_page(struct lws *wsi)
 {
     char site[32];
@@ -153,7 +155,7 @@ static const struct http_refusal NOT_IN_VIEWS = { HTTP_STATUS_FORBIDDEN, "this t
 static const struct http_refusal NOT_ON_DISPLAY = { HTTP_STATUS_FORBIDDEN, "this device is good for its display of a wall only\n" };
 static const struct http_refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other sites do not get this\n" };
 
-/* Refuses somebody who is no engineer. */
+/* Refuses a user who lacks the role engineer. */
 static int refuse_others(struct http_exchange *request, enum role role)
 {
     return role == ROLE_NOBODY ? refuse(request, &NEED_TOKEN) : request_refuse(request, HTTP_STATUS_FORBIDDEN, REFUSAL_ROLE_ENGINEER);
@@ -183,7 +185,7 @@ static int serve_route(struct server_context *server, struct http_exchange *requ
 static int serve_post(struct server_context *server, struct http_exchange *request, const char *path)
 {
     enum role role = connection_of(request->wsi)->role;
-    request->close = true; /* there may be a body that nobody reads */
+    request->close = true; /* the client may send a body that nobody will read */
     if (role < ROLE_ENGINEER) {
         connection_record(server, request->wsi, "access", "refused", path, "it takes the role engineer");
         return refuse_others(request, role);
@@ -202,12 +204,12 @@ static int serve(struct server_context *server, struct http_exchange *request, c
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
     struct http_refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
-    request->sandboxed = false; /* the same struct serves all requests of a connection */
+    request->sandboxed = false; /* libwebsockets reuses one struct for all requests of a connection */
     counter_inc(server->counters.requests, 1);
     connection_set_answered(server, request->wsi, false);
     stuck_head_arrived(request->wsi);
     if (!get && !request->head && !post) {
-        request->close = true; /* there may be a body that nobody reads */
+        request->close = true; /* the client may send a body that nobody will read */
         static const char text[] = "only GET and HEAD (POST: /api/v1/reload, /logout)\n";
         return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, mem_strdup(text), strlen(text), "allow:", "GET, HEAD");
     }
@@ -265,7 +267,7 @@ static void request_end(struct server_context *server, struct http_exchange **sl
     *slot = NULL;
 }
 
-/* False: not about a connection as such. */
+/* Handles events of a connection as a whole. Returns false for other events. */
 static bool on_connection(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, int *result)
 {
     *result = 0;
@@ -294,14 +296,14 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     case LWS_CALLBACK_HTTP_BODY: return *slot ? import_take_body(server_context_of(wsi), *slot, in, len) : 0;
     case LWS_CALLBACK_HTTP_BODY_COMPLETION: return *slot ? import_end_body(server_context_of(wsi), *slot) : 0;
     case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(server_context_of(wsi), *slot) : 0;
-    case LWS_CALLBACK_HTTP_DROP_PROTOCOL: /* also when the connection is upgraded */
+    case LWS_CALLBACK_HTTP_DROP_PROTOCOL: /* also comes when the connection is upgraded to a WebSocket */
     case LWS_CALLBACK_CLOSED_HTTP: request_end(server_context_of(wsi), slot); return 0;
     case LWS_CALLBACK_TIMER: return stuck_head_look(server_context_of(wsi), wsi);
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
         stuck_head_arrived(wsi);
-        connection_set_answered(server_context_of(wsi), wsi, true); /* streams are closed with a word of their own */
+        connection_set_answered(server_context_of(wsi), wsi, true); /* streams have their own goodbye when the server shuts down */
         return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(server_context_of(wsi), wsi) : -1;
-    case LWS_CALLBACK_ESTABLISHED: { /* a WebSocket without a subprotocol lands here */
+    case LWS_CALLBACK_ESTABLISHED: { /* only a WebSocket without subprotocol gets here */
         static unsigned char text[] = "the subprotocol is " WIRE_SUBPROTOCOL;
         lws_close_reason(wsi, LWS_CLOSE_STATUS_PROTOCOL_ERR, text, sizeof(text) - 1);
         return -1;

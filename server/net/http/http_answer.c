@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers to HTTP requests: head and body, and those that have to wait for theirs. */
+/* Answers to HTTP requests: headers and body, including answers that must wait for their content. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -8,8 +8,8 @@
 #include "net/http/stuck_head.h"
 #include "net/connection.h"
 
-enum { SMALL_BYTES = 64 * 1024 }; /* as many connections as there may be have room for these */
-enum { HEAD_BYTES = 8192 };       /* with as many origins as may be named, of 256 characters */
+enum { SMALL_BYTES = 64 * 1024 }; /* answers up to this size need no quota: even one for every permitted connection fits into memory */
+enum { HEAD_BYTES = 8192 };       /* enough for the maximum number of allowed origins of 256 characters */
 
 static const char *const security[][2] = {
     { "x-content-type-options:", "nosniff" },
@@ -22,7 +22,7 @@ static bool add_header(struct lws *wsi, const char *name, const char *value, uns
     return lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value, (int)strlen(value), p, end) == 0;
 }
 
-/* What comes in pieces has a length that nobody knows yet. */
+/* Adds the status line and the body's headers. An answer in pieces has no known length. */
 static bool add_first(struct http_exchange *request, int status, const char *type, unsigned char **p, unsigned char *end)
 {
     struct lws *wsi = request->wsi;
@@ -33,7 +33,7 @@ static bool add_first(struct http_exchange *request, int status, const char *typ
     return lws_add_http_common_headers(wsi, (unsigned)status, type, status == HTTP_STATUS_NOT_MODIFIED ? 0 : count, p, end) == 0;
 }
 
-/* A sandboxed document has an opaque origin, so that even its own script comes from another one. */
+/* Adds the security policies. A sandboxed document has an opaque origin, so even its own script counts as cross-origin. */
 static bool add_policies(struct http_exchange *request, const char *content_policy, unsigned char **p, unsigned char *end)
 {
     const char *resource_policy = request->sandboxed ? "cross-origin" : "same-origin";
@@ -44,7 +44,7 @@ static bool add_policies(struct http_exchange *request, const char *content_poli
     return added;
 }
 
-/* In ASCII: a header has no other letters. */
+/* Adds the refusal as a header, in ASCII because headers allow nothing else. */
 static bool add_refusal(const struct refusal *refusal, struct lws *wsi, unsigned char **p, unsigned char *end)
 {
     json_t *object = refusal_json(refusal);
@@ -99,7 +99,7 @@ void request_hold(struct http_exchange *request, char *body, size_t count)
     server->answer_bytes += (int64_t)count;
 }
 
-/* A large answer waits for whoever asked for it to read it, for as long as he takes. */
+/* Returns whether the answer fits into the quotas. A large answer occupies memory until the client has read it, however slowly. */
 static bool may_hold(const struct http_exchange *request, size_t count)
 {
     const struct server_context *server = server_context_of(request->wsi);
@@ -117,7 +117,7 @@ int request_done(struct http_exchange *request)
     return request->close || server_context_of(request->wsi)->goes_down || lws_http_transaction_completed(request->wsi) ? -1 : 0;
 }
 
-/* Takes body. The rest happens as the socket takes it. */
+/* Takes ownership of body. Later writes follow as the socket accepts them. */
 int request_answer(struct http_exchange *request, int status, const char *type, char *body, size_t count, const char *extra_name,
                    const char *extra)
 {
@@ -209,7 +209,7 @@ void request_await(struct server_context *server, struct http_exchange *request)
     request->next = server->snapshots;
     server->snapshots = request;
     request->usage = connection_of(request->wsi)->client;
-    int64_t wait_s = server->quotas->at[QUOTA_ANSWER_WAIT_S]; /* for a picture, readings of the past, a reload */
+    int64_t wait_s = server->quotas->at[QUOTA_ANSWER_WAIT_S]; /* maximum wait for a picture, past readings or a reload */
     request->until_ns = clock_mono_ns() + wait_s * NS_PER_S;
     lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, (int)wait_s + 15);
 }

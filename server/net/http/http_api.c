@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What /api/v1 and /metrics tell: plant, tags, alarms and what was recorded. */
+/* Handlers of /api/v1 and /metrics: plant, tags, alarms and recorded history. */
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -29,7 +29,7 @@ static int await_history(struct server_context *server, struct http_exchange *re
     return 0;
 }
 
-/* A paired device reads what its display draws as trends. */
+/* Returns whether the client may read this history. A paired device may read only what its display shows as trends. */
 static bool may_read(const struct server_context *server, const struct http_exchange *request, const struct history_query *query)
 {
     const struct token_holder *holder = &connection_of(request->wsi)->holder;
@@ -113,7 +113,7 @@ int ask_journal(struct server_context *server, struct http_exchange *request)
     return await_history(server, request, &query);
 }
 
-/* The first piece of several, or one that follows. */
+/* Sends the first piece of an answer in several pieces, or a later one. */
 static int take_piece(struct http_exchange *request, struct history_answer *piece, const char *type)
 {
     if (piece->first && chunked_begin(request, type) < 0)
@@ -142,13 +142,13 @@ void http_on_history_answer(struct server_context *server, struct history_answer
         return;
     }
     request_forget(server, request);
-    if (!answer->text) /* what was begun cannot be taken back, but it can be seen not to be whole */
+    if (!answer->text) /* an answer that has begun cannot be replaced by an error; closing the connection shows that it is incomplete */
         request_answered(request, answer->first ? request_answer_unreadable(server, request) : -1);
     else
         request_answered(request, whole ? answer_whole(request, answer, type) : chunked_begin(request, type));
 }
 
-/* Of the whole process, when somebody asks. */
+/* Updates the memory metrics of the whole process; only when /metrics is read. */
 static void count_memory(struct server_context *server)
 {
     struct counters *counters = server->params.counters;
@@ -174,7 +174,7 @@ int api_plant(struct server_context *server, struct http_exchange *request)
 
 enum { TAGS_PAGE = 1000, TAGS_PAGE_MAX = 5000 };
 
-/* `first` and `count` of the query. */
+/* Reads `first` and `count` of the query. */
 static bool read_page(const struct args *args, size_t *first, size_t *count)
 {
     static const char *const names[] = { "first=", "count=" };
@@ -201,7 +201,7 @@ int api_tags(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, reply_api_tags_text(&server->session_context, first, count));
 }
 
-/* What the others say of each sensor of a group; with tag=NAME of that one alone. */
+/* Compares each sensor of a group with the estimate from its neighbours; with tag=NAME only that sensor. */
 int api_neighbours(struct server_context *server, struct http_exchange *request)
 {
     const struct plant *plant = server->session_context.plant;
@@ -221,7 +221,7 @@ int api_neighbours(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, neighbour_text(&server->neighbour_texts, &server->session_context, group, tag));
 }
 
-/* All views; with the query id=ID also the earlier versions of that one. */
+/* Lists all named views; with id=ID also the earlier versions of that view. */
 int api_views(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
@@ -231,7 +231,7 @@ int api_views(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, reply_views_text(&server->session_context, args.count ? args.list[0] + 3 : NULL));
 }
 
-/* Those in force between `from` and `to`; by default in the last hour, and now. */
+/* Lists the notes in force between `from` and `to`; by default from an hour ago until now. */
 int api_notes(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
@@ -264,7 +264,8 @@ int api_walls(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, walls_text(server->params.plant.scene->plant, &reader));
 }
 
-/* A renderer's core draws the digits, and tells them with what else is kept: it is asked each time, so that they stay good. */
+/* Forwards a pairing request to the core, which chooses the digits and sends them to its renderers. The core is asked every time,
+   because the digits expire unless the request is repeated. */
 static enum pairing ask_core(struct server_context *server, const struct pairing_request *asked, char digits[PAIRING_DIGITS + 1],
                              int *left_s)
 {
@@ -276,7 +277,7 @@ static enum pairing ask_core(struct server_context *server, const struct pairing
     return now;
 }
 
-/* A display that has a secret of its own asks whether it was let in; it shows the digits meanwhile. */
+/* Answers an unpaired display that asks, with a secret of its own, whether it was accepted. The display shows the digits meanwhile. */
 static int pair(struct server_context *server, struct http_exchange *request, const struct pairing_request *asked)
 {
     char digits[PAIRING_DIGITS + 1];

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers whose body comes in pieces: the next is made when the one before was read, so that a slow reader costs one of them. */
+/* Answers whose body is sent in pieces. The next piece is made once the previous one was sent, so that a slow reader occupies memory for
+   one piece only. */
 #include <stdio.h>
 #include <string.h>
 
 #include "net/http/http_impl.h"
 
 static const char END[] = "0\r\n\r\n";
-enum { ROOM_BYTES = 16, PATIENCE_S = 20, MAKING_S = 60 }; /* around a chunk; for a write, and for the next piece */
+/* bytes reserved before and after a chunk; seconds for one write; seconds to make the next piece */
+enum { CHUNK_FRAMING_BYTES = 16, WRITE_TIMEOUT_S = 20, NEXT_PIECE_TIMEOUT_S = 60 };
 
-/* HTTP/1.0 has no chunks: the connection's end is the body's. */
+/* HTTP/1.0 has no chunks: there the end of the connection ends the body. */
 int chunked_begin(struct http_exchange *request, const char *type)
 {
     char version[16] = "";
@@ -25,7 +27,7 @@ void chunked_append(struct http_exchange *request, char *body, size_t count, boo
 {
     request_hold(request, body, count);
     request->last_piece = last;
-    lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, PATIENCE_S);
+    lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, WRITE_TIMEOUT_S);
     lws_callback_on_writable(request->wsi);
 }
 
@@ -35,7 +37,7 @@ static bool write_chunk(struct server_context *server, struct http_exchange *req
     size_t n = 0;
     bool chunked = request->pieces == PIECES_CHUNKED;
     if (chunked && count > 0)
-        n = (size_t)snprintf(out, ROOM_BYTES, "%zx\r\n", count);
+        n = (size_t)snprintf(out, CHUNK_FRAMING_BYTES, "%zx\r\n", count);
     memcpy(out + n, request->body + request->sent, count);
     n += count;
     if (chunked && count > 0) {
@@ -51,13 +53,13 @@ static bool write_chunk(struct server_context *server, struct http_exchange *req
 
 int chunked_write(struct server_context *server, struct http_exchange *request)
 {
-    size_t left = request->count - request->sent, most = SLICE_BYTES - 2 * ROOM_BYTES, slice = left < most ? left : most;
+    size_t left = request->count - request->sent, most = SLICE_BYTES - 2 * CHUNK_FRAMING_BYTES, slice = left < most ? left : most;
     if (!request->body)
         return 0;
     if (!write_chunk(server, request, slice, slice == left && request->last_piece))
         return -1;
     request->sent += slice;
-    lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, slice < left ? PATIENCE_S : MAKING_S);
+    lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, slice < left ? WRITE_TIMEOUT_S : NEXT_PIECE_TIMEOUT_S);
     if (slice < left) {
         lws_callback_on_writable(request->wsi);
     } else if (request->last_piece) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Engineers bring a plant in: exports are uploaded, orders given, and matches read. Bodies go to the disk as they come: this one mode lets
-   the loop write files, piece by piece, and not wait until they are on the disk. */
+/* Import of a plant by engineers: uploads of exported files, import orders, and reading matches. In this mode the event loop writes
+   uploads to files, piece by piece, without waiting for the disk. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,13 +18,13 @@ static const char BUSY[] = "another import is under way; wait for its end, or ca
 
 struct upload_body {
     struct export_upload *upload;
-    int64_t left, bytes; /* bytes still to come; size of the whole file */
+    int64_t left, bytes; /* left: bytes still to come; bytes: size of the whole file */
     int64_t begun_ns;
     char name[256];
-    bool decides; /* its end is an order */
+    bool decides; /* the upload is a file of decisions; its end starts an import */
 };
 
-/* In the audit trail. The order itself is told of by the reload thread, at its end. */
+/* Adds an import step to the audit trail. The result of an import order is recorded by the reload thread. */
 static void record_file(struct http_exchange *request, const char *file, const char *result, const char *why)
 {
     char *line = why ? mem_printf("%.*s", (int)strcspn(why, "\n"), why) : NULL;
@@ -59,14 +59,14 @@ static int answer_empty(struct http_exchange *request)
     return request_answer(request, HTTP_STATUS_OK, "application/json", mem_strdup("{}"), 2, NULL, NULL);
 }
 
-/* file: of which it is done; "": of none. */
+/* Records the step as done and answers. file: the file that the step concerned; "": none. */
 static int answer_done(struct http_exchange *request, const char *file)
 {
     record_file(request, file, "done", NULL);
     return answer_empty(request);
 }
 
-/* --- what is told ----------------------------------------------------------------------------------------------------- */
+/* --- state of the import ---------------------------------------------------------------------------------------------- */
 
 int api_import(struct server_context *server, struct http_exchange *request)
 {
@@ -76,7 +76,7 @@ int api_import(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, plant_import_text(server->params.import, &source));
 }
 
-/* path NULL: there is no import. missing: the answer while there is no such file. */
+/* Answers with a file. path NULL: there is no import. missing: the answer while the file does not exist. */
 static int answer_file(struct http_exchange *request, const char *path, const char *type, const char *missing)
 {
     size_t bytes;
@@ -98,7 +98,7 @@ int api_import_report(struct server_context *server, struct http_exchange *reque
     return answer_file(request, import ? plant_import_report(import) : NULL, "application/json", "no models were read yet\n");
 }
 
-/* --- orders ----------------------------------------------------------------------------------------------------------- */
+/* --- import orders ---------------------------------------------------------------------------------------------------- */
 
 static int order(struct server_context *server, struct http_exchange *request, const struct import_order *order)
 {
@@ -108,7 +108,7 @@ static int order(struct server_context *server, struct http_exchange *request, c
     return answer_empty(request);
 }
 
-/* Copies NAME=value of the query; "" where it is not there. Returns false when it is too long. */
+/* Copies the value of NAME=value from the query; "" if the name is missing. Returns false if the value is too long. */
 static bool take_argument(const struct args *args, const char *name, char *out, size_t size)
 {
     size_t length = strlen(name);
@@ -123,7 +123,7 @@ static bool take_argument(const struct args *args, const char *name, char *out, 
     return true;
 }
 
-/* what=tags: the models stay as they are; anew: nothing of the plant before stays. */
+/* Orders an import. what=tags: keeps the models; what=anew: keeps nothing of the previous plant. */
 static int order_all(struct server_context *server, struct http_exchange *request, const struct args *args)
 {
     struct import_order wanted = { 0 };
@@ -140,7 +140,7 @@ static int order_all(struct server_context *server, struct http_exchange *reques
     return order(server, request, &wanted);
 }
 
-/* Tags are read from there. */
+/* Orders an import that reads the tags from a data source. */
 static int order_source(struct server_context *server, struct http_exchange *request, const struct args *args)
 {
     struct import_order wanted = { 0 };
@@ -174,7 +174,7 @@ static int remove_file(struct server_context *server, struct http_exchange *requ
 
 /* --- uploads ---------------------------------------------------------------------------------------------------------- */
 
-/* Whether as much may be added; *text says why not. */
+/* Returns whether `bytes` more may be uploaded; if not, *text says why. */
 static bool has_room(const struct server_context *server, const char *folder, const char *name, int64_t bytes, const char **text)
 {
     struct export_list list = { 0 };
@@ -232,7 +232,8 @@ static int begin_decisions(struct server_context *server, struct http_exchange *
     return begin_body(server, request, plant_import_decisions(), true);
 }
 
-/* Returns whether an upload is slower than any real link, so that it would hold its place for ever. lws closes one that stalls. */
+/* Returns whether an upload is slower than any real link and would occupy its slot for ever. libwebsockets itself closes one that stalls
+   completely. */
 static bool drips(const struct upload_body *body)
 {
     int64_t taken_s = (clock_mono_ns() - body->begun_ns) / NS_PER_S;
@@ -244,7 +245,7 @@ int import_take_body(struct server_context *server, struct http_exchange *reques
     (void)server;
     struct upload_body *body = request->body_in;
     if (!body)
-        return 0; /* it was refused */
+        return 0; /* the upload was refused */
     body->left -= (int64_t)count;
     int error = body->left < 0 ? -EFBIG : export_upload_write(body->upload, bytes, count);
     bool slow = drips(body);
@@ -294,12 +295,12 @@ void import_abandon_body(struct http_exchange *request)
     request->body_in = NULL;
 }
 
-/* --- which request it is ---------------------------------------------------------------------------------------------- */
+/* --- routes of POST requests ------------------------------------------------------------------------------------------ */
 
 static const struct {
     const char *path;
     int (*take)(struct server_context *server, struct http_exchange *request, const struct args *args);
-    bool always; /* also while an order is carried out */
+    bool always; /* allowed also while an import runs */
 } posts[] = {
     { "/api/v1/import/upload", begin_upload, false }, { "/api/v1/import/remove", remove_file, false },
     { "/api/v1/import/run", order_all, false },       { "/api/v1/import/decide", begin_decisions, false },

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The readings of an instant, for renderers: they keep no history of their own. */
+/* Sends the readings of an instant to renderers, which keep no history of their own. */
 #include <stdlib.h>
 
 #include "corelink/core_instant.h"
@@ -15,7 +15,7 @@ static int answer(struct server_context *server, struct http_exchange *request, 
     return request_answer(request, HTTP_STATUS_OK, BINARY, text.at, text.length, NULL, NULL);
 }
 
-/* at_us=0: only where history begins. */
+/* Answers with the readings of at_us; at_us=0: only with the beginning of recorded history. */
 int ask_instant(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What displays ask of other plants: how it is with each, and its picture. */
+/* Answers displays that show other plants: each one's state and picture. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "net/http/http_impl.h"
 #include "views/other_plants.h"
 
-/* An index, or -1. A paired device asks for what its display shows. */
+/* Returns the index of another plant, or -1. A paired device may only ask for plants that its display shows. */
 static int find(const struct server_context *server, const struct http_exchange *request, const char *id)
 {
     const struct plant *plant = server->params.plant.scene->plant;

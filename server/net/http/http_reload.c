@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant loaded anew, asked over HTTP. */
+/* Plant reload over HTTP. */
 #include <string.h>
 
 #include "base/mem.h"
@@ -16,7 +16,7 @@ bool request_may_change(struct server_context *server, struct http_exchange *req
 
 int ask_reload(struct server_context *server, struct http_exchange *request)
 {
-    request->close = true; /* there may be a body that nobody reads */
+    request->close = true; /* the client may send a body that nobody will read */
     if (!request_may_change(server, request))
         return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "pages of other sites may not do this\n");
     if (!server->params.reload)
@@ -35,7 +35,8 @@ static void answer_all(struct server_context *server, bool reloads, int status, 
             continue;
         request_forget(server, request);
         request->reloads = false;
-        bool begun = request->pieces != PIECES_NONE; /* the rest of it will not come: whoever reads it sees that it is not whole */
+        /* the rest of an answer in pieces will not come; closing the connection shows that it is incomplete */
+        bool begun = request->pieces != PIECES_NONE;
         request_answered(request, begun ? -1 : request_answer(request, status, type, mem_strdup(text), strlen(text), NULL, NULL));
     }
 }

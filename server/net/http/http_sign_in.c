@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signing in and out by OpenID Connect, and who one is. */
+/* Signing in and out with OpenID Connect, and the answer of /api/v1/me. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -10,15 +10,15 @@
 #include "net/connection.h"
 #include "net/http/http_impl.h"
 
-enum { COOKIE_S = 600 }; /* as long as a log-in waits */
+enum { COOKIE_S = 600 }; /* seconds that a log-in waits for the identity provider's answer */
 
 static int answer_redirect(struct http_exchange *request, const char *to)
 {
     return request_answer(request, HTTP_STATUS_SEE_OTHER, HTTP_TEXT, NULL, 0, "location:", to);
 }
 
-/* ending: "" for the session, "-b" for the browser that begins a log-in, whose cookie comes back with the provider's redirection and so is
-   not strict. seconds 0: it is removed. */
+/* Sets a cookie. ending: "" for the session; "-b" for the browser that begins a log-in: the provider's redirect must send that cookie
+   back, so it is not SameSite=Strict. seconds 0: removes the cookie. */
 static void set_cookie(const struct openid_config *config, struct http_exchange *request, const char *ending, const char *value,
                        int seconds)
 {
@@ -51,8 +51,8 @@ int ask_login(struct server_context *server, struct http_exchange *request)
     return result;
 }
 
-/* An answer that nobody waits for can be no guess at a secret of 256 bits, and another site's page can have a browser send it: it is
-   counted, and neither recorded nor held against the address. */
+/* Refuses a provider's answer for which no log-in waits. It cannot be a guess at a secret of 256 bits, and another site's page can make
+   a browser send it, so it is counted but neither recorded nor held against the address. */
 static int refuse_unasked(struct server_context *server, struct http_exchange *request, enum openid_finish why)
 {
     server->unasked++;
@@ -99,7 +99,7 @@ int ask_login_callback(struct server_context *server, struct http_exchange *requ
     return refuse_unasked(server, request, result);
 }
 
-/* Whether or not somebody still waits for the answer. */
+/* Counts failed log-ins, whether or not the browser still waits for the answer. */
 static void count_refused(struct server_context *server, const struct openid_answer *answer)
 {
     if (answer->result == OPENID_AWAY)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames and picks over HTTP, of now or of an instant. */
+/* Frames and picks over HTTP, of the present or of an instant. */
 #include <stdio.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@
 #include "net/connection.h"
 
 enum { NAME_BYTES = 256 };
-enum { LEGEND_LEAST_PX = 256 }; /* a narrower picture has no room for what would be read from it */
+enum { LEGEND_LEAST_PX = 256 }; /* a narrower picture has no room for a legible legend */
 
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
 
@@ -25,7 +25,7 @@ static struct params_context context_of(const struct server_context *server)
                                     .now_us = clock_plant_ns() / 1000 };
 }
 
-/* Whether that view of the plant file may be seen by whoever asks. */
+/* Finds a view of the plant file and checks that the token allows it. Returns NULL with *error. */
 static const struct named_view *find_view(const struct server_context *server, const struct token_holder *holder, const char *id,
                                           struct message_error *error)
 {
@@ -39,7 +39,7 @@ static const struct named_view *find_view(const struct server_context *server, c
     return named;
 }
 
-/* A view of the plant file, whose author may say all that there is to say, at a size and in a language. */
+/* Reads the address of a view of the plant file, with the author's rights; the client may set size and language. */
 static bool expand(const struct named_view *named, const struct args *args, struct view_address *out, struct message_error *error)
 {
     static const char *const mine[] = { "width", "height", "language" };
@@ -60,7 +60,8 @@ static bool expand(const struct named_view *named, const struct args *args, stru
     return good;
 }
 
-/* What the picture is drawn from goes to `address`, for view_address_finish, where a view is named; else it is args. */
+/* Reads the requested picture into *view. If a view is named, *address receives its full parameters, for view_address_finish();
+   otherwise they are in *args. */
 static bool read_picture(struct server_context *server, struct lws *wsi, struct args *args, struct view_address *address, struct view *view,
                          struct message_error *error)
 {
@@ -101,7 +102,7 @@ static struct view *asked_view(struct asked *asked)
     return asked->picks ? &asked->pick.view : &asked->frame_request.view;
 }
 
-/* Of now at once; of an instant when it was read. */
+/* Requests the frame or pick: at once for the present, and for an instant after its readings were loaded. */
 static void begin(struct server_context *server, struct http_exchange *request)
 {
     struct asked *asked = request->asked;
@@ -115,7 +116,7 @@ static void begin(struct server_context *server, struct http_exchange *request)
     }
 }
 
-/* Whether it may be, before it waits; if not, *result is what came of the answer. */
+/* Returns whether the request may wait for its picture. If not, it was answered, with *result as the callback's result. */
 static bool may_ask(struct server_context *server, struct http_exchange *request, const struct view *view, int *result)
 {
     if (view->at_us && !server->history_loader) {
@@ -179,7 +180,7 @@ int ask_snapshot(struct server_context *server, struct http_exchange *request)
     return result;
 }
 
-/* What the header says of the values that take part, for programs that show the picture on. */
+/* Writes the header on the age of the shown values, for programs that process the picture. */
 static void say_values(const struct frame *frame, struct text *out)
 {
     text_add(out, "data_time_us=%lld, oldest_age_ms=", (long long)(frame->data_utc_ns / 1000));
@@ -191,7 +192,7 @@ static void say_values(const struct frame *frame, struct text *out)
         text_add(out, ", drawn_error=%g", frame->drawn_error);
 }
 
-/* For who may know it; a name that is longer than this is nobody's title. */
+/* Adds the plant's name, for clients that may know it; a name longer than NAME_BYTES is left out. */
 static void say_plant(const struct server_context *server, const struct http_exchange *request, struct text *out)
 {
     const char *name = server->params.plant.scene->plant->name;
@@ -201,7 +202,7 @@ static void say_plant(const struct server_context *server, const struct http_exc
     text_add_escaped(out, name);
 }
 
-/* packet: NULL: it cannot be made. */
+/* packet NULL: the picture could not be made. */
 static void answer_picture(struct server_context *server, struct http_exchange *request, const struct packet *packet)
 {
     char *body = packet ? memcpy(mem_array(packet->count, 1), packet->bytes, packet->count) : NULL;
@@ -218,7 +219,7 @@ static void answer_picture(struct server_context *server, struct http_exchange *
     text_finish(&values);
 }
 
-/* Where there is a key and the picture has a legend. Takes the frame. */
+/* Signs the picture if there is a key and the picture has a legend. Takes ownership of the frame. */
 static void sign(struct server_context *server, const struct asked *asked, struct encoded_frame *encoded)
 {
     const struct picture_origin origin = { .scene = server->params.plant.scene,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The files of the web client. */
+/* Loads the web client's files into memory and finds them by path. */
 #include "net/http/site.h"
 
 #include <ctype.h>
@@ -34,7 +34,7 @@ static const struct {
     { ".txt", "text/plain; charset=utf-8" },
 };
 
-/* Only what we know is served. */
+/* Returns the MIME type of a path; NULL for unknown types, which are not served. */
 static const char *type_of(const char *path)
 {
     const char *dot = strrchr(path, '.');
@@ -44,7 +44,7 @@ static const char *type_of(const char *path)
     return NULL;
 }
 
-/* Letters, digits, '-', '_' and '.', no part that starts with a dot: so no "..", no hidden file. */
+/* Returns whether a path has only letters, digits, '-', '_' and '.', and no part that starts with a dot: no "..", no hidden file. */
 static bool path_harmless(const char *path)
 {
     for (const char *at = path; *at; at++)
@@ -53,7 +53,7 @@ static bool path_harmless(const char *path)
     return path[0] == '/';
 }
 
-/* Links may not lead out of the folder either. */
+/* Returns whether the file is inside the folder after resolving symlinks. */
 static bool inside(const char *folder, const char *path)
 {
     char *real_folder = realpath(folder, NULL), *real_path = realpath(path, NULL);
@@ -70,8 +70,8 @@ static bool is_own_script(const char *path)
     return dot && !strcmp(dot, ".js") && strncmp(path, "/vendor/", 8) != 0;
 }
 
-/* Empties lines that only comment, a tenth of what a page loads, but for the first, which is the licence. Line numbers stay those of
-   the source. Returns what is left of count. */
+/* Empties lines that hold only a comment (a tenth of what a page loads), except the first, which is the licence. Line numbers stay those
+   of the source. Returns the bytes left of `count`. */
 static size_t drop_comments(char *bytes, size_t count)
 {
     size_t out = 0;
@@ -91,7 +91,7 @@ static size_t drop_comments(char *bytes, size_t count)
 
 struct web_site {
     char *folder;
-    struct site_file *files; /* by path, ascending */
+    struct site_file *files; /* sorted by path, ascending */
     size_t count, capacity;
 };
 
@@ -113,7 +113,7 @@ static void add_file(struct web_site *site, struct log *log, const char *full, c
     site->files[site->count++] = file;
 }
 
-/* path: of the folder in the site, without a slash at its end. */
+/* path: of the folder within the site, without a trailing slash. */
 static void add_folder(struct web_site *site, struct log *log, const char *path)
 {
     char *full = mem_printf("%s%s", site->folder, path);

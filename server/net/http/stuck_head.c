@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The kernel tells how many bytes a connection received, and when the last. */
+/* Uses the kernel's TCP_INFO: how many bytes a connection received, and when the last one. */
 #include "net/http/stuck_head.h"
 
 #include <linux/tcp.h>
@@ -12,7 +12,8 @@
 #include "base/clock.h"
 #include "net/connection.h"
 
-enum { LOOK_US = 500000, QUIET_MS = 2000 }; /* a lost packet is sent again after 1 s at most, unless that is lost as well */
+/* QUIET_MS: a lost packet is retransmitted within 1 s, unless the retransmission is lost as well */
+enum { LOOK_US = 500000, QUIET_MS = 2000 };
 static const uint64_t NOT_WATCHED = UINT64_MAX;
 
 static bool tcp_info_of(struct lws *wsi, struct tcp_info *info)
@@ -29,13 +30,13 @@ void stuck_head_await(struct lws *wsi, bool first)
     lws_set_timer_usecs(wsi, LOOK_US);
 }
 
-/* The timer goes off once more and is not set again: libwebsockets 4.1 cannot cancel it, -1 lets it go off at once. */
+/* Stops the watch. The timer fires once more and is not set again: libwebsockets 4.1 cannot cancel it, and -1 makes it fire at once. */
 void stuck_head_arrived(struct lws *wsi)
 {
     connection_of(wsi)->received_before_head = NOT_WATCHED;
 }
 
-/* As far as the socket takes it at once. */
+/* Writes the answer 408, as far as the socket accepts it at once. */
 static void tell(struct lws *wsi)
 {
     static const char body[] = "408 Request Timeout: the head of the request did not end. Is the name of a header cut off?\n";
@@ -61,7 +62,8 @@ static void note(struct server_context *server, struct lws *wsi)
     log_warn(server->params.log, "http: a request from %s ended: its head did not end within %d s (408)%s", address, QUIET_MS / 1000, more);
 }
 
-/* Over TLS bytes of the handshake count as received, too: only a request line tells that a request has begun. */
+/* Returns whether a request line was read. Over TLS the bytes of the handshake count as received, too, so received bytes alone do not
+   show that a request has begun. */
 static bool has_request_line(struct lws *wsi)
 {
     return lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0 || lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0 ||

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ends connections whose request has begun and does not go on. The parser of libwebsockets never ends a head in which the name of a header
-   is the beginning of a known one, such as `Acc:`: it waits for the rest of the name. Thread: the loop. */
+/* Ends connections whose request has begun and does not go on. The parser of libwebsockets never ends a request head in which a header's
+   name is the beginning of a known one, such as `Acc:`: it waits for the rest of the name. Thread: the event loop. */
 #ifndef HTTP_STUCK_HEAD_H
 #define HTTP_STUCK_HEAD_H
 #include "net/server_context.h"
 
-/* Starts to watch for the next request's head: when a connection opens, and when a request is done. The bytes of a connection's first
-   request may have arrived before it was accepted. */
+/* Starts to watch for the next request's head: when a connection opens, and when a request is done. first: the bytes of a connection's
+   first request may have arrived before it was accepted. */
 void stuck_head_await(struct lws *wsi, bool first);
-/* Ends the watch: the head is here. */
+/* Ends the watch, because the request's head is complete. */
 void stuck_head_arrived(struct lws *wsi);
-/* For LWS_CALLBACK_TIMER. Returns 0; or -1 if the connection is to be closed: bytes arrived, then none for 2 s. It was told so (408). */
+/* Handles LWS_CALLBACK_TIMER. Returns 0; or -1 if the connection must be closed because bytes arrived, then none for 2 s; the client was
+   sent 408. */
 int stuck_head_look(struct server_context *server, struct lws *wsi);
 
 #endif
