@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Line after line. An element is looked for below the node of the element around it, then anywhere by its name. */
+/* Parses attribute files line by line. An element is matched to a node below the node of its enclosing element, or else to any node of that
+ * name. */
 #include "preprocess/import/cad_attributes.h"
 
 #include <stdio.h>
@@ -11,7 +12,7 @@
 
 enum { MAX_DEPTH = 1000 };
 
-struct node_key { /* nodes sorted by parent and name, and once more by name alone */
+struct node_key { /* key of the two node indexes: sorted by parent and name, and by name alone */
     const char *name;
     int parent, node;
 };
@@ -66,7 +67,7 @@ static char *trim(char *text)
     return text;
 }
 
-/* "key:= value" once or several times, with a separator between. */
+/* Parses one or several "key:= value" entries, separated by `separator`, and adds them to the node. */
 static void take_line(struct cad_model *model, int node, char *line, const char *separator, struct attribute_counts *counts)
 {
     for (char *next; line; line = next) {
@@ -88,7 +89,7 @@ static void take_line(struct cad_model *model, int node, char *line, const char 
     }
 }
 
-/* The header line ends in ", sep: &end&". */
+/* Reads the separator of entries from the header line, which ends in ", sep: &end&". */
 static void take_separator(const char *line, char *separator, size_t separator_bytes)
 {
     const char *at = strstr(line, "sep:");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One node after the other, each about its own place. */
+/* Writes one glTF node after the other, its positions relative to its own origin. */
 #include "preprocess/import/cad_glb.h"
 
 #include <jansson.h>
@@ -11,15 +11,15 @@
 #include "base/mem.h"
 #include "preprocess/glb/glb_file.h"
 
-enum { LINES = 1, TRIANGLES = 4 }; /* as glTF numbers them */
+enum { LINES = 1, TRIANGLES = 4 }; /* primitive modes of glTF */
 
 struct cad_writer {
     const struct cad_model *model;
     json_t *materials, *meshes, *nodes;
     struct glb_file file;
-    double (*origins)[3]; /* of each node, in the plant's frame */
-    int *material_of;     /* by the model's colours */
-    int plain, line;      /* materials; -1: not made yet */
+    double (*origins)[3]; /* origin of each node in the plant's frame */
+    int *material_of;     /* index of the glTF material of each model colour */
+    int plain, line;      /* indices of the default materials for faces and lines; -1: not created yet */
 };
 
 static int add_material(struct cad_writer *w, const double rgb[3])
@@ -81,7 +81,7 @@ static json_t *lines_of(struct cad_writer *w, const struct cad_node *node, const
     return json_pack("{s:{s:i},s:i,s:i}", "attributes", "POSITION", position, "mode", LINES, "material", w->line);
 }
 
-/* The middle of what the node shows, to the millimetre; that of its parent where it shows nothing. */
+/* Computes a node's origin: the centre of its geometry rounded to a millimetre, or its parent's origin if it has no geometry. */
 static void find_origin(const struct cad_writer *w, const struct cad_node *node, double out[3])
 {
     static const double zero[3];
@@ -139,7 +139,7 @@ static int save(struct cad_writer *w, const char *path)
 {
     json_t *root = json_pack("{s:{s:s,s:s},s:i,s:[{s:[i]}],s:O}", "asset", "version", "2.0", "generator", "plantcast-import", "scene", 0,
                              "scenes", "nodes", 0, "nodes", w->nodes);
-    if (json_array_size(w->meshes) > 0) { /* glTF allows no empty lists */
+    if (json_array_size(w->meshes) > 0) { /* glTF forbids empty arrays */
         json_object_set(root, "meshes", w->meshes);
         json_object_set(root, "materials", w->materials);
     }

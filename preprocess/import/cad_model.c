@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Arrays that grow, and their end. */
+/* Creates, fills and frees CAD models. */
 #include "preprocess/import/cad_model.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast import`: converts models in a work folder, and moves those that could be read to the plant's folder. */
+/* `plantcast import`: converts models in a work folder and moves the ones that were converted to the plant's folder. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,19 +21,19 @@
 #include "preprocess/child/work_folder.h"
 #include "preprocess/match/file_set.h"
 
-enum { RVM_ITEM_LEVEL = 3 }; /* the file, its sites, their zones, and what is in them */
+enum { RVM_ITEM_LEVEL = 3 }; /* level of equipment in an RVM tree: file, sites, zones, equipment */
 
 struct import_command {
     const char *folder, *name;
-    const char *report; /* file for findings; NULL: none */
+    const char *report; /* path of the JSON file for findings; NULL: none */
     bool undo, force, dry_run;
-    int lent; /* plant_folder.h */
+    int lent; /* descriptor of a folder lock held by the parent process (plant_folder.h); 0: none */
     struct conversion_params conversion;
     struct work_folder work;
     char **paths;
-    json_t *findings; /* of each model that was read (findings.h) */
+    json_t *findings; /* findings of each model that was read (findings.h) */
     struct plant_draft_model *models;
-    int count, unread; /* unread: models that failed; the arrays hold only the others */
+    int count, unread; /* count: models to convert, later models converted (the length of `models`); unread: models that failed */
     bool anew, interrupted;
 };
 enum { EXIT_PARTLY = 3 };
@@ -78,7 +78,8 @@ static void print_lines(const char *path, const char *lines)
     }
 }
 
-/* Returns false with the reason in why, and then there is no outline. A model without triangles would give a plant without assets. */
+/* Reads the outline of a converted model. Returns false with the reason in why; then there is no outline to free. Rejects a model without
+ * triangles, which would give a plant without assets. */
 static bool read_outline(struct model_outline *outline, const char *glb, char why[CONVERSION_WHY_BYTES])
 {
     if (!model_outline_read(outline, glb, why, CONVERSION_WHY_BYTES))
@@ -90,7 +91,7 @@ static bool read_outline(struct model_outline *outline, const char *glb, char wh
     return false;
 }
 
-/* Reads one model into the next place of the arrays. */
+/* Converts one model. On success appends it to import->models. */
 static void convert(struct import_command *import, const char *path)
 {
     int number = import->count;
@@ -131,7 +132,7 @@ static void convert(struct import_command *import, const char *path)
     mem_free(glb);
 }
 
-enum found_plant { NO_PLANT, BEGUN_PLANT /* by --serve, without models */, WHOLE_PLANT };
+enum found_plant { NO_PLANT, BEGUN_PLANT /* created by --serve, has no models */, WHOLE_PLANT };
 
 static enum found_plant find_plant(const struct import_command *import)
 {
@@ -141,7 +142,8 @@ static enum found_plant find_plant(const struct import_command *import)
     return found;
 }
 
-/* A model that fails leaves the plant's own copy as it was. With --anew, the plant would lose the model's assets. */
+/* Converts all models. If one fails, the plant keeps its current copy of that model. With --anew one failure fails the import, since the
+ * plant would lose the model's assets. */
 static int convert_all(struct import_command *import)
 {
     int count = import->count;
@@ -160,7 +162,7 @@ static int convert_all(struct import_command *import)
     return 0;
 }
 
-/* The report is not needed by the plant: the import goes on without it. */
+/* Writes the report of findings. A failure does not fail the import, because the plant does not need the report. */
 static void write_report(const struct import_command *import)
 {
     char *text = json_text(json_pack("{s:O}", "models", import->findings), 0);
@@ -214,7 +216,8 @@ static int run(struct import_command *import)
         &(struct plant_folder_params){ .folder = import->folder, .own = import->work.path, .lent = import->lent }, &why);
     if (lock < 0)
         status = fail_at(import->folder, why);
-    else if (mkdir(import->work.path, 0700) != 0 && errno != EEXIST) /* who had the folder until now may have taken it for left over */
+    /* the previous holder of the folder lock may have removed our work folder as left over */
+    else if (mkdir(import->work.path, 0700) != 0 && errno != EEXIST)
         status = fail_at(import->work.path, strerror(errno));
     mem_free(why);
     import->findings = json_array();
@@ -236,7 +239,7 @@ static int run(struct import_command *import)
     return status == 0 && import->unread > 0 ? EXIT_PARTLY : status;
 }
 
-/* Their GLB files would have one name. */
+/* Returns whether two models have the same stem, so that their GLB files would have the same name. */
 static bool two_alike(char **paths, int count)
 {
     bool alike = false;

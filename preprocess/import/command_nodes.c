@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast nodes`: what is in a model, before it is imported or after. */
+/* `plantcast nodes`: lists the nodes of a model, before or after its import. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,7 +27,7 @@ static void print_usage(FILE *out)
     fputs("Exit status: 0 good, 1 the model could not be read, 2 usage, 3 no node was found.\n", out);
 }
 
-/* glTF is read as it is; of all else the GLB file that import would make. */
+/* Reads the outline of a model. glTF is read directly; other formats are first converted to GLB, as import does. */
 static bool read_model(const char *path, const struct conversion_params *params, struct model_outline *outline)
 {
     const struct import_format *format = import_format_of(path);

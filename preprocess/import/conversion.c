@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every reader is a confined child: our own readers of RVM and glTF as a forked copy of this program, the rest as other programs. Another
- * child checks the GLB file that a reader wrote. */
+/* Runs every reader in a confined child process: the built-in RVM and glTF readers in a fork of this program, other readers as external
+ * programs. A second child checks the GLB file that a reader wrote. */
 #include "preprocess/import/conversion.h"
 
 #include <errno.h>
@@ -26,10 +26,10 @@
 #include "preprocess/import/unpack.h"
 #include "preprocess/model/gltf_shim.h"
 
-enum { MOST_NAMED = 20 };
+enum { MAX_NAMED = 20 };
 static const size_t max_bytes = (size_t)4 << 30;
 
-/* Returns false, so that callers can return it. */
+/* Formats the error message into why. Always returns false. */
 static bool fail(char why[CONVERSION_WHY_BYTES], const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 static bool fail(char why[CONVERSION_WHY_BYTES], const char *fmt, ...)
 {
@@ -42,7 +42,7 @@ static bool fail(char why[CONVERSION_WHY_BYTES], const char *fmt, ...)
 
 /* --- RVM ---------------------------------------------------------------------------------------------------------------------------- */
 
-/* Looks beside the model for its attributes. Returns their path, or NULL; the caller frees it. */
+/* Finds the attribute file of an RVM model in the model's folder. Returns its path, which the caller frees, or NULL. */
 static char *attributes_beside(const char *path)
 {
     static const char *const endings[] = { ".att", ".ATT", ".txt", ".TXT" };
@@ -128,14 +128,14 @@ static bool convert_rvm(const char *path, const char *attributes, const char *gl
 
 struct model_reading {
     const struct import_format *format;
-    const char *path, *attributes; /* attributes: of RVM; NULL: none */
-    const char *output;            /* the GLB file that the reader writes */
+    const char *path, *attributes; /* attributes: path of an RVM attribute file; NULL: none */
+    const char *output;            /* path of the GLB file that the reader writes */
     const char *folder;
     const struct conversion_params *params;
-    char *encoding; /* of find_encoding(): where the name goes, in memory shared with the child; "": none is needed */
+    char *encoding; /* output buffer of find_encoding() in memory shared with the child; "" after it: no conversion is needed */
 };
 
-/* In the child. Returns its exit status. */
+/* Runs a built-in reader, in the child process. Returns the child's exit status. */
 static int read_ourselves(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -150,7 +150,7 @@ static int read_ourselves(void *arg)
     return good ? 0 : 1;
 }
 
-/* Prints the nodes of a glTF model whose mesh has no triangles, as findings.h says. */
+/* Prints a findings.h line about the nodes of a glTF model whose mesh has no triangles. */
 static void say_empty_nodes(const struct gltf_model *model)
 {
     struct text names = { 0 };
@@ -162,15 +162,16 @@ static void say_empty_nodes(const struct gltf_model *model)
             continue;
         if (mesh->skipped_lines + mesh->skipped_points == 0)
             printf("lost\t#%u\t%s\tnode\t\tits mesh has no triangles\n", node->number, node->name);
-        else if (count++ < MOST_NAMED)
+        else if (count++ < MAX_NAMED)
             text_add(&names, "%s%s", count > 1 ? ", " : "", *node->name ? node->name : "a node without a name");
     }
     if (count > 0)
-        printf("not shown: %zu nodes that are only lines or points: %s%s\n", count, names.at, count > MOST_NAMED ? ", ..." : "");
+        printf("not shown: %zu nodes that are only lines or points: %s%s\n", count, names.at, count > MAX_NAMED ? ", ..." : "");
     text_finish(&names);
 }
 
-/* In a child of its own, because the reader may be in a stranger's hands. plantcast-prep would refuse the same models. */
+/* Checks the GLB file that a reader wrote, in a second child process because the file may come from a compromised reader. Rejects what
+ * plantcast-prep would reject. */
 static int check(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -208,7 +209,7 @@ static bool run(const struct model_reading *reading, struct child_params *child,
     return good;
 }
 
-/* In the child: unpacks the model to the path that its reader is given next. */
+/* Unpacks the model, in the child process, to the path that its reader is given next. */
 static int unpack_model(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -219,7 +220,8 @@ static int unpack_model(void *arg)
     return good ? 0 : 1;
 }
 
-/* Returns the path of the unpacked model in the reading's folder, to be freed with mem_free; NULL with the reason in why. */
+/* Unpacks a compressed model into the reading's folder. Returns the path, which the caller frees with mem_free, or NULL with the reason in
+ * why. */
 static char *unpacked(const struct model_reading *packed, char why[CONVERSION_WHY_BYTES])
 {
     struct child_paths paths = { 0 };
@@ -238,7 +240,7 @@ static char *unpacked(const struct model_reading *packed, char why[CONVERSION_WH
     return path;
 }
 
-/* In the child. For readers that cannot find the encoding themselves. */
+/* Detects the encoding of names, in the child process, for readers that cannot do it themselves. */
 static int find_encoding(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -257,7 +259,8 @@ static int find_encoding(void *arg)
     return 0;
 }
 
-/* Detects the encoding in a child, and copies its name if it has only letters that such names have. */
+/* Detects the encoding in a child process. Copies its name only if all characters are ones that encoding names have, because the child may
+ * be compromised. */
 static bool ask_encoding(const struct model_reading *reading, char encoding[CHARSET_NAME_BYTES], struct text *said,
                          char why[CONVERSION_WHY_BYTES])
 {
@@ -280,8 +283,8 @@ static bool ask_encoding(const struct model_reading *reading, char encoding[CHAR
     return good;
 }
 
-/* Has Open CASCADE build the solids of an IFC file that web-ifc does not build. ifc.mjs finds them in the folder of its output. Returns
- * false only if the user interrupted it: without these solids the model is still read. */
+/* Runs Open CASCADE on the solids of an IFC file that web-ifc cannot build. ifc.mjs finds the result in the folder of its output. Returns
+ * false only if the user interrupted it; if Open CASCADE fails, the model is read without these solids. */
 static bool build_curved_solids(const struct model_reading *reading, const char *list, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     char *program = import_format_program(import_format_of("x.step"));
@@ -305,10 +308,10 @@ static bool build_curved_solids(const struct model_reading *reading, const char 
     return !interrupted;
 }
 
-/* A program that reads a model, as the table of formats names it. */
+/* An external reader program, from the table of formats. */
 struct reader_program {
-    char *program, *runtime; /* runtime: NULL for a program by itself */
-    char encoding[CHARSET_NAME_BYTES]; /* "-": none is given */
+    char *program, *runtime;           /* paths; runtime is NULL if the program is an executable */
+    char encoding[CHARSET_NAME_BYTES]; /* name of the encoding passed to the reader; "-": none */
 };
 
 static bool run_reader(const struct model_reading *reading, const struct reader_program *reader, struct child_paths *paths,
@@ -334,8 +337,8 @@ static bool run_reader(const struct model_reading *reading, const struct reader_
     return good;
 }
 
-/* Reads an IFC file by web-ifc. If web-ifc lists elements that it does not build, Open CASCADE builds them, and the file is read once
- * more with these. */
+/* Reads an IFC file with web-ifc. If web-ifc lists elements that it cannot build, Open CASCADE builds them and web-ifc reads the file a
+ * second time with the results. */
 static bool read_ifc(const struct model_reading *reading, struct reader_program *reader, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     char *list = mem_printf("%s/asked.txt", reading->folder);
@@ -378,7 +381,8 @@ static bool run_program(const struct model_reading *reading, struct child_paths 
     return good;
 }
 
-/* A reader may leave anything under that name, such as a symlink to a file of the daemon's. */
+/* Moves the reader's output file to `glb`. Rejects anything but a regular file: a compromised reader may leave a symlink to one of the
+ * daemon's files. */
 static bool take_output(const struct model_reading *reading, const char *glb, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     struct stat st;
@@ -397,7 +401,7 @@ static bool take_output(const struct model_reading *reading, const char *glb, st
 static bool read_model(const struct import_format *format, const char *path, const char *glb, const char *folder,
                        const struct conversion_params *params, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
-    /* a folder of its own, so that a reader in a stranger's hands cannot replace models that were read before */
+    /* a separate folder, so that a compromised reader cannot replace models that were read earlier */
     char *own = mem_printf("%s/reading", folder), *output = mem_printf("%s/output.glb", own), *input = realpath(path, NULL);
     bool made = mkdir(own, 0700) == 0;
     char *attributes = input && format->reader == FORMAT_RVM ? attributes_beside(input) : NULL;

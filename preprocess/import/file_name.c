@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Slashes and dots. */
+/* Splits paths at slashes and dots. */
 #include "preprocess/import/file_name.h"
 
 #include <string.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits lines at tabs. A reader may be in a stranger's hands: fields may be missing, and bytes may be no UTF-8. */
+/* Splits the output of a reader into records and fields. The reader may be compromised: fields may be missing and bytes may be invalid
+ * UTF-8. */
 #include "preprocess/import/findings.h"
 
 #include <math.h>
@@ -9,9 +10,9 @@
 #include "base/mem.h"
 #include "base/text/utf8.h"
 
-enum { MOST_FIELDS = 6, MOST_LISTED = 20000 };
+enum { MAX_FIELDS = 6, MAX_LISTED = 20000 };
 
-/* Returns a copy of printable UTF-8: other bytes and control characters except tabs become '?'. Free with mem_free. */
+/* Returns a copy of the text in which invalid UTF-8 and control characters other than tabs are '?'. The caller frees it with mem_free. */
 static char *clean(const char *text, size_t length)
 {
     struct text out = { 0 };
@@ -25,13 +26,13 @@ static char *clean(const char *text, size_t length)
     return out.at;
 }
 
-/* Ends each field with a zero byte. Fields that are missing are "". */
-static void split(char *line, const char *fields[MOST_FIELDS])
+/* Splits a line at tabs in place. Missing fields become "". */
+static void split(char *line, const char *fields[MAX_FIELDS])
 {
-    for (int i = 0; i < MOST_FIELDS; i++) {
+    for (int i = 0; i < MAX_FIELDS; i++) {
         fields[i] = line;
         line += strcspn(line, "\t");
-        if (*line && i < MOST_FIELDS - 1)
+        if (*line && i < MAX_FIELDS - 1)
             *line++ = 0;
     }
 }
@@ -39,13 +40,13 @@ static void split(char *line, const char *fields[MOST_FIELDS])
 static void append(json_t *model, const char *key, json_t *value)
 {
     json_t *list = json_object_get(model, key);
-    if (json_array_size(list) < MOST_LISTED)
+    if (json_array_size(list) < MAX_LISTED)
         json_array_append_new(list, value);
     else
         json_decref(value);
 }
 
-static void add_lost(json_t *model, const char *const fields[MOST_FIELDS], struct text *plain)
+static void add_lost(json_t *model, const char *const fields[MAX_FIELDS], struct text *plain)
 {
     const char *id = fields[1], *name = fields[2], *class = fields[3], *guid = fields[4], *why = fields[5];
     json_int_t count = json_integer_value(json_object_get(model, "lost_count"));
@@ -57,7 +58,7 @@ static void add_lost(json_t *model, const char *const fields[MOST_FIELDS], struc
 static void add_line(json_t *model, char *line, struct text *plain)
 {
     static const char left_out[] = "left out: ";
-    const char *fields[MOST_FIELDS];
+    const char *fields[MAX_FIELDS];
     if (!strncmp(line, "lost\t", 5)) {
         split(line, fields);
         add_lost(model, fields, plain);

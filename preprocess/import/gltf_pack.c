@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All buffers become parts of one, images become views of it. */
+/* Merges all buffers of a glTF model into one, and turns images into views of that buffer. */
 #include "preprocess/import/gltf_pack.h"
 
 #include <string.h>
@@ -16,7 +16,7 @@ struct pack {
     json_t *root;
     struct model_bytes binary;
     struct text bytes;
-    json_int_t *offsets; /* of each buffer in bytes */
+    json_int_t *offsets; /* offset of each original buffer in `bytes` */
     char *why;
 };
 
@@ -57,7 +57,7 @@ static bool take_buffers(struct pack *pack)
         const char *uri = uri_of(json_array_get(list, i));
         size_t size = pack->binary.size;
         if (!uri && standins[i])
-            continue; /* its views are decoded from another buffer */
+            continue; /* an empty fallback buffer (EXT_meshopt_compression): its views are decoded from another buffer */
         if (!uri && (i > 0 || !pack->binary.at)) {
             good = wrong(pack->why, "buffer %zu has no bytes of its own: pack the model into a GLB file by the program that made it", i);
             break;
@@ -73,7 +73,7 @@ static bool take_buffers(struct pack *pack)
     return good;
 }
 
-/* Of a view, or of the view that its extension compresses. */
+/* Rewrites the buffer and offset of a buffer view, or of the compressed view in its meshopt extension. */
 static bool move_view(struct pack *pack, json_t *view)
 {
     const json_t *number = json_object_get(view, "buffer");
@@ -139,7 +139,7 @@ static bool write_packed(struct pack *pack, const char *glb)
         json_object_set_new(pack->root, "bufferViews", json_array());
     if (!take_images(pack))
         return false;
-    if (json_array_size(json_object_get(pack->root, "bufferViews")) == 0) /* glTF allows no empty lists */
+    if (json_array_size(json_object_get(pack->root, "bufferViews")) == 0) /* glTF forbids empty arrays */
         json_object_del(pack->root, "bufferViews");
     json_object_del(pack->root, "buffers");
     if (pack->bytes.length > 0)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Line by line: a model may have a hundred thousand nodes. */
+/* Prints nodes line by line without building the whole text: a model may have a hundred thousand nodes. */
 #include "preprocess/import/node_list.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "base/text/json_text.h"
 #include "preprocess/report/text_table.h"
 
-/* `name=value` for each property, those of groups too. */
+/* Appends `name=value` for each property, including properties inside groups. */
 static void add_properties(struct text *out, const json_t *extras, int level)
 {
     const char *key;
@@ -105,7 +105,7 @@ static void print_head(const struct model_outline *outline, bool json, FILE *out
     text_finish(&summary);
 }
 
-/* The last part of a path: in a tree, indentation shows the rest. */
+/* Returns the last component of a node's path. A tree shows the rest by indentation. */
 static const char *own_part(const struct model_outline *outline, size_t i, const struct text *path)
 {
     struct text above = { 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers in their ranges, words of their lists. */
+/* Parses the shared options: numbers within ranges, words out of fixed lists. */
 #include "preprocess/import/options.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A text that a person would have written, to be gone on with by hand or by matching tags. */
+/* Generates a readable plant file that people continue to edit by hand or with the tag matcher. */
 #include "preprocess/import/plant_draft.h"
 
 #include <errno.h>
@@ -31,7 +31,7 @@ static const char begun[] = "# Nothing was imported yet: a person stands where t
                             "  - { id: person, description: 1.8 m tall, model: person.glb }\n";
 static const char tags_head[] = "Tag Name,Address,Data Type,Eng Units,Description,Source,Group,Asset,Node,X,Y,Z\n";
 
-/* In the quotes of YAML. */
+/* Appends text as a quoted YAML scalar. */
 static void add_quoted(struct text *out, const char *text)
 {
     struct text printable = { 0 };
@@ -52,9 +52,9 @@ static bool is_printable(const char *text)
     return is;
 }
 
-struct draft_choice {    /* by node */
-    bool *item, *unique; /* unique: no other node has its name */
-    bool typed, classed; /* the model has elements of type ZONE, or classes of IFC */
+struct draft_choice {    /* choices for each outline node */
+    bool *item, *unique; /* item: the node becomes an asset; unique: no other node has its name */
+    bool typed, classed; /* typed: the model has nodes of type ZONE; classed: it has IFC classes */
 };
 
 static int by_name(const void *a, const void *b)
@@ -65,7 +65,7 @@ static int by_name(const void *a, const void *b)
 static void find_unique(const struct model_outline *outline, bool *unique)
 {
     size_t count = outline->header.count;
-    const struct outline_node **sorted = mem_array(count + 1, sizeof(*sorted)); /* ends in NULL */
+    const struct outline_node **sorted = mem_array(count + 1, sizeof(*sorted)); /* sorted by name, terminated by NULL */
     for (size_t i = 0; i < count; i++)
         sorted[i] = &outline->nodes[i];
     qsort(sorted, count, sizeof(*sorted), by_name);
@@ -77,7 +77,7 @@ static void find_unique(const struct model_outline *outline, bool *unique)
     mem_free(sorted);
 }
 
-/* The first level with two nodes that show something; the deepest where none has. */
+/* Returns the first level with at least two nodes that have geometry, or the deepest level if there is none. */
 static int branching_level(const struct model_outline *outline)
 {
     int deepest = 0, level = 0;
@@ -98,7 +98,7 @@ static bool is_type(const struct model_outline *outline, int node, const char *t
     return own && !strcmp(own, type);
 }
 
-/* Sites, buildings, storeys and rooms hold the elements of an IFC model. */
+/* Returns whether an IFC class is a spatial container (site, building, storey, room ...), which holds elements but is no equipment. */
 static bool is_spatial(const char *class)
 {
     static const char *const spatial[] = { "IfcProject",        "IfcSite",
@@ -116,8 +116,8 @@ static bool is_spatial(const char *class)
     return false;
 }
 
-/* An element of a zone is a piece of equipment, a pipe, a structure. Where nothing says what is a zone, those of a level are taken; and
- * whatever shows something above it. */
+/* Chooses the nodes that become assets: children of a ZONE, else IFC elements, else the nodes of one level (equipment, pipes, structures).
+ * A node above those is chosen too if it has geometry of its own. Descendants of a chosen node are not chosen. */
 static void choose(const struct plant_draft_model *from, struct draft_choice *choice)
 {
     const struct model_outline *outline = &from->outline;
@@ -159,7 +159,7 @@ static void add_asset(struct text *out, const struct plant_draft_model *from, si
     int parent = outline->header.nodes[i].parent;
     unsigned number = outline->header.nodes[i].number;
     char *id = unique ? mem_strdup(without_slash(name)) : mem_printf("%s #%u", *name ? name : "unnamed", number);
-    if (json_object_get(ids, id)) { /* of another model */
+    if (json_object_get(ids, id)) { /* the id is taken by an asset of another model */
         char *other = mem_printf("%s (%s #%u)", id, from->file, number);
         mem_free(id);
         id = other;
@@ -266,10 +266,10 @@ int plant_draft_write(const struct plant_draft *draft)
     return status;
 }
 
-/* Feet on the ground at the origin, seen from the front; Y is up. */
+/* Writes a GLB model of a person made of boxes: feet on the ground at the origin, facing the viewer, Y up. */
 static int write_person(const char *path)
 {
-    static const float parts[][2][3] = { /* middle, size */
+    static const float parts[][2][3] = { /* centre and size in metres of each box */
                                          { { -0.1f, 0.42f, 0 }, { 0.14f, 0.84f, 0.16f } }, { { 0.1f, 0.42f, 0 }, { 0.14f, 0.84f, 0.16f } },
                                          { { 0, 1.14f, 0 }, { 0.4f, 0.6f, 0.22f } },       { { -0.26f, 1.1f, 0 }, { 0.1f, 0.64f, 0.12f } },
                                          { { 0.26f, 1.1f, 0 }, { 0.1f, 0.64f, 0.12f } },   { { 0, 1.48f, 0 }, { 0.1f, 0.08f, 0.1f } },

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two passes: chunks to primitives; then, once it is known which of their faces lie on each other, primitives to triangles. */
+/* Reads RVM files in two passes: first chunks to primitives, then, once covered faces are known, primitives to triangles. */
 #include "preprocess/import/rvm.h"
 
 #include <math.h>
@@ -19,13 +19,13 @@ enum { MAX_DEPTH = 1000, HEADER = 24 };
 struct primitive {
     struct rvm_shape shape;
     int node;
-    size_t byte; /* where its chunk begins */
-    size_t first_contour, first_point; /* while the arrays grow */
+    size_t byte;                       /* byte offset of the primitive's chunk */
+    size_t first_contour, first_point; /* indices, not pointers, because the arrays still grow */
 };
 
 struct facet_face {
     struct rvm_face flat;
-    int axis[3]; /* the direction of its plane, in hundredths */
+    int axis[3]; /* normal of the face's plane, in hundredths, so that equal planes compare equal */
     double offset_m;
     size_t primitive;
     int number;
@@ -43,7 +43,7 @@ struct rvm_reader {
     struct rvm_losses losses;
     size_t primitive_count, primitive_room, contour_count, contour_room, point_count, point_room, face_count, face_room;
     int stack[MAX_DEPTH], depth;
-    char *encoding; /* as the head says; NULL: nothing */
+    char *encoding; /* encoding stated in the file's header; NULL: none */
     char *why;
     size_t why_bytes;
 };
@@ -91,8 +91,8 @@ static bool read_float(struct rvm_reader *r, double *out)
     return true;
 }
 
-/* Reads a number of words, then that many words of text that ends with the first 0. Returns the text in the file's encoding, control
- * characters as blanks, to be freed with mem_free; NULL on failure. */
+/* Reads a word count and that many words of text, which ends at the first zero byte. Returns the text in the file's encoding with control
+ * characters replaced by blanks; the caller frees it with mem_free. Returns NULL on failure. */
 static char *read_text(struct rvm_reader *r)
 {
     uint32_t words;
@@ -120,7 +120,7 @@ static bool read_head(struct rvm_reader *r)
     uint32_t version;
     if (!read_word(r, &version))
         return false;
-    for (int i = 0; i < 4; i++) { /* info, note, date, user */
+    for (int i = 0; i < 4; i++) { /* skip the texts info, note, date and user */
         char *ignored = read_text(r);
         if (!ignored)
             return false;
@@ -145,7 +145,7 @@ static bool read_color(struct rvm_reader *r)
 static bool begin_group(struct rvm_reader *r)
 {
     uint32_t version, material;
-    double reference_mm; /* a point near by; primitives do not depend on it */
+    double reference_mm; /* a nearby reference point, which the primitives do not depend on */
     char *name = read_word(r, &version) ? read_text(r) : NULL;
     bool good = name != NULL;
     for (int axis = 0; good && axis < 3; axis++)
@@ -184,7 +184,7 @@ static bool read_facets(struct rvm_reader *r, struct primitive *primitive)
                 for (int axis = 0; axis < 3; axis++)
                     if (!read_float(r, &r->points[r->point_count][axis]))
                         return false;
-                r->at += 12; /* a normal: ours are the polygon's */
+                r->at += 12; /* skip the vertex normal: each polygon's own normal is used instead */
             }
         }
     }
@@ -233,7 +233,7 @@ static bool read_chunk(struct rvm_reader *r, const char *id, bool *ended)
         return read_color(r);
     if (!strcmp(id, "CNTB"))
         return begin_group(r);
-    if (!strcmp(id, "CNTE")) { /* one too many is seen at the end of files by AVEVA Marine */
+    if (!strcmp(id, "CNTE")) { /* files of AVEVA Marine may end with one CNTE too many */
         r->depth -= r->depth > 0;
         return true;
     }
@@ -261,7 +261,7 @@ static bool chunk_id(const uint8_t *at, char id[5])
     return true;
 }
 
-/* Whether the bytes begin as an RVM file does. */
+/* Returns whether the bytes begin like an RVM file. */
 static bool is_rvm(const void *bytes, size_t count)
 {
     char id[5];
@@ -275,7 +275,7 @@ static bool read_chunks(struct rvm_reader *r)
         size_t from = r->at;
         if (r->count - from < 16 || !chunk_id(r->bytes + from, id))
             return fail(r, "no chunk begins here");
-        if (!strcmp(id, "END:")) /* some files leave out what would follow */
+        if (!strcmp(id, "END:")) /* some files omit the rest of this chunk's header */
             return true;
         if (r->count - from < HEADER)
             return fail(r, "the file ends within chunk %s", id);
@@ -293,7 +293,7 @@ static bool read_chunks(struct rvm_reader *r)
     return true;
 }
 
-/* Decodes all names in one encoding: a single short name has too few letters to detect it. */
+/* Decodes all names in one encoding: a single short name has too few letters to detect its encoding. */
 static void decode_names(struct rvm_reader *r, size_t first, const char *asked)
 {
     struct text all = { 0 };
@@ -309,11 +309,11 @@ static void decode_names(struct rvm_reader *r, size_t first, const char *asked)
     text_finish(&all);
 }
 
-/* --- faces that meet --------------------------------------------------------------------------------------------------------------- */
+/* --- covered faces ----------------------------------------------------------------------------------------------------------------- */
 
 static const double near_m = 0.001;
 
-/* By plane: parallel planes are neighbours in the order of their distance from the origin. */
+/* Sorts faces by plane: first by normal, then by distance from the origin, so that coincident planes are neighbours. */
 static int by_plane(const void *a, const void *b)
 {
     const struct facet_face *x = a, *y = b;
@@ -333,7 +333,7 @@ static bool contains(const struct rvm_face *face, const double point[3])
            fabs(vec_dot(d, face->directions[1])) <= face->half_m[1] + near_m / 10;
 }
 
-/* Both lie in one plane and look at each other, and all of `face` is in `cover`. */
+/* Returns whether `cover` hides `face`: both lie in one plane with opposite normals, and all of `face` lies within `cover`. */
 static bool covers(const struct rvm_face *cover, const struct rvm_face *face)
 {
     double d[3];
@@ -372,8 +372,8 @@ static void add_faces(struct rvm_reader *r, size_t primitive)
     }
 }
 
-/* What lies between two primitives is inside of both: neither light nor heat gets there. A plane whose direction is on the border between
- * two hundredths may be missed; then both faces stay, which is no error. */
+/* Marks faces that are covered by a face of another primitive: they lie inside the solid, where neither light nor heat reaches. Two
+ * coincident planes whose normals round to different hundredths are missed; then both faces stay, which is harmless. */
 static void leave_out_covered_faces(struct rvm_reader *r)
 {
     for (size_t p = 0; p < r->primitive_count; p++)
@@ -398,7 +398,7 @@ static void leave_out_covered_faces(struct rvm_reader *r)
 
 static void tessellate(struct rvm_reader *r, const struct rvm_params *params)
 {
-    size_t *primitives = mem_array(r->model->node_count + 1, sizeof(*primitives)); /* count of primitives of each node */
+    size_t *primitives = mem_array(r->model->node_count + 1, sizeof(*primitives)); /* number of primitives of each node */
     for (size_t i = 0; i < r->losses.count; i++)
         if (r->losses.at[i].why)
             primitives[r->losses.at[i].node]++;
@@ -428,7 +428,7 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const st
     for (size_t i = 0; i < r->primitive_count; i++)
         if (r->primitives[i].shape.contour_count > 0) {
             r->primitives[i].shape.contours = r->contours + r->primitives[i].first_contour;
-            if (r->points) /* else its contours have none */
+            if (r->points) /* without points all contours are empty */
                 r->primitives[i].shape.points = (const double(*)[3])(r->points + r->primitives[i].first_point);
         }
     if (!params->keep_covered)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Losses sorted by group, then one line for each group. */
+/* Sorts losses by group and reports one line for each group. */
 #include "preprocess/import/rvm_losses.h"
 
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "preprocess/import/rvm_shape.h"
 
-enum { MOST_NAMED = 20 };
+enum { MAX_NAMED = 20 };
 
 void rvm_losses_add(struct rvm_losses *losses, int node, int kind, size_t byte, const char *why)
 {
@@ -34,7 +34,7 @@ static const char *name_of(int kind)
     return kind > RVM_UNKNOWN_KIND && kind <= RVM_FACETS ? names[kind] : "primitive";
 }
 
-/* first: the group's first loss; `count` losses of it. */
+/* Reports the losses of one group: `count` entries that start at `first`. */
 static void say_group(const struct rvm_loss *first, size_t count, const struct cad_node *node, size_t primitives, struct text *said)
 {
     const char *name = *node->name ? node->name : "a group without a name";
@@ -56,13 +56,13 @@ static void say_volumes(const struct rvm_losses *losses, int kind, const char *w
         if (losses->at[i].kind != kind)
             continue;
         count++;
-        if (losses->at[i].node >= 0 && losses->at[i].node != last && groups++ < MOST_NAMED)
+        if (losses->at[i].node >= 0 && losses->at[i].node != last && groups++ < MAX_NAMED)
             text_add(&names, "%s%s", groups > 1 ? ", " : " of ", model->nodes[losses->at[i].node].name);
         last = losses->at[i].node;
     }
     if (count > 0)
-        text_add(said, "left out: %zu %s volume%s%s%s\n", count, what, count > 1 ? "s" : "",
-                 names.at ? names.at : "", groups > MOST_NAMED ? ", ..." : "");
+        text_add(said, "left out: %zu %s volume%s%s%s\n", count, what, count > 1 ? "s" : "", names.at ? names.at : "",
+                 groups > MAX_NAMED ? ", ..." : "");
     text_finish(&names);
 }
 

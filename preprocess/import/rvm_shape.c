@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Surfaces of revolution ring by ring; the rest face by face. Polygons with holes are left to GLU's tessellator. */
+/* Tessellates surfaces of revolution ring by ring and flat primitives face by face. GLU's tessellator handles polygons with holes. */
 #include "preprocess/import/rvm_shape.h"
 
 #include <GL/glu.h>
@@ -16,10 +16,10 @@ const int rvm_numbers[RVM_FACETS + 1] = {
     [RVM_SPHERICAL_DISH] = 2, [RVM_SNOUT] = 9, [RVM_CYLINDER] = 2,          [RVM_SPHERE] = 1,         [RVM_LINE] = 2
 };
 
-struct primitive_frame { /* from the primitive's frame to the plant's */
+struct primitive_frame { /* transform from the primitive's frame to the plant's */
     const double *m;
-    double normal_of[9]; /* the inverse transpose of its linear part, up to a factor; columns */
-    double scale;        /* of lengths; the largest where the axes differ */
+    double normal_of[9]; /* inverse transpose of the linear part, for normals; up to a factor, by columns */
+    double scale;        /* largest scale factor of lengths over the three axes */
     bool mirrored;
 };
 
@@ -77,7 +77,8 @@ static void add_quad(struct cad_node *node, const struct primitive_frame *frame,
     add_triangle(node, frame, a, c, d);
 }
 
-/* A multiple of 4, so that corners lie on both axes of the section and a section seen from behind has the same corners. */
+/* Returns the number of corners of a full circle. It is a multiple of 4, so that corners lie on both axes of the section and a section seen
+ * from behind has the same corners. */
 static int corners_of(double radius_m, double chord_m)
 {
     double cosine = radius_m > 0 ? 1 - chord_m / radius_m : -1;
@@ -85,7 +86,8 @@ static int corners_of(double radius_m, double chord_m)
     return (int)fmin(MAX_CORNERS, fmax(MIN_CORNERS, 4 * ceil(corners / 4)));
 }
 
-/* The angle of the first corner of a section with axis `axis`, measured from its `x` towards its `y` (local directions). */
+/* Returns the angle of the first corner of a section, measured from direction `x` to direction `y` of the primitive's frame. It depends
+ * only on the section's plane. */
 static double phase_of(const struct primitive_frame *frame, const double x[3], const double y[3])
 {
     double u[3], v[3], n[3];
@@ -103,7 +105,7 @@ static double phase_of(const struct primitive_frame *frame, const double x[3], c
 
 /* --- rings ------------------------------------------------------------------------------------------------------------------------ */
 
-struct corner_ring { /* corners around a centre: centre + cos x + sin y, all local */
+struct corner_ring { /* a circle or ellipse of corners in the primitive's frame: centre + cos * x + sin * y */
     double centre[3], x[3], y[3], phase;
 };
 
@@ -137,7 +139,7 @@ static void add_cap(struct cad_node *node, const struct primitive_frame *frame, 
             add_triangle(node, frame, first, first + i, first + i + 1);
 }
 
-/* Joins two rows of `corners` vertices that go round a closed section, the second further along the axis. */
+/* Joins two rows of `corners` vertices around a closed section by triangles; row `high` lies further along the axis than row `low`. */
 static void join_rows(struct cad_node *node, const struct primitive_frame *frame, uint32_t low, uint32_t high, uint32_t corners)
 {
     for (uint32_t i = 0; i < corners; i++) {
@@ -148,7 +150,7 @@ static void join_rows(struct cad_node *node, const struct primitive_frame *frame
 
 /* --- the primitives --------------------------------------------------------------------------------------------------------------- */
 
-/* Six faces over two rectangles, one above the other. */
+/* Adds the six faces between two rectangles, one above the other. */
 static void add_prism(struct cad_node *node, const struct primitive_frame *frame, const double corners[8][3], uint32_t open_faces)
 {
     static const int faces[RVM_MAX_FACES][4] = { { 0, 3, 2, 1 }, { 4, 5, 6, 7 }, { 0, 1, 5, 4 },
@@ -158,7 +160,7 @@ static void add_prism(struct cad_node *node, const struct primitive_frame *frame
         double u[3], v[3], n[3];
         for (int i = 0; i < 4; i++)
             p[i] = corners[faces[f][i]];
-        vec_sub(p[2], p[0], u); /* the diagonals: right too where a side has no length */
+        vec_sub(p[2], p[0], u); /* diagonals, so that the normal is also right if a side has zero length */
         vec_sub(p[3], p[1], v);
         vec_cross(u, v, n);
         if (vec_dot(n, n) == 0 || (open_faces >> f & 1))
@@ -199,7 +201,7 @@ static void add_rectangular_torus(struct cad_node *node, const struct primitive_
     double inner = n[0], outer = n[1], half = n[2] / 2, angle = n[3];
     int steps = steps_of(angle, outer * frame->scale, chord_m);
     const double section[4][2] = { { inner, -half }, { outer, -half }, { outer, half }, { inner, half } };
-    for (int side = 0; side < 4; side++) { /* below, outside, above, inside */
+    for (int side = 0; side < 4; side++) { /* the four sides: below, outside, above, inside */
         const double *from = section[side], *to = section[(side + 1) % 4];
         double radial = to[1] - from[1], vertical = from[0] - to[0];
         if (radial == 0 && vertical == 0)
@@ -236,7 +238,8 @@ static struct corner_ring torus_ring(double offset, double radius, double angle)
     return (struct corner_ring){ .centre = { offset * c, offset * s, 0 }, .x = { radius * c, radius * s, 0 }, .y = { 0, 0, radius } };
 }
 
-/* The corners turn a little along the way, by less than half of one, where the two ends ask for different first corners. */
+/* Adds a circular torus. If its two ends need different first corners, the corners rotate gradually along the bend, by less than half a
+ * corner in total. */
 static void add_circular_torus(struct cad_node *node, const struct primitive_frame *frame, const double *n, double chord_m,
                                uint32_t open_faces)
 {
@@ -266,13 +269,14 @@ static void add_circular_torus(struct cad_node *node, const struct primitive_fra
     ends[1].phase = ends[0].phase + turn;
     if (fabs(angle) > 2 * M_PI - 1e-3)
         return;
-    /* x cross y of a section points against the way of a positive angle. */
+    /* The normal (x cross y) of a section points against the bend direction of a positive angle. */
     for (int end = 0; end < 2; end++)
         if (!(open_faces >> end & 1))
             add_cap(node, frame, &ends[end], corners, (end == 1) == (angle > 0));
 }
 
-/* Part of an ellipsoid of revolution over z = 0: `across` from the axis, from `low` (an angle above the equator) to the pole. */
+/* Adds part of an ellipsoid of revolution about the Z axis, with radius `across` and height `up`: from the angle `low` above the equator up
+ * to the pole. */
 static void add_dome(struct cad_node *node, const struct primitive_frame *frame, double across, double up, double centre_z, double low,
                      int corners, double phase)
 {
@@ -300,7 +304,7 @@ static struct corner_ring level_ring(double radius, double z)
     return (struct corner_ring){ .centre = { 0, 0, z }, .x = { radius, 0, 0 }, .y = { 0, radius, 0 } };
 }
 
-/* A cap of a sphere of radius (r^2 + h^2) / 2h, or half an ellipsoid. */
+/* Adds a dish: a spherical cap of radius (r^2 + h^2) / 2h, or half an ellipsoid. */
 static void add_dish(struct cad_node *node, const struct primitive_frame *frame, const double *n, bool spherical, double chord_m,
                      uint32_t open_faces)
 {
@@ -340,8 +344,8 @@ static void add_sphere(struct cad_node *node, const struct primitive_frame *fram
     }
 }
 
-/* Joins two rings that may have different numbers of corners: the next triangle takes the corner that comes first round the axis. A ring
- * without radius has no edges. */
+/* Joins two rings that may have different numbers of corners: each triangle advances on the ring whose next corner has the smaller angle. A
+ * ring of radius 0 is a single point and contributes no edges. */
 static void join_rings(struct cad_node *node, const struct primitive_frame *frame, const uint32_t rows[2], const int corners[2],
                        const double radii[2])
 {
@@ -359,8 +363,8 @@ static void join_rings(struct cad_node *node, const struct primitive_frame *fram
     }
 }
 
-/* A cone's side between two circles that may be offset and whose planes may be inclined. A circle without radius is as many corners as the
- * other has, all in one point. */
+/* Adds the side of a cone between two circles that may be offset and tilted. A circle of radius 0 gets as many corners as the other, all at
+ * one point. */
 static void add_snout(struct cad_node *node, const struct primitive_frame *frame, const double *n, double chord_m, uint32_t open_faces)
 {
     double height = n[2], radii[2] = { n[0], n[1] };
@@ -400,14 +404,14 @@ static void add_line(struct cad_node *node, const struct primitive_frame *frame,
 
 /* --- polygons --------------------------------------------------------------------------------------------------------------------- */
 
-struct tessellated_polygon { /* data for GLU's callbacks */
+struct tessellated_polygon { /* state shared by GLU's callbacks */
     struct cad_node *node;
     const struct primitive_frame *frame;
     double normal[3];
     const double (*corner)[3];
     uint32_t three[3];
     int count;
-    double (*made)[3]; /* crossings of edges, found by GLU */
+    double (*made)[3]; /* vertices that GLU creates where edges cross */
     size_t made_count;
 };
 
@@ -421,7 +425,7 @@ static void on_vertex(void *vertex, void *user)
     }
 }
 
-/* Its being there makes GLU give triangles alone, no fans or strips. */
+/* Registering this callback makes GLU emit separate triangles only, no fans or strips. */
 static void on_edge_flag(GLboolean flag)
 {
     (void)flag;
@@ -434,7 +438,7 @@ static void on_combine(GLdouble at[3], void *of[4], GLfloat weight[4], void **ou
     (void)of;
     (void)weight;
     struct tessellated_polygon *polygon = user;
-    if (polygon->made_count == MAX_CROSSINGS) { /* GLU keeps pointers: the array must not move */
+    if (polygon->made_count == MAX_CROSSINGS) { /* GLU keeps pointers into the array, so it must not be reallocated */
         *out = polygon->made[MAX_CROSSINGS - 1];
         return;
     }
@@ -442,7 +446,7 @@ static void on_combine(GLdouble at[3], void *of[4], GLfloat weight[4], void **ou
     *out = polygon->made[polygon->made_count++];
 }
 
-/* By Newell: the normal of a contour that need not be plane or convex. */
+/* Computes the normal of a contour by Newell's method, which allows contours that are not planar or convex. */
 static void contour_normal(const double (*points)[3], const struct rvm_contour *contour, double out[3])
 {
     memset(out, 0, 3 * sizeof(*out));
@@ -489,7 +493,7 @@ static const char *add_facets(struct cad_node *node, const struct primitive_fram
     return node->triangle_count > before ? NULL : "has no polygon with an area";
 }
 
-/* --- what readers call ------------------------------------------------------------------------------------------------------------ */
+/* --- public functions ------------------------------------------------------------------------------------------------------------- */
 
 static bool is_turn(double angle)
 {
@@ -565,7 +569,7 @@ static void circle_of(const struct primitive_frame *frame, const double centre[3
     vec_normalize(face->outward);
 }
 
-/* u, v: half the sides, as vectors. */
+/* Builds a rectangular face. u, v: half sides as vectors in the primitive's frame. */
 static void rectangle_of(const struct primitive_frame *frame, const double centre[3], const double outward[3], const double u[3],
                          const double v[3], struct rvm_face *face)
 {
@@ -586,7 +590,7 @@ static int prism_faces(const struct primitive_frame *frame, const struct rvm_sha
     double h = (box ? n[2] : n[6]) / 2;
     rectangle_of(frame, (double[3]){ -ox, -oy, -h }, (double[3]){ 0, 0, -1 }, (double[3]){ bx, 0, 0 }, (double[3]){ 0, by, 0 }, &faces[0]);
     rectangle_of(frame, (double[3]){ ox, oy, h }, (double[3]){ 0, 0, 1 }, (double[3]){ tx, 0, 0 }, (double[3]){ 0, ty, 0 }, &faces[1]);
-    for (int i = 2; box && i < RVM_MAX_FACES; i++) { /* in the order of add_prism: -y, +x, +y, -x */
+    for (int i = 2; box && i < RVM_MAX_FACES; i++) { /* side faces in the order of add_prism(): -y, +x, +y, -x */
         double x = i == 3 ? 1 : i == 5 ? -1 : 0, y = i == 4 ? 1 : i == 2 ? -1 : 0;
         rectangle_of(frame, (double[3]){ x * bx, y * by, 0 }, (double[3]){ x, y, 0 }, (double[3]){ y * bx, x * by, 0 },
                      (double[3]){ 0, 0, h }, &faces[i]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Puts links to the files that are given into the plant's folder of exports, prepares the plant as it is, and becomes the daemon. */
+/* Links the given files into the plant's folder of exports, prepares the current plant, and replaces this process by the daemon. */
 #include "preprocess/import/serve.h"
 
 #include <errno.h>
@@ -28,7 +28,7 @@ static int make_folder(const char *path)
     return mkdir(path, 0777) == 0 || errno == EEXIST ? 0 : fail_at(path, strerror(errno));
 }
 
-/* The file itself stays where it is, and what it needs beside it. */
+/* Adds a symlink to the file to the folder of exports. The original stays in place, because it may refer to files in its own folder. */
 static int add_link(const char *exports, const char *file)
 {
     char target[PATH_MAX];
@@ -95,7 +95,7 @@ int import_serve(const struct serve_params *params)
     int status = make_folder(params->folder);
     if (status == 0)
         status = make_folder(exports);
-    if (status == 0) { /* until the daemon takes this program's place */
+    if (status == 0) { /* the lock is held until this process becomes the daemon */
         char *why = NULL;
         if (plant_folder_lock(&(struct plant_folder_params){ .folder = params->folder }, &why) < 0)
             status = fail_at(params->folder, why);

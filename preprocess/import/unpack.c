@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* ZIP by minizip, gzip by zlib. */
+/* Unpacks ZIP with minizip and gzip with zlib. */
 #include "preprocess/import/unpack.h"
 
 #include <errno.h>
@@ -10,8 +10,11 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
-enum { BLOCK_BYTES = 1 << 16, MOST_RATIO = 200 /* texts pack to a tenth; what grows more is a trap */ };
-static const size_t free_bytes = (size_t)64 << 20; /* whatever the ratio */
+enum {
+    BLOCK_BYTES = 1 << 16,
+    MAX_RATIO = 200 /* unpacked to packed size; texts compress to about a tenth, more expansion means a decompression bomb */
+};
+static const size_t free_bytes = (size_t)64 << 20; /* unpacked bytes that are allowed whatever the ratio */
 
 static const struct {
     const char *packed, *ending;
@@ -32,7 +35,7 @@ const char *unpack_ending(const char *path)
 }
 
 struct archive_reading {
-    unzFile zip; /* or */
+    unzFile zip; /* exactly one of zip and gzip is set */
     gzFile gzip;
 };
 
@@ -56,7 +59,7 @@ static const char *copy(const struct archive_reading *from, FILE *to, size_t mos
     return total > 0 ? NULL : "its archive is empty";
 }
 
-/* Closes an archive. Returns whether all that was read has the checksum of the archive and is not cut off. */
+/* Closes an archive. Returns whether its data was complete and matched the checksum. */
 static bool finish(const struct archive_reading *from)
 {
     bool good = true;
@@ -67,11 +70,11 @@ static bool finish(const struct archive_reading *from)
     return (!from->gzip || gzclose(from->gzip) == Z_OK) && good;
 }
 
-/* Opens the first file with this ending. Returns whether there is one. */
+/* Opens the first file of the archive with this ending. Returns whether there is one. */
 static bool find_file(unzFile zip, const char *ending)
 {
     char name[512];
-    unz_file_info info; /* minizip wants it */
+    unz_file_info info; /* required by minizip, unused */
     for (int status = unzGoToFirstFile(zip); status == UNZ_OK; status = unzGoToNextFile(zip))
         if (unzGetCurrentFileInfo(zip, &info, name, sizeof(name), NULL, 0, NULL, 0) == UNZ_OK &&
             (!strcasecmp(ending_of(name), ending) || (!strcmp(ending, ".stp") && !strcasecmp(ending_of(name), ".step"))))
@@ -82,7 +85,7 @@ static bool find_file(unzFile zip, const char *ending)
 bool unpack(const char *path, const char *output, char *why, size_t why_bytes)
 {
     struct stat st;
-    size_t most = free_bytes + (stat(path, &st) == 0 ? (size_t)st.st_size * MOST_RATIO : 0);
+    size_t most = free_bytes + (stat(path, &st) == 0 ? (size_t)st.st_size * MAX_RATIO : 0);
     struct archive_reading from = { .zip = unzOpen64(path) };
     const char *reason = NULL;
     if (!from.zip)

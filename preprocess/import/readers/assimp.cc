@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-import-assimp INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: OBJ, STL, PLY, FBX, COLLADA and 3DS by Assimp, in a process
- * of its own. UNITS, UP or ENCODING `-`: as the file says, else guessed, and said. Its last line on stderr says why it failed. */
+/* `plantcast-import-assimp INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads OBJ, STL, PLY, FBX, COLLADA and 3DS with Assimp, in its own
+ * process. UNITS, UP or ENCODING `-`: use the file's value, else guess and print the guess. On failure the last line on stderr is the
+ * reason. */
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
@@ -29,32 +30,32 @@ extern "C" {
 namespace
 {
 
-constexpr double LONGEST_IN_METRES = 300; /* what is longer was drawn in millimetres */
+constexpr double LONGEST_IN_METRES = 300; /* metres; a longer model is assumed to be in millimetres */
 
 struct format {
     const char *ending;
-    const char *unit, *up; /* of what Assimp hands over; NULL: the file does not say */
-    bool own_normals;      /* false: one for each facet, which says nothing of the surface */
+    const char *unit, *up; /* unit and up axis of the data that Assimp returns; NULL: the file does not state them */
+    bool own_normals;      /* use the file's normals; false: they are facet normals, which do not describe a smooth surface */
 };
 
-/* Assimp turns COLLADA and 3DS to Y up and applies the units of COLLADA. Of FBX, older versions do neither: see fbx_axes. */
+/* Assimp converts COLLADA and 3DS to Y up and applies the units of COLLADA. For FBX, older versions do neither: see fbx_axes(). */
 const format formats[] = { { ".obj", nullptr, nullptr, true }, { ".stl", nullptr, nullptr, false }, { ".ply", nullptr, nullptr, true },
                            { ".fbx", "cm", "y", true },        { ".dae", "m", "y", true },          { ".3ds", nullptr, "y", true } };
 
 struct assimp_reader {
     const aiScene *scene;
     struct glb_scene *out;
-    text_encoding encoding;                      /* of names that Assimp hands over as they are in the file */
-    std::vector<int> materials;                  /* of each of the scene's; -2: not made yet */
-    std::map<std::vector<unsigned>, int> meshes; /* by the scene's meshes in it */
-    size_t triangles = 0, lost = 0;              /* lost: with corners that are not finite */
+    text_encoding encoding;                      /* for names that Assimp returns as raw bytes of the file */
+    std::vector<int> materials;                  /* index of the output material for each Assimp material; -2: not created yet */
+    std::map<std::vector<unsigned>, int> meshes; /* output mesh for each list of Assimp meshes, so that nodes share meshes */
+    size_t triangles = 0, lost = 0;              /* lost: triangles left out because a corner is not finite */
 };
 
 /* --- files ---------------------------------------------------------------------------------------------------- */
 
-constexpr char BLANK = 0x1f; /* a blank within a name of an OBJ or STL file, which Assimp would end there */
+constexpr char BLANK = 0x1f; /* replaces a blank within a name of an OBJ or STL file, at which Assimp would end the name */
 
-/* In lines `o NAME` and `g NAME` of OBJ, `solid NAME` of STL. */
+/* Replaces blanks inside names: in lines `o NAME` and `g NAME` of OBJ, `solid NAME` of STL. */
 void keep_blanks(char *bytes, size_t count, bool stl)
 {
     const size_t word = stl ? 5 : 1;
@@ -74,7 +75,7 @@ void keep_blanks(char *bytes, size_t count, bool stl)
     }
 }
 
-/* Returns the encoding that an XML declaration states, and blanks it out: the text is UTF-8 when it is parsed. */
+/* Returns the encoding stated in an XML declaration and blanks it out, because the text is converted to UTF-8 before parsing. */
 std::string take_declared(std::string *text)
 {
     size_t end = text->compare(0, 5, "<?xml") == 0 ? text->find("?>") : std::string::npos, from = text->find("encoding=");
@@ -88,7 +89,8 @@ std::string take_declared(std::string *text)
     return name;
 }
 
-/* A text begins with "solid", as some binary files do, too: they have 50 bytes for each triangle. */
+/* Returns whether an STL file is text. Some binary files also begin with "solid", but their size is exactly 50 bytes per triangle plus the
+ * header. */
 bool is_text_of_stl(const std::string &bytes)
 {
     uint32_t triangles = 0;
@@ -97,10 +99,10 @@ bool is_text_of_stl(const std::string &bytes)
     return bytes.size() > 5 && !strncasecmp(bytes.c_str(), "solid", 5) && bytes.size() != 84 + 50 * static_cast<uint64_t>(triangles);
 }
 
-/* Assimp knows the words of STL in small letters only. Names of solids stay. */
+/* Converts the keywords of an STL text to lower case, the only case Assimp accepts. Names of solids are unchanged. */
 std::string with_small_words(std::string text)
 {
-    bool blank = true, named = false; /* blank: only blanks before in this line */
+    bool blank = true, named = false; /* blank: the line has had only blanks so far */
     for (size_t i = 0; i < text.size(); i++) {
         bool space = isspace(static_cast<unsigned char>(text[i])) != 0;
         if (text[i] == '\n' || text[i] == '\r') {
@@ -128,7 +130,7 @@ Assimp::IOStream *of_text(const std::string &text)
     return new Assimp::MemoryIOStream(copy, text.size(), true);
 }
 
-/* Errors that Assimp logs, each text once. */
+/* Collects the errors that Assimp logs, with a count for each distinct text. */
 struct errors : Assimp::LogStream {
     std::map<std::string, size_t> &counts;
 
@@ -144,7 +146,8 @@ struct errors : Assimp::LogStream {
     }
 };
 
-/* Texts in UTF-8, and with names of OBJ files in one word. Materials are found by their names: the first file's encoding is that of all. */
+/* Gives Assimp file contents converted to UTF-8, with blanks in OBJ names replaced. The encoding of the first file applies to all others,
+ * because material files are matched by name. */
 struct files : Assimp::DefaultIOSystem {
     text_encoding *encoding;
     const char *asked;
@@ -223,7 +226,8 @@ double longest_side(const aiScene *scene)
     return longest;
 }
 
-/* FBX says centimetres to a unit and which axis is up; newer versions of Assimp have put both into the root node already. */
+/* Returns centimetres per unit of an FBX file and its up axis. Returns 1 if the root node has a transform: newer versions of Assimp put
+ * both into it. */
 double fbx_axes(const aiScene *scene, const char **axis)
 {
     double centimetres = 1;
@@ -238,7 +242,7 @@ double fbx_axes(const aiScene *scene, const char **axis)
     return std::isfinite(centimetres) && centimetres > 0 ? centimetres : 1;
 }
 
-/* Units and axes as they are asked for, said by the file, or guessed. */
+/* Computes the root transform from units and axes: the user's choice, else the file's, else a guess. */
 void root_matrix(const aiScene *scene, const format &from, const char *units, const char *up, double out[16])
 {
     const char *unit = strcmp(units, "-") != 0 ? units : from.unit;
@@ -325,7 +329,7 @@ void add_primitive(assimp_reader *r, int to, const aiMesh *mesh, const std::vect
     r->triangles += corners.size() / 3;
 }
 
-/* What Assimp makes up has angle brackets, as <STL_BINARY>. */
+/* Returns the name in UTF-8. Names in angle brackets, such as <STL_BINARY>, are made up by Assimp and become "". */
 std::string name_of(const assimp_reader *r, const aiString &from)
 {
     std::string name = from.C_Str()[0] == '<' ? "" : r->encoding.utf8(from.C_Str());
@@ -334,7 +338,7 @@ std::string name_of(const assimp_reader *r, const aiString &from)
     return name;
 }
 
-/* Returns -1 for a node that shows nothing. */
+/* Returns the output mesh of a node, or -1 if the node has no triangles. */
 int mesh_of(assimp_reader *r, const aiNode *node)
 {
     std::vector<unsigned> parts(node->mMeshes, node->mMeshes + node->mNumMeshes);
@@ -394,7 +398,7 @@ void matrix_of(const aiNode *node, const transform &place, double matrix[16])
         }
 }
 
-/* All names and texts of a node and those below it, a line each. */
+/* Appends the names and text properties of a node and its subtree, one a line, for detecting the encoding. */
 void collect(const aiScene *scene, const aiNode *node, std::string *out)
 {
     *out += std::string(node->mName.C_Str()) + "\n";
@@ -410,7 +414,8 @@ void collect(const aiScene *scene, const aiNode *node, std::string *out)
         collect(scene, node->mChildren[i], out);
 }
 
-/* Assimp splits a node of FBX into a chain, one node for each step of its transform; those are joined again. */
+/* Returns whether the node is one step of a transform: Assimp splits an FBX node into a chain of nodes, one per step, which are merged
+ * again here. */
 bool is_step(const aiNode *node)
 {
     return strstr(node->mName.C_Str(), "_$AssimpFbx$_") != nullptr;
@@ -419,7 +424,7 @@ bool is_step(const aiNode *node)
 void add(assimp_reader *r, const aiNode *node, const transform &steps, int parent, int depth)
 {
     double matrix[16];
-    bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity(); /* the node around all others */
+    bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity(); /* the root node that Assimp adds */
     bool step = is_step(node) && node->mNumMeshes == 0;
     transform place = steps * transform_of(node);
     if (depth > MAX_DEPTH)
@@ -444,7 +449,7 @@ const format &format_of(const char *path)
     refuse("its ending is none of those that are read");
 }
 
-/* Assimp takes what is there of a text that is cut off. */
+/* Rejects an STL text that is cut off: Assimp would accept what there is. */
 void check_end_of_stl(const char *path)
 {
     char head[512] = "", tail[512] = "";
@@ -460,7 +465,7 @@ void check_end_of_stl(const char *path)
         refuse("it is cut off: it does not end with endsolid");
 }
 
-/* Surfaces keep their materials' colours alone. */
+/* Reports that textures are ignored: only the colours of materials are kept. */
 void say_textures(const aiScene *scene)
 {
     std::set<std::string> names;
@@ -485,12 +490,12 @@ void convert(const char *input, const char *output, const char *units, const cha
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_LINE | aiPrimitiveType_POINT);
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true); /* else children inherit GeometricTranslation */
-    text_encoding of_file; /* of formats that are text and are decoded before Assimp reads them */
-    importer.SetIOHandler(new files(&of_file, asked)); /* and owns it */
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true); /* otherwise children inherit GeometricTranslation */
+    text_encoding of_file;                             /* encoding of text formats, which are decoded before Assimp reads them */
+    importer.SetIOHandler(new files(&of_file, asked)); /* Assimp takes ownership */
     std::map<std::string, size_t> logged;
     Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
-    Assimp::DefaultLogger::get()->attachStream(new errors(logged), Assimp::Logger::Err); /* which owns it */
+    Assimp::DefaultLogger::get()->attachStream(new errors(logged), Assimp::Logger::Err); /* Assimp takes ownership */
     const aiScene *scene = importer.ReadFile(input, steps | (from.own_normals ? 0U : static_cast<unsigned>(aiProcess_RemoveComponent)));
     if (!scene || !scene->mRootNode)
         refuse("%.250s", strcmp(importer.GetErrorString(), "std::bad_alloc") ? importer.GetErrorString() : "out of memory");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A GLB file in the making. Matrices are column-major, of 16 numbers.
-const FLOAT = 5126, UINT = 5125, VERTICES = 34962, INDICES = 34963, TRIANGLES = 4; // as glTF numbers them
+// Builds a GLB file. Matrices are arrays of 16 numbers, column-major.
+const FLOAT = 5126, UINT = 5125, VERTICES = 34962, INDICES = 34963, TRIANGLES = 4; // constants of glTF
 const GLB_HEAD = 12, CHUNK_HEAD = 8, MAX_BYTES = 0xffffffff;
 
 export function multiplied(a, b) {
@@ -12,7 +12,7 @@ export function multiplied(a, b) {
     return out;
 }
 
-function inverted(m) { // of an affine matrix; null: it has none
+function inverted(m) { // inverse of an affine matrix; null: not invertible
     const [a, b, c, , d, e, f, , g, h, i] = m;
     const determinant = a * (e * i - f * h) - d * (b * i - c * h) + g * (b * f - c * e);
     if (!(Math.abs(determinant) > 1e-300))
@@ -25,7 +25,7 @@ function inverted(m) { // of an affine matrix; null: it has none
     return out;
 }
 
-// Where `place` is, seen from `frame`.
+// Returns the matrix `place` relative to `frame`.
 export function relativeTo(frame, place) {
     const inverse = inverted(frame);
     return inverse ? multiplied(inverse, place) : place;
@@ -62,7 +62,7 @@ export class GlbWriter {
         return this.materials.get(key);
     }
 
-    // `vertices`: place and normal of each, six numbers; null where no triangle is left.
+    // Adds the triangles as a primitive at `place`. `vertices`: position and normal, six numbers each. Returns null if no triangle remains.
     addPrimitive({ vertices, corners }, place, color) {
         const count = Math.floor(vertices.length / 6), positions = new Float32Array(count * 3), normals = new Float32Array(count * 3);
         const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], good = new Uint8Array(count);
@@ -111,7 +111,7 @@ export class GlbWriter {
         Object.assign(this.json.nodes[node], { mesh, matrix });
     }
 
-    // The whole file.
+    // Returns the whole file as a buffer.
     finished() {
         this.json.buffers = [{ byteLength: this.length }];
         let text = Buffer.from(JSON.stringify(this.json));

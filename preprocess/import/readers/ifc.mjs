@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `node ifc.mjs INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: IFC by web-ifc, which lies beside this file, in a process of its own.
-// The spatial tree becomes nodes with GUID, class, storey and property sets; geometry that several elements have is there once. Its last
-// line on stderr says why it failed.
+// `node ifc.mjs INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads IFC with web-ifc, which is installed in the same folder, in its own
+// process. The spatial tree becomes nodes with GUID, class, storey and property sets; equal geometry of several elements is stored once. On
+// failure the last line on stderr is the reason.
 import { createRequire } from 'node:module';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
@@ -10,9 +10,9 @@ import { GlbWriter, relativeTo } from './glb_writer.mjs';
 import { collectErrors, findDamaged, findLosses } from './ifc_losses.mjs';
 import { readSolids, takeSolids } from './ifc_solids.mjs';
 
-const CORNERS = 24; // of a circle
-const MOST_NAMED = 20;
-const MAX_DEPTH = 400; // plantcast-prep reads 512 levels
+const CORNERS = 24; // corners of a full circle
+const MAX_NAMED = 20;
+const MAX_DEPTH = 400; // levels of the tree; plantcast-prep reads at most 512
 const NOT_SHOWN = new Set(['IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcSpace', 'IfcDistributionPort', 'IfcVirtualElement']);
 
 const webIfc = createRequire(import.meta.url)('./web-ifc-api-node.js');
@@ -26,7 +26,7 @@ class Model {
     constructor(api, id) {
         Object.assign(this, { api, id });
         this.children = new Map();
-        this.sets = new Map(); // property sets, by element
+        this.sets = new Map(); // property sets by element id
         this.types = new Map();
         this.lines = new Map();
     }
@@ -37,7 +37,7 @@ class Model {
             try {
                 line = this.api.GetLine(this.id, id);
             } catch {
-                line = null; // what refers to nothing
+                line = null; // a reference to a missing statement
             }
             this.lines.set(id, line);
         }
@@ -50,7 +50,7 @@ class Model {
             yield ids.get(i);
     }
 
-    // Calls f(relating, related) for each pair of a relation.
+    // Calls f(relating, related) with the ids of each pair of a relationship.
     relate(type, one, many, f) {
         for (const id of this.ofType(type)) {
             const line = this.line(id), relating = line?.[one]?.value, related = [line?.[many] ?? []].flat();
@@ -111,7 +111,7 @@ class Model {
     }
 }
 
-// One mesh for an element, in the frame of its first part; of elements with equal parts, one for all.
+// Returns one mesh for an element, in the frame of its first part. Elements with equal parts share a mesh.
 function meshOf(glb, geometries, parts, name) {
     const frame = parts[0].flatTransformation;
     const placed = parts.map((part) => ({ ...part, place: relativeTo(frame, part.flatTransformation) }));
@@ -125,7 +125,7 @@ function meshOf(glb, geometries, parts, name) {
     return { mesh: geometries.made.get(key), matrix: frame };
 }
 
-// Geometry is there only while its mesh is streamed.
+// Copies all geometry while web-ifc streams its meshes; it is not available afterwards.
 function readGeometry(api, id, model) {
     const shown = new Map(), known = new Map();
     const copy = (geometryId) => {
@@ -181,11 +181,11 @@ function addTree(glb, model, { shown, geometries }, root) {
     for (const id of model.ofType(webIfc.IFCPROJECT))
         add(id, root, '', 0);
     for (const id of shown.keys())
-        add(id, root, '', 0); // what the tree does not hold
+        add(id, root, '', 0); // elements outside the spatial tree
     return { drawn, storeys };
 }
 
-// IFC is ASCII with escapes by its standard; many programs write names as their system has them.
+// Converts the file's text to UTF-8. Standard IFC is ASCII with escapes, but many programs write names in their system's encoding.
 function inUtf8(bytes, encoding) {
     if (['-', 'UTF-8'].includes(encoding))
         return bytes;
@@ -198,7 +198,8 @@ function inUtf8(bytes, encoding) {
     return Buffer.from(decoder.decode(bytes));
 }
 
-// Lists elements that Open CASCADE is to build; plantcast-import then starts this program once more. A list that is there was answered.
+// Writes the list of elements that Open CASCADE should build; plantcast-import then runs this program a second time. An existing list means
+// that this is the second run.
 function askForSolids(list, elements) {
     if (elements.length > 0 && !existsSync(list))
         writeFileSync(list, `${[...new Set(elements)].join('\n')}\n`);
@@ -210,7 +211,7 @@ async function main([input, output, , , , encoding]) {
         throw new Error('it is no IFC file: it does not begin with ISO-10303-21');
     if (!bytes.subarray(-4096).toString('latin1').includes('END-ISO-10303-21'))
         throw new Error('it is cut off: it does not end with END-ISO-10303-21');
-    const errors = collectErrors(); // before web-ifc takes hold of the console
+    const errors = collectErrors(); // must precede web-ifc, which captures the console
     const api = new webIfc.IfcAPI();
     api.SetWasmPath(`${folder}/`, true);
     await api.Init();
@@ -235,8 +236,8 @@ async function main([input, output, , , , encoding]) {
     const openings = [...model.ofType(webIfc.IFCRELVOIDSELEMENT)].length;
     process.stdout.write([`${schema}: ${drawn.size} elements with a shape, ${lost.length} lost, ${storeys} storeys, ${openings} openings ` +
         `cut; ${solids.elements.size} elements by Open CASCADE; of the others circles have ${CORNERS} corners (--chord does not apply)`,
-    ...lines.length > 0 ? [`not shown: ${lines.length} elements that are only lines or points: ${lines.slice(0, MOST_NAMED).join(', ')}${
-        lines.length > MOST_NAMED ? ', ...' : ''}`.replace(/[\t\n]/g, ' ')] : [],
+    ...lines.length > 0 ? [`not shown: ${lines.length} elements that are only lines or points: ${lines.slice(0, MAX_NAMED).join(', ')}${
+        lines.length > MAX_NAMED ? ', ...' : ''}`.replace(/[\t\n]/g, ' ')] : [],
     ...lost, ...solids.said, ...errors.lines(model, solids), ''].join('\n'));
     if (drawn.size === 0)
         throw new Error(`there is no surface in it${lost.length > 0 ? `: ${lost.length} elements have no triangles, such as ` +
@@ -244,7 +245,8 @@ async function main([input, output, , , , encoding]) {
 }
 
 main(process.argv.slice(2)).catch((error) => {
-    const reason = String(error?.message ?? error).split('\n')[0], ours = error?.constructor === Error; // else of web-ifc itself
+    // errors that are not plain Error objects come from web-ifc itself
+    const reason = String(error?.message ?? error).split('\n')[0], ours = error?.constructor === Error;
     process.stderr.write(`${ours && reason ? reason : `its content could not be read (${reason || 'no reason is known'})`}\n`);
     process.exit(1);
 });

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The entities of an IfcAdvancedBrep are those of STEP (ISO 10303-42) by other names: they are written as a STEP file, which Open CASCADE
- * reads and mends. */
+/* Builds an IfcAdvancedBrep. Its entities are those of STEP (ISO 10303-42) under other names, so they are written as a STEP file, which
+ * Open CASCADE reads and repairs. */
 #include <STEPControl_Reader.hxx>
 #include <TopExp_Explorer.hxx>
 #include <Interface_InterfaceModel.hxx>
@@ -48,7 +48,8 @@ const char *const names[][2] = { { "IFCADVANCEDBREP", "MANIFOLD_SOLID_BREP" },
                                  { "IFCVECTOR", "VECTOR" },
                                  { "IFCVERTEXPOINT", "VERTEX_POINT" } };
 
-/* Head of every STEP file: its units, set to those of the IFC file, and its schema. The numbers 1 to 9 are its own; #ID becomes #(ID+9). */
+/* Number of statements (#1 to #9) in the fixed head of the STEP file: units, set to those of the IFC file, and schema. IFC statement #ID
+ * becomes #(ID+9). */
 constexpr int SHIFT = 9;
 
 class step_writer
@@ -62,7 +63,7 @@ class step_writer
     {
         add(root);
         std::ostringstream head;
-        head << std::showpoint << std::setprecision(17); /* STEP tells whole numbers from others by the point */
+        head << std::showpoint << std::setprecision(17); /* always prints a decimal point, which STEP requires in real numbers */
         head << "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
              << "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n"
              << "#1=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));\n"
@@ -83,7 +84,7 @@ class step_writer
     const ifc_model &in;
     std::ostringstream out;
     std::set<int> done;
-    int made = 0; /* statements that have no counterpart in the file, numbered downwards from the largest */
+    int made = 0; /* statements added so far that have no counterpart in the IFC file; their numbers count down from 2000000000 */
 
     void write(std::ostream &to, const value &from)
     {
@@ -109,13 +110,13 @@ class step_writer
         }
     }
 
-    /* `whole_numbers` is set while values are written that STEP wants without a point. */
+    /* Writes a number. STEP wants whole numbers without a decimal point (`whole_numbers`) and real numbers with one. */
     void write_number(std::ostream &to, double number)
     {
         char text[40];
         snprintf(text, sizeof(text), whole_numbers ? "%.0f" : "%.17G", number);
         std::string digits = text;
-        if (!whole_numbers && digits.find('.') == std::string::npos) /* as in "1.E-05" */
+        if (!whole_numbers && digits.find('.') == std::string::npos) /* such as "1.E-05" */
             digits.insert(std::min(digits.find('E'), digits.size()), ".");
         to << digits;
     }
@@ -144,7 +145,7 @@ class step_writer
         return to.str();
     }
 
-    /* A curve of a profile, whose points lie in XY, at a place. */
+    /* Returns the reference to the curve of a swept surface's profile. Throws unsupported if the surface has a placement of its own. */
     std::string swept_curve(const entity &surface)
     {
         entity profile = in.statements.get(surface[0]);
@@ -173,7 +174,8 @@ class step_writer
             write_values(to, from, knots, weights, whole);
             to << ')' << (curve ? "CURVE()" : "") << "GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_" << kind << '(';
             write_values(to, from, weights, weights + 1, whole);
-            to << ")REPRESENTATION_ITEM('')" << (curve ? ")" : "SURFACE())"); /* in the order of their names */
+            /* STEP requires the parts of a complex entity in alphabetical order */
+            to << ")REPRESENTATION_ITEM('')" << (curve ? ")" : "SURFACE())");
             return to.str();
         }
         if (type == "IFCSURFACEOFLINEAREXTRUSION") {
@@ -185,7 +187,7 @@ class step_writer
             std::string swept = swept_curve(from);
             return "SURFACE_OF_REVOLUTION(''," + swept + ',' + text_of(from[2]) + ')';
         }
-        if (type == "IFCCARTESIANPOINT" || type == "IFCDIRECTION") { /* in space, also where the file leaves out a zero */
+        if (type == "IFCCARTESIANPOINT" || type == "IFCDIRECTION") { /* always three coordinates: IFC may omit the third */
             for (size_t i = 0; i < 3; i++) {
                 to << (i > 0 ? "," : "");
                 write_number(to, i < from[0].list.size() ? file::number(from[0].list[i]) : 0);
@@ -198,7 +200,7 @@ class step_writer
         }
         if (type == "IFCORIENTEDEDGE")
             return "ORIENTED_EDGE('',*,*," + text_of(from[2]) + (from[3].is(".F.") ? ",.F.)" : ",.T.)");
-        if (type == "IFCSURFACECURVE" || type == "IFCSEAMCURVE") /* its curve in space says all */
+        if (type == "IFCSURFACECURVE" || type == "IFCSEAMCURVE") /* the 3D curve alone defines the edge */
             throw unsupported(type);
         for (const auto &known : names)
             if (type == known[0]) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Points, placements and curves. A curve becomes pieces of curves of Open CASCADE. */
+/* Reads points, placements and curves. A curve becomes pieces of Open CASCADE curves. */
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <GCPnts_AbscissaPoint.hxx>
@@ -31,8 +31,8 @@ namespace ifc
 namespace
 {
 
-constexpr double SHORTEST_MM = 1e-4; /* shorter pieces are left out: sweeps along them fail */
-constexpr double JOINT_MM = 1; /* ends of neighbouring pieces that are nearer are meant to meet */
+constexpr double SHORTEST_MM = 1e-4; /* millimetres; shorter pieces are dropped, since sweeps along them fail */
+constexpr double JOINT_MM = 1;       /* millimetres; ends of neighbouring pieces that are closer are joined */
 
 std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve, int depth);
 
@@ -56,7 +56,7 @@ bool straight(const gp_Pnt &from, const gp_Pnt &to, double span, std::vector<cur
 void add_arc(const gp_Pnt &from, const gp_Pnt &through, const gp_Pnt &to, std::vector<curve_piece> *out)
 {
     GC_MakeArcOfCircle arc(from, through, to);
-    if (!arc.IsDone()) { /* the three are in line */
+    if (!arc.IsDone()) { /* the three points are collinear */
         straight(from, to, 1, out);
         return;
     }
@@ -95,7 +95,8 @@ std::vector<curve_piece> indexed(const ifc_model &in, const entity &curve)
     return out;
 }
 
-/* Returns the parameter of an IfcTrimmingSelect, in the units of the curve: a parameter or a point, of which the file prefers one. */
+/* Returns the parameter of an IfcTrimmingSelect in units of the curve. The select holds a parameter, a point or both; by_point says which
+ * one the file prefers. */
 double trim_at(const ifc_model &in, const curve_piece &basis, const value &select, bool by_point, double per_unit)
 {
     const value *parameter = nullptr, *point = nullptr;
@@ -112,7 +113,7 @@ double trim_at(const ifc_model &in, const curve_piece &basis, const value &selec
     return file::number(*parameter) * per_unit;
 }
 
-/* Returns the one curve that a basis curve is, whole. */
+/* Returns the whole basis curve as one piece. Fails if the curve consists of several. */
 curve_piece basis_of(const ifc_model &in, const entity &curve);
 
 std::vector<curve_piece> trimmed_curve(const ifc_model &in, const entity &curve, int depth)
@@ -281,7 +282,7 @@ gp_Dir direction_of(const ifc_model &in, const value &reference, const gp_Dir &o
     return { at[0], at[1], at[2] };
 }
 
-/* A frame with this Z, and X as near to `x` as can be. */
+/* Returns a frame with the given Z axis, and X as close to `x` as possible. */
 static gp_Ax3 frame_of(const gp_Pnt &origin, const gp_Dir &z, const gp_Dir &x)
 {
     return z.IsParallel(x, 1e-9) ? gp_Ax3(origin, z) : gp_Ax3(origin, z, x);
@@ -307,10 +308,10 @@ gp_GTrsf operator_of(const ifc_model &in, const entity &from)
     gp_Dir x = direction_of(in, from[0], gp::DX()), z = flat ? gp::DZ() : direction_of(in, from[4], gp::DZ());
     if (!flat && from[0].absent() && !from[4].absent())
         x = gp_Ax3(gp::Origin(), z).XDirection();
-    if (!flat && !z.IsParallel(x, 1e-9)) /* X is turned square to Z */
+    if (!flat && !z.IsParallel(x, 1e-9)) /* make X perpendicular to Z */
         x = gp_Ax3(gp::Origin(), z, x).XDirection();
     gp_Dir square = z.Crossed(x);
-    double side = square.Dot(direction_of(in, from[1], square)) >= 0 ? 1 : -1; /* -1: it mirrors */
+    double side = square.Dot(direction_of(in, from[1], square)) >= 0 ? 1 : -1; /* -1: the transform mirrors */
     double scale = file::number(from[3], 1);
     const double scales[3] = { scale, file::number(from[flat ? 4 : 5], scale), flat ? 1 : file::number(from[6], scale) };
     const gp_XYZ axes[3] = { x.XYZ(), square.XYZ() * side, z.XYZ() };
@@ -363,7 +364,7 @@ std::vector<curve_piece> rounded(const std::vector<gp_Pnt> &points, const std::v
 {
     std::vector<curve_piece> out;
     size_t count = points.size();
-    std::vector<gp_Pnt> before = points, after = points; /* each corner: where its arc begins and ends */
+    std::vector<gp_Pnt> before = points, after = points; /* start and end of the arc at each corner */
     for (size_t i = closed ? 0 : 1; i + (closed ? 0 : 1) < count; i++) {
         gp_Vec in(points[i], points[(i + count - 1) % count]), on(points[i], points[(i + 1) % count]);
         double radius = radii.empty() ? 0 : radii[i % radii.size()], angle = in.Angle(on);

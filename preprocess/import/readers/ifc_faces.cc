@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solids and surfaces of flat faces: faceted B-reps, surface models, face sets. Faces that close become a solid. */
+/* Builds solids and surfaces from flat faces: faceted B-reps, surface models and face sets. A closed set of faces becomes a solid. */
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
@@ -18,7 +18,7 @@ namespace ifc
 namespace
 {
 
-constexpr size_t MOST_SEWN = 20000; /* faces: sewing more takes minutes */
+constexpr size_t MAX_SEWN_FACES = 20000; /* faces; sewing more takes minutes */
 constexpr double SEWN_MM = 1e-3;
 
 using polygon = std::vector<gp_Pnt>;
@@ -45,7 +45,7 @@ TopoDS_Wire wire_through(const polygon &points)
     return wire.IsDone() ? wire.Wire() : TopoDS_Wire();
 }
 
-/* Adds a face; as a fan of triangles if its corners are not in a plane. Returns false for a face without area. */
+/* Adds a face. A face whose corners are not in a plane becomes a fan of triangles. Returns false for a face without area. */
 bool add_face(const flat_face &from, TopoDS_Compound *to)
 {
     BRep_Builder builder;
@@ -83,7 +83,7 @@ TopoDS_Shape joined(const std::vector<flat_face> &faces)
         made += add_face(face, &all);
     if (made == 0)
         throw unsupported("no face of it has an area");
-    if (made > MOST_SEWN)
+    if (made > MAX_SEWN_FACES)
         return all;
     BRepBuilderAPI_Sewing sewing(SEWN_MM);
     sewing.Add(all);
@@ -109,7 +109,7 @@ polygon loop_of(const ifc_model &in, const entity &bound)
     return out;
 }
 
-/* A face whose outer bounds are several becomes several faces; where none is said to be the outer one, it is the largest. */
+/* Reads a face. One with several outer bounds becomes several faces; if no bound is marked as outer, the largest is. */
 void take_face(const ifc_model &in, const entity &face, std::vector<flat_face> *out)
 {
     std::vector<polygon> inner;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One pass finds where statements are; their values are parsed one statement at a time. */
+/* Finds the position of every statement in one pass; parses the values of a statement on demand. */
 #include "preprocess/import/readers/ifc_file.hh"
 
 #include <cctype>
@@ -13,9 +13,9 @@ namespace ifc
 namespace
 {
 
-constexpr int MAX_NESTING = 64; /* of lists */
+constexpr int MAX_NESTING = 64; /* nesting depth of lists */
 
-/* Returns the place after the string, the comment or the one character at `at`. */
+/* Returns the offset after the string, comment or single character at `at`. */
 size_t skip_one(const std::string &bytes, size_t at)
 {
     size_t end = at + 1;
@@ -118,7 +118,7 @@ struct ifc_parser {
             at = end + 1;
             return out;
         }
-        if (isalpha(static_cast<unsigned char>(c))) { /* a typed value, such as IFCLABEL('P-101') */
+        if (isalpha(static_cast<unsigned char>(c))) { /* typed value, such as IFCLABEL('P-101') */
             std::string type = word();
             if (next() != '(')
                 throw unsupported("a statement is damaged");
@@ -144,7 +144,7 @@ file::file(const char *path)
     if (!in)
         throw std::runtime_error("it cannot be opened");
     bytes.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-    bool begins = true; /* a statement: after the last one's semicolon */
+    bool begins = true; /* the next statement may begin here: the last semicolon has been passed */
     for (size_t at = 0; at < bytes.size();) {
         if (begins && bytes[at] == '#') {
             ifc_parser p = { bytes, at + 1 };

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Losses of an IFC file: elements with a shape that became no triangles, and the errors that web-ifc logs.
+// Reports losses of an IFC file: elements that have a shape but no triangles, and errors that web-ifc logs.
 const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|GeometricSet|BoundingBox|Vertex|Edge|Alignment/;
-const REFERENCE = 5; // as web-ifc numbers kinds of values
-// A line of findings.h.
+const REFERENCE = 5; // web-ifc's number for this kind of value
+// Formats a record of findings.h.
 const fields = (...values) => values.map((value) => String(value).replace(/\s+/g, ' ').trim()).join('\t');
-const MOST_IDS = 20; // of one kind of error that are named
+const MAX_IDS = 20; // statement ids listed per kind of error
 
-// Returns the numbers of all statements that these refer to, themselves among them.
+// Returns the ids of the given statements and of all statements that they refer to, directly or indirectly.
 function reached(model, ids) {
     const found = new Set(), open = ids.map((value) => ({ type: REFERENCE, value }));
     while (open.length > 0) {
@@ -21,8 +21,8 @@ function reached(model, ids) {
     return found;
 }
 
-// Collects what web-ifc prints; it has no other way to say what it left out. Returns { stop, at, lines }: stop() ends it; at() returns the
-// numbers of statements with errors; lines() the lines to print, without errors in what Open CASCADE built instead.
+// Captures what web-ifc prints, its only way to report omissions. Returns { stop, at, lines }: stop() ends the capture; at() returns the
+// ids of statements with errors; lines() returns the lines to print, without errors in items that Open CASCADE built instead.
 export function collectErrors() {
     const { log, error } = console, found = new Map();
     console.log = console.error = (...words) => {
@@ -32,18 +32,19 @@ export function collectErrors() {
                 found.set(text, (found.get(text) ?? []).concat(id ? [Number(id)] : []));
         }
     };
-    const lines = (model, solids) => { // as findings.h takes them
+    const lines = (model, solids) => { // in the format of findings.h
         const built = found.size > 0 ? [...solids.elements.values()].flatMap(({ parts }) => parts.map(({ item }) => item)) : [];
         const instead = reached(model, built), left = [...found].map(([text, ids]) =>
             [text, ids.filter((id) => !instead.has(id)), ids.length > 0]);
         return left.filter(([, ids, numbered]) => ids.length > 0 || !numbered).map(([text, ids]) =>
             fields('error', Math.max(ids.length, 1), `web-ifc: ${text} ${
-                [...ids.slice(0, MOST_IDS).map((id) => `#${id}`), ...ids.length > MOST_IDS ? ['...'] : []].join(' ')}`));
+                [...ids.slice(0, MAX_IDS).map((id) => `#${id}`), ...ids.length > MAX_IDS ? ['...'] : []].join(' ')}`));
     };
     return { stop: () => Object.assign(console, { log, error }), at: () => new Set([...found.values()].flat()), lines };
 }
 
-// Returns the items of a shape, also of what it maps. Each representation is visited once: a file may map one into itself.
+// Returns the items of a shape, including those of mapped representations. Each representation is visited once, since a file may map one
+// into itself.
 function itemsOf(model, shape) {
     const items = new Set(), seen = new Set(), open = [model.line(shape)?.Representations ?? []].flat().map((one) => one?.value);
     while (open.length > 0) {
@@ -62,7 +63,7 @@ function itemsOf(model, shape) {
     return [...items];
 }
 
-// Returns the elements in whose shapes web-ifc found errors.
+// Returns the elements whose shapes contain statements with web-ifc errors.
 export function findDamaged(model, product, errors) {
     const known = new Map(), isDamaged = (item) => {
         if (!known.has(item))
@@ -75,8 +76,8 @@ export function findDamaged(model, product, errors) {
     });
 }
 
-// Returns { lost, lines, ids }: elements with a shape that is not shown, each as a line of findings.h; the elements that are only lines and
-// points; the numbers of the lost ones.
+// Returns { lost, lines, ids }: a findings.h line for each element that has a shape but no triangles; the elements that consist only of
+// lines and points; the ids of the lost elements.
 export function findLosses(model, product, isShown, failed) {
     const lost = [], lines = [], ids = [];
     for (const id of model.ofType(product)) {

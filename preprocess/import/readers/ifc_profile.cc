@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Profiles: outlines of lines and arcs, or curves of the file. Slopes of flanges are left out. */
+/* Builds profiles: outlines of lines and arcs, or curves of the file. Slopes of flanges are ignored. */
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
@@ -23,7 +23,7 @@ namespace ifc
 namespace
 {
 
-/* A corner of an outline, rounded by `radius`. */
+/* A corner of an outline in millimetres, rounded by `radius`. */
 struct outline_corner {
     double x, y, radius;
 };
@@ -68,9 +68,9 @@ std::vector<TopoDS_Face> faces_of(const TopoDS_Wire &outer, const std::vector<To
     return { fix.Face() };
 }
 
-using lengths = std::vector<double>; /* from the third value on; 0: absent */
+using lengths = std::vector<double>; /* lengths of a profile from its third value on; 0: absent */
 
-/* I with flanges of two widths; radii where the web meets each flange. */
+/* Builds an I profile whose flanges may differ in width. The fillet radii are those between the web and each flange. */
 TopoDS_Wire i_shape(double depth, double web, double bottom, double bottom_thick, double bottom_fillet, double top, double top_thick,
                     double top_fillet)
 {
@@ -149,7 +149,7 @@ std::vector<TopoDS_Face> parametric(const std::string &type, const lengths &d)
     throw unsupported(type);
 }
 
-/* Returns points along pieces, no chord further than chord_mm from the curve. */
+/* Returns points along the pieces, with chords that deviate from the curve by at most chord_mm. */
 std::vector<gp_Pnt> points_along(const std::vector<curve_piece> &pieces, double chord_mm)
 {
     std::vector<gp_Pnt> out = { pieces.front().start() };
@@ -162,7 +162,7 @@ std::vector<gp_Pnt> points_along(const std::vector<curve_piece> &pieces, double 
     return out;
 }
 
-/* The outline of a centre line in XY with a thickness; corners are mitred, ends are square to the line. */
+/* Returns the outline of a centre line in the XY plane with a thickness. Corners are mitred, ends are perpendicular to the line. */
 TopoDS_Wire thickened(const std::vector<curve_piece> &pieces, double thickness, double chord_mm)
 {
     std::vector<gp_Pnt> line = points_along(pieces, chord_mm), right;
@@ -171,7 +171,7 @@ TopoDS_Wire thickened(const std::vector<curve_piece> &pieces, double thickness, 
         size_t before = i > 0 ? i - 1 : 0, after = i + 1 < line.size() ? i : i - 1;
         gp_Vec in(line[before], line[before + 1]), on(line[after], line[after + 1]);
         gp_Vec left = gp_Vec(gp::DZ()).Crossed(in.Normalized()) + gp_Vec(gp::DZ()).Crossed(on.Normalized());
-        if (left.Magnitude() < 0.2) /* the mitre would be longer than ten times the thickness */
+        if (left.Magnitude() < 0.2) /* the mitre would be longer than ten thicknesses */
             throw unsupported("a centre line that turns back");
         gp_Vec side = left.Normalized() * (thickness / 2 / (left.Magnitude() / 2));
         out.push_back({ line[i].X() + side.X(), line[i].Y() + side.Y(), 0 });
@@ -184,7 +184,7 @@ TopoDS_Wire thickened(const std::vector<curve_piece> &pieces, double thickness, 
 
 std::vector<TopoDS_Face> profile_within(const ifc_model &in, const entity &profile, int depth);
 
-/* Of parts that are moved, or of several profiles. */
+/* Returns the faces of a derived or composite profile: a profile that is moved, or several profiles together. */
 std::vector<TopoDS_Face> assembled(const ifc_model &in, const entity &profile, int depth)
 {
     std::vector<TopoDS_Face> out;

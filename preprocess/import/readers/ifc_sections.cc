@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solids through sections that lie along a curve. */
+/* Builds solids through cross-sections that lie along a curve. */
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepOffsetAPI_ThruSections.hxx>
@@ -32,7 +32,7 @@ TopoDS_Shape through(const std::vector<TopoDS_Wire> &sections)
     return loft.Shape();
 }
 
-/* Outlines of a face, its outer one first. */
+/* Returns the outlines of a face, the outer one first. */
 std::vector<TopoDS_Wire> wires_of(const TopoDS_Face &face)
 {
     std::vector<TopoDS_Wire> out = { BRepTools::OuterWire(face) };
@@ -42,7 +42,7 @@ std::vector<TopoDS_Wire> wires_of(const TopoDS_Face &face)
     return out;
 }
 
-/* --- sections at their own places */
+/* --- sections with their own placements */
 
 TopoDS_Shape spine_of(const ifc_model &in, const entity &item)
 {
@@ -55,15 +55,15 @@ TopoDS_Shape spine_of(const ifc_model &in, const entity &item)
     return through_faces(faces);
 }
 
-/* --- sections upright on a curve */
+/* --- sections placed upright along a curve */
 
 struct station {
-    double along_mm; /* from the start of the curve */
-    gp_Vec offset;   /* mm: left, up, ahead */
+    double along_mm; /* millimetres along the curve from its start */
+    gp_Vec offset;   /* millimetres: to the left, up, ahead */
     int profile;
 };
 
-/* Returns the place of a section: X to the left, Y up. */
+/* Returns the placement of an upright section on the curve: X points left, Y up. */
 gp_Trsf upright(const std::vector<curve_piece> &pieces, const station &at)
 {
     double left_mm = at.along_mm;
@@ -106,7 +106,7 @@ station station_of(const ifc_model &in, const value &reference, const value &pro
     return { length(0), gp_Vec(length(1), length(2), length(3)), profile.id };
 }
 
-/* Adds stations between two of the same profile where the curve between them is not straight. */
+/* Adds intermediate stations between two with the same profile, where the curve between them is not straight. */
 void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, station from, const station &to, std::vector<station> *out)
 {
     double at = 0;
@@ -117,7 +117,7 @@ void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, st
         if (high - low < 1e-6)
             continue;
         double turn = straight ? 0 : std::acos(std::fmax(-1, std::fmin(1, part.tangent(false).Dot(part.tangent(true)))));
-        double chord = std::acos(1 - std::fmin(0.5, in.chord_mm * turn / length)); /* half the angle that a chord may take */
+        double chord = std::acos(1 - std::fmin(0.5, in.chord_mm * turn / length)); /* half the turn, in radians, that one chord may take */
         int steps = straight ? 1 : std::max(8, static_cast<int>(std::ceil(turn / chord)));
         for (int i = 1; i <= steps; i++) {
             double share = (low + (high - low) * i / steps - from.along_mm) / (to.along_mm - from.along_mm);

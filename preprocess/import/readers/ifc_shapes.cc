@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the items to build, from products through their representations, and tessellates each once. */
+/* Finds the items to build, from products through their representations, and tessellates each item once. */
 #include "preprocess/import/readers/ifc_shapes.hh"
 
 #include <Standard_Failure.hxx>
@@ -16,7 +16,7 @@ namespace ifc
 namespace
 {
 
-constexpr size_t REPRESENTATION = 6, PLACEMENT = 5; /* among the values of a product */
+constexpr size_t REPRESENTATION = 6, PLACEMENT = 5; /* indices among the values of a product */
 
 /* --- units */
 
@@ -37,7 +37,7 @@ double unit_of(const file &in, const entity &unit, int depth)
 {
     if (unit.is("IFCSIUNIT"))
         return si_prefix(unit[2]);
-    entity factor = in.get(unit[3]); /* of a conversion-based unit */
+    entity factor = in.get(unit[3]); /* a conversion-based unit */
     if (depth > MAX_CHAIN)
         throw unsupported("its units refer to each other in a circle");
     return file::number(factor[0]) * unit_of(in, in.get(factor[1]), depth + 1);
@@ -67,22 +67,22 @@ ifc_model model_of(const file &in, double chord_mm)
 
 struct ifc_part {
     int mesh;
-    double origin[3]; /* of its vertices, in mm, so that an item far from its element's origin keeps its precision */
+    double origin[3]; /* origin of the mesh's vertices, millimetres; it keeps precision for an item far from its element's origin */
 };
 
 struct ifc_writer {
     const ifc_model &in;
     struct glb_scene *scene;
-    std::map<int, ifc_part> parts;      /* by item */
-    std::map<int, std::string> failed; /* items and elements that are left to web-ifc, and why */
-    std::set<int> asked; /* elements of which web-ifc builds nothing, or not all */
+    std::map<int, ifc_part> parts;     /* built items, by statement id */
+    std::map<int, std::string> failed; /* items and elements left to web-ifc, with the reason */
+    std::set<int> asked;               /* elements of which web-ifc builds nothing or only a part */
     size_t elements = 0;
 };
 
 ifc_part add_mesh(ifc_writer *w, const TopoDS_Shape &shape, int id)
 {
     triangles all = triangles_of(w->in, shape);
-    if (volume_of(all) < 0) { /* turned inside out */
+    if (volume_of(all) < 0) { /* the solid is inside out: reverse triangles and normals */
         for (size_t i = 0; i < all.corners.size(); i += 3)
             std::swap(all.corners[i], all.corners[i + 1]);
         for (gp_Vec &normal : all.normals)
@@ -109,7 +109,7 @@ ifc_part add_mesh(ifc_writer *w, const TopoDS_Shape &shape, int id)
     return out;
 }
 
-/* Tessellates an item once. Returns false if it could not be built, which is said once. */
+/* Tessellates an item, once per file. Returns false if the item could not be built; the reason is reported once. */
 bool build(ifc_writer *w, const entity &item)
 {
     std::string why;
@@ -131,7 +131,7 @@ bool build(ifc_writer *w, const entity &item)
 
 /* --- elements */
 
-/* Whether an item, or a solid that a boolean operation takes, is one of those to build. */
+/* Returns whether an item, or an operand of a boolean item, is of a type that is built here. */
 bool wanted(const ifc_model &in, const entity &item, int depth)
 {
     if (depth > MAX_CHAIN)
@@ -146,8 +146,8 @@ struct placed_item {
     gp_GTrsf place;
 };
 
-/* Collects the items of a representation, and of those that it maps. Clears *whole if one of them is left to web-ifc.
- * all: items of every type are built. */
+/* Collects the items of a representation and of the representations it maps. Clears *whole if any item is left to web-ifc. all: collect
+ * items of every type. */
 void collect(ifc_writer *w, const entity &representation, const gp_GTrsf &above, int depth, bool all, std::vector<placed_item> *out,
              bool *whole)
 {
@@ -180,7 +180,7 @@ gp_Trsf object_placement(const ifc_model &in, const value &reference, int depth)
     return object_placement(in, from[0], depth + 1) * placement_of(in, from[1]);
 }
 
-/* From millimetres and Z up to metres and Y up, at a place. */
+/* Computes the 4 x 4 matrix of a placement, from millimetres with Z up to metres with Y up. */
 void matrix_of(const gp_GTrsf &place, double scale, bool turn, const double shift[3], double out[16])
 {
     static const int rows[3] = { 0, 2, 1 };
@@ -196,7 +196,7 @@ void matrix_of(const gp_GTrsf &place, double scale, bool turn, const double shif
         out[4 * column + 3] = column == 3;
 }
 
-/* A representation of what a body looks like, and not of its axis, its plan or the room that it needs. */
+/* Returns whether a representation shows the body, and not the axis, plan or clearance space of an element. */
 bool is_body(const entity &representation)
 {
     static const char *const others[] = { "Axis", "FootPrint", "Box", "Annotation", "Profile", "Clearance", "Lighting",
@@ -244,7 +244,7 @@ bool has_any(const file &in)
 
 } // namespace ifc
 
-/* Numbers that blanks separate. */
+/* Reads a list of numbers separated by blanks. */
 static std::set<int> numbers_in(const char *path)
 {
     std::ifstream list(path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Solids of an IFC file that Open CASCADE built (ifc_shapes.hh), and what web-ifc draws of the others.
+// Merges solids of an IFC file that Open CASCADE built (ifc_shapes.hh) with web-ifc's geometry for all other items.
 import { existsSync, readFileSync } from 'node:fs';
 import { multiplied } from './glb_writer.mjs';
 
@@ -16,7 +16,8 @@ function parseGlb(path) {
     return { json, read };
 }
 
-// Returns { elements, failed }: of each element its parts and whether they are all that it shows; the reasons of items that were not built.
+// Returns { elements, failed }: for each element its parts and whether they are all of its geometry; for each item that could not be built,
+// the reason.
 export function readSolids(path) {
     const elements = new Map(), failed = new Map();
     if (!existsSync(path))
@@ -42,7 +43,7 @@ export function readSolids(path) {
     return { elements, failed };
 }
 
-// Returns the colour of an item: of its style, if it has one.
+// Returns a function that gives the colour of an item from its style, if it has one.
 function styles(model, type) {
     const found = new Map();
     const colorOf = (id, depth) => {
@@ -59,8 +60,8 @@ function styles(model, type) {
     return (item) => found.get(item);
 }
 
-// Puts solids in the place of what web-ifc draws of the same items. An element with openings stays as web-ifc cut it. Sets solids.said to
-// lines of findings.h about what is not as it should be.
+// Replaces web-ifc's geometry by the solids of the same items. An element with openings keeps web-ifc's geometry, which has them cut out.
+// Sets solids.said to findings.h lines about problems.
 export function takeSolids(model, solids, { shown, known }, { styledItem, voids }) {
     const colorOf = styles(model, styledItem), cut = new Set();
     model.relate(voids, 'RelatingBuildingElement', 'RelatedOpeningElement', (element) => cut.add(element));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Profiles swept along curves, pipes among them. */
+/* Sweeps profiles and disks (pipes) along curves. */
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepOffsetAPI_MakePipe.hxx>
@@ -29,7 +29,7 @@ namespace ifc
 namespace
 {
 
-constexpr double VOLUME_SLACK = 0.04; /* 24 corners leave out 1.1 % of a circle */
+constexpr double VOLUME_SLACK = 0.04; /* relative; a polygon of 24 corners has 1.1 % less area than its circle */
 
 TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, const gp_Dir *up)
 {
@@ -47,7 +47,7 @@ TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, co
     return pipe.Shape();
 }
 
-/* Returns the placement of the XY plane square to the first piece. */
+/* Returns the placement of the XY plane perpendicular to the first piece at its start. */
 gp_Trsf start_of(const std::vector<curve_piece> &pieces, const gp_Dir *up)
 {
     gp_Dir along(pieces.front().tangent(false));
@@ -72,7 +72,7 @@ TopoDS_Shape along(const TopoDS_Face &face, const std::vector<curve_piece> &piec
     return out;
 }
 
-/* Sweeps a disk along one piece: exactly, where it is a line or an arc. */
+/* Sweeps a disk along one piece. Lines and arcs are exact. */
 TopoDS_Shape along_piece(const TopoDS_Face &face, const curve_piece &part)
 {
     TopoDS_Face placed = TopoDS::Face(BRepBuilderAPI_Transform(face, start_of({ part }, nullptr), Standard_True).Shape());
@@ -107,9 +107,9 @@ TopoDS_Shape mitred(const TopoDS_Face &face, const std::vector<curve_piece> &pie
     return along(face, pieces, nullptr, nullptr);
 }
 
-/* Sweeps a disk along all pieces. What the volume must be is known: area times length. Where a way of sweeping leaves another one, corners
- * or whole stretches of its triangles are wrong, and the next way is tried. The last one sweeps each piece by itself, with closed ends and
- * corners that are not mitred. */
+/* Sweeps a disk along all pieces. The expected volume is known: area times length. If the result of a sweeping method differs, parts of its
+ * triangles are wrong, and the next method is tried. The last method sweeps each piece separately, with closed ends and without mitred
+ * corners. */
 TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double area, const std::vector<curve_piece> &pieces)
 {
     using way = TopoDS_Shape (*)(const TopoDS_Face &, const std::vector<curve_piece> &);
@@ -124,7 +124,7 @@ TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double are
                 return out;
             if (std::fabs(volume + expected) < VOLUME_SLACK * expected)
                 return out.Reversed();
-        } catch (const Standard_Failure &) { /* the next one is tried */
+        } catch (const Standard_Failure &) { /* try the next method */
         } catch (const unsupported &) {
         }
     throw unsupported("a pipe that cannot be swept along its curve");

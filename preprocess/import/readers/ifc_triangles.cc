@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shapes as triangles. */
+/* Converts shapes to triangles. */
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
 #include <Poly_Triangulation.hxx>
@@ -16,7 +16,7 @@ namespace ifc
 namespace
 {
 
-constexpr double ANGLE_RAD = M_PI / 12; /* between neighbouring facets: 24 to a circle, as web-ifc draws others */
+constexpr double ANGLE_RAD = M_PI / 12; /* largest angle between neighbouring facets: 24 facets to a circle, as web-ifc does */
 
 void take_face(const TopoDS_Face &face, triangles *to)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Entities are walked from the roots down, and beside them the shapes that Open CASCADE makes of them. */
+/* Walks the entities of an IGES file from the roots down, in parallel with the shapes that Open CASCADE made from them. */
 #include "preprocess/import/readers/iges_tree.hh"
 
 #include <BRepBuilderAPI_Transform.hxx>
@@ -49,7 +49,7 @@ struct iges_tree {
     Handle(XCAFDoc_ColorTool) colors;
     Handle(XCAFDoc_LayerTool) layers;
     const struct text_encoding *encoding;
-    Handle(Transfer_TransientProcess) process; /* which shape each entity became */
+    Handle(Transfer_TransientProcess) process; /* maps each entity to its shape */
     double unit_mm;
     std::map<const Standard_Transient *, TDF_Label> made;
 };
@@ -85,7 +85,7 @@ bool color_of(const entity &from, Quantity_Color *out)
     Handle(IGESGraph_Color) color = Handle(IGESGraph_Color)::DownCast(from->Color());
     if (color.IsNull())
         return false;
-    color->RGBIntensity(part[0], part[1], part[2]); /* per cent */
+    color->RGBIntensity(part[0], part[1], part[2]); /* values in per cent */
     for (Standard_Real &each : part)
         each = std::isfinite(each) ? std::clamp(each / 100, 0.0, 1.0) : 0;
     out->SetValues(part[0], part[1], part[2], Quantity_TOC_sRGB);
@@ -105,7 +105,7 @@ std::string layer_of(const entity &from)
     return out;
 }
 
-/* What a group stands for, in its order. */
+/* Returns the members of a group, in file order. */
 std::vector<entity> members_of(const entity &from)
 {
     std::vector<entity> out;
@@ -121,7 +121,7 @@ std::vector<entity> members_of(const entity &from)
     return out;
 }
 
-/* The definition that an instance of a subfigure is a place of; else the entity itself. */
+/* Returns the subfigure definition if the entity is an instance of one, else the entity itself. */
 entity product_of(const entity &from)
 {
     Handle(IGESBasic_SingularSubfigure) place = Handle(IGESBasic_SingularSubfigure)::DownCast(from);
@@ -146,14 +146,15 @@ TopoDS_Shape shape_of(const iges_tree &t, const entity &from)
     return binder.IsNull() ? TopoDS_Shape() : TransferBRep::ShapeResult(binder);
 }
 
-/* An entity, and the shape that Open CASCADE made of it, in its place. */
+/* An entity with its placed Open CASCADE shape. */
 struct iges_item {
     entity from;
     TopoDS_Shape shape;
 };
 
-/* The shape of a group holds those of its members, in their places; what is remembered of a surface by itself may lack its own. Members of
- * which nothing came are not in it; an instance that has another size is one of these. */
+/* Returns the members of a group with their shapes. These come from the group's own shape, since the shape recorded for a single surface
+ * may lack its placement. Members without a shape are left out. An instance with a scale has none in the group: its definition's shape is
+ * used. */
 std::vector<iges_item> items_of(const iges_tree &t, const iges_item &group)
 {
     std::vector<iges_item> out;
@@ -179,7 +180,7 @@ void describe_layer(const iges_tree &t, const TDF_Label &label, const std::strin
         t.layers->SetLayer(label, TCollection_ExtendedString(t.encoding->utf8(layer).c_str(), Standard_True));
 }
 
-/* What it does not say stays as it is. */
+/* Sets the name, colour and layer of a label. Values that the entity lacks stay unchanged. */
 void describe(const iges_tree &t, const TDF_Label &label, const entity &from)
 {
     Quantity_Color color;
@@ -198,7 +199,7 @@ bool has_faces(const TopoDS_Shape &shape)
 
 enum class shape_kind { nothing, surface, part };
 
-/* Surfaces of a group are one part together; solids and groups are parts of their own. */
+/* Classifies an entity: the loose surfaces of a group form one part together, solids and groups are parts of their own. */
 shape_kind kind_of(const iges_item &what)
 {
     if (!has_faces(what.shape))
@@ -226,7 +227,7 @@ TDF_Label add_surfaces(const iges_tree &t, const std::vector<iges_item> &surface
     return label;
 }
 
-/* Loose ones: a part for each layer. */
+/* Groups loose surfaces by layer; each layer becomes a part. */
 std::map<std::string, std::vector<iges_item>> by_layer(const std::vector<iges_item> &loose)
 {
     std::map<std::string, std::vector<iges_item>> out;
@@ -246,7 +247,7 @@ TDF_Label add_whole(const iges_tree &t, const TopoDS_Shape &shape)
 
 TDF_Label label_of(iges_tree *t, const iges_item &what, int depth);
 
-/* A place cannot have another size: one part of its own. */
+/* Adds a scaled copy as a separate part, because an XCAF placement cannot scale. */
 TDF_Label add_scaled(iges_tree *t, const iges_item &what)
 {
     gp_Trsf larger;
@@ -272,7 +273,7 @@ void add_component(iges_tree *t, const TDF_Label &to, const iges_item &what, int
         describe(*t, component, what.from);
 }
 
-/* A group of one thing that has neither name nor place of its own is that thing. */
+/* Unwraps groups that hold a single part with neither a name nor a placement of its own. */
 iges_item without_wrappings(const iges_tree &t, iges_item what)
 {
     for (int depth = 0; depth < MAX_DEPTH && is_group(what.from); depth++) {
@@ -308,7 +309,7 @@ TDF_Label add_group(iges_tree *t, const iges_item &group, int depth)
     return label;
 }
 
-/* Of a thing without its place: the same for all its places. */
+/* Returns the label of a part without its placement, shared by all its placements. */
 TDF_Label label_of(iges_tree *t, const iges_item &what, int depth)
 {
     if (depth > MAX_DEPTH)
@@ -325,7 +326,7 @@ TDF_Label label_of(iges_tree *t, const iges_item &what, int depth)
     return label;
 }
 
-/* What is free has no place. */
+/* Adds a root. XCAF roots have no placement, so a placed root is wrapped in an assembly. */
 void add_root(iges_tree *t, const iges_item &root)
 {
     if (product_of(root.from) == root.from && root.shape.Location().IsIdentity()) {

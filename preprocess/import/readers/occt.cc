@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: STEP and IGES by Open CASCADE, in a process of its own. The
- * assembly tree becomes nodes; a part is tessellated once and shared by all its places. Of IFC files it builds some solids
- * (ifc_shapes.hh); UNITS is then the path of a list of elements. Prints what it noticed; its last line on stderr says why it failed. */
+/* `plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads STEP and IGES with Open CASCADE, in its own process. The
+ * assembly tree becomes nodes; each part is tessellated once and shared by its placements. For IFC files it builds some solids only
+ * (ifc_shapes.hh); UNITS is then the path of a list of elements. Prints its findings; on failure the last line on stderr is the reason. */
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Interface_InterfaceModel.hxx>
@@ -41,8 +41,8 @@
 namespace
 {
 
-constexpr size_t MAX_NODES = 2'000'000; /* an assembly of assemblies of ... grows without bounds */
-constexpr double ANGLE_RAD = 0.5;       /* between neighbouring facets, where the chord error would allow more */
+constexpr size_t MAX_NODES = 2'000'000; /* limit of output nodes: assemblies nested in assemblies can grow exponentially */
+constexpr double ANGLE_RAD = 0.5;       /* largest angle in radians between neighbouring facets, where the chord error would allow more */
 const double PLAIN[4] = { 0.35, 0.35, 0.35, 1 };
 
 /* --- names, colours, places ------------------------------------------------------------------------------------------------------- */
@@ -55,7 +55,7 @@ std::string utf8_of(const TCollection_ExtendedString &from)
     return at;
 }
 
-/* Open CASCADE takes a name whose last character is not ASCII for an empty one, and shows a number in its place: such names end in this. */
+/* Suffix appended to names. Open CASCADE treats a name whose last character is not ASCII as empty and shows a number instead. */
 constexpr char NAME_END[] = "`|";
 
 std::string without_end(std::string name)
@@ -66,7 +66,7 @@ std::string without_end(std::string name)
     return name;
 }
 
-/* "=>[0:1:1:3]" is what Open CASCADE calls a component without a name. */
+/* Returns the name of a label, or "" for a generated name such as "=>[0:1:1:3]", which Open CASCADE gives to components without a name. */
 std::string name_of(const TDF_Label &label)
 {
     Handle(TDataStd_Name) name;
@@ -87,7 +87,7 @@ std::string layers_of(const Handle(XCAFDoc_LayerTool) & tool, const TDF_Label &l
     return out;
 }
 
-/* Of a label itself, not of its parts. */
+/* Reads the colour of the label itself, not of its parts. */
 void take_color(const Handle(XCAFDoc_ColorTool) & tool, const TDF_Label &label, XCAFPrs_Style *style)
 {
     Quantity_ColorRGBA color;
@@ -108,12 +108,12 @@ void matrix_of(const TopLoc_Location &location, const double shift[3], double ou
 
 /* --- parts ---------------------------------------------------------------------------------------------------------------------------- */
 
-struct occt_part { /* a shape, tessellated */
+struct occt_part { /* a tessellated shape */
     int mesh;
-    double origin[3]; /* of its vertices, so that a part far from its own origin keeps its precision */
+    double origin[3]; /* origin of the mesh's vertices; it keeps precision for a part far from its own origin */
 };
 
-struct color_group { /* triangles of one colour */
+struct color_group { /* the triangles of one colour */
     std::vector<gp_Pnt> points;
     std::vector<gp_Dir> normals;
     std::vector<uint32_t> corners;
@@ -125,7 +125,7 @@ struct occt_reader {
     Handle(XCAFDoc_LayerTool) layers;
     struct glb_scene *scene;
     double chord_mm;
-    std::map<std::string, occt_part> parts; /* by label and inherited colour */
+    std::map<std::string, occt_part> parts; /* by label entry and inherited colour */
     size_t nodes = 0, places = 0, skipped_faces = 0, empty_parts = 0;
 };
 
@@ -193,7 +193,7 @@ void write_groups(occt_reader *r, const std::map<key, color_group> &groups, cons
     }
 }
 
-/* Tessellates a simple shape, once for each colour that it inherits. mesh -1: it has no faces. */
+/* Tessellates a simple shape, once for each colour it inherits. mesh is -1 if the shape has no faces. */
 occt_part part_of(occt_reader *r, const TDF_Label &label, const XCAFPrs_Style &style)
 {
     TCollection_AsciiString entry;
@@ -278,7 +278,7 @@ bool has_ending(const char *path, const char *ending)
     return length > count && !strcasecmp(path + length - count, ending);
 }
 
-/* Entities that could not be read as what they say they are: what they hold is missing, or is as nobody drew it. */
+/* Reports entities that could not be read as the type that they claim: their content is missing or wrong. */
 void say_damaged(const Handle(Interface_InterfaceModel) & model)
 {
     int damaged = 0, first = 0;
@@ -292,7 +292,7 @@ void say_damaged(const Handle(Interface_InterfaceModel) & model)
                damaged, model->NbEntities(), first);
 }
 
-/* Appends NAME_END to each string with characters beyond ASCII, as bytes or as escapes. */
+/* Appends NAME_END to each string that has characters beyond ASCII, either raw or as STEP escapes. */
 std::string with_name_ends(const std::string &text)
 {
     std::string out;
@@ -321,8 +321,8 @@ std::string with_name_ends(const std::string &text)
     return out;
 }
 
-/* STEP is ASCII with escapes by its standard, but many programs write names as their system has them. Open CASCADE reads UTF-8: writes a
-   copy in it to `copy` where some name is not plain ASCII. Returns the path that is to be read. */
+/* Ensures that a STEP file is readable as UTF-8, which Open CASCADE expects. Standard STEP is ASCII with escapes, but many programs write
+ * names in their system's encoding. If a name is not plain ASCII, writes a converted copy to `copy`. Returns the path to read. */
 const char *step_in_utf8(const char *path, const std::string &copy, const char *asked)
 {
     std::string text = read_whole(path);
@@ -342,7 +342,7 @@ const char *step_in_utf8(const char *path, const std::string &copy, const char *
     return copy.c_str();
 }
 
-/* Returns the units that the file says it has. */
+/* Reads a STEP file into the document. Returns the units stated by the file. */
 std::string read_step(const char *path, Handle(TDocStd_Document) document)
 {
     STEPCAFControl_Reader step;
@@ -379,7 +379,7 @@ std::string read_iges(const char *path, Handle(TDocStd_Document) document, const
     return iges_units(iges);
 }
 
-/* From millimetres to metres, and to Y up. */
+/* Computes the root matrix: millimetres to metres, and Z up to Y up unless the model is Y up already. */
 void root_matrix(bool y_up, double out[16])
 {
     const double z_up[16] = { 1e-3, 0, 0, 0, 0, 0, -1e-3, 0, 0, 1e-3, 0, 0, 0, 0, 0, 1 };
@@ -427,7 +427,7 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
         printf("%zu parts have no triangles\n", r.empty_parts);
 }
 
-/* OCCT throws what is no std::exception. */
+/* Runs convert(). Translates Open CASCADE's exceptions, which do not derive from std::exception, to refuse(). */
 void convert_or_refuse(char **arguments)
 {
     double chord_mm = strtod(arguments[2], nullptr);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The files, and the versions of before. */
+/* Replaces a plant's files and keeps their previous versions. */
 #include "preprocess/import/revision/anew.h"
 
 #include <errno.h>
@@ -17,8 +17,8 @@ enum { TEXTS = 3 };
 
 struct one_text {
     const char *name;
-    char *before, *after; /* NULL: there is none; it stays */
-    char *kept;           /* the version of before; NULL: none is kept */
+    char *before, *after; /* before: current text, NULL if there is no file; after: new text, NULL if the file stays unchanged */
+    char *kept;           /* path of the kept previous version; NULL: none is kept */
 };
 
 struct revision_making {
@@ -34,7 +34,8 @@ static int fail_at(const char *path, const char *why)
     return 1;
 }
 
-/* Takes the text. versioned: somebody may have written the one of before. */
+/* Adds one text file to the transaction and takes ownership of `after`. versioned: the current file may have been written by a person, so
+ * it is kept under a new name. */
 static int add_text(struct revision_making *making, struct one_text *one, const char *name, char *after, bool versioned)
 {
     char *path = mem_printf("%s/%s", making->params->folder, name);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* libyaml says where things stand; they are replaced there. */
+/* Finds the byte ranges of values with libyaml and replaces them in the text. */
 #include "preprocess/import/revision/asset_edit.h"
 
 #include <stdio.h>
@@ -12,13 +12,13 @@
 #include "preprocess/match/plant_edit.h"
 
 struct splice {
-    size_t begin, end; /* bytes of the text */
+    size_t begin, end; /* byte range in the text */
     char *with;
 };
 
 struct editor {
     const char *text;
-    size_t *bytes; /* where each character of the text begins */
+    size_t *bytes; /* byte offset of each character of the text */
     yaml_document_t doc;
     struct splice *splices;
     size_t splice_count, splice_room;
@@ -31,7 +31,7 @@ static bool fail(struct editor *editor, const char *why)
     return false;
 }
 
-/* Takes the replacement. */
+/* Records a replacement and takes ownership of `with`. */
 static void splice(struct editor *editor, size_t begin, size_t end, char *with)
 {
     mem_grow(&editor->splices, &editor->splice_room, editor->splice_count + 1, sizeof(*editor->splices));
@@ -77,8 +77,7 @@ static size_t line_end(const char *text, size_t at)
     return at + (text[at] == '\n');
 }
 
-/* The line of an item of a block list, those below it that are indented deeper, and all others until its end: blank lines and comments may
- * stand between its keys. */
+/* Removes an item of a block list, from its first line to its last, including blank lines and comments between its keys. */
 static bool remove_item(struct editor *editor, const yaml_node_t *item)
 {
     const char *text = editor->text;
@@ -187,7 +186,7 @@ static char *spliced(struct editor *editor)
     if (editor->splice_count > 0)
         qsort(editor->splices, editor->splice_count, sizeof(*editor->splices), by_begin);
     for (size_t i = 0; i < editor->splice_count; i++) {
-        if (editor->splices[i].begin < at) /* an alias: what it stands for is changed already */
+        if (editor->splices[i].begin < at) /* an alias: its anchor has been edited already */
             continue;
         text_add_bytes(&out, editor->text + at, editor->splices[i].begin - at);
         text_add(&out, "%s", editor->splices[i].with);

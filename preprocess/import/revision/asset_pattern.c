@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names as they stand are looked up; other forms are matched with all nodes. */
+/* Looks up plain names in a sorted list; matches other patterns against all nodes. */
 #include "preprocess/import/revision/asset_pattern.h"
 
 #include <stdio.h>
@@ -46,7 +46,7 @@ void asset_patterns_finish(struct asset_patterns *patterns)
     *patterns = (struct asset_patterns){ 0 };
 }
 
-/* Returns where in the sorted names the first node of this name stands, and in *count how many there are. */
+/* Returns the index in the sorted names of the first node of this name; *count receives the number of nodes. */
 static size_t find_name(const struct model_header *header, const uint32_t *names, const char *name, size_t *count)
 {
     size_t low = 0, high = header->count;
@@ -63,7 +63,7 @@ static size_t find_name(const struct model_header *header, const uint32_t *names
     return low;
 }
 
-/* Nodes that the pattern names go to patterns->found. Returns how many. */
+/* Fills patterns->found with the nodes that match the pattern. Returns their number. */
 static size_t find(struct asset_patterns *patterns, const struct model_header *header, const uint32_t *names, const char *pattern)
 {
     size_t count, first = find_name(header, names, pattern, &count);
@@ -75,7 +75,7 @@ static size_t find(struct asset_patterns *patterns, const struct model_header *h
     return count;
 }
 
-/* A pattern that names this new node and no other. */
+/* Returns a pattern that matches this new node and no other: its name if that is unique, else "#number". */
 static char *exact_pattern(struct asset_patterns *patterns, uint32_t node)
 {
     const char *name = patterns->after->nodes[node].name;

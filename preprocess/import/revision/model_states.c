@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Equal shapes have their vertices in the same order; of others boxes are compared. */
+/* Compares vertices pairwise if both shapes have equal vertex counts, and boxes otherwise. */
 #include "preprocess/import/revision/model_states.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@
 #include "preprocess/geometry/rigid_fit.h"
 #include "surface/mesh/bvh.h"
 
-enum { SAMPLES = 64 }; /* of each primitive, for finding the motion; all vertices then tell whether it is one */
+enum { SAMPLES = 64 }; /* vertices per primitive that the motion is fitted to; all vertices are then checked against the fitted motion */
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
@@ -101,7 +101,7 @@ static void vertex_of(const struct state_part *part, uint32_t vertex, double out
     transform_point(part->world, (const double[3]){ (double)at[0], (double)at[1], (double)at[2] }, out);
 }
 
-/* Whether the parts from these on have as many vertices and corners each. */
+/* Returns whether two runs of parts have the same length and equal vertex and index counts throughout. */
 static bool alike(const struct state_parts *a, size_t a_first, const struct state_parts *b, size_t b_first)
 {
     bool same = a->count - a_first == b->count - b_first;
@@ -114,7 +114,8 @@ static bool alike(const struct state_parts *a, size_t a_first, const struct stat
 
 /* --- motion ------------------------------------------------------------------------------------------------------------------- */
 
-/* Where all vertices have gone by about the same, that is the motion: a turn that is fitted has small errors. */
+/* Tests for a pure translation: all vertices moved by the same vector within the tolerance. Fitting a rotation would add small errors to
+ * it. */
 static bool find_shift(const double (*from)[3], const double (*to)[3], size_t count, double tolerance, double motion[16])
 {
     double shift[3], other[3], apart[3];
@@ -147,7 +148,8 @@ static void fit(const struct state_parts *before, const struct state_parts *afte
     mem_free(to);
 }
 
-/* Whether the motion takes every vertex to where it is now; how far it takes them at most. */
+/* Returns whether the motion maps every vertex to its new position within the tolerance. *moved receives the largest distance that a vertex
+ * moved. */
 static bool takes(const double motion[16], const struct state_parts *before, const struct state_parts *after, double tolerance,
                   double *moved)
 {

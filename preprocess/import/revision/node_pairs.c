@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From the surest way to the least sure one; what a way has paired stays. */
+/* Applies pairing methods from the most to the least certain; a pair once made is kept. */
 #include "preprocess/import/revision/node_pairs.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 struct node_pairing {
     const struct model_outline *old_outline, *new_outline;
     struct node_pairs *pairs;
-    int *olds, *news; /* room for all nodes: those that are being compared */
+    int *olds, *news; /* candidates of the current step; each has room for all nodes */
     size_t old_count, new_count;
 };
 
@@ -57,7 +57,7 @@ static int by_name(const void *a, const void *b, void *outline_ptr)
     return order ? order : x - y;
 }
 
-/* Triangles may differ: faces that a neighbour covered may be open now. */
+/* Compares nodes by the size of their subtree, not by triangle counts: those may differ if covered faces were left out. */
 static int by_size(const void *a, const void *b, void *outline_ptr)
 {
     const struct model_outline *outline = outline_ptr;
@@ -93,12 +93,12 @@ static void take_unpaired(struct node_pairing *p)
             p->news[p->new_count++] = (int)i;
 }
 
-/* --- runs of equal ones --------------------------------------------------------------------------------------------------------- */
+/* --- runs of equal candidates --------------------------------------------------------------------------------------------------- */
 
 enum run_rule {
-    RUN_SINGLE, /* one and one */
-    RUN_PLACED, /* those in the same place */
-    RUN_ORDERED /* one and one; those in the same place; as many others as there are, as they come */
+    RUN_SINGLE, /* pair a run only if it has one node on each side */
+    RUN_PLACED, /* pair nodes whose boxes are in the same place */
+    RUN_ORDERED /* single nodes; then nodes in the same place; then the rest in order if their numbers are equal */
 };
 
 static void pair_placed(struct node_pairing *p, const int *olds, size_t old_count, const int *news, size_t new_count)
@@ -137,7 +137,7 @@ static void pair_run(struct node_pairing *p, const int *olds, size_t old_count, 
         pair_in_order(p, olds, old_count, news, new_count);
 }
 
-/* Goes through two sorted lists, run by run of equal ones. */
+/* Merges two sorted candidate lists and pairs each run of equal nodes. */
 static void pair_runs(struct node_pairing *p, int (*compare)(const struct node_pairing *p, int old_node, int new_node), enum run_rule rule)
 {
     for (size_t i = 0, k = 0; i < p->old_count && k < p->new_count;) {
@@ -197,14 +197,14 @@ static void pair_by_size(struct node_pairing *p, enum run_rule rule)
     pair_runs(p, compare_sizes, rule);
 }
 
-/* --- ways --------------------------------------------------------------------------------------------------------------------- */
+/* --- pairing methods ---------------------------------------------------------------------------------------------------------- */
 
 static json_t *guids_of(const struct model_outline *outline)
 {
     json_t *found = json_object();
     for (size_t i = 0; i < outline->header.count; i++) {
         const char *guid = model_outline_property(&outline->nodes[i], "GlobalId");
-        if (guid) /* -1: of several nodes */
+        if (guid) /* -1: several nodes share this GUID */
             json_object_set_new_nocheck(found, guid, json_integer(json_object_get(found, guid) ? -1 : (json_int_t)i));
     }
     return found;
@@ -224,7 +224,7 @@ static void pair_by_guid(struct node_pairing *p)
     json_decref(news);
 }
 
-/* From the roots down: a child comes after its parent. */
+/* Pairs nodes by name, level by level from the roots, so that children are compared under paired parents. */
 static void pair_down_by_name(struct node_pairing *p)
 {
     take_children(p, -1, -1);
@@ -236,7 +236,7 @@ static void pair_down_by_name(struct node_pairing *p)
         }
 }
 
-/* Below a parent that was renamed itself, parts are called after it. */
+/* Pairs nodes by subtree size, level by level: below a renamed parent, parts often have new names too. */
 static void pair_down_by_size(struct node_pairing *p)
 {
     take_children(p, -1, -1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plan, the trial, the files. */
+/* Plans a revision, checks the result by loading it, and replaces the files. */
 #include "preprocess/import/revision/revise.h"
 
 #include <errno.h>
@@ -20,7 +20,7 @@
 #include "preprocess/match/plant_trial.h"
 #include "preprocess/report/text_table.h"
 
-enum { ROWS_PRINTED = 40, MOST_OF_OURS = 4 }; /* texts beside the models */
+enum { ROWS_PRINTED = 40, MAX_OWN_FILES = 4 }; /* MAX_OWN_FILES: files besides the models */
 
 static const char program[] = "plantcast import";
 static const char *const kinds[] = { [REVISION_ASSET] = "asset", [REVISION_NODE] = "node", [REVISION_TAG] = "tag" };
@@ -30,7 +30,7 @@ struct revising {
     const struct revise_params *params;
     struct plant *plant;
     char *plant_path, *plant_text, *tags_text, *matches_text;
-    char *tags_name; /* in the folder; else its path */
+    char *tags_name; /* name in the plant's folder, or a path if the list lies elsewhere */
     struct revision_model *models;
     size_t model_count;
     struct revision revision;
@@ -47,7 +47,7 @@ static int fail_at(const char *path, const char *why)
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
-/* Returns NULL where the file is not there. */
+/* Reads a text file. Returns NULL if it does not exist, or with *status set on an error. */
 static char *read_text(const char *path, int *status)
 {
     size_t bytes;
@@ -57,7 +57,7 @@ static char *read_text(const char *path, int *status)
     return text;
 }
 
-/* The tag list itself, where there is a link to it; it may have a folder of its own, in which it can be replaced. */
+/* Finds the tag list, resolving a symlink. If the list lies in another folder, that folder must be writable. */
 static int find_tags(struct revising *r)
 {
     char folder[PATH_MAX], path[PATH_MAX];
@@ -90,7 +90,7 @@ static int read_plant(struct revising *r)
     return r->plant ? status : 1;
 }
 
-/* Models that are not the same to the byte. */
+/* Collects the models whose content differs from the plant's current copy. */
 static void take_models(struct revising *r)
 {
     r->models = mem_array(r->params->count, sizeof(*r->models));
@@ -168,7 +168,7 @@ static void write_review(struct revising *r)
 
 /* --- the files ------------------------------------------------------------------------------------------------------------------ */
 
-/* text NULL: it stays as it is. before NULL: nobody else writes it. */
+/* Adds a text file to the transaction. text NULL: the file stays unchanged. before NULL: nobody else writes this file. */
 static int add_text(struct revising *r, const char *name, const char *text, const char *before)
 {
     struct revision_file *file = &r->files[r->file_count++];
@@ -182,11 +182,11 @@ static const char *if_other(const char *text, const char *before)
     return text && strcmp(text, before) != 0 ? text : NULL;
 }
 
-/* Each that is replaced before the next still makes a valid plant with it: the plant file comes last. */
+/* Replaces the files, plant.yaml last. The order keeps the folder loadable after each single replacement. */
 static int apply(struct revising *r)
 {
     const char *changed;
-    r->files = mem_array(r->model_count + MOST_OF_OURS, sizeof(*r->files));
+    r->files = mem_array(r->model_count + MAX_OWN_FILES, sizeof(*r->files));
     for (; r->file_count < r->model_count; r->file_count++)
         r->files[r->file_count] =
             (struct revision_file){ r->models[r->file_count].draft->file, mem_strdup(r->models[r->file_count].after), NULL };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One model after the other; of each its assets, then their tags. */
+/* Processes one model after the other: its assets first, then the assets' tags. */
 #include "preprocess/import/revision/revision.h"
 
 #include <math.h>
@@ -15,25 +15,25 @@
 #include "preprocess/import/revision/asset_pattern.h"
 #include "preprocess/import/revision/model_states.h"
 
-static const double tolerance_m = 0.002; /* of positions: exports round to the millimetre */
+static const double tolerance_m = 0.002; /* tolerance of positions in metres: exports round to a millimetre */
 
 struct planning {
     struct revision *revision;
     const struct revision_input *input;
-    struct asset_edit *assets; /* by the plant's */
+    struct asset_edit *assets; /* edits, by index of the plant's assets */
     struct tag_edit *tags;
     size_t tag_count, tag_room;
     struct text added;
     json_t *ids;
     struct revision_row *tag_rows;
     size_t tag_row_count, tag_row_room;
-    /* of the model that is being compared: */
+    /* State of the model being compared: */
     const char *file;
     struct model_states states;
     struct asset_patterns patterns;
-    bool *before, *after; /* nodes of the asset that is looked at */
-    bool *covered;        /* nodes of the new model that are in an asset */
-    bool *roots;          /* nodes of the old model that an asset's row speaks of */
+    bool *before, *after; /* nodes of the current asset, in the old and the new model */
+    bool *covered;        /* nodes of the new model that belong to an asset */
+    bool *roots;          /* nodes of the old model that an asset's review row already covers */
     char *why;
 };
 
@@ -66,7 +66,7 @@ static char *path_of(const struct model_outline *outline, size_t node)
     return path.at;
 }
 
-/* The topmost of those that came, went, or have another name. */
+/* Adds review rows for nodes that were added, removed or renamed, only the topmost node of each subtree. */
 static void review_nodes(struct planning *p)
 {
     const struct model_outline *old = &p->states.before.outline, *new = &p->states.after.outline;
@@ -97,7 +97,7 @@ static void review_nodes(struct planning *p)
 
 /* --- frames --------------------------------------------------------------------------------------------------------------------- */
 
-/* From the model's units and axes to the frame of X, Y, Z in the tag list. */
+/* Computes the transform from the model's units and axes to the frame of X, Y, Z in the tag list. */
 static void model_to_list(const struct plant_asset *asset, double out[16])
 {
     const double u = asset->unit_m;
@@ -136,7 +136,7 @@ static struct tag_edit *edit_tag(struct planning *p, const struct plant_tag *tag
     return edit;
 }
 
-/* It stays on its equipment, somewhere. */
+/* The tag loses its exact place and stays on its equipment. */
 static void lose_place(struct planning *p, const struct plant_tag *tag, const char *detail)
 {
     edit_tag(p, tag)->place = "equipment";
@@ -162,7 +162,7 @@ static void follow_node(struct planning *p, const struct plant_tag *tag)
         if (tag->place_assumed)
             edit->place = "equipment";
         say(p, REVISION_TAG, "renamed", tag->name, "its node %s is now %s", tag->node, pattern);
-        return; /* the edit keeps the pattern until the end */
+        return; /* the edit owns the pattern until the end */
     }
     case ASSET_PATTERN_GONE: {
         char *detail = mem_printf("its node %s is no longer in the model", tag->node);
@@ -222,7 +222,7 @@ static void follow_asset(struct planning *p, size_t index, const struct states_m
 
 /* --- assets --------------------------------------------------------------------------------------------------------------------- */
 
-/* The node that the asset is called after: the first of its own. */
+/* Returns the root node of the asset: the first of its nodes. The asset is usually named after it. */
 static int root_of(const struct planning *p)
 {
     size_t i = 0;
@@ -243,7 +243,7 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
     if (other >= 0 && strcmp(old->nodes[root].name, new->nodes[other].name) != 0) {
         const char *name = new->nodes[other].name;
         p->roots[root] = true;
-        if (!strcmp(asset->tag, without_slash(old->nodes[root].name)) && *name) /* people have given it no other one */
+        if (!strcmp(asset->tag, without_slash(old->nodes[root].name)) && *name) /* people have not renamed the asset */
             edit->tag = mem_strdup(without_slash(name));
         say(p, REVISION_ASSET, "renamed", asset->id, "now %s; its id stays", name);
     }
@@ -255,9 +255,9 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
         say(p, REVISION_ASSET, "moved", asset->id, "%.3f m", moved_m);
 }
 
-enum taken { TAKEN, TAKEN_NOW /* it was missing before */, TAKEN_NOTHING };
+enum taken { TAKEN, TAKEN_NOW /* the asset was missing from the old model */, TAKEN_NOTHING };
 
-/* Marks nodes of the asset before, and those after; finds new patterns. */
+/* Marks the asset's nodes in the old and the new model, and records edited patterns. */
 static enum taken take(struct planning *p, const struct plant_asset *asset, struct asset_edit *edit)
 {
     const struct model_outline *old = &p->states.before.outline, *new = &p->states.after.outline;
@@ -334,14 +334,14 @@ static void add_assets(struct planning *p, const struct revision_model *model, c
     }
 }
 
-/* New equipment is what was not there before, is in no asset, and holds none. */
+/* Adds assets for new equipment: nodes of the new model without an old counterpart, outside all assets, and with no asset below them. */
 static void add_new(struct planning *p, const struct revision_model *model, const struct plant_asset *like)
 {
     const struct model_outline *new = &p->states.after.outline;
     bool *wanted = mem_array(new->header.count + 1, sizeof(*wanted)), placed = false;
     for (int i = 0; i < 16; i++)
         placed |= fabs(like->placement[i] - transform_identity[i]) > 0;
-    if (!placed) /* where the others go, nobody has said where this one goes */
+    if (!placed) /* if the model's assets are moved by a placement, the right place of a new asset is unknown */
         for (size_t i = 0; i < new->header.count; i++) {
             wanted[i] = p->states.pairs.to_old[i] < 0;
             for (size_t k = i; k < new->header.nodes[i].end && wanted[i]; k++)

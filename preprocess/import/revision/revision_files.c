@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Both ways begin with the renaming of a folder that has all that is needed; plant_folder.c goes on from there. */
+/* Apply and undo both begin by renaming one prepared folder, which is atomic; plant_folder.c completes the rest, also after a crash. */
 #include "preprocess/import/revision/revision_files.h"
 
 #include <errno.h>
@@ -24,8 +24,8 @@ static int move(const char *from, const char *to)
 
 /* --- beginning ------------------------------------------------------------------------------------------------------------------ */
 
-/* Texts are copied: an editor may write into the file that is there. Models are large, and only ever replaced: the same file once more,
- * unless the file system has no links. */
+/* Saves a file for undo. Text files are copied, since an editor may overwrite them in place. Models are large and only replaced as a whole,
+ * so they are hard-linked, or copied if the file system has no hard links. */
 static int keep(const char *from, const char *to)
 {
     char *bytes;
@@ -49,7 +49,7 @@ static int sync_file(const char *path)
     return status;
 }
 
-/* Whoever may read and write the file that is there may do so with the new one. */
+/* Gives the new file the mode and owner of the existing one. */
 static void take_rights(const char *from, const char *to)
 {
     struct stat st;
@@ -81,7 +81,7 @@ static int add_file(const char *folder, const char *next, const struct revision_
     return status == 0 && kept != -ENOENT ? kept : status;
 }
 
-/* Looked at last: from here on it takes some renamings. */
+/* Returns whether the file still has the text that was read. Checked last: after this only renames follow. */
 static bool is_as_read(const char *folder, const struct revision_file *file)
 {
     size_t bytes;
