@@ -29,8 +29,8 @@ static const int64_t SETTLE_NS = 5 * NS_PER_MS; /* interval between checks wheth
 /* interval between ticks; REST_NS: when no session waits for anything */
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS;                  /* time for close frames and answers to be sent at shutdown */
-static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S;                       /* minimum time between two audit entries about tokens not checked */
-static const int64_t FILE_CHECK_INTERVAL_NS = NS_PER_S;                            /* interval between checks of the token and certificate files */
+static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S; /* minimum time between two audit entries about tokens not checked */
+static const int64_t FILE_CHECK_INTERVAL_NS = NS_PER_S; /* interval between checks of the token and certificate files */
 enum { SPARE_FILES = 256 }; /* file descriptors for other uses than connections: models, sources, the database */
 
 static const struct lws_protocols protocols[] = {
