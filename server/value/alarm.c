@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names of alarms, and alarms by nothing but the limits of a tag. */
+/* Names of alarms, and alarms computed from a tag's limits alone. */
 #include "value/alarm.h"
 
 #include <math.h>
@@ -80,7 +80,7 @@ enum alarm_kind alarm_beyond(const struct plant_tag *tag, const struct reading *
     const double *limits = tag->limits, value = reading->value;
     if (quality_is_bad(reading->quality) || !isfinite(value))
         return ALARM_NONE;
-    if (value >= limits[LIMIT_HH]) /* false where there is none */
+    if (value >= limits[LIMIT_HH]) /* false if the limit is NaN: not configured */
         return ALARM_HH;
     if (value <= limits[LIMIT_LL])
         return ALARM_LL;

@@ -4,23 +4,24 @@
 #define VALUE_BACKOFF_H
 #include <stdint.h>
 
-struct backoff { /* zero-initialise; zero again after a success */
+struct backoff { /* number of recent failures; zero-initialise, and zero it again after a success */
     int failures;
 };
 
-/* Counts one more failure and returns the pause before the next try, 0.5 to 10 s. random: any random bits, for the jitter. */
+/* Counts one more failure and returns the delay before the next attempt, 0.5 to 10 s. `random`: any random bits, used for the jitter. */
 int64_t backoff_next_ns(struct backoff *backoff, uint64_t random);
 
-/* Which of several hosts is tried: one after the other, and a pause once all were. */
+/* Chooses the next of several hosts: tries each host once without a delay, then waits with backoff before the next round. */
 struct host_turn { /* zero-initialise */
-    int index; /* of the host that is being tried */
-    int tried; /* one after the other, without a session */
+    int index;     /* index of the host in use */
+    int tried;     /* hosts tried one after the other since the last session */
     struct backoff backoff;
 };
 
-/* Turns to the next of count hosts. Returns when to try it: at once, if there is one that was not tried since a session. */
+/* Moves on to the next of `count` hosts. Returns the monotonic time at which to try it: now_ns, unless all hosts have failed since the
+   last session. */
 int64_t host_turn_next_ns(struct host_turn *turn, int count, int64_t now_ns);
-/* Notes that there is a session with the host. */
+/* Records that a session with the host was established. */
 void host_turn_succeeded(struct host_turn *turn);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A short list of copied snapshots, counted, so that one can be replaced while it is read. */
+/* A short list of reference-counted snapshots, so that a baseline can be replaced while it is read. */
 #include "value/baselines.h"
 
 #include <pthread.h>
@@ -8,9 +8,9 @@
 
 #include "base/mem.h"
 
-struct baseline_copy { /* the snapshot comes first: it is what others hold */
+struct baseline_copy { /* the snapshot must be the first member: users hold a pointer to it */
     struct snapshot snapshot;
-    int users; /* under lock */
+    int users; /* number of users, under `lock` */
 };
 
 struct baseline_slot {
@@ -41,7 +41,7 @@ static struct baseline_copy *copy_create(const struct snapshot *from)
     return copy;
 }
 
-/* Under lock. */
+/* Call with the lock held. */
 static void copy_unref(struct baseline_copy *copy)
 {
     if (--copy->users > 0)
@@ -62,7 +62,7 @@ void baselines_destroy(struct baselines **baselines_ptr)
     *baselines_ptr = NULL;
 }
 
-/* Under lock. NULL: none. */
+/* Call with the lock held. NULL: none. */
 static struct baseline_slot *find_name(struct baselines *baselines, const char *name)
 {
     for (size_t i = 0; i < baselines->count; i++)
@@ -71,7 +71,7 @@ static struct baseline_slot *find_name(struct baselines *baselines, const char *
     return NULL;
 }
 
-/* Under lock. NULL: none. */
+/* Call with the lock held. NULL: none. */
 static struct baseline_slot *find_id(struct baselines *baselines, uint32_t id)
 {
     for (size_t i = 0; i < baselines->count; i++)
@@ -80,7 +80,7 @@ static struct baseline_slot *find_id(struct baselines *baselines, uint32_t id)
     return NULL;
 }
 
-/* Under lock. */
+/* Call with the lock held. */
 static size_t count_of(const struct baselines *baselines, bool named)
 {
     size_t count = 0;
@@ -89,7 +89,7 @@ static size_t count_of(const struct baselines *baselines, bool named)
     return count;
 }
 
-/* Under lock. */
+/* Call with the lock held. */
 static void slot_remove(struct baselines *baselines, struct baseline_slot *slot)
 {
     copy_unref(slot->copy);
@@ -98,7 +98,7 @@ static void slot_remove(struct baselines *baselines, struct baseline_slot *slot)
     baselines->count--;
 }
 
-/* Under lock; there is room. */
+/* Call with the lock held and a free slot. */
 static uint32_t slot_add(struct baselines *baselines, const char *name, const struct snapshot *snapshot)
 {
     struct baseline_slot *slot = &baselines->slots[baselines->count++];
@@ -125,7 +125,7 @@ uint32_t baselines_set(struct baselines *baselines, const char *name, const stru
     return id;
 }
 
-/* Under lock. NULL: none. */
+/* Call with the lock held. NULL: none. */
 static struct baseline_slot *find_unnamed(struct baselines *baselines, int64_t taken_utc_ns)
 {
     for (size_t i = 0; i < baselines->count; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Byte order, data type, scaling, unit: from registers to readings. */
+/* Converts registers to readings: byte order, data type, scaling, unit. */
 #include "value/decode.h"
 
 #include <math.h>
@@ -18,8 +18,8 @@ int decode_width(const struct plant_tag *tag)
     return is_bit(tag) ? 1 : data_type_registers(tag->type);
 }
 
-/* The named order is that of the bytes on the wire, A the most significant: so B first means swapped within each word, and
-   C or D first means that the least significant word comes first. */
+/* Byte order names list the bytes on the wire, A the most significant. B first: bytes swapped within each word. C or D first: the least
+   significant word comes first. */
 static uint64_t join_words(enum byte_order order, const uint16_t *words, int count)
 {
     bool swap_bytes = order == BYTE_ORDER_BADC || order == BYTE_ORDER_DCBA;
@@ -104,12 +104,13 @@ static bool is_sentinel(const struct plant_tag *tag, uint64_t bits, double raw)
     return false;
 }
 
-/* NAMUR NE 43: 3.8 to 20.5 mA are measured, at most 3.6 and at least 21 mA say that the transmitter or its loop has failed. */
+/* NAMUR NE 43: a current from 3.8 to 20.5 mA is a measurement; at most 3.6 or at least 21 mA means that the transmitter or its loop has
+   failed. */
 static uint32_t judge_current(const struct plant_tag *tag, double raw)
 {
     static const double MEASURED_LOW_MA = 3.8, MEASURED_HIGH_MA = 20.5, FAILED_LOW_MA = 3.6, FAILED_HIGH_MA = 21;
     double ma = 4 + 16 * (raw - tag->raw_low) / (tag->raw_high - tag->raw_low);
-    double half_step_ma = 8 / (tag->raw_high - tag->raw_low); /* of whole raw values */
+    double half_step_ma = 8 / (tag->raw_high - tag->raw_low); /* half of one raw count, in mA */
     double rounding_ma = half_step_ma < 0.05 ? half_step_ma : 0;
     if (ma <= FAILED_LOW_MA + rounding_ma || ma >= FAILED_HIGH_MA - rounding_ma)
         return QUALITY_BAD_SENSOR_FAILURE;
@@ -140,10 +141,10 @@ static void fail(struct sample *out)
     out->quality = QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* bits: those of raw on the wire. */
+/* `bits`: the bits of `raw` on the wire. */
 static void decode_analog(const struct plant_tag *tag, uint64_t bits, double raw, struct sample *out)
 {
-    if (!isfinite(raw) || is_sentinel(tag, bits, raw)) { /* before scaling, which would hide it */
+    if (!isfinite(raw) || is_sentinel(tag, bits, raw)) { /* must precede scaling, which would hide the special value */
         fail(out);
         return;
     }

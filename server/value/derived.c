@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tags that are computed from tags. */
+/* Computes derived tags from other tags. */
 #include "value/derived.h"
 
 #include <errno.h>
@@ -16,7 +16,7 @@ static const int64_t ROUND_NS = 200 * NS_PER_MS;
 
 struct written {
     uint32_t quality;
-    int64_t mono_ns; /* INT64_MIN: nothing yet */
+    int64_t mono_ns; /* INT64_MIN: nothing written yet */
 };
 
 struct derived_state {
@@ -51,8 +51,7 @@ void derived_destroy(struct derived_state **state)
     *state = NULL;
 }
 
-/* An expression computes in the units that the rows of its tags say. The value, the worst quality of its inputs, and the age of the
-   newest. */
+/* Evaluates a tag's expression in the units of the tag list. The result has the worst quality and the age of the newest of its inputs. */
 static struct reading combine(const struct derived_state *state, const struct plant_tag *tag)
 {
     const struct plant *plant = state->plant;
@@ -78,7 +77,7 @@ static struct reading combine(const struct derived_state *state, const struct pl
     return all;
 }
 
-/* Only where something new came in, or the quality is another: nothing else may make it younger. */
+/* Writes a result only if an input is newer or the quality differs; otherwise the reading would look younger than it is. */
 static void write_new(struct derived_state *state, struct store *store, size_t i, struct reading *reading)
 {
     struct written *written = &state->written[i];
@@ -100,7 +99,7 @@ void derived_compute(struct derived_state *state, struct store *store, int64_t n
     store_snapshot(store, now_mono_ns, now_utc_ns, state->snapshot);
     for (size_t i = 0; i < plant->derived_count; i++) {
         struct reading *reading = &state->snapshot->readings[plant->derived[i]];
-        *reading = combine(state, &plant->tags[plant->derived[i]]); /* those after it see it */
+        *reading = combine(state, &plant->tags[plant->derived[i]]); /* later derived tags use this result */
         write_new(state, store, i, reading);
     }
 }
@@ -115,7 +114,7 @@ static void derived_run(struct source *source)
 static struct source *derived_make(const struct source *base, struct counters *counters)
 {
     struct derived_source *derived = mem_new(sizeof(*derived));
-    (void)counters; /* it has none */
+    (void)counters; /* derived tags have no counters */
     derived->base = *base;
     derived->state = derived_create(base->plant);
     return &derived->base;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* getaddrinfo on a detached thread; whoever lets go last frees. */
+/* Runs getaddrinfo on a detached thread; the last user of the lookup frees it. */
 #include "value/lookup.h"
 
 #include <errno.h>
@@ -16,9 +16,9 @@
 
 struct lookup {
     char *host, port[12];
-    int done_fd;               /* readable once all is known */
+    int done_fd; /* readable once the lookup has finished */
     struct addrinfo *found;
-    _Atomic int failed;        /* written after `found`, read before it */
+    _Atomic int failed; /* result code; written after `found`, read before it */
     _Atomic int users;
 };
 

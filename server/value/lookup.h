@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resolves a host name on a thread of its own, because the system's resolver has no timeout. Thread: one. */
+/* Resolves a host name on a thread of its own, because the system resolver has no timeout. All calls come from one thread. */
 #ifndef VALUE_LOOKUP_H
 #define VALUE_LOOKUP_H
 #include <netdb.h>
 
 struct lookup;
 
-/* Starts resolving host. Never returns NULL. */
+/* Starts resolving `host`. Never returns NULL. */
 struct lookup *lookup_start(const char *host, int port);
 /* Waits for the result until the deadline. Returns 0 with the list of addresses in *out, valid until lookup_destroy(); -ETIMEDOUT: not
-   resolved yet, call again; -ECANCELED: stop_fd became readable; -EHOSTUNREACH: there is no such host. */
+   resolved yet, call again; -ECANCELED: stop_fd became readable; -EHOSTUNREACH: the host name does not resolve. */
 int lookup_wait(struct lookup *lookup, int stop_fd, int64_t deadline_mono_ns, const struct addrinfo **out);
 /* Frees the lookup without waiting for the resolver. &NULL is fine; leaves NULL. */
 void lookup_destroy(struct lookup **lookup);
 
-/* Waits until fd is ready for `events` (fd -1: until the deadline). Returns 0, -ETIMEDOUT, or -ECANCELED if stop_fd became readable. */
+/* Waits until fd is ready for `events`; fd -1: waits for the deadline. Returns 0, -ETIMEDOUT, or -ECANCELED if stop_fd became readable. */
 int wait_for(int fd, short events, int stop_fd, int64_t deadline_mono_ns);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source: asks each block of its plan when it is due, and finds out again and again who answers. */
+/* A Modbus source: reads each block of its plan when it is due, and keeps retrying units that do not answer. */
 #include "value/modbus_impl.h"
 
 #include <errno.h>
@@ -34,7 +34,8 @@ static void read_block(struct modbus_source *modbus, size_t index)
     modbus->asked_ns = now_ns;
     if (status < 0 && modbus_manners_excuse_read(modbus, status, unit->state == UNIT_UP))
         return; /* the block stays due, so that the next connection begins with it */
-    block->due_ns = next_ns > now_ns ? next_ns : now_ns + block->scan_ms * NS_PER_MS; /* late: no bursts to catch up */
+    /* late: missed reads are skipped, not made up in a burst */
+    block->due_ns = next_ns > now_ns ? next_ns : now_ns + block->scan_ms * NS_PER_MS;
     counter_inc(status == 0 ? modbus->reads_ok : modbus->reads_failed, 1);
     if (status < 0) {
         modbus->manners.timed_out = status == -ETIMEDOUT ? unit : NULL;
@@ -52,7 +53,7 @@ static void read_block(struct modbus_source *modbus, size_t index)
     modbus_manners_after(modbus);
 }
 
-/* When this block may be asked: when it is due, and its unit and the connection are not being left alone. */
+/* Returns the time from which a block may be read: the latest of its due time, its unit's retry time and the connection's retry time. */
 static int64_t ready_ns(const struct modbus_source *modbus, const struct read_plan_block *block)
 {
     const struct modbus_unit *unit = modbus_unit_of(modbus, block);
@@ -64,8 +65,8 @@ static int64_t ready_ns(const struct modbus_source *modbus, const struct read_pl
     return at_ns;
 }
 
-/* Of the blocks that are ready, the one that has waited longest: a block that always fails cannot starve the rest.
-   block_count: none is, *wake_ns says when. */
+/* Returns the ready block that has waited longest, so that a block that always fails cannot starve the rest. Returns block_count if none
+   is ready; *wake_ns is then the time when one will be. */
 static size_t choose_block(const struct modbus_source *modbus, int64_t now_ns, int64_t *wake_ns)
 {
     size_t chosen = modbus->plan.block_count;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source: what a read brings to the store, and to the plan. */
+/* A Modbus source: writes responses to the store and updates the read plan after exceptions. */
 #include <modbus.h>
 
 #include "base/clock.h"
@@ -7,7 +7,8 @@
 #include "value/modbus_impl.h"
 #include "value/quality.h"
 
-/* A refused register is left alone for so long, twice as long each time, and a minute at most: a device may say no while it starts. */
+/* Delay before a refused register is read again, doubled after each refusal up to REFUSED_MOST_NS: a device may refuse while it starts
+   up. */
 static const int64_t REFUSED_NS = 2 * NS_PER_S, REFUSED_MOST_NS = 60 * NS_PER_S;
 static const int64_t BUSY_NS = 50 * NS_PER_MS;
 enum { BUSY_TRIES = 4 };
@@ -40,7 +41,7 @@ void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *bl
     block->answered = true;
     store_write(modbus->base.store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
     bool repaired = modbus_note_refused(modbus, block, false, "read again");
-    modbus_unit_is_up(modbus, modbus_unit_of(modbus, block)); /* may make the plan anew: block is of the old one then */
+    modbus_unit_is_up(modbus, modbus_unit_of(modbus, block)); /* may rebuild the plan; `block` is invalid afterwards */
     if (repaired)
         modbus_replan(modbus);
 }
@@ -61,11 +62,11 @@ static uint32_t quality_of_exception(int code)
     case MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE: return QUALITY_BAD_CONFIGURATION;
     case MODBUS_EXCEPTION_SLAVE_OR_SERVER_FAILURE:
     case MODBUS_EXCEPTION_MEMORY_PARITY: return QUALITY_BAD_DEVICE_FAILURE;
-    default: /* busy and the like: asked again soon; stale if that goes on */ return QUALITY_GOOD;
+    default: /* busy and the like: retried soon; the reading goes stale if the device stays busy */ return QUALITY_GOOD;
     }
 }
 
-/* The device asks for patience (5: acknowledge, 6: busy) at each try: its tags go stale. */
+/* Logs that a device answers each try with acknowledge (5) or busy (6). Its tags go stale. */
 static void note_busy(struct modbus_source *modbus, const struct read_plan_block *block, int code, int64_t now_ns)
 {
     char more[LOG_PACE_BYTES];
@@ -99,14 +100,14 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
         note_busy(modbus, block, code, now_ns);
         return;
     }
-    if (block->answered) { /* it has been read before: one such answer is no verdict yet */
+    if (block->answered) { /* the block was read before: give the device a second try */
         block->answered = false;
         block->due_ns = now_ns;
         return;
     }
     modbus->plan_cut = true;
     if (code != MODBUS_EXCEPTION_ILLEGAL_FUNCTION && block->tag_count > 1) {
-        block->due_ns = now_ns; /* both halves at once, and so on down to the register that is to blame */
+        block->due_ns = now_ns; /* both halves at once; splitting repeats until the refused register is found */
         read_plan_split(&modbus->plan, modbus->base.plant, index);
         return;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A socket or a line of ours: opened with a deadline, thrown away after any error. RTU frames are libmodbus's. */
+/* A TCP socket or serial line of our own: opened with a deadline, closed after any error. libmodbus handles RTU frames only. */
 #include "value/modbus_link.h"
 
 #include <errno.h>
@@ -25,25 +25,26 @@ static const int64_t SETTLE_NS = 50 * NS_PER_MS;
 
 struct modbus_link {
     const struct plant_source *source;
-    modbus_t *modbus; /* NULL: of RTU frames only */
-    uint16_t number;  /* of the last question in TCP frames */
+    modbus_t *modbus; /* libmodbus context for RTU frames; NULL: TCP frames */
+    uint16_t number;  /* transaction identifier of the last request in TCP frames */
     int stop_fd;
     int null_fd;
-    int slot_fd; /* taken early and kept for life, the connection is put into it: libmodbus calls select(), whose sets end at
-                      FD_SETSIZE, while the daemon may hold more files than that by the time of a reconnect */
+    /* A low file descriptor reserved at creation; dup3() moves each connection into it. libmodbus calls select(), whose sets end at
+       FD_SETSIZE, while the daemon may have more files open than that by the time of a reconnect. */
+    int slot_fd;
     bool open;
-    bool suspect; /* a serial line on which a reply may still come that was given up */
-    int host;     /* index in source->hosts: the one in use */
+    bool suspect; /* serial line on which the late answer of an abandoned request may still arrive */
+    int host;     /* index in source->hosts of the host in use */
     int answers;  /* of this connection */
     bool any_unit;
-    struct modbus_answered answered; /* by the last answer in TCP frames */
+    struct modbus_answered answered; /* identifier and unit of the last response in TCP frames */
     int64_t patience_ns;
-    int64_t opened_ns, sent_ns, first_answered_ns; /* sent_ns: the request that was answered first */
+    int64_t opened_ns, sent_ns, first_answered_ns; /* monotonic times; sent_ns: when the request was sent that was answered first */
     struct lookup *lookup;
     char name[300];
 };
 
-/* Of 8 bits, as RTU demands. Neither kind connects by itself where it is given a socket. */
+/* Makes an RTU context with 8 data bits, as RTU demands. It does not connect by itself where it is given a socket. */
 static modbus_t *new_modbus(const struct plant_source *source)
 {
     bool line = source->transport == TRANSPORT_RTU;
@@ -51,7 +52,7 @@ static modbus_t *new_modbus(const struct plant_source *source)
     if (!modbus)
         return NULL;
     modbus_set_response_timeout(modbus, (uint32_t)(source->timeout_ms / 1000), (uint32_t)(source->timeout_ms % 1000) * 1000);
-    modbus_set_byte_timeout(modbus, 0, 0); /* off: the response timeout is for the whole reply, not anew for each byte */
+    modbus_set_byte_timeout(modbus, 0, 0); /* off: the response timeout limits the whole reply, not each byte */
     return modbus;
 }
 
@@ -208,18 +209,18 @@ static int connect_any(struct modbus_link *link, int64_t deadline_ns, int *out_f
     if (!link->lookup)
         link->lookup = lookup_start(link->source->hosts[link->host], link->source->port);
     int status = lookup_wait(link->lookup, link->stop_fd, deadline_ns, &to);
-    if (status == -ETIMEDOUT) /* the resolver hangs: the next attempt waits on for the same answer */
+    if (status == -ETIMEDOUT) /* the resolver hangs: the next attempt waits for the same lookup */
         return status;
     for (; to; to = to->ai_next) {
         status = connect_one(to, link->stop_fd, deadline_ns, out_fd);
         if (status == 0 || status == -ECANCELED)
             break;
     }
-    lookup_destroy(&link->lookup); /* asked anew each time: addresses change */
+    lookup_destroy(&link->lookup); /* each connection resolves the name again: addresses change */
     return status;
 }
 
-/* libmodbus sets the line up and keeps how it was; a line is nobody else's while it is open. */
+/* Opens the serial line with exclusive access. libmodbus configures the line and remembers its previous settings. */
 static int open_line(struct modbus_link *link, int *out_fd)
 {
     if (modbus_connect(link->modbus) != 0) {
@@ -247,7 +248,8 @@ int modbus_link_open(struct modbus_link *link)
     link->open = status == 0;
     link->answers = 0;
     link->opened_ns = clock_mono_ns();
-    if (link->open && wait_for(-1, 0, link->stop_fd, 0) == -ECANCELED) { /* interrupted before it was in its slot */
+    /* modbus_link_interrupt() was called before the connection was in its slot */
+    if (link->open && wait_for(-1, 0, link->stop_fd, 0) == -ECANCELED) {
         close_link(link);
         status = -ECANCELED;
     }
@@ -256,8 +258,8 @@ int modbus_link_open(struct modbus_link *link)
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
 
-/* Drops a reply that was sent twice, and noise. modbus_flush knows a TCP context's socket and a line, but not RTU frames in a socket.
-   Returns false if the device has closed the connection meanwhile. */
+/* Discards bytes that have arrived unasked, such as a duplicate reply or noise. modbus_flush() handles a TCP context's socket and a
+   serial line, but not RTU frames in a socket. Returns false if the device has closed the connection meanwhile. */
 static bool flush(struct modbus_link *link)
 {
     uint8_t bytes[512];
@@ -284,7 +286,7 @@ static int read_words(modbus_t *modbus, enum register_table table, int first, in
                                 : modbus_read_registers(modbus, first, count, words);
 }
 
-/* What a call of libmodbus came to. */
+/* Maps a libmodbus result to 0, a Modbus exception code or -errno. */
 static int status_of(int got, int count)
 {
     int cause = errno;
@@ -295,8 +297,8 @@ static int status_of(int got, int count)
     return got < 0 && cause > 0 && cause < MODBUS_ENOBASE ? -cause : -EPROTO;
 }
 
-/* The first request of a connection is repeated while patience lasts: some devices drop what comes soon after connecting, others take
-   long for their first answer. The answer to any of these equal requests is taken. */
+/* Sends a request in TCP frames. The first request of a connection is repeated until patience_ns have passed: some devices drop requests
+   that come soon after connecting, others take long for their first answer. The answer to any of the repeated requests is accepted. */
 static int ask_framed(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     struct modbus_question numbered = *question;
@@ -327,8 +329,8 @@ static int ask(struct modbus_link *link, const struct modbus_question *question,
     return status_of(got, question->count);
 }
 
-/* RTU frames have no numbers: what was given up may come as the answer to the next question. So after an error one answer is thrown
-   away, and then whatever else comes for a while. False: nobody answers. */
+/* RTU frames have no transaction numbers: the answer to an abandoned request may arrive as the answer to the next one. After an error
+   this function discards one answer, then waits one timeout for stray bytes. Returns false if the device does not answer. */
 static bool clear_line(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     if (ask(link, question, words) == -ETIMEDOUT)
@@ -338,15 +340,15 @@ static bool clear_line(struct modbus_link *link, const struct modbus_question *q
     return true;
 }
 
-/* An answer with the number of another question: one that came twice, or late. What belongs to that is let come, and the question put
-   once more; who answers wrongly again is disconnected. */
+/* Called after an answer with the transaction number of another request, which came twice or late. Waits SETTLE_NS for more stray
+   answers, then repeats the request. A second wrong answer makes the caller disconnect. */
 static int ask_anew(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     wait_for(-1, 0, link->stop_fd, clock_mono_ns() + SETTLE_NS);
     return ask(link, question, words);
 }
 
-/* 0..247, and 255 over TCP: the device at the address itself. */
+/* Selects a unit; returns false if its number is invalid. Valid: 0 to 247, and over TCP 255, the device at the address itself. */
 static bool can_ask_unit(struct modbus_link *link, int unit)
 {
     return link->modbus ? modbus_set_slave(link->modbus, unit) == 0 : (unit >= 0 && unit <= 247) || unit == 255;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source: finds out how the device wants its connections, adapts, and logs once which key would say so from the start. */
+/* A Modbus source: learns how the device handles connections, adapts, and logs once which key of the plant file would set that from the
+   start. */
 #include <errno.h>
 #include <stdio.h>
 
@@ -7,11 +8,11 @@
 #include "value/modbus_impl.h"
 
 enum { SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
-static const int64_t PAUSE_NS = 50 * NS_PER_MS;      /* before connecting again, doubled each time: some devices free a connection late */
-static const int64_t TOLERANCE_NS = 2 * NS_PER_S;    /* after the last answer; later the device counts as lost */
-static const int64_t PATIENCE_NS = 3 * NS_PER_S;     /* for the first answer of the second connection without one; twice as long later */
-static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS; /* first delay that is tried where requests have no numbers */
-static const int64_t GATEWAY_NS = 5 * NS_PER_S;      /* for a unit that is up, after another one timed out behind the same gateway */
+static const int64_t PAUSE_NS = 50 * NS_PER_MS; /* delay before connecting again, doubled each time: some devices free a connection late */
+static const int64_t TOLERANCE_NS = 2 * NS_PER_S;    /* time since the last answer after which the device counts as lost */
+static const int64_t PATIENCE_NS = 3 * NS_PER_S;     /* wait for the first answer on the second silent connection; twice as long later */
+static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS; /* first delay to try for RTU over TCP, whose requests have no numbers */
+static const int64_t GATEWAY_NS = 5 * NS_PER_S;      /* wait for a unit that is up, after another unit behind the same gateway timed out */
 static const int64_t MOST_DELAY_NS = 8 * NS_PER_S;
 
 void modbus_manners_init(struct modbus_source *modbus)
@@ -57,7 +58,7 @@ static void log_found(struct modbus_source *modbus, const char *found)
     log_info(modbus->base.log, "source %s: device %s %s", modbus->base.config->id, modbus_link_name(modbus->link), found);
 }
 
-/* The first answer of a connection came late: long after its request, or to one that was repeated. */
+/* Learns from a late first answer of a connection: either the device answered a repeated request, or it was slow to answer. */
 static void learn_start(struct modbus_source *modbus)
 {
     struct modbus_manners *manners = &modbus->manners;
@@ -66,7 +67,7 @@ static void learn_start(struct modbus_source *modbus)
     bool known = manners->first_wait_ns > 0, repeated = answered_ns - sent_ns < timeout_ns / 2;
     char found[200];
     if (answered_ns - manners->connect_delay_ns < timeout_ns) {
-        manners->first_wait_ns = 0; /* it was slow for another reason */
+        manners->first_wait_ns = 0; /* slow for another reason */
         return;
     }
     if (answered_ns > manners->first_wait_ns / 2)
@@ -84,7 +85,8 @@ static void learn_start(struct modbus_source *modbus)
     log_found(modbus, found);
 }
 
-/* A device without numbers in its answers must not be asked twice: a longer delay is tried with each connection. */
+/* Logs the connect delay with which an RTU-over-TCP device answers. Its answers have no numbers, so requests must not be repeated;
+   instead each silent connection makes the next one wait longer before its first request. */
 static void learn_rtu_delay(struct modbus_source *modbus)
 {
     struct modbus_manners *manners = &modbus->manners;
@@ -125,7 +127,7 @@ static bool is_closed(int status)
     return status == -ECONNRESET || status == -EPIPE || status == -ECONNREFUSED || status == -ECONNABORTED;
 }
 
-/* The device ended a connection on which it had answered. */
+/* Counts a connection that the device closed after answering on it, and switches to one request per connection after a few. */
 static void learn_end(struct modbus_source *modbus, int answers)
 {
     struct modbus_manners *manners = &modbus->manners;
@@ -141,7 +143,7 @@ static void learn_end(struct modbus_source *modbus, int answers)
     }
 }
 
-/* Right after a connection that answered, the next one may be refused for a moment. */
+/* Returns whether a refused or closed connection is excused, because it closely follows a connection that answered; sets the retry time. */
 static bool may_be_early(struct modbus_source *modbus, int status, int most)
 {
     struct modbus_manners *manners = &modbus->manners;

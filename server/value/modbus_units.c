@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source: who answers, and who is left alone for how long. */
+/* A Modbus source: tracks which units answer, and when a silent unit or a refused block is asked again. */
 #include <errno.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "value/lookup.h"
 #include "value/modbus_impl.h"
 
-static const int64_t SPLIT_PAUSE_NS = 500 * NS_PER_MS; /* for the other blocks, while addresses that are not answered are searched */
+static const int64_t SPLIT_PAUSE_NS = 500 * NS_PER_MS; /* delay of the unit's other blocks while unanswered addresses are being isolated */
 
 struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block)
 {
@@ -34,7 +34,7 @@ static void link_lost(struct modbus_source *modbus, const char *why)
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit)
 {
     if (unit->state == UNIT_DOWN && modbus->plan_cut)
-        modbus_replan(modbus); /* it may have come back another */
+        modbus_replan(modbus); /* the unit may have been replaced by another device */
     if (unit->loss_said)
         log_info(modbus->base.log, "source %s: unit %d answers again", modbus->base.config->id, unit->id);
     unit->loss_said = false;
@@ -70,7 +70,7 @@ static void lose_tags_of(struct modbus_source *modbus, const struct modbus_unit 
     store_tags_lost(modbus->base.store, modbus->lost, count, clock_mono_ns());
 }
 
-/* The next host at once, if there is one that was not tried since a unit answered; else after a pause. */
+/* Switches to the next host: at once if it was not tried since a unit last answered, else after a backoff delay. */
 static void try_elsewhere(struct modbus_source *modbus)
 {
     int64_t now_ns = clock_mono_ns();
@@ -101,7 +101,7 @@ void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit,
 
 /* --- one block, or the whole unit ------------------------------------------------------------------------------------------- */
 
-/* Of the unit's other blocks, the one that is due next; NULL if there is none. */
+/* Returns the block of the same unit that is due next, other than `block`; NULL if there is none. */
 static struct read_plan_block *other_block(struct modbus_source *modbus, const struct read_plan_block *block)
 {
     struct read_plan_block *other = NULL;
@@ -121,11 +121,11 @@ bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, s
     unit->doubted = true;
     unit->doubted_table = failed->table;
     unit->doubted_first = failed->first;
-    other->due_ns = failed->due_ns - failed->scan_ms * NS_PER_MS; /* before all others */
+    other->due_ns = failed->due_ns - failed->scan_ms * NS_PER_MS; /* makes `other` due before all others */
     return true;
 }
 
-/* Splits a block that is not answered, down to the addresses to blame; these are asked again after growing pauses. */
+/* Marks a block as unanswered. Splits it until single addresses remain; these are asked again after growing delays. */
 static void blame(struct modbus_source *modbus, size_t index)
 {
     struct read_plan_block *block = &modbus->plan.blocks[index];

@@ -36,7 +36,7 @@ static inline bool quality_is_bad(uint32_t q)
 {
     return (q >> 30) >= 2;
 }
-/* Returns the name of a code, such as "Bad_CommunicationError"; for a code without a name here that of its severity, such as "Bad". */
+/* Returns the name of a code, such as "Bad_CommunicationError"; for a code missing in the table the name of its severity, such as "Bad". */
 const char *quality_name(uint32_t q);
 /* Returns "good", "uncertain" or "bad", as in JSON messages. */
 const char *quality_class(uint32_t q);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Read plan of a Modbus source: its tags, grouped into blocks that are read by one request each. No I/O, no clock. Thread: one. */
+/* Read plan of a Modbus source: its tags, grouped into blocks; one request reads one block. No I/O, no clock. Thread: one. */
 #ifndef VALUE_READ_PLAN_H
 #define VALUE_READ_PLAN_H
 #include <stddef.h>
@@ -7,35 +7,35 @@
 
 #include "plant/plant.h"
 
-enum { READ_PLAN_MAX_REGISTERS = 125, READ_PLAN_MAX_BITS = 2000 }; /* one request, Modbus Application Protocol 6.1-6.4 */
+enum { READ_PLAN_MAX_REGISTERS = 125, READ_PLAN_MAX_BITS = 2000 }; /* maximum of one request, Modbus Application Protocol 6.1-6.4 */
 
-struct read_plan_block { /* one request; each tag is in one block, gaps between tags are at most the source's max_gap registers */
-    int unit;                  /* Modbus unit identifier */
+struct read_plan_block { /* one request; each tag is in one block, gaps between its tags are at most the source's max_gap registers */
+    int unit;            /* Modbus unit identifier */
     enum register_table table;
     int scan_ms;
-    int first, count;          /* registers or bits */
-    size_t first_tag, tag_count; /* in read_plan.tags */
-    int64_t due_ns;            /* for the reader; 0 in a new plan, copied by read_plan_split() */
-    /* Also kept by the reader: 0 in a new plan, copied by read_plan_split(). */
-    int busy_count;            /* answers in a row that said "busy" */
-    int refused_count;         /* refusals in a row of a block of one tag */
-    int silent_count;          /* requests in a row without an answer, while other blocks of the unit were answered */
-    bool answered;             /* the last request was answered */
+    int first, count;            /* registers or bits */
+    size_t first_tag, tag_count; /* index of the first tag in read_plan.tags, and number of tags */
+    int64_t due_ns;              /* monotonic time of the next read, set by the reader; 0 in a new plan, copied by read_plan_split() */
+    /* The following members are set by the reader too: 0 in a new plan, copied by read_plan_split(). */
+    int busy_count;    /* number of successive "busy" responses */
+    int refused_count; /* number of successive refusals of a block that has one tag */
+    int silent_count;  /* number of successive requests without an answer, while other blocks of the unit were answered */
+    bool answered;     /* the last request was answered */
 };
 
 struct read_plan { /* zero-initialise */
-    int *tags;                 /* indices in plant->tags, in the order of their registers */
+    int *tags;     /* indices in plant->tags, in the order of their registers */
     size_t tag_count;
     struct read_plan_block *blocks;
     size_t block_count, block_capacity;
-    int *units;                /* every Modbus unit in the plan, once */
+    int *units; /* every Modbus unit in the plan, once */
     size_t unit_count;
 };
 
-/* Makes the plan of one of the plant's sources, a Modbus one. Keeps no pointer to the plant. Free with read_plan_finish(). */
+/* Builds the read plan of one Modbus source of the plant. Keeps no pointer to the plant. Free with read_plan_finish(). */
 void read_plan_init(struct read_plan *plan, const struct plant *plant, int source);
 void read_plan_finish(struct read_plan *plan);
-/* Splits a block of at least two tags between two of them; the second half becomes block index + 1. */
+/* Splits a block of at least two tags in two; the second half becomes block index + 1. */
 void read_plan_split(struct read_plan *plan, const struct plant *plant, size_t index);
 
 #endif

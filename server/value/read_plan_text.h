@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The read plan of a source as text for people: every request with its addresses on the wire, and the load on the device. */
+/* The read plan of a source as readable text: every request with its addresses on the wire, and the load on the device. */
 #ifndef VALUE_READ_PLAN_TEXT_H
 #define VALUE_READ_PLAN_TEXT_H
 #include "base/text/text.h"
 #include "plant/plant.h"
 
-/* Appends the plan of one source; one line for a source that is not Modbus. */
+/* Appends the read plan of one source; one line for a source that is not Modbus. */
 void read_plan_text(struct text *out, const struct plant *plant, int source);
 
 #endif

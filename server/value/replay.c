@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Recorded series, given to the store when their times have come. */
+/* Writes recorded series to the store when their times come. */
 #include "value/source_impl.h"
 
 #include <errno.h>
@@ -14,14 +14,14 @@
 #include "value/series.h"
 
 static const int64_t ROUND_NS = 50 * NS_PER_MS;
-static const int64_t LATEST_NS = 10 * NS_PER_S; /* after a sleep of the machine, what is older is passed over */
+static const int64_t LATEST_NS = 10 * NS_PER_S; /* after a sleep of the machine, samples older than this are skipped */
 
 struct replay_lane { /* a tag and its series */
     int tag;
-    struct unit_change change; /* of its values to readings */
-    struct series series; /* count 0: there is none */
+    struct unit_change change; /* unit conversion from the series to readings */
+    struct series series;      /* samples of the series; count 0: none */
     size_t next;
-    int64_t rounds;       /* of a loop */
+    int64_t rounds; /* completed rounds of a loop */
 };
 
 struct replay {
@@ -67,7 +67,7 @@ static bool ended(const struct replay *replay, const struct replay_lane *lane)
     return lane->series.count == 0 || (!replay->base.config->loop && lane->next == lane->series.count);
 }
 
-/* Moves on; after the last comes the first. */
+/* Moves to the next sample; a looping series starts again after its last sample. */
 static void step(const struct replay *replay, struct replay_lane *lane)
 {
     if (++lane->next < lane->series.count || !replay->base.config->loop)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Picks one series out of a CSV file of numbers. */
+/* Extracts one series from a CSV file of numbers. */
 #include "value/series.h"
 
 #include <errno.h>
@@ -55,7 +55,7 @@ static bool is(const struct series_cell *cell, const char *text, size_t length)
     return cell->length == length && !memcmp(cell->at, text, length);
 }
 
-/* Upper and lower case do not matter. */
+/* Compares a cell with a name, ignoring case. */
 static bool is_called(const struct series_cell *cell, const char *name)
 {
     return cell->length == strlen(name) && !strncasecmp(cell->at, name, cell->length);
@@ -76,7 +76,7 @@ static bool number_of(const struct series_cell *cell, double *out)
     return cell->length && end == cell->at + cell->length && isfinite(*out);
 }
 
-/* A value of a series; NaN where a state word says that there is none. */
+/* Reads a value; NaN where a state word says that there is none. Returns false if the cell is neither. */
 static bool value_of(const struct series_cell *cell, double *out)
 {
     char text[64];
@@ -110,12 +110,12 @@ static void add(struct series *series, double time_s, double value)
     series->value[series->count++] = value;
 }
 
-struct clock {     /* of one file */
-    bool instants; /* dates and times; else numbers */
+struct clock {     /* converts the time column of one file to seconds */
+    bool instants; /* the column has dates and times; otherwise numbers */
     bool begun;    /* first or first_us is set */
     double unit_s, first, last_s;
     int64_t first_us, last_us;
-    size_t ticks; /* different times */
+    size_t ticks; /* number of distinct times */
 };
 
 static bool instant_of(const struct series_cell *cell, int64_t after_us, int64_t *t_us)
@@ -153,7 +153,7 @@ static bool read_number(struct clock *clock, const struct series_cell *cell, dou
     return true;
 }
 
-/* The line's time since the first line. False: it is none, or lies before the line above. */
+/* Reads a line's time in seconds since the first line. Returns false if it is no time or lies before that of the previous line. */
 static bool tick(struct clock *clock, const struct series_cell *cell, double *time_s)
 {
     if (!(clock->instants ? read_instant : read_number)(clock, cell, time_s) || *time_s < clock->last_s)
@@ -207,13 +207,13 @@ static bool read_long(struct series *series, struct series_lines *lines, struct 
     return true;
 }
 
-struct header {              /* columns; the number of columns where there is none */
-    size_t time, column;     /* wide: of the series */
-    size_t tag, value, unit; /* of lines of one value each */
+struct header {              /* column indices; the number of columns means absent */
+    size_t time, column;     /* wide form: the time column and the series' column */
+    size_t tag, value, unit; /* columns of the values form (one value a line) */
     bool of_values;
 };
 
-/* The file's first and last time and the number of its lines: tags may come one after the other. */
+/* Finds the file's first and last time and its number of distinct times: each tag's lines may follow those of another tag. */
 static void scan_values(struct series_lines lines, const struct header *header, struct clock *clock)
 {
     int64_t t_us;
@@ -230,7 +230,8 @@ static void scan_values(struct series_lines lines, const struct header *header, 
     mem_free(lines.cells);
 }
 
-/* Lines of one tag and one value, as `plantcast history export` prints them. A blank value is none: its quality was Bad. */
+/* Reads the values form: lines of one tag and one value, as `plantcast history export` prints. A blank value means that its quality was
+   Bad. */
 static bool read_values(struct series *series, struct series_lines *lines, const struct header *header, struct clock *file, char why[200])
 {
     double time_s, value;
@@ -267,7 +268,7 @@ static bool read_values(struct series *series, struct series_lines *lines, const
     return true;
 }
 
-/* The first line below the header, whose time may be an instant whatever its column is called. */
+/* Returns whether the first line below the header has a date and time in this column, whatever the column is called. */
 static bool begins_with_instant(const struct series_lines *header, size_t column)
 {
     struct series_lines next = { .at = header->at };
@@ -402,7 +403,7 @@ static void add_name(struct series_names *names, char *name)
     names->at[names->count++] = name;
 }
 
-/* One name a line: entity/property, or of a tag. */
+/* Lists the names of a file with one value a line: entity/property, or the tag. */
 static void list_lines(struct series_names *names, struct series_lines *lines, size_t tag)
 {
     int first = lines->number;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names of series against addresses of tags. */
+/* Compares the tags' addresses with the names of the series. */
 #include "value/series_check.h"
 
 #include <string.h>

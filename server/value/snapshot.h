@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The readings of all tags at one instant, from which the field is computed. A plain copy, owned by whoever took it. */
+/* Snapshot: the readings of all tags at one instant, from which the field is computed. A plain copy, owned by its creator. */
 #ifndef VALUE_SNAPSHOT_H
 #define VALUE_SNAPSHOT_H
 #include <stddef.h>
 #include <stdint.h>
 
 struct reading {
-    double value;             /* engineering units; never NaN while quality is not Bad */
-    uint32_t quality;         /* OPC UA, staleness already applied */
-    uint32_t changes;         /* increases with every change of value, quality or alarm */
-    uint8_t alarm, alarm_status; /* the alarm that is shown for the tag (enum alarm_kind), and its state (enum alarm_status) */
-    int64_t received_utc_ns;  /* when the value came in; 0 = never */
-    int64_t age_ns;           /* at the snapshot, by the monotonic clock; INT64_MAX = never */
+    double value;                /* engineering units; never NaN while quality is not Bad */
+    uint32_t quality;            /* OPC UA status code, staleness already applied */
+    uint32_t changes;            /* change counter: increases with every change of value, quality or alarm */
+    uint8_t alarm, alarm_status; /* alarm shown for the tag (enum alarm_kind), and its state (enum alarm_status) */
+    int64_t received_utc_ns;     /* time when the value arrived; 0: never */
+    int64_t age_ns;              /* age at the snapshot by the monotonic clock; INT64_MAX: never received */
 };
 
 struct snapshot {
@@ -20,8 +20,8 @@ struct snapshot {
     struct reading *readings; /* by tag index */
 };
 
-struct snapshot *snapshot_create(size_t tag_count); /* never NULL; all readings are Bad_WaitingForInitialData */
-/* Makes a copy of the readings, or of all; never NULL. */
+struct snapshot *snapshot_create(size_t tag_count); /* Creates a snapshot with all readings Bad_WaitingForInitialData; never NULL. */
+/* snapshot_copy_readings() copies the array of readings, snapshot_copy() the whole snapshot. The caller frees the copy; never NULL. */
 struct reading *snapshot_copy_readings(const struct snapshot *snapshot);
 struct snapshot *snapshot_copy(const struct snapshot *snapshot);
 void snapshot_destroy(struct snapshot **snapshot);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A short list of counted snapshots. */
+/* A short list of reference-counted snapshots. */
 #include "value/snapshot_cache.h"
 
 #include <pthread.h>
@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 
-struct snapshot_entry { /* the snapshot comes first: it is what others hold */
+struct snapshot_entry { /* the snapshot must be the first member: users hold a pointer to it */
     struct historical_snapshot historical;
     int users;
     uint64_t used;
@@ -50,7 +50,7 @@ void snapshot_cache_destroy(struct snapshot_cache **cache_ptr)
     *cache_ptr = NULL;
 }
 
-/* Under lock. NULL: none. */
+/* Call with the lock held. NULL: none. */
 static struct snapshot_entry *find(const struct snapshot_cache *snapshot_cache, int64_t at_us)
 {
     for (size_t i = 0; i < snapshot_cache->count; i++)
@@ -59,7 +59,7 @@ static struct snapshot_entry *find(const struct snapshot_cache *snapshot_cache, 
     return NULL;
 }
 
-/* Under lock. The least that no other has that is held. */
+/* Call with the lock held. Returns the lowest slot number that no snapshot in use has. */
 static int free_slot(const struct snapshot_cache *snapshot_cache)
 {
     for (int slot = 1;; slot++) {
@@ -71,7 +71,7 @@ static int free_slot(const struct snapshot_cache *snapshot_cache)
     }
 }
 
-/* Under lock. */
+/* Call with the lock held. */
 static void drop_spare(struct snapshot_cache *snapshot_cache)
 {
     size_t spare = 0, oldest = 0;

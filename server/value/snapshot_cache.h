@@ -1,28 +1,30 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache of historical snapshots: each instant that somebody looks at is read from history once and shared. Thread: any. */
+/* Cache of historical snapshots: each instant that is viewed is read from history once and shared. Thread: any. */
 #ifndef VALUE_SNAPSHOT_CACHE_H
 #define VALUE_SNAPSHOT_CACHE_H
 #include "value/snapshot.h"
 
-enum { SNAPSHOT_CACHE_SPARE = 16 }; /* this many of the newest stay although nobody uses them */
+enum { SNAPSHOT_CACHE_SPARE = 16 }; /* number of unused snapshots that stay in the cache, the newest ones */
 
-struct historical_snapshot { /* immutable while held */
+struct historical_snapshot { /* immutable while a user holds it */
     struct snapshot snapshot;
     int64_t at_us; /* UTC, since 1970; above 0 */
-    int slot;      /* above 0; unique among those in use, so that each has its own fields and buffers */
+    int slot;      /* number above 0, unique among snapshots in use, so that each has fields and buffers of its own */
 };
 
 struct snapshot_cache;
 struct snapshot_cache *snapshot_cache_create(void);
-void snapshot_cache_destroy(struct snapshot_cache **snapshot_cache); /* &NULL is fine; leaves NULL; nothing may be held any more */
+/* Frees the cache; no snapshot may be in use any more. &NULL is fine; leaves NULL. */
+void snapshot_cache_destroy(struct snapshot_cache **snapshot_cache);
 
-/* Adds an instant. Renumbers the `changes` of the snapshot's readings so that equal values and qualities have equal numbers, and takes the
-   readings over, which leaves the snapshot empty. An instant that is already there stays as it was, and the caller keeps the readings. The
-   struct itself stays the caller's. */
+/* Adds the snapshot of an instant. Sets the `changes` of its readings so that equal values and qualities have equal numbers, and takes
+   ownership of the readings, leaving the snapshot empty. If the instant is already cached, that entry stays unchanged and the caller
+   keeps the readings. The struct itself remains the caller's. */
 void snapshot_cache_add(struct snapshot_cache *snapshot_cache, int64_t at_us, struct snapshot *snapshot);
-/* Returns the snapshot of an instant, which stays valid until snapshot_cache_give(); NULL if it is not in the cache. */
+/* Returns the snapshot of an instant, valid until snapshot_cache_give(); NULL if it is not in the cache. */
 const struct historical_snapshot *snapshot_cache_take(struct snapshot_cache *snapshot_cache, int64_t at_us);
 void snapshot_cache_give(struct snapshot_cache *snapshot_cache,
-                         const struct historical_snapshot **historical); /* &NULL is fine; leaves NULL */
+                         /* Ends the use of a snapshot from snapshot_cache_take(). &NULL is fine; leaves NULL. */
+                         const struct historical_snapshot **historical);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of sources, and what all of them share: the thread of each, and how it is told to end. */
+/* The table of source kinds, and the thread handling that all kinds share. */
 #include "value/source.h"
 
 #include <errno.h>

@@ -9,8 +9,8 @@
 
 struct source;
 
-/* Starts the thread of one of the plant's sources. A device that does not answer is no error: it is retried for ever. Returns NULL (logged)
-   if the kind is unknown or there is no thread. */
+/* Starts the thread of one of the plant's sources. A device that does not answer is no error: the source retries for ever. Returns NULL
+   (logged) if the kind is unknown or the thread could not be started. */
 struct source *source_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters);
 /* Ends the thread within 2 s and frees the source. &NULL is fine; leaves NULL. */
 void source_stop(struct source **source);

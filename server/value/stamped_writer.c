@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Readings of one time are written together. */
+/* Writes readings that have the same time together. */
 #include "value/stamped_writer.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@ void stamped_writer_init(struct stamped_writer *writer, const struct plant *plan
     *writer = (struct stamped_writer){ .store = store, .plant = plant };
     writer->samples = mem_array(plant->tag_count, sizeof(*writer->samples));
     writer->last = mem_array(plant->tag_count, sizeof(*writer->last));
-    for (size_t i = 0; i < plant->tag_count; i++) /* a time before this machine was started is before 0 */
+    for (size_t i = 0; i < plant->tag_count; i++) /* a time before the machine's start is negative */
         writer->last[i].mono_ns = INT64_MIN;
 }
 
@@ -40,14 +40,15 @@ void stamped_writer_end(struct stamped_writer *writer)
     writer->count = 0;
 }
 
-/* The two clocks are never read at one instant: of equal times, the second must not come before the first. */
+/* Converts UTC to monotonic time. The two clocks are never read at the same instant, so a sample with the same UTC time as the tag's
+   last one gets at least that one's monotonic time. */
 static int64_t mono_of(const struct stamped_writer *writer, int tag, int64_t utc_ns)
 {
     int64_t mono_ns = writer->mono_ns - (writer->utc_ns - utc_ns);
     return utc_ns >= writer->last[tag].utc_ns && mono_ns < writer->last[tag].mono_ns ? writer->last[tag].mono_ns : mono_ns;
 }
 
-/* One sample of each tag at most fits a batch. */
+/* Adds a sample to the batch, which has one time and at most as many samples as there are tags. */
 static void add(struct stamped_writer *writer, const struct sample *sample, int64_t utc_ns)
 {
     int64_t mono_ns = mono_of(writer, sample->tag, utc_ns);
@@ -75,7 +76,7 @@ void stamped_writer_add(struct stamped_writer *writer, int tag, const struct sta
         writer->worst_skew_ns = utc_ns - writer->utc_ns;
     if (!quality_is_bad(value->quality)) {
         decode_number(&writer->plant->tags[tag], value->value, &sample);
-        if (value->quality >> 30 >= sample.quality >> 30) /* equally good: its sender knows more */
+        if (value->quality >> 30 >= sample.quality >> 30) /* equal severity: the sender's code is more specific */
             sample.quality = value->quality;
         if (was_kept && quality_is_good(sample.quality))
             sample.quality = QUALITY_UNCERTAIN_LAST_USABLE;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Brings readings to the store, each at the time that its sender states. Thread: one. */
+/* Writes readings to the store, each with the timestamp that its sender states. Thread: one. */
 #ifndef VALUE_STAMPED_WRITER_H
 #define VALUE_STAMPED_WRITER_H
 #include "plant/plant.h"
@@ -8,35 +8,35 @@
 struct stamped_value {
     double value;
     uint32_t quality;
-    int64_t utc_ns; /* as its sender states it; 0: it does not */
+    int64_t utc_ns; /* sender's timestamp; 0: not stated */
 };
 
 struct stamped_writer {
     struct store *store;
     const struct plant *plant;
-    int64_t mono_ns, utc_ns; /* now: of the message that is being read */
-    int64_t worst_skew_ns;   /* of a time that was stated in it, against ours: > 0 is ahead. 0: none */
-    size_t written;          /* readings of it */
-    struct sample *samples;  /* of one time, not written yet; room for all tags */
+    int64_t mono_ns, utc_ns; /* arrival time of the message being read */
+    int64_t worst_skew_ns;   /* largest difference of a stated time in the message from our clock; > 0: the sender is ahead. 0: none */
+    size_t written;          /* readings of this message written so far */
+    struct sample *samples;  /* pending samples, all of the same time; room for one of each tag */
     size_t count;
-    int64_t at_utc_ns, at_mono_ns; /* their time */
+    int64_t at_utc_ns, at_mono_ns; /* time of the pending samples */
     struct {
-        int64_t utc_ns, mono_ns; /* of its last sample, by tag */
-        bool is_stated;          /* the time is its sender's */
+        int64_t utc_ns, mono_ns; /* time of the tag's last sample; array by tag */
+        bool is_stated;          /* the sender stated that time */
     } *last;
 };
 
 void stamped_writer_init(struct stamped_writer *writer, const struct plant *plant, struct store *store);
 void stamped_writer_finish(struct stamped_writer *writer);
-/* Begins a message that has arrived now. */
+/* Begins a message with its arrival time. */
 void stamped_writer_begin(struct stamped_writer *writer, int64_t now_mono_ns, int64_t now_utc_ns);
-/* Takes the value that the message holds for a tag, before scaling. was_kept: the broker kept it, and it may have changed since: it is
-   Uncertain_LastUsableValue at best. A time ahead of ours is taken for now. in_order: a time
-   before that of the tag's last sample is taken for that one; else such a sample is passed over. */
+/* Adds the value that the message holds for a tag, before scaling. was_kept: the broker retained the value, which may have changed
+   since, so its quality is Uncertain_LastUsableValue at best. A time ahead of our clock is replaced by now. in_order: a time before that
+   of the tag's last sample is replaced by the latter; without in_order the store ignores such a sample. */
 void stamped_writer_add(struct stamped_writer *writer, int tag, const struct stamped_value *value, bool was_kept, bool in_order);
-/* Takes a quality in place of a value, from now on; where times are stated, from the last one on: by a clock that is behind,
-   what comes next would be older than now. */
+/* Sets a Bad quality for a tag from now on. If the sender states times, the quality counts from the tag's last time instead: a later
+   value of a sender whose clock is behind would otherwise be older than this entry. */
 void stamped_writer_add_bad(struct stamped_writer *writer, int tag, uint32_t quality);
-void stamped_writer_end(struct stamped_writer *writer); /* writes what is left */
+void stamped_writer_end(struct stamped_writer *writer); /* Writes the pending samples. */
 
 #endif

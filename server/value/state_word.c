@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A table of state words, from digital states of PI, errors of PI DataLink, quality codes of Ignition and errors of spreadsheets. */
+/* The table of state words: digital states of PI, errors of PI DataLink, quality codes of Ignition and errors of spreadsheets. */
 #include "value/state_word.h"
 
 #include <ctype.h>
@@ -9,7 +9,7 @@
 
 enum { LONGEST_WORD = 40 };
 
-/* Each word between blanks, as letters and digits only, in lower case. */
+/* Words are separated by blanks; each is written as letters and digits only, in lower case. */
 static const struct {
     uint32_t quality;
     const char *words;
@@ -34,7 +34,8 @@ static const struct {
       " unitdown notinservice " },
 };
 
-/* "Bad", "Bad_NotConnected", "BadSensorFailure", "BAD INPUT", "Error_Exception"; not "badge". */
+/* Returns whether the text begins with a word: "Bad", "Bad_NotConnected", "BadSensorFailure", "BAD INPUT" begin with "bad", "badge" does
+   not. */
 static bool begins_as(const char *text, const char *word)
 {
     size_t length = strlen(word);

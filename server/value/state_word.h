@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Words that historians write in place of a value, such as "Bad", "No Data" or "I/O Timeout". Pure functions. Thread: any. */
+/* State words that historians write in place of a value, such as "Bad", "No Data" or "I/O Timeout". Pure functions. Thread: any. */
 #ifndef VALUE_STATE_WORD_H
 #define VALUE_STATE_WORD_H
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Returns whether the text says that there is no value, and sets *quality to the Bad quality that the text stands for. Blank text, dashes,
-   NaN, null, spreadsheet errors (#N/A), digital states of PI and quality names of OPC UA and Ignition do; case and punctuation do not
-   matter. Other text leaves *quality alone. */
+/* Returns whether the text says that there is no value, and sets *quality to the matching Bad quality. This holds for blank text,
+   dashes, NaN, null, spreadsheet errors (#N/A), digital states of PI and quality names of OPC UA and Ignition; case and punctuation do
+   not matter. Other text leaves *quality unchanged. */
 bool state_word_is_bad(const char *text, uint32_t *quality);
 
 #endif

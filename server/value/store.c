@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The latest reading of every tag, and what has become of it since. */
+/* The latest reading of every tag and its current quality. */
 #include "value/store.h"
 
 #include <assert.h>
@@ -11,16 +11,16 @@
 #include "value/quality.h"
 
 struct held {
-    double value;                              /* the last usable one */
+    double value;                              /* last usable value */
     uint32_t quality;                          /* of the last sample */
-    bool has_value, lost;                      /* lost: could not be read since the last sample */
-    bool dead;                                 /* likewise, and what it was before says nothing any more */
-    int64_t sampled_mono_ns;                   /* last sample, Bad ones too */
-    int64_t received_mono_ns, received_utc_ns; /* last usable value */
-    int64_t changed_mono_ns;                   /* when that value was another the last time */
+    bool has_value, lost;                      /* lost: the tag could not be read since its last sample */
+    bool dead;                                 /* lost, and its last value may not be used any more */
+    int64_t sampled_mono_ns;                   /* time of the last sample, including Bad ones */
+    int64_t received_mono_ns, received_utc_ns; /* time of the last usable value */
+    int64_t changed_mono_ns;                   /* time of the last change of that value */
     int64_t stale_ns, flatline_ns;
-    int first_vouched, next_vouched; /* tags whose quality this one says, and the next of those that share one; -1: none */
-    uint32_t shown_quality;          /* as last counted in changes */
+    int first_vouched, next_vouched; /* linked list of the tags whose quality this tag gives, and the next tag in such a list; -1: none */
+    uint32_t shown_quality;          /* quality at the last increase of `changes` */
     uint32_t changes;
     uint8_t alarm, alarm_status;
 };
@@ -41,12 +41,12 @@ struct store {
         void *arg;
     } listeners[STORE_LISTENERS];
     struct {
-        void (*changed)(void *arg); /* NULL: nobody watches */
+        void (*changed)(void *arg); /* NULL: no callback */
         void *arg;
-        bool told; /* since the last store_take */
+        bool told; /* the callback was called since the last store_take() */
     } watch;
-    int64_t utc_ahead_ns; /* of the monotonic clock, when a sample came last */
-    bool has_utc;         /* one came */
+    int64_t utc_ahead_ns; /* UTC minus monotonic time at the last sample */
+    bool has_utc;         /* a sample has arrived */
 };
 
 static int64_t ns_of(double s)
@@ -106,7 +106,7 @@ static int find_source(const struct plant *plant, const char *id)
     return i;
 }
 
-/* A reading says nothing in another unit; the next one is not far. */
+/* Returns whether a tag keeps its unit in the new plant: otherwise its old reading is not copied, since the next one comes soon. */
 static bool same_unit(const struct plant_tag *a, const struct plant_tag *b)
 {
     struct unit_change change;
@@ -125,7 +125,7 @@ void store_adopt(struct store *store, struct store *before)
             continue;
         const struct held own = *to;
         *to = before->tags[i];
-        to->alarm = own.alarm; /* its limits may have changed: whoever owns alarms says again which stand */
+        to->alarm = own.alarm; /* the limits may have changed: the alarm service sets the alarm again */
         to->alarm_status = own.alarm_status;
         to->stale_ns = own.stale_ns;
         to->flatline_ns = own.flatline_ns;
@@ -189,7 +189,7 @@ static void tell(struct store *store, size_t tag, uint32_t quality, int64_t mono
             store->listeners[i].hear(store->listeners[i].arg, &event);
 }
 
-/* By what was read of it alone. */
+/* Returns the quality that follows from the tag's own samples. */
 static uint32_t own_quality(const struct held *held, int64_t now_mono_ns)
 {
     bool stale = held->has_value && now_mono_ns - held->received_mono_ns >= held->stale_ns;
@@ -207,7 +207,7 @@ static uint32_t own_quality(const struct held *held, int64_t now_mono_ns)
     return flat && quality_is_good(held->quality) ? QUALITY_UNCERTAIN_SENSOR_NOT_ACCURATE : held->quality;
 }
 
-/* Of the controller behind the tag's source: Good, or why nothing of it may be believed. */
+/* Returns the quality from the heartbeat of the tag's source: Good, or Bad if the controller behind the source has stopped. */
 static uint32_t heartbeat_quality(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
     int index = store->plant->tags[tag].source;
@@ -220,7 +220,7 @@ static uint32_t heartbeat_quality(const struct store *store, size_t tag, int64_t
     return now_mono_ns - heart->changed_mono_ns >= ns_of(source->heartbeat_s) ? QUALITY_BAD_DEVICE_FAILURE : QUALITY_GOOD;
 }
 
-/* What its quality tag says. */
+/* Returns the quality that the tag's quality tag gives; Good if it has none. */
 static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
     const struct plant_quality_tag *by = &store->plant->tags[tag].quality;
@@ -233,7 +233,7 @@ static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t n
     return good ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* The worst that is known. */
+/* Returns the worst of the three qualities. */
 static uint32_t quality_now(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
     uint32_t quality = own_quality(&store->tags[tag], now_mono_ns);
@@ -244,7 +244,7 @@ static uint32_t quality_now(const struct store *store, size_t tag, int64_t now_m
     return quality;
 }
 
-/* Returns whether it changed. */
+/* Updates the change counter. Returns whether value or quality changed. */
 static bool count_change(struct store *store, size_t tag, bool value_changed, int64_t now_mono_ns)
 {
     struct held *held = &store->tags[tag];
@@ -260,7 +260,7 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
     struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
     if (now_mono_ns < held->sampled_mono_ns) {
-        /* The same sample once more, at the same time as its sender tells it, shows that a source which was lost is back. */
+        /* An equal sample with the same sender's time shows that a lost source is back. */
         if (!held->dead || !held->has_value || now_utc_ns < held->received_utc_ns)
             return false;
         now_mono_ns = held->sampled_mono_ns;
@@ -282,7 +282,7 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
     return true;
 }
 
-/* Of tags that this one vouches for. */
+/* Reports changes of the tags whose quality this tag gives. */
 static void tell_vouched(struct store *store, int tag, int64_t now_mono_ns, int64_t now_utc_ns)
 {
     for (int i = store->tags[tag].first_vouched; i >= 0; i = store->tags[i].next_vouched) {
@@ -317,7 +317,7 @@ static void mirror(struct store *store, const struct mirrored *reading, int64_t 
     held->received_utc_ns = reading->received_utc_ns;
     held->sampled_mono_ns = held->changed_mono_ns = now_mono_ns;
     held->lost = held->dead = false;
-    held->stale_ns = held->flatline_ns = INT64_MAX; /* judged there */
+    held->stale_ns = held->flatline_ns = INT64_MAX; /* the core decides about staleness */
     if (count_change(store, (size_t)reading->tag, value_changed, now_mono_ns))
         tell_watch(store);
 }
@@ -335,7 +335,7 @@ static void lose(struct store *store, size_t tag, bool dead, int64_t now_mono_ns
     struct held *held = &store->tags[tag];
     if (now_mono_ns < held->sampled_mono_ns)
         return;
-    if (!held->lost || (dead && !held->dead)) /* even if its own quality stays, that of a tag that it vouches for may not */
+    if (!held->lost || (dead && !held->dead)) /* even if its own quality stays, that of tags which depend on it may change */
         tell_watch(store);
     held->lost = true;
     held->dead |= dead;
@@ -447,14 +447,14 @@ void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns
     pthread_mutex_unlock(&store->lock);
 }
 
-/* The first of two instants after now: of `next`, and of when what began at since_ns is after_ns old. */
+/* Returns the earlier of two times: next_ns, and since_ns + after_ns if that is in the future. */
 static int64_t sooner(int64_t next_ns, int64_t since_ns, int64_t after_ns, int64_t now_mono_ns)
 {
     bool comes = after_ns < INT64_MAX && since_ns + after_ns > now_mono_ns;
     return comes && since_ns + after_ns < next_ns ? since_ns + after_ns : next_ns;
 }
 
-/* When the next reading gets stale, or the next heartbeat counts as stopped. */
+/* Returns when the next reading goes stale, or the next heartbeat counts as stopped. */
 static int64_t next_change_ns(const struct store *store, int64_t now_mono_ns)
 {
     int64_t next_ns = INT64_MAX;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Walks a path through JSON and counts all that it selects. */
+/* Walks a path through a JSON document and counts the values it selects. */
 #include "value/mqtt/json_select.h"
 
 #include <stdbool.h>
@@ -29,7 +29,7 @@ static bool names_its_object(const char *key)
     return false;
 }
 
-/* Returns whether a name is the tag's, or ends in it behind a separator: `A.T1` is that of T1. */
+/* Returns whether a name is the tag's, or ends in the tag's name after a separator: `A.T1` matches T1. */
 static bool is_name_of(const json_t *name, const char *tag)
 {
     const char *text = json_string_value(name);
@@ -39,7 +39,7 @@ static bool is_name_of(const json_t *name, const char *tag)
     return length == tag_length || strchr("./:\\!|", text[length - tag_length - 1]);
 }
 
-/* Returns whether the rest of a path selects this member: then the member is the value, not a name. */
+/* Returns whether the rest of a path selects this member: the member is then the value, not a name. */
 static bool is_selected(const char *key, const char *rest)
 {
     struct json_path_step step;
@@ -47,7 +47,8 @@ static bool is_selected(const char *key, const char *rest)
     return *rest && json_path_next(&rest, &step, why) && step.kind == JSON_PATH_NAME && !strcmp(step.name, key);
 }
 
-/* Returns the name of an item that names itself, and by none of its names as the tag; else NULL. rest: the path below the item. */
+/* Returns the name of an item whose names all differ from the tag's; NULL if one matches or the item has no name. `rest`: path below the
+   item. */
 static const json_t *foreign_name(const json_t *item, const char *tag, const char *rest)
 {
     const char *key;
@@ -121,7 +122,7 @@ static void walk_matches(const json_t *holder, const struct json_path_step *step
     }
 }
 
-/* As deep as the path has steps; the address of a tag bounds them. */
+/* Recursion depth is the number of path steps, which the length of a tag's address bounds. */
 static void walk(const json_t *value, const json_t *holder, const char *at, const char *tag, struct json_selected *out)
 {
     struct json_path_step step;

@@ -6,15 +6,17 @@
 #include <stddef.h>
 
 struct json_selected {
-    size_t count;          /* how many values the path selects */
-    const json_t *value;   /* the last of them; NULL: none */
-    const json_t *holder;  /* the object or array that contains value; NULL: value is the root */
-    const json_t *foreign; /* an item at a position in the path names itself, and not as `tag`; this is its name. NULL: none does */
+    size_t count;         /* number of values that the path selects */
+    const json_t *value;  /* last selected value; NULL: none */
+    const json_t *holder; /* object or array that contains `value`; NULL: `value` is the root */
+    /* name of an array item that the path addresses by position although the item names itself differently from the tag; NULL: no such
+       item */
+    const json_t *foreign;
 };
 
-/* Walks the path from root. tag: name of the tag whose value is looked for; an array's item that names itself (a text or number called
-   `id`, `name`, `tag` and the like) and was addressed by its position is not selected unless its name is the tag's, or ends in the tag's
-   behind a separator: publishers that send only what has changed move their items. */
+/* Walks the path from `root`. `tag`: name of the tag whose value is read. An array item addressed by position that names itself (a text
+   or number called `id`, `name`, `tag` and the like) is selected only if its name is the tag's, or ends in the tag's name after a
+   separator: publishers that send only changes move their items. */
 struct json_selected json_select(const json_t *root, const char *path, const char *tag);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An MQTT source: connects, subscribes, and says at once when the broker is gone. All it can publish
-   is the request for a Sparkplug birth certificate, where the plant file allows that. */
+/* An MQTT source: connects, subscribes, and reports the loss of the broker at once. It can publish nothing but the request for a
+   Sparkplug birth certificate, and that only where the plant file allows it. */
 #include <errno.h>
 #include <string.h>
 #include <sys/random.h>
@@ -10,8 +10,8 @@
 #include "value/lookup.h"
 #include "value/mqtt/mqtt_impl.h"
 
-static const int64_t CONNECT_NS = 10 * NS_PER_S; /* to a session with the broker; also the time for its answers to subscriptions */
-static const int64_t LINE_NS = 60 * NS_PER_S;    /* between two log lines about refused messages */
+static const int64_t CONNECT_NS = 10 * NS_PER_S; /* time limit for a session with the broker, and for its answers to subscriptions */
+static const int64_t LINE_NS = 60 * NS_PER_S;    /* minimum time between two log lines about refused messages */
 
 static bool stopping(const struct mqtt_source *mqtt, int64_t until_ns)
 {
@@ -20,7 +20,7 @@ static bool stopping(const struct mqtt_source *mqtt, int64_t until_ns)
 
 /* --- the link --------------------------------------------------------------------------------------------------------------- */
 
-/* What the broker does not tell any more may have changed: nothing of it is a reading now. */
+/* Marks all readings of the source as lost: without the broker, values may have changed unnoticed. */
 static void link_lost(struct mqtt_source *mqtt, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
@@ -79,7 +79,7 @@ static void on_message(void *arg, const struct mqtt_message *message)
 
 /* --- the thread ------------------------------------------------------------------------------------------------------------- */
 
-/* One connection, until it ends. Returns -ECANCELED when the source is to stop, else why says what happened. */
+/* Runs one connection until it ends. Returns -ECANCELED when the source must stop, else another code with the reason in `why`. */
 static int run_session(struct mqtt_source *mqtt, char why[200])
 {
     const struct mqtt_client_events events = { .arg = mqtt,
@@ -152,7 +152,7 @@ static void add_counters(struct mqtt_source *mqtt, struct counters *counters)
     mqtt->host = source_counter(base, counters, "host", "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
 }
 
-/* Two programs must not have one id: the broker would end the connection of the other. */
+/* Returns the configured client id or makes a random one: a broker ends the connection of another client with the same id. */
 static char *make_client_id(const struct plant_source *config)
 {
     unsigned random = 0;

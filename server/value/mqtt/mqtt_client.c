@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* libmosquitto, with our own poll instead of its loop: its select() cannot see descriptors above 1023. */
+/* libmosquitto with our own poll loop instead of its select() loop, which cannot handle descriptors above 1023. */
 #include "value/mqtt/mqtt_client.h"
 
 #include <errno.h>
@@ -20,28 +20,28 @@
 #include "value/lookup.h"
 #include "value/mqtt/sparkplug_payload.h"
 
-enum { TOPICS_AT_ONCE = 8 };                      /* of one request; some brokers refuse more */
-enum { SESSION_KEPT_S = 7 * 86400 };              /* of a persistent session, by the broker */
+enum { TOPICS_AT_ONCE = 8 };         /* topics in one subscribe request; some brokers refuse more */
+enum { SESSION_KEPT_S = 7 * 86400 }; /* seconds for which the broker keeps a persistent session */
 static const char SYSTEM_CERTIFICATES[] = "/etc/ssl/certs";
-static const int64_t CHORES_NS = 500 * NS_PER_MS; /* how often the library looks at its keep-alive timer */
+static const int64_t CHORES_NS = 500 * NS_PER_MS; /* interval at which the library checks its keep-alive timer */
 
 struct mqtt_client {
     struct mosquitto *library;
     const struct plant_source *source;
     const struct mqtt_client_events *events;
-    char *host;           /* the thread that connects may outlive the source */
+    char *host; /* a copy, because the connecting thread may outlive the source */
     int port, keepalive_s;
     mosquitto_property *properties;
-    int done_fd;          /* readable once connecting has ended */
+    int done_fd; /* readable once the connection attempt has ended */
     _Atomic int users;
-    _Atomic int status;   /* of connecting, by the library's numbers; errno_then goes with it */
+    _Atomic int status; /* library's status of the connection attempt; errno_then belongs to it */
     int errno_then;
-    char said[160];       /* the last error that the library logged */
-    /* --- below: of the thread that serves */
-    int refusal;          /* why the broker refused us, else 0 */
+    char said[160]; /* last error that the library logged */
+    /* --- below: used by the serving thread only */
+    int refusal; /* reason code with which the broker refused us; 0: none */
     char *const *topics;
     size_t topic_count, acknowledged;
-    int *requests;        /* message ids of subscriptions, for TOPICS_AT_ONCE topics each */
+    int *requests; /* message ids of subscribe requests, each for TOPICS_AT_ONCE topics */
 };
 
 static void client_unref(struct mqtt_client *client)
@@ -100,7 +100,7 @@ static void on_subscribe(struct mosquitto *library, void *arg, int id, int count
         request++;
     if (request == requests)
         return;
-    client->requests[request] = 0; /* acknowledged: no id of the library is 0 */
+    client->requests[request] = 0; /* acknowledged; 0 is never an id of the library */
     for (size_t i = 0, topic = request * TOPICS_AT_ONCE; i < TOPICS_AT_ONCE && topic < client->topic_count; i++, topic++) {
         client->acknowledged++;
         if ((int)i >= count || granted[i] >= 128)
@@ -139,7 +139,7 @@ static void *connect_main(void *arg)
     return NULL;
 }
 
-/* A key that wants a passphrase: nobody is there to be asked. */
+/* Passphrase callback for an encrypted key: fails, because nobody is there to type a passphrase. */
 static int no_passphrase(char *out, int bytes, int for_writing, void *arg)
 {
     (void)out;
@@ -161,7 +161,7 @@ static bool use_tls(struct mqtt_client *client, char why[200])
     return status == MOSQ_ERR_SUCCESS;
 }
 
-/* Read for each connection: a password may have been changed. */
+/* Sets user name and password. Reads the login file again for each connection: the password may have changed. */
 static bool log_in(struct mqtt_client *client, char why[200])
 {
     const char *file = client->source->login;
@@ -240,13 +240,13 @@ void mqtt_client_destroy(struct mqtt_client **client)
     if (!gone)
         return;
     if (gone->done_fd >= 0 && wait_for(gone->done_fd, POLLIN, -1, 0) == 0)
-        mosquitto_disconnect(gone->library); /* no thread of its own has it any more */
+        mosquitto_disconnect(gone->library); /* the connecting thread no longer uses the library object */
     client_unref(gone);
 }
 
 /* --- serving ---------------------------------------------------------------------------------------------------------------- */
 
-/* What ended a connection, in words. Returns what mqtt_client_serve() returns. */
+/* Writes into `why` what ended a connection. Returns the code for mqtt_client_serve() to return. */
 static int explain(const struct mqtt_client *client, int status, int errno_then, char why[200])
 {
     bool is_5 = client->source->mqtt.protocol == 5;
@@ -272,7 +272,7 @@ int mqtt_client_wait(struct mqtt_client *client, int stop_fd, int64_t deadline_m
     return client->status == MOSQ_ERR_SUCCESS ? 0 : explain(client, client->status, client->errno_then, why);
 }
 
-/* TLS may hold more than the socket shows. */
+/* Returns whether TLS holds decrypted bytes that poll() on the socket does not show. */
 static bool holds_more(struct mqtt_client *client)
 {
     SSL *tls = mosquitto_ssl_get(client->library);

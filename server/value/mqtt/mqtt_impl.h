@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An MQTT source, as its files share it: one thread with one connection. Private to value/mqtt/. Thread: the source's own. */
+/* An MQTT source as its files share it: one thread with one connection. Private to value/mqtt/. Thread: the source's own. */
 #ifndef VALUE_MQTT_IMPL_H
 #define VALUE_MQTT_IMPL_H
 #include "base/log/log_pace.h"
@@ -18,25 +18,25 @@ struct mqtt_source {
     /* --- below: used by the source's thread only */
     struct mqtt_topics topics;
     struct stamped_writer writer;
-    struct sparkplug *sparkplug; /* NULL: other payloads */
+    struct sparkplug *sparkplug; /* Sparkplug decoder; NULL: the source uses other payloads */
     char **subscriptions;
     size_t subscription_count;
     struct mqtt_client *client;
     struct host_turn turn;
     bool link_up, link_known;
-    bool subscribed;             /* what comes now was published now, unless it says otherwise */
-    struct log_pace refusals;    /* of messages */
-    char last_refused[300];      /* topic and reason of the last one, for the log */
-    struct log_pace absences;    /* messages without the value of a tag that was in none yet */
-    bool *matched;               /* by index in plant->tags: a JSON message has held its value */
-    int64_t skew_said_ns[2];     /* when clocks that are behind, ahead were last logged */
+    bool subscribed;          /* subscribed: messages received now were published now, unless flagged as retained */
+    struct log_pace refusals; /* rate limit of the log line about refused messages */
+    char last_refused[300];   /* topic and reason of the last refused message, for the log */
+    struct log_pace absences; /* rate limit of the log line about messages without the value of a tag that no message has held yet */
+    bool *matched;            /* by index in plant->tags: a JSON message has held this tag's value */
+    int64_t skew_said_ns[2];  /* monotonic time of the last log line about sender clocks that are [0] behind, [1] ahead */
 };
 
-/* Handles a message for the source's tags: refuses it, with words in the log, or writes its values. */
+/* Processes a message for the source's tags: writes its values, or refuses the message and logs why. */
 void mqtt_take_message(struct mqtt_source *mqtt, const struct mqtt_message *message);
-/* Counts a message that is refused, and logs one line a minute at most. */
+/* Counts a refused message, and logs at most one line a minute. */
 void mqtt_refuse(struct mqtt_source *mqtt, const struct mqtt_message *message, const char *why);
-/* Logs how many messages were left out of the log, once a minute has gone by. */
+/* Logs how many messages were left out of the log, at most once a minute. */
 void mqtt_log_left_out(struct mqtt_source *mqtt, int64_t now_ns);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a message brings to the tags of its topic. */
+/* Writes the values of a message to the tags of its topic. */
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 
 static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
 
-/* For a log line: short, and without what would break it. */
+/* Returns a name shortened and without control characters, for a log line. */
 static const char *shown(const char *name, char out[64])
 {
     size_t n = 0;
@@ -44,7 +44,7 @@ static void report_skew(struct mqtt_source *mqtt, const char *topic)
     int64_t skew_ns = mqtt->writer.worst_skew_ns, now_ns = mqtt->writer.mono_ns;
     char name[64];
     int64_t *said_ns = &mqtt->skew_said_ns[skew_ns > 0];
-    if (mqtt->sparkplug && skew_ns < 0) /* metrics are as old as their last changes */
+    if (mqtt->sparkplug && skew_ns < 0) /* not an error in Sparkplug: a metric's time is that of its last change */
         return;
     if ((skew_ns < SKEW_NS && skew_ns > -SKEW_NS) || (*said_ns && now_ns - *said_ns < SKEW_SAID_NS))
         return;
@@ -69,7 +69,7 @@ static bool take_number(struct mqtt_source *mqtt, const struct mqtt_topic *topic
     return true;
 }
 
-/* A message may leave a tag out. One that never was in a message has an address that is probably wrong: it is Bad_NoMatch. */
+/* Handles a message that lacks a tag's value. A tag that no message has ever contained probably has a wrong address: it is Bad_NoMatch. */
 static void note_absent(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const struct mqtt_reader *reader, int tag)
 {
     char name[64], more[LOG_PACE_BYTES];
@@ -81,7 +81,7 @@ static void note_absent(struct mqtt_source *mqtt, const struct mqtt_topic *topic
                  shown(topic->name, name), reader->tag, *reader->path ? reader->path : "value", more);
 }
 
-/* Returns false if at least one tag's value is refused; that tag is Bad. */
+/* Writes the tags of a JSON message. Returns false if at least one tag's value is refused; that tag is Bad. */
 static bool take_json(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const json_t *root, const struct mqtt_message *message,
                       char why[200])
 {
@@ -105,7 +105,7 @@ static bool take_json(struct mqtt_source *mqtt, const struct mqtt_topic *topic, 
     return all_good;
 }
 
-/* False: refused. */
+/* Returns false if the message is refused. */
 static bool take(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const struct mqtt_message *message, char why[200])
 {
     snprintf(why, 200, "too long");

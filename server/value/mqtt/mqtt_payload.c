@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads numbers as text, and values, times and qualities out of JSON. */
+/* Reads numbers from text, and values, times and qualities from JSON. */
 #include "value/mqtt/mqtt_payload.h"
 
 #include <math.h>
@@ -63,7 +63,7 @@ static bool read_number(const json_t *json, double *out)
     return isfinite(*out);
 }
 
-/* Seconds, milliseconds, microseconds or nanoseconds since 1970: which one, the size of the number says, from 1973 to 5138. */
+/* Converts an epoch time. Its magnitude tells the unit, seconds, milliseconds, microseconds or nanoseconds, for the years 1973 to 5138. */
 static bool read_epoch(double number, int64_t *utc_ns)
 {
     static const double SECONDS_LOW = 1e8, SECONDS_HIGH = 1e11;
@@ -87,7 +87,7 @@ static bool read_time(const json_t *json, int64_t *utc_ns)
     return !json_is_boolean(json) && read_number(json, &number) && read_epoch(number, utc_ns);
 }
 
-/* An OPC UA status code, or a word that begins with its severity. What cannot be read is Uncertain. */
+/* Reads an OPC UA status code, or a word that begins with a severity such as "good". Anything else is Uncertain. */
 static uint32_t read_quality(const json_t *json)
 {
     static const struct {
@@ -106,7 +106,7 @@ static uint32_t read_quality(const json_t *json)
 
 /* --- a tag's value ---------------------------------------------------------------------------------------------------------- */
 
-/* Without a path: the payload itself, or its member `value`. */
+/* Returns the value selected by the path; without a path the payload itself or its member `value`. */
 static struct json_selected value_of(const json_t *root, const struct mqtt_reader *reader)
 {
     if (*reader->path)
@@ -114,7 +114,7 @@ static struct json_selected value_of(const json_t *root, const struct mqtt_reade
     return json_select(root, json_is_object(root) ? "value" : "$", reader->tag);
 }
 
-/* A path that begins with `@` begins beside the value. */
+/* Returns what a path selects, if it is one value. A path that begins with `@` starts in the object that contains the tag's value. */
 static const json_t *beside(const json_t *root, const struct json_selected *value, const char *path, const char *tag)
 {
     struct json_selected found = json_select(*path == '@' ? value->holder : root, path, tag);

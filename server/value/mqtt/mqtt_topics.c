@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tags sorted by topic, then by path; those of one topic stand together. */
+/* Sorts tags by topic, then by path, so that those of one topic are adjacent. */
 #include "value/mqtt/mqtt_topics.h"
 
 #include <stdlib.h>

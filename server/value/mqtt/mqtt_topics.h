@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The topics of a source, sorted, and the tags of each. Immutable once made. Thread: any. */
+/* The topics of an MQTT source, sorted, with the tags of each topic. Immutable once made. Thread: any. */
 #ifndef VALUE_MQTT_TOPICS_H
 #define VALUE_MQTT_TOPICS_H
 #include <stddef.h>
@@ -7,19 +7,20 @@
 #include "plant/plant.h"
 
 struct mqtt_topic {
-    const char *name; /* the plant's */
-    const int *tags;  /* indices in plant->tags, by path */
+    const char *name; /* topic name, owned by the plant */
+    const int *tags;  /* indices in plant->tags, sorted by path */
     size_t tag_count;
 };
 
 struct mqtt_topics {
     struct mqtt_topic *at;
     size_t count;
-    int *tags; /* of the source, by topic */
+    int *tags; /* indices of the source's tags, grouped by topic */
     size_t tag_count;
 };
 
-void mqtt_topics_init(struct mqtt_topics *topics, const struct plant *plant, int source); /* plant must outlive it */
+/* Builds the topics of one source; `plant` must outlive them. */
+void mqtt_topics_init(struct mqtt_topics *topics, const struct plant *plant, int source);
 void mqtt_topics_finish(struct mqtt_topics *topics);
 /* Returns the topic of that name, or NULL. */
 const struct mqtt_topic *mqtt_topics_find(const struct mqtt_topics *topics, const char *name);

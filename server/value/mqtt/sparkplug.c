@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A node's readings count from its birth certificate to its death certificate, a device's within those of its node. */
+/* Tracks births and deaths: a node's readings are valid between its birth and death certificates, and a device's only while its node is
+   alive. */
 #include "value/mqtt/sparkplug.h"
 
 #include <stdio.h>
@@ -12,23 +13,23 @@
 #include "value/mqtt/sparkplug_payload.h"
 #include "value/quality.h"
 
-static const int64_t ASK_NS = 10 * NS_PER_S; /* a node is asked for its birth at most so often */
+static const int64_t ASK_NS = 10 * NS_PER_S; /* minimum interval between two birth requests to one node */
 static const char PREFIX[] = "spBv1.0/";
 
 struct alias {
     uint64_t number;
-    size_t topic;           /* of the node or the device whose birth it was in */
-    size_t first_tag, tags; /* of that topic: those that show the metric */
+    size_t topic;           /* index of the node's or device's topic whose birth defined the alias */
+    size_t first_tag, tags; /* tags of that topic that show the metric: first and number */
 };
 
 struct sparkplug_node {
     char *group, *name;
     bool is_born;
-    bool told;       /* that it speaks before its birth */
-    int64_t bd_seq;  /* of its birth; -1: it had none */
+    bool told;      /* the log says that this node sends values before its birth */
+    int64_t bd_seq; /* session number of its birth; -1: none */
     int next_seq;
-    int64_t asked_ns; /* for its birth; 0: never */
-    bool is_wanted;   /* it is to be asked, once that may be */
+    int64_t asked_ns;      /* monotonic time of the last birth request; 0: never */
+    bool is_wanted;        /* a birth request is pending until ASK_NS have passed */
     struct alias *aliases; /* by number */
     size_t alias_count, alias_capacity;
 };
@@ -37,10 +38,10 @@ struct sparkplug {
     struct sparkplug_params params;
     struct sparkplug_node *nodes;
     size_t node_count;
-    size_t *node_of;        /* by topic */
-    bool *is_born;          /* by topic: nodes' and devices' */
-    uint32_t *types;        /* by tag: of its metric, as it was born; 0: it was not */
-    struct stamped_value *last; /* by tag */
+    size_t *node_of;             /* index of the node, by topic */
+    bool *is_born;               /* by topic: the node or device is alive */
+    uint32_t *types;             /* by tag: metric type from the birth; 0: not in a birth */
+    struct stamped_value *last;  /* last value, by tag */
     bool *has_last, *in_message; /* by tag */
 };
 
@@ -49,7 +50,7 @@ static const char *const verbs[] = { "NBIRTH", "NDEATH", "NDATA", "DBIRTH", "DDE
 
 /* --- who there is ----------------------------------------------------------------------------------------------------------- */
 
-/* The nodes are few, and each is looked for once a message. */
+/* Finds a node by linear search: there are few nodes, and each message searches once. */
 static struct sparkplug_node *find_node(const struct sparkplug *sparkplug, const char *group, size_t group_length, const char *name,
                                         size_t length)
 {
@@ -109,7 +110,7 @@ void sparkplug_destroy(struct sparkplug **sparkplug)
     mem_free(gone);
 }
 
-/* All that a node and its devices say, also those without a tag: their messages share one sequence. */
+/* Subscribes to all messages of a node and its devices, including devices without tags: they share one sequence number. */
 char **sparkplug_subscriptions(const struct sparkplug *sparkplug, size_t *count)
 {
     char **names = mem_array(sparkplug->node_count, sizeof(*names));
@@ -166,7 +167,7 @@ static void topic_dies(struct sparkplug *sparkplug, size_t topic)
     store_tags_dead(sparkplug->params.store, dead->tags, dead->tag_count, sparkplug->params.writer->mono_ns);
 }
 
-/* With all its devices. spared: the node's own topic where it is born at once, else SIZE_MAX. */
+/* Marks a node and all its devices as dead. `spared`: topic that is not marked because it is being born; SIZE_MAX: none. */
 static void node_dies(struct sparkplug *sparkplug, struct sparkplug_node *node, size_t spared)
 {
     for (size_t i = 0; i < sparkplug->params.topics->count; i++)
@@ -177,7 +178,7 @@ static void node_dies(struct sparkplug *sparkplug, struct sparkplug_node *node, 
 
 /* --- metrics ---------------------------------------------------------------------------------------------------------------- */
 
-/* The tags of a topic that show a metric, which stand together. Returns how many. */
+/* Finds the tags of a topic that show a metric; they are adjacent. Returns their number; *first is the first one. */
 static size_t tags_named(const struct sparkplug *sparkplug, size_t topic, const char *name, size_t *first)
 {
     const struct mqtt_topic *of = &sparkplug->params.topics->at[topic];
@@ -211,7 +212,7 @@ static void drop_aliases(struct sparkplug_node *node, size_t topic)
     node->alias_count = kept;
 }
 
-/* The tags that show a metric, by its name or else by its alias. Returns how many: mostly none. */
+/* Finds the tags that show a metric, by its name or else its alias. Returns their number, mostly 0. */
 static size_t tags_of(const struct sparkplug *sparkplug, const struct sparkplug_node *node, size_t topic,
                       const struct sparkplug_metric *metric, size_t *first)
 {
@@ -234,7 +235,7 @@ static void write_value(struct sparkplug *sparkplug, int tag, const struct stamp
     stamped_writer_add(sparkplug->params.writer, tag, value, false, true);
 }
 
-/* False: it is not what it was born as, or no number. */
+/* Writes one metric to a tag. Returns false if the metric has another type than at its birth, or is no number. */
 static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metric *metric, int tag, char why[200])
 {
     struct stamped_value value = { .quality = metric->quality, .utc_ns = metric->utc_ns };
@@ -253,7 +254,7 @@ static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metr
     return good;
 }
 
-/* False: some metric is wrong; its tags are Bad. */
+/* Writes the metrics of a payload. Returns false if some metric is wrong; its tags are Bad. */
 static bool take_metrics(struct sparkplug *sparkplug, const struct sparkplug_node *node, size_t topic,
                          const struct sparkplug_payload *payload, char why[200])
 {
@@ -270,7 +271,7 @@ static bool take_metrics(struct sparkplug *sparkplug, const struct sparkplug_nod
     return all_good;
 }
 
-/* Types and aliases of a birth certificate. */
+/* Records the types and aliases of a birth certificate. */
 static void learn(struct sparkplug *sparkplug, struct sparkplug_node *node, size_t topic, const struct sparkplug_payload *payload)
 {
     const struct mqtt_topic *of = &sparkplug->params.topics->at[topic];
@@ -291,7 +292,7 @@ static void learn(struct sparkplug *sparkplug, struct sparkplug_node *node, size
         qsort(node->aliases, node->alias_count, sizeof(*node->aliases), by_number);
 }
 
-/* Of a birth: what is not in it does not exist. */
+/* Processes a birth certificate. Tags whose metric it does not contain become Bad_ConfigurationError. */
 static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node, size_t topic, const struct sparkplug_payload *payload,
                        char why[200])
 {
@@ -319,7 +320,7 @@ static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node,
 
 /* --- the sequence ----------------------------------------------------------------------------------------------------------- */
 
-/* What a lost message said is not known: what was read before may be another by now. */
+/* Makes all readings of a node uncertain after lost messages: its values may have changed unnoticed. */
 static void doubt_all(struct sparkplug *sparkplug, const struct sparkplug_node *node)
 {
     for (size_t i = 0; i < sparkplug->params.topics->count; i++) {
@@ -357,10 +358,10 @@ static void follow(struct sparkplug *sparkplug, struct sparkplug_node *node, con
 struct said {
     enum verb verb;
     struct sparkplug_node *node;
-    size_t topic; /* SIZE_MAX: no tag is of that node, or of that device */
+    size_t topic; /* index of the topic; SIZE_MAX: the node or device has no tags */
 };
 
-/* spBv1.0/GROUP/VERB/NODE[/DEVICE]. */
+/* Parses a topic spBv1.0/GROUP/VERB/NODE[/DEVICE]. Returns false if it is none. */
 static bool read_topic(const struct sparkplug *sparkplug, const char *topic, struct said *out)
 {
     const char *at[4]; /* group, verb, node, device */
@@ -388,7 +389,8 @@ static bool read_topic(const struct sparkplug *sparkplug, const char *topic, str
     return true;
 }
 
-/* Until its birth is heard, nobody knows whether it is alive, nor what its aliases mean. */
+/* Refuses a message of a node or device whose birth is unknown, since it may be dead and its aliases have no meaning. Requests the
+   birth. */
 static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *node, char why[200])
 {
     ask(sparkplug, node, sparkplug->params.writer->mono_ns);
@@ -403,7 +405,7 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *no
 static bool take_node_birth(struct sparkplug *sparkplug, const struct said *said, const struct sparkplug_payload *payload, char why[200])
 {
     struct sparkplug_node *node = said->node;
-    node_dies(sparkplug, node, said->topic); /* what was born before it */
+    node_dies(sparkplug, node, said->topic); /* ends earlier births of this node and its devices */
     node->is_born = true;
     node->told = node->is_wanted = false;
     node->bd_seq = sparkplug_bd_seq(payload);
@@ -427,7 +429,7 @@ static bool take_node_death(struct sparkplug *sparkplug, struct sparkplug_node *
     return true;
 }
 
-/* Of a node that is born. */
+/* Processes a message of a living node other than its own birth or death, after checking the sequence number. */
 static bool take_in_order(struct sparkplug *sparkplug, const struct said *said, const struct sparkplug_payload *payload, char why[200])
 {
     follow(sparkplug, said->node, payload);
@@ -453,7 +455,7 @@ bool sparkplug_take(struct sparkplug *sparkplug, const struct mqtt_message *mess
     snprintf(why, 200, "no topic of Sparkplug B");
     if (!read_topic(sparkplug, message->topic, &said))
         return false;
-    if (said.verb == OTHER) /* commands of others */
+    if (said.verb == OTHER) /* commands sent by other hosts */
         return true;
     snprintf(why, 200, "a message that the broker has kept says nothing of now");
     if (message->is_retained)

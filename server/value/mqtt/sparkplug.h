@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What Sparkplug B nodes and their devices say, followed from birth to death: aliases, types, session and sequence numbers. Thread: one. */
+/* Decodes the messages of Sparkplug B nodes and devices, from birth to death certificate: aliases, types, session and sequence numbers.
+   Thread: one. */
 #ifndef VALUE_SPARKPLUG_H
 #define VALUE_SPARKPLUG_H
 #include "base/log/log.h"
@@ -12,27 +13,27 @@ struct sparkplug;
 
 struct sparkplug_params {
     struct log *log;
-    const char *source;               /* its id, for the log */
+    const char *source; /* the source's id, for the log */
     const struct plant *plant;
-    const struct mqtt_topics *topics; /* GROUP/NODE[/DEVICE] */
+    const struct mqtt_topics *topics; /* topics of the form GROUP/NODE[/DEVICE] */
     struct store *store;
     struct stamped_writer *writer;
-    counter *gaps, *historical;       /* NULL: not counted */
-    bool rebirth;                     /* nodes may be asked for their birth certificates, by: */
+    counter *gaps, *historical; /* counters of sequence gaps and of historical metrics; NULL: not counted */
+    bool rebirth;               /* nodes may be asked for their birth certificates, with the callback: */
     void (*ask)(void *arg, const char *group, const char *node);
     void *arg;
 };
 
-/* What params point to must outlive it. */
+/* Creates a decoder. All that `params` points to must outlive it. */
 struct sparkplug *sparkplug_create(const struct sparkplug_params *params);
-void sparkplug_destroy(struct sparkplug **sparkplug); /* &NULL is fine; leaves NULL */
-/* Returns what to subscribe to, and how many; free with mem_free(), each too. */
+void sparkplug_destroy(struct sparkplug **sparkplug); /* Frees the decoder. &NULL is fine; leaves NULL. */
+/* Returns the topic filters to subscribe to, and their number. Free each filter and the array with mem_free(). */
 char **sparkplug_subscriptions(const struct sparkplug *sparkplug, size_t *count);
-/* Begins anew: who was born before may be dead by now. Asks all for their births, if it may. */
+/* Forgets all births after a new subscription, since any node may have died in between. Asks all nodes for their births, if permitted. */
 void sparkplug_on_subscribed(struct sparkplug *sparkplug, int64_t now_mono_ns);
-/* To be called about once a second: asks those who could not be asked yet, since it was not long ago. */
+/* Asks nodes for their births that could not be asked before because the last request was too recent. Call it about once a second. */
 void sparkplug_on_tick(struct sparkplug *sparkplug, int64_t now_mono_ns);
-/* Handles a message; its writer's has begun. Returns false if it is refused, and says in why what is wrong. */
+/* Processes a message; call stamped_writer_begin() before. Returns false with the reason in `why` if the message is refused. */
 bool sparkplug_take(struct sparkplug *sparkplug, const struct mqtt_message *message, char why[200]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* protobuf-c with an allocator that gives so much and no more: two bytes of a message may become two hundred. */
+/* Unpacks payloads with protobuf-c through an allocator with a byte limit: two bytes of a message may become two hundred in memory. */
 #include "value/mqtt/sparkplug_payload.h"
 
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include "sparkplug_b.pb-c.h"
 #include "value/quality.h"
 
-enum { MOST_BYTES = 64 << 20 }; /* that one payload becomes */
+enum { MOST_BYTES = 64 << 20 }; /* memory limit of one unpacked payload */
 enum { TYPE_INT8 = 1, TYPE_INT16, TYPE_INT32, TYPE_INT64, TYPE_UINT8, TYPE_UINT16, TYPE_UINT32, TYPE_UINT64, TYPE_FLOAT, TYPE_DOUBLE,
        TYPE_BOOLEAN };
 
@@ -44,13 +44,13 @@ static void give_back(void *arg, void *p)
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
 
-/* 0: not stated, or not a time. */
+/* Converts milliseconds to nanoseconds; 0: not stated, or out of range. */
 static int64_t ns_of_ms(bool has, uint64_t ms)
 {
     return has && ms <= INT64_MAX / 1000000 ? (int64_t)ms * 1000000 : 0;
 }
 
-/* As Sparkplug has them since OPC: 192 is good, 0 is bad, 500 is stale. */
+/* Maps the Quality property with Sparkplug's OPC-derived codes (192 good, 0 bad, 500 stale) to an OPC UA status. */
 static uint32_t quality_of(const Sparkplug__Payload__PropertySet *set)
 {
     for (size_t i = 0; set && i < set->n_keys && i < set->n_values; i++) {
@@ -152,7 +152,7 @@ void sparkplug_payload_finish(struct sparkplug_payload *payload)
 
 /* --- values ----------------------------------------------------------------------------------------------------------------- */
 
-/* Whole numbers come as they are in memory: those with a sign fill their bits. */
+/* Reads an integer. The payload holds its memory image; a negative number is sign-extended only to the width of its type. */
 static double whole_of(const struct sparkplug_metric *metric, uint32_t type)
 {
     switch (type) {

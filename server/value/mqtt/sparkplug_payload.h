@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sparkplug B payloads, from bytes that anybody may have sent. Pure. Thread: any. */
+/* Decodes Sparkplug B payloads from untrusted bytes. Pure. Thread: any. */
 #ifndef VALUE_SPARKPLUG_PAYLOAD_H
 #define VALUE_SPARKPLUG_PAYLOAD_H
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-enum sparkplug_form { /* of a value on the wire */
+enum sparkplug_form { /* type of a metric's value on the wire */
                       SPARKPLUG_NOTHING,
                       SPARKPLUG_INT,
                       SPARKPLUG_LONG,
@@ -17,12 +17,12 @@ enum sparkplug_form { /* of a value on the wire */
 };
 
 struct sparkplug_metric {
-    const char *name; /* NULL: by its alias */
+    const char *name; /* metric name; NULL: identified by its alias */
     bool has_alias, is_historical, is_null;
     uint64_t alias;
-    int64_t utc_ns;   /* of the metric, else of its payload; 0: neither is stated */
+    int64_t utc_ns;   /* time of the metric, else of its payload; 0: neither is stated */
     uint32_t type;    /* 0: not stated */
-    uint32_t quality; /* by its property Quality; Good without one */
+    uint32_t quality; /* quality from the metric's property Quality; Good if it has none */
     enum sparkplug_form form;
     union {
         uint64_t whole; /* INT, LONG, BOOLEAN */
@@ -31,23 +31,24 @@ struct sparkplug_metric {
 };
 
 struct sparkplug_payload {
-    struct sparkplug_metric *metrics; /* names live as long as the payload */
+    struct sparkplug_metric *metrics; /* metrics; their names live as long as the payload */
     size_t count;
-    int seq;    /* 0 to 255; -1: none */
-    void *from; /* unpacked */
+    int seq;    /* sequence number, 0 to 255; -1: none */
+    void *from; /* the unpacked protobuf message, owned */
 };
 
-/* Reads a payload. Returns false, with nothing to free, if it is none, and says in why what is wrong. */
+/* Decodes a payload. Returns false with the reason in `why`, and nothing to free, if the bytes are no payload. */
 bool sparkplug_payload_read(const void *bytes, size_t count, struct sparkplug_payload *out, char why[200]);
 void sparkplug_payload_finish(struct sparkplug_payload *payload);
-/* Reads the value of a metric of that type (of the metric's own or, where it states none, of its birth). Returns whether it is a number. */
+/* Reads a metric's value as `type`: the metric's own type or, if it states none, that of its birth. Returns whether the value is a
+   number. */
 bool sparkplug_number(const struct sparkplug_metric *metric, uint32_t type, double *out);
-const char *sparkplug_type_name(uint32_t type); /* returns "Int32" and so on; "a type that is unknown" */
-/* Returns the session number of a birth or death certificate; -1 if there is none. */
+const char *sparkplug_type_name(uint32_t type); /* Returns the type's name, such as "Int32"; "a type that is unknown" for other numbers. */
+/* Returns the session number (bdSeq) of a birth or death certificate; -1 if it has none. */
 int64_t sparkplug_bd_seq(const struct sparkplug_payload *payload);
 
 enum { SPARKPLUG_REBIRTH_BYTES = 64 };
-/* Writes the payload that asks a node for its birth certificate. Returns its length. */
+/* Writes the payload that asks a node for its birth certificate. Returns its length in bytes. */
 size_t sparkplug_rebirth_write(uint8_t out[SPARKPLUG_REBIRTH_BYTES], int64_t utc_ns);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An OPC UA source: connects, subscribes, and says at once when the server is gone. */
+/* An OPC UA source: connects, subscribes, and reports the loss of the server at once. */
 #include <errno.h>
 #include <stdio.h>
 
@@ -11,10 +11,11 @@
 #include "value/quality.h"
 #include "value/source_impl.h"
 
-static const int64_t CONNECT_NS = 15 * NS_PER_S, SUBSCRIBE_NS = 60 * NS_PER_S; /* to a session; to all nodes */
-static const int64_t SERVE_NS = NS_PER_S, RETRY_NS = 30 * NS_PER_S;            /* nodes that were refused are asked for again */
+/* time limits for opening a session, and for subscribing to all nodes */
+static const int64_t CONNECT_NS = 15 * NS_PER_S, SUBSCRIBE_NS = 60 * NS_PER_S;
+static const int64_t SERVE_NS = NS_PER_S, RETRY_NS = 30 * NS_PER_S; /* RETRY_NS: interval at which refused nodes are requested again */
 static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
-enum { REFUSALS_SAID = 8 }; /* of a session */
+enum { REFUSALS_SAID = 8 }; /* refused nodes logged per session */
 
 struct opcua_source {
     struct source base;
@@ -25,13 +26,13 @@ struct opcua_source {
     struct host_turn turn;
     bool link_up, link_known;
     int refusals_said;
-    bool *wrong; /* by node: its value was none, which is said */
+    bool *wrong; /* by node: its last value was no number, which was logged */
     int64_t skew_said_ns;
 };
 
 /* --- values ----------------------------------------------------------------------------------------------------------------- */
 
-/* The server's own time, not its sensor's, shows how its clock stands. */
+/* Logs a clock difference. Uses the server's timestamp, since the source timestamp may be an old sensor time. */
 static void report_skew(struct opcua_source *opcua, const UA_DataValue *value)
 {
     int64_t now_ns = opcua->writer.mono_ns;
@@ -81,7 +82,7 @@ static void on_refused(void *arg, size_t index, uint32_t status, const char *why
 
 /* --- the link --------------------------------------------------------------------------------------------------------------- */
 
-/* What the server does not tell any more may have changed: nothing of it is a reading now. */
+/* Marks all readings of the source as lost: without the server, values may have changed unnoticed. */
 static void link_lost(struct opcua_source *opcua, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
@@ -128,7 +129,7 @@ static int serve(struct opcua_source *opcua, struct opcua_client *client, char w
     return status;
 }
 
-/* One session, until it ends. Returns -ECANCELED when the source is to stop, else why says what happened. */
+/* Runs one session until it ends. Returns -ECANCELED when the source must stop, else another code with the reason in `why`. */
 static int run_session(struct opcua_source *opcua, char why[200])
 {
     const struct opcua_events events = { .arg = opcua, .value = on_value, .refused = on_refused };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Along all references that make a tree, each node once: servers have rings. */
+/* Follows all hierarchical references and visits each node once: servers have cycles. */
 #include "value/opcua/opcua_browse.h"
 
 #include <errno.h>
@@ -9,7 +9,7 @@
 #include "base/text/text.h"
 #include "value/opcua/opcua_impl.h"
 
-enum { OBJECTS_FOLDER = 85, HIERARCHICAL = 33, HAS_PROPERTY = 46 }; /* nodes of every server */
+enum { OBJECTS_FOLDER = 85, HIERARCHICAL = 33, HAS_PROPERTY = 46 }; /* standard node ids of every server */
 enum { MOST_NODES = 200000, MOST_DEEP = 24, REFERENCES_AT_ONCE = 500 };
 
 struct browse_step {
@@ -25,9 +25,9 @@ struct browse {
     void *arg;
     int stop_fd;
     int64_t deadline_mono_ns;
-    struct browse_step *steps; /* all that were seen, in the order they are looked at */
+    struct browse_step *steps; /* all nodes found so far, in the order of visiting */
     size_t count, capacity;
-    size_t *table; /* open addressing; 0: free, else index in steps + 1 */
+    size_t *table; /* hash table with open addressing: index in steps + 1; 0: free */
 };
 
 static size_t slot_of(const struct browse *browse, const UA_NodeId *id)
@@ -66,7 +66,7 @@ static void see_all(struct browse *browse, size_t parent, const UA_BrowseResult 
     }
 }
 
-/* What a continuation point still holds. Takes the point. */
+/* Reads the remaining results of a continuation point. Takes ownership of the point. */
 static int browse_rest(struct browse *browse, size_t parent, UA_ByteString point, char why[200])
 {
     int status = 0;
@@ -108,14 +108,14 @@ static int browse_node(struct browse *browse, size_t at, char why[200])
     return status ? status : browse_rest(browse, at, point, why);
 }
 
-/* nsu=URI;s=NAME. NULL: its namespace has no name. */
+/* Returns the address nsu=URI;s=NAME of a node; NULL: its namespace has no URI. */
 static char *address_of(const struct browse *browse, const UA_NodeId *id)
 {
     UA_NodeId local = *id;
     UA_String printed = UA_STRING_NULL;
     if (id->namespaceIndex >= browse->client->namespace_count)
         return NULL;
-    local.namespaceIndex = 0; /* prints what stands behind the namespace */
+    local.namespaceIndex = 0; /* prints the identifier without a namespace */
     UA_NodeId_print(&local, &printed);
     struct text text = { 0 };
     text_add(&text, "nsu=");

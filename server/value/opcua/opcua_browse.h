@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the variables of a server that hold numbers, for a tag list to begin with. Thread: one. */
+/* Finds the numeric variables of an OPC UA server, as a starting point for a tag list. Thread: one. */
 #ifndef VALUE_OPCUA_BROWSE_H
 #define VALUE_OPCUA_BROWSE_H
 #include "value/opcua/opcua_client.h"
 
 struct opcua_variable {
-    const char *path;        /* names from the folder Objects on, joined by dots */
-    const char *address;     /* nsu=URI;s=NAME, as in a tag list */
-    const char *description; /* maybe "" */
+    const char *path;        /* browse names from the folder Objects downwards, joined by dots */
+    const char *address;     /* node address nsu=URI;s=NAME, as in a tag list */
+    const char *description; /* description; may be "" */
     bool is_bit;
-    size_t elements;         /* of an array; 0: it is none */
+    size_t elements; /* number of array elements; 0: not an array */
 };
 
-/* Calls found for each variable below the folder Objects, but for those that every server has. The client is connected. Returns as
-   opcua_client_connect(). */
+/* Calls `found` for each numeric variable below the folder Objects, except those that every server has. The client must be connected.
+   Returns the same codes as opcua_client_connect(). */
 int opcua_browse(struct opcua_client *client, void (*found)(void *arg, const struct opcua_variable *variable), void *arg, int stop_fd,
                  int64_t deadline_mono_ns, char why[200]);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Requests, and waiting for their answers without letting go of whoever wants us to stop. */
+/* Sends requests and waits for their responses while watching stop_fd. */
 #include <errno.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "value/opcua/opcua_client.h"
 #include "value/opcua/opcua_impl.h"
 
-static const int64_t SLICE_NS = 100 * NS_PER_MS; /* how soon a wish to stop is seen */
+static const int64_t SLICE_NS = 100 * NS_PER_MS; /* interval at which stop_fd is checked */
 
 void opcua_explain(const struct opcua_client *client, UA_StatusCode status, char why[200])
 {
@@ -43,7 +43,7 @@ void opcua_on_answer(UA_Client *library, void *arg, UA_UInt32 id, void *response
     if (!client->call.response)
         return;
     memcpy(client->call.response, response, client->call.type->memSize);
-    memset(response, 0, client->call.type->memSize); /* it is ours now */
+    memset(response, 0, client->call.type->memSize); /* the response now belongs to us */
     client->call.response = NULL;
 }
 
@@ -57,7 +57,7 @@ void opcua_call_begin(struct opcua_client *client, void *response, const UA_Data
 
 int opcua_call_end(struct opcua_client *client, UA_StatusCode sent, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    const UA_ResponseHeader *header = client->call.response; /* what all responses begin with */
+    const UA_ResponseHeader *header = client->call.response; /* all responses begin with this header */
     if (sent != UA_STATUSCODE_GOOD) {
         client->call.response = NULL;
         opcua_explain(client, sent, why);

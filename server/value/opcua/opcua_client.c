@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two connections: over the first, without security, the server names its endpoints; of these we choose one ourselves and check its
-   certificate before anything of ours goes over the second. */
+/* Opens two connections: on the first one, without security, the server lists its endpoints. We choose an endpoint ourselves and check
+   its certificate before any of our data goes over the second connection. */
 #include "value/opcua/opcua_client.h"
 
 #include <arpa/inet.h>
@@ -15,8 +15,8 @@
 #include "value/opcua/opcua_impl.h"
 
 enum { TIMEOUT_MS = 5000, CLOSING_MS = 300, CHANNEL_MS = 3600000, SESSION_MS = 60000 };
-enum { MESSAGE_BYTES = 2 << 20, CHUNKS = 512, BUFFER_BYTES = 65536 }; /* the most that a server may send at once */
-enum { DISCOVERIES = 3 };                                             /* it may send us elsewhere in between */
+enum { MESSAGE_BYTES = 2 << 20, CHUNKS = 512, BUFFER_BYTES = 65536 }; /* limits for one message of the server */
+enum { DISCOVERIES = 3 };                                             /* discovery attempts; a server may redirect us to another address */
 
 /* --- what the library asks for ---------------------------------------------------------------------------------------------- */
 
@@ -41,7 +41,7 @@ static void on_subscription_silence(UA_Client *library, UA_UInt32 subscription, 
     on_silence(library);
 }
 
-/* A library's client for one channel. NULL: why says what is wrong. */
+/* Creates an open62541 client for one channel. Returns NULL with the reason in `why` on failure. */
 static UA_Client *make_library(struct opcua_client *client, const UA_EndpointDescription *endpoint, bool with_session, char why[200])
 {
     UA_ClientConfig config = { .clientContext = client, .logging = &client->logger, .timeout = TIMEOUT_MS,
@@ -76,7 +76,7 @@ static void close_library(struct opcua_client *client)
     client->library = NULL;
 }
 
-/* Opens a channel, and a session if it is to have one. */
+/* Opens a secure channel, and a session if with_session. */
 static int open_library(struct opcua_client *client, const UA_EndpointDescription *endpoint, bool with_session, int stop_fd,
                         int64_t deadline_mono_ns, char why[200])
 {
@@ -118,7 +118,7 @@ static enum opcua_policy policy_of(const UA_EndpointDescription *endpoint)
         if (is_text(endpoint->securityPolicyUri, opcua_policy_uri(policy)) &&
             mode == (policy == OPCUA_NONE ? UA_MESSAGESECURITYMODE_NONE : UA_MESSAGESECURITYMODE_SIGNANDENCRYPT))
             return policy;
-    return OPCUA_BEST; /* none that we can use */
+    return OPCUA_BEST; /* no policy that we support */
 }
 
 static bool takes_us(const struct opcua_client *client, const UA_EndpointDescription *endpoint)
@@ -132,7 +132,7 @@ static bool takes_us(const struct opcua_client *client, const UA_EndpointDescrip
     return false;
 }
 
-/* The most secure of those that may be used; NULL, with why: there is none. */
+/* Returns the most secure endpoint among those that may be used; NULL with the reason in `why` if there is none. */
 static UA_EndpointDescription *choose(const struct opcua_client *client, UA_EndpointDescription *endpoints, size_t count, char why[200])
 {
     static const char TCP[] = "http://opcfoundation.org/UA-Profile/Transport/uatcp-uasc-uabinary";
@@ -204,7 +204,7 @@ static int discover(struct opcua_client *client, int stop_fd, int64_t deadline_m
 
 /* --- connecting ------------------------------------------------------------------------------------------------------------- */
 
-/* Asks for the endpoints at one address of the host. */
+/* Requests the endpoints at one IP address of the host. */
 static int discover_at(struct opcua_client *client, const struct addrinfo *at, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
     char address[INET6_ADDRSTRLEN + 20];
@@ -220,8 +220,8 @@ static int discover_at(struct opcua_client *client, const struct addrinfo *at, i
     return discover(client, stop_fd, deadline_mono_ns, why);
 }
 
-/* At each address of the host in turn, each with its share of the time. Addresses come by a resolver that can be left; the library's own
-   could not. */
+/* Tries each IP address of the host in turn, dividing the remaining time between them. We resolve the name ourselves because the
+   library's resolver call cannot be interrupted. */
 static int discover_somewhere(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
     const struct addrinfo *found;
@@ -249,8 +249,8 @@ int opcua_client_connect(struct opcua_client *client, int stop_fd, int64_t deadl
         status = open_library(client, &client->endpoint, true, stop_fd, deadline_mono_ns, why);
     if (status == 0) {
         UA_ClientConfig *config = UA_Client_getConfig(client->library);
-        config->noReconnect = true; /* with a session that ends, all is made anew */
-        config->connectivityCheckInterval = TIMEOUT_MS; /* values may be due much more rarely than a silence is to be noticed */
+        config->noReconnect = true;                     /* a lost session is replaced by a new client */
+        config->connectivityCheckInterval = TIMEOUT_MS; /* detects a silent server sooner than rarely published values would */
         *client->said = 0;
     }
     return status;

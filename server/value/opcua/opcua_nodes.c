@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tags sorted by node; those of one node stand together. */
+/* Sorts tags by node, so that those of one node are adjacent. */
 #include "value/opcua/opcua_nodes.h"
 
 #include <string.h>

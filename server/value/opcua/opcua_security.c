@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Certificates by OpenSSL: the library's own check skips the host, and a server that sends no certificate with its first answer. */
+/* Checks certificates with OpenSSL: the library's own check ignores the host name, and accepts a server that sends no certificate with
+   its first response. */
 #include "value/opcua/opcua_security.h"
 
 #include <arpa/inet.h>
@@ -26,7 +27,7 @@ static BIO *open_file(const char *path, char why[200])
     return file;
 }
 
-/* PEM or DER. NULL: neither. */
+/* Reads a certificate in PEM or DER. NULL: neither. */
 static X509 *read_certificate(BIO *file)
 {
     X509 *found = PEM_read_bio_X509(file, NULL, NULL, NULL);
@@ -45,7 +46,7 @@ static X509_CRL *read_crl(BIO *file)
     return found;
 }
 
-/* Nobody is there to be asked for a passphrase. */
+/* Passphrase callback: fails, because nobody is there to type a passphrase. */
 static int no_passphrase(char *out, int bytes, int for_writing, void *arg)
 {
     (void)out, (void)bytes, (void)for_writing, (void)arg;
@@ -61,7 +62,7 @@ static UA_ByteString taken(unsigned char *der, int bytes)
     return out;
 }
 
-/* A certificate and its key, as DER. False: why says which file is wrong. */
+/* Reads a certificate and its key and converts both to DER. Returns false with the file and the reason in `why`. */
 static bool read_pair(const char *certificate_path, const char *key_path, UA_ByteString *certificate, UA_ByteString *key, X509 **out,
                       char why[200])
 {
@@ -98,7 +99,7 @@ static bool read_pair(const char *certificate_path, const char *key_path, UA_Byt
     return fits;
 }
 
-/* Of our own certificate: servers compare it with what we say. */
+/* Returns the applicationUri in our certificate. Servers require it to equal the one we announce. */
 static char *application_uri_of(X509 *certificate)
 {
     GENERAL_NAMES *names = X509_get_ext_d2i(certificate, NID_subject_alt_name, NULL, NULL);
@@ -133,7 +134,7 @@ static bool trust_file(struct opcua_security *security, const char *path, char w
     return good;
 }
 
-/* Where there is no list of an issuer, its certificates count. */
+/* Verification callback: accepts a certificate if its issuer has no revocation list. */
 static int on_verified(int good, X509_STORE_CTX *context)
 {
     int error = X509_STORE_CTX_get_error(context);
@@ -289,21 +290,21 @@ const char *opcua_policy_uri(enum opcua_policy policy)
 static UA_StatusCode verify(const UA_CertificateVerification *verification, const UA_ByteString *certificate)
 {
     const struct opcua_security *security = verification->context;
-    if (!security->trusted) /* security: none */
+    if (!security->trusted) /* not loaded with `security: none` */
         return UA_STATUSCODE_GOOD;
     UA_ByteString chain = *certificate;
     char why[200];
     return opcua_security_check(security, &chain, why);
 }
 
-/* Of our own certificate: the URI was read from it. */
+/* Accepts our own certificate's URI without a check: the URI was read from that certificate. */
 static UA_StatusCode verify_uri(const UA_CertificateVerification *verification, const UA_ByteString *certificate, const UA_String *uri)
 {
     (void)verification, (void)certificate, (void)uri;
     return UA_STATUSCODE_GOOD;
 }
 
-/* All policies, None first where channels need it. */
+/* Adds all security policies; None comes first where channels need it. */
 static bool add_policies(UA_SecurityPolicy **out, size_t *count, UA_ByteString certificate, UA_ByteString key, bool with_none,
                          const UA_Logger *logger)
 {
@@ -323,7 +324,7 @@ static bool add_policies(UA_SecurityPolicy **out, size_t *count, UA_ByteString c
     return good && *out;
 }
 
-/* False: why says what is wrong. */
+/* Sets the user from the login file or certificate. Returns false with the reason in `why`. */
 static bool log_in(const struct opcua_security *security, const char *path, UA_ClientConfig *config, char why[200])
 {
     struct login_file login;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The subscription of a session: which number each namespace has now, and one monitored item for each node. */
+/* The subscription of a session: resolves each namespace URI to its current index, and creates one monitored item per node. */
 #include <errno.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "value/opcua/opcua_client.h"
 #include "value/opcua/opcua_impl.h"
 
-enum { NAMESPACE_ARRAY = 2255, MAX_ITEMS_PER_CALL = 11714 }; /* nodes of every server */
+enum { NAMESPACE_ARRAY = 2255, MAX_ITEMS_PER_CALL = 11714 }; /* standard node ids of every server */
 enum { ITEMS_PER_CALL = 500, KEPT_ALIVE_MS = 5000, LIFETIMES = 12 };
 enum { NO_NAMESPACE = 0xffff };
 static const UA_StatusCode NO_SUCH_NODE = 0x80340000; /* Bad_NodeIdUnknown */
@@ -87,13 +87,13 @@ static void on_deleted(UA_Client *library, UA_UInt32 subscription, void *arg)
 
 static int begin_subscription(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    /* Sampled as the source asks; told at least so often that a server that fell silent is noticed. */
+    /* Samples at the source's interval; the keep-alive interval is short enough to notice a silent server. */
     int poll_ms = client->source->poll_ms < KEPT_ALIVE_MS ? client->source->poll_ms : KEPT_ALIVE_MS;
     UA_CreateSubscriptionRequest request = { .requestedPublishingInterval = poll_ms, .publishingEnabled = true };
     UA_CreateSubscriptionResponse response;
     request.requestedMaxKeepAliveCount = (UA_UInt32)(KEPT_ALIVE_MS / poll_ms) + 1;
     request.requestedLifetimeCount = LIFETIMES * request.requestedMaxKeepAliveCount;
-    request.maxNotificationsPerPublish = 2000; /* more make more than a message may hold */
+    request.maxNotificationsPerPublish = 2000; /* a larger number would exceed the maximum message size */
     opcua_call_begin(client, &response, &UA_TYPES[UA_TYPES_CREATESUBSCRIPTIONRESPONSE]);
     UA_StatusCode sent = UA_Client_Subscriptions_create_async(client->library, request, client, on_status, on_deleted, opcua_on_answer,
                                                               client, NULL);
@@ -104,7 +104,8 @@ static int begin_subscription(struct opcua_client *client, int stop_fd, int64_t 
     return status;
 }
 
-/* NodeId of a node; false: the server has no such namespace, or the identifier is none. Clear it with UA_NodeId_clear(). */
+/* Makes the NodeId of a node. Returns false if the server lacks its namespace or the identifier is invalid. Free it with
+   UA_NodeId_clear(). */
 static bool node_id(const struct opcua_client *client, size_t node, UA_NodeId *out)
 {
     UA_UInt16 number = client->numbers[node];
@@ -137,7 +138,7 @@ static void refuse(struct opcua_client *client, size_t node, UA_StatusCode statu
     client->events->refused(client->events->arg, node, status, UA_StatusCode_name(status));
 }
 
-/* Nodes that cannot have a deadband are asked for without: what is told too often is still right. */
+/* Handles the result for one node. A node that cannot have a deadband is requested again without one: extra notifications do no harm. */
 static void take_result(struct opcua_client *client, size_t node, UA_StatusCode status)
 {
     bool of_filter = status == UA_STATUSCODE_BADFILTERNOTALLOWED || status == UA_STATUSCODE_BADMONITOREDITEMFILTERUNSUPPORTED ||
@@ -152,7 +153,7 @@ static void take_result(struct opcua_client *client, size_t node, UA_StatusCode 
     }
 }
 
-/* Asks for the nodes of a batch, which are all known. */
+/* Creates monitored items for a batch of nodes whose NodeIds are known. */
 static int create_items(struct opcua_client *client, const size_t *batch, UA_MonitoredItemCreateRequest *items, size_t count, int stop_fd,
                         int64_t deadline_mono_ns, char why[200])
 {
@@ -183,7 +184,8 @@ static int create_items(struct opcua_client *client, const size_t *batch, UA_Mon
     return status;
 }
 
-/* The next nodes that are not subscribed, from *at on; those that cannot even be asked for are refused. Returns how many. */
+/* Collects the next nodes that are not subscribed, from *at on; nodes that cannot even be requested are marked as refused. Returns the
+   batch size. */
 static size_t gather(struct opcua_client *client, size_t *at, UA_DataChangeFilter *filter, size_t *batch,
                      UA_MonitoredItemCreateRequest *items)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers of all built-in types; arrays of several dimensions are counted through as they are sent. */
+/* Reads numbers of all built-in types; arrays of several dimensions are indexed flat, in the order in which they are sent. */
 #include "value/opcua/opcua_value.h"
 
 #include <open62541/types_generated.h>
@@ -9,7 +9,7 @@
 
 static const uint32_t NO_SUCH_ELEMENT = 0x80370000; /* Bad_IndexRangeNoData */
 
-/* 100 ns since 1601. 0: before 1970, or after 2262. */
+/* Converts OPC UA time (units of 100 ns since 1601) to nanoseconds since 1970; 0: before 1970 or after 2262. */
 static int64_t utc_ns_of(UA_DateTime time)
 {
     int64_t ticks = time - UA_DATETIME_UNIX_EPOCH;
