@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loading a plant, and finding things in it. */
+/* Loads a plant and finds items in it. */
 #include "plant/plant.h"
 
 #include <stdio.h>
@@ -21,7 +21,7 @@ static char *folder_of(const char *path)
     return slash == path ? mem_strdup("/.") : mem_printf("%.*s", (int)(slash - path), path);
 }
 
-/* Of the bytes that were read: also where a file is changed back. */
+/* Hashes the bytes of both files, so that a file that is changed back has its old hash. */
 static void hash_files(struct plant *plant)
 {
     const char *const paths[] = { plant->path, plant->tags_path };
@@ -207,7 +207,7 @@ void plant_destroy(struct plant **plant_ptr)
     *plant_ptr = NULL;
 }
 
-/* Of things that begin with `char *id`, in an order by it: index or -1. */
+/* Finds the record with that id by binary search; records begin with `char *id`, `order` lists them by id. Returns an index or -1. */
 static int find_sorted(const int *order, size_t count, const void *things, size_t stride, const char *id)
 {
     size_t low = 0, high = count;

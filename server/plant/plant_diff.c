@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two plants side by side. */
+/* Compares two plants. */
 #include "plant/plant_diff.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whose the folder is, by a lock of the kernel on the folder itself; and the renamings that end a revision. */
+/* Locks a plant's folder by a kernel lock on the folder itself, and moves files into place at the end of a revision. */
 #include "plant_folder.h"
 
 #include <dirent.h>
@@ -20,7 +20,7 @@
 #include "base/text/text.h"
 
 enum { LOOK_MS = 50 };
-static const char undone[] = ".import-undone"; /* whoever takes the folder next removes what is left of it */
+static const char undone[] = ".import-undone"; /* the next program that locks the folder removes what is left of it */
 static const size_t max_text_bytes = (size_t)64 << 20;
 
 char *plant_folder_file(const char *folder, const char *name)
@@ -37,7 +37,7 @@ char *revision_version_of(const char *record, const char *version, const char *n
 int plant_folder_sync(const char *folder)
 {
     int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC), status = fd < 0 ? -errno : 0;
-    if (fd >= 0 && fsync(fd) != 0 && errno != EINVAL) /* some file systems cannot */
+    if (fd >= 0 && fsync(fd) != 0 && errno != EINVAL) /* some file systems cannot sync a folder */
         status = -errno;
     if (fd >= 0)
         close(fd);
@@ -93,7 +93,7 @@ void revision_record_finish(struct revision_record *record)
 
 /* --- going on ------------------------------------------------------------------------------------------------------------------- */
 
-/* A file of another folder, perhaps on another file system: a copy with the same owner and rights takes its place. */
+/* Replaces a file of another folder, perhaps on another file system, by a copy with the same owner and permissions. */
 static int put_elsewhere(const char *from, const char *to)
 {
     struct atomic_file file = { .fd = -1 };
@@ -121,7 +121,7 @@ static int put_elsewhere(const char *from, const char *to)
 static int move_into_place(const struct revision_record *record, const char *folder, const char *from, const char *name)
 {
     char *source = revision_version_of(record->path, from, name), *target = plant_folder_file(folder, name);
-    int status = access(source, F_OK) != 0 ? 0 /* it was moved already, or stays as it is */
+    int status = access(source, F_OK) != 0 ? 0 /* already moved, or unchanged by the revision */
                  : *name == '/'            ? put_elsewhere(source, target)
                                            : move(source, target);
     mem_free(source);
@@ -151,7 +151,7 @@ int revision_go_on_undoing(const char *folder)
     struct revision_record record;
     char *last = plant_folder_file(folder, undone);
     int status = revision_record_read(&record, folder, REVISION_UNDOING);
-    if (status == -ENOENT) /* all was put back: its removal had begun */
+    if (status == -ENOENT) /* all files were put back; the record was being removed */
         status = 0;
     for (size_t i = record.count; i-- > 0 && status == 0;) {
         char *path = plant_folder_file(folder, record.entries[i].name);
@@ -173,7 +173,7 @@ int revision_go_on_undoing(const char *folder)
     return status;
 }
 
-/* Returns whether there were folders of work; `now`: there are none any more. */
+/* Returns whether killed programs left work folders; with `now` it removes them. */
 static bool remove_left(const char *folder, const char *own, bool now)
 {
     DIR *dir = opendir(folder);
@@ -194,7 +194,7 @@ static bool remove_left(const char *folder, const char *own, bool now)
 
 /* --- whose it is ---------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the number of the process that has the folder; 0: the kernel does not say (a container, a network's file system). */
+/* Returns the id of the process that has locked the folder; 0: the kernel does not tell (in a container, on a network file system). */
 static int holder_of(int fd)
 {
     struct stat st;
@@ -228,7 +228,7 @@ static char *say_holder(int fd)
                    : mem_strdup("another program is at work in it");
 }
 
-/* One that was lent has to be of this folder: then this program has it already. */
+/* Opens the folder, or duplicates the descriptor of the parent process, which must refer to this folder and holds the lock. */
 static int open_folder(const struct plant_folder_params *params)
 {
     struct stat lent, folder;
@@ -275,8 +275,9 @@ int plant_folder_lock(const struct plant_folder_params *params, char **why)
     while (status == 0 && flock(fd, LOCK_EX | LOCK_NB) != 0)
         if (errno == EWOULDBLOCK && clock_mono_ns() < until_ns)
             usleep(LOOK_MS * 1000);
-        else if (errno == EBADF || errno == ENOLCK || errno == EOPNOTSUPP) /* folders cannot be locked there (NFS): nobody is kept out */
-            return fd; /* nor is it known what was left: it may be somebody's at work */
+        /* folders cannot be locked here (NFS): continue without a lock */
+        else if (errno == EBADF || errno == ENOLCK || errno == EOPNOTSUPP)
+            return fd; /* leave what is there: another program may be using it */
         else if (errno != EINTR)
             status = -errno;
     if (status == 0) {
@@ -307,7 +308,7 @@ bool plant_folder_settle(const struct plant_folder_params *params, char **why)
     int lock = plant_folder_lock(&at_once, why);
     if (lock >= 0)
         close(lock);
-    if (!killed) { /* an import is at work there that has not begun to replace files, or they may not be changed by us */
+    if (!killed) { /* either an import is running that has not begun to replace files, or we lack the permission to clean up */
         mem_free(*why);
         *why = NULL;
         return true;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant's folder, which is one program's at a time while it changes files: an import, a match, a daemon that saves. A revision (an
- * import's or its undoing) is files replaced together; what a program that was killed left of one, whoever takes the folder next finishes.
- * It is a folder inside the plant's, renamed when all that is needed is in it:
- *   .revision          made: nothing of what it lists is under way. files: "HASH WAS NAME" a line; WAS: 1, old/NAME is the one of before.
- *                      A file elsewhere is listed by its path; what is kept of it is elsewhere-NAME
- *   .revision.pending  new/NAME are being put in their places
- *   .revision.undoing  old/NAME are being put back
- * Functions that return int return 0 or -errno. Thread: any; one at a time per folder. */
+/* Exclusive access to a plant's folder. Only one program at a time may change files in it: an import, a match, or a daemon that saves. A
+   revision (an import or its undoing) replaces several files together. If a program is killed during a revision, the next program that
+   locks the folder finishes the revision. Its record is a folder inside the plant's folder, renamed as the revision proceeds:
+     .revision          the revision is complete. Its file `files` has lines "HASH WAS NAME"; WAS 1: old/NAME is the previous version.
+                        A file in another folder is listed by its path; its versions are called elsewhere-NAME
+     .revision.pending  the files new/NAME are being moved into place
+     .revision.undoing  the files old/NAME are being moved back
+   Functions that return int return 0 or -errno. Thread: any; one at a time per folder. */
 #ifndef PLANT_PLANT_FOLDER_H
 #define PLANT_PLANT_FOLDER_H
 #include <stdbool.h>
@@ -18,44 +18,45 @@
 
 struct plant_folder_params {
     const char *folder;
-    const char *own; /* path of a work folder inside it that stays; NULL: none */
-    int lent;        /* descriptor by which the program that started this one has the folder; 0: none */
-    int wait_ms;     /* for another program to be done; 0: none */
-    const char **finished; /* takes what was killed, and is finished now: "an import", "the undoing of an import"; NULL: not asked */
+    const char *own;       /* path of a work folder inside it that must not be removed; NULL: none */
+    int lent;              /* descriptor with which the parent process has locked the folder; 0: none */
+    int wait_ms;           /* milliseconds to wait for another program to finish; 0: no waiting */
+    const char **finished; /* receives what was finished after a kill: "an import", "the undoing of an import"; NULL: not wanted */
 };
 
-/* Takes the folder until the descriptor is closed, removes what killed programs left in it, and finishes what they had begun. Returns the
- * descriptor, or -errno with one line that does not name the folder in *why (mem_free). */
+/* Locks the folder until the descriptor is closed, removes what killed programs left in it, and finishes their revisions. Returns the
+   descriptor, or -errno with a one-line reason in *why (mem_free), which does not name the folder. */
 int plant_folder_lock(const struct plant_folder_params *params, char **why);
-/* Before files are read: waits for a revision that is under way, and finishes one that was killed; likewise what else was left is removed,
- * unless the folder is somebody's. Returns whether no revision is under way any more; else *why as above. Has params->finished. */
+/* Call this before reading files: waits for a revision in progress, finishes the revision of a killed program, and removes what killed
+   programs left, unless another program has locked the folder. Returns whether no revision is in progress any more; if false, *why has
+   the reason as above. Sets *params->finished. */
 bool plant_folder_settle(const struct plant_folder_params *params, char **why);
-/* Whether a revision is under way, or was killed: what lies in the folder is neither the old plant nor the new one. */
+/* Returns whether a revision is in progress or was killed: the files in the folder are then neither the old plant nor the new one. */
 bool plant_folder_unsettled(const char *folder);
-/* The folder that a plant file is in; mem_free. */
+/* Returns the folder of a plant file; free with mem_free(). */
 char *plant_folder_of(const char *plant_path);
 
-/* --- for whoever makes revisions: --- */
+/* --- for programs that make revisions: --- */
 
 struct revision_entry {
     char *name;
-    unsigned long long hash; /* of the new file */
-    bool was;                /* there was one before */
+    unsigned long long hash; /* hash of the new file */
+    bool was;                /* a previous version existed */
 };
 struct revision_record {
     char *path;
     struct revision_entry *entries;
     size_t count, room;
 };
-/* Reads one of the three. Finish it in both cases. */
+/* Reads the record of that name (one of the three above). Call revision_record_finish() even after an error. */
 int revision_record_read(struct revision_record *record, const char *folder, const char *name);
 void revision_record_finish(struct revision_record *record);
-/* Go on with one that is pending, or being undone; the folder has to be this program's. */
+/* Continue a pending revision, or one that is being undone. This program must have locked the folder. */
 int revision_go_on_applying(const char *folder);
 int revision_go_on_undoing(const char *folder);
-/* Where a record has one version ("old", "new") of a file; mem_free. name may be an absolute path. */
+/* Returns the path of one version ("old" or "new") of a file in a record; free with mem_free(). `name` may be an absolute path. */
 char *revision_version_of(const char *record, const char *version, const char *name);
-/* Path of a file of the folder; mem_free. name may be an absolute path. */
+/* Returns the path of a file of the folder; free with mem_free(). `name` may be an absolute path. */
 char *plant_folder_file(const char *folder, const char *name);
 int plant_folder_sync(const char *folder);
 

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the files that read the plant file and the tag list share. Private to plant/. Thread: one. */
+/* Functions shared by the files that read the plant file and the tag list. Private to plant/. Thread: one. */
 #ifndef PLANT_PLANT_IMPL_H
 #define PLANT_PLANT_IMPL_H
 #include "plant/parse/yaml_reader.h"
 #include "plant/plant.h"
 
-#define PLANT_MAX_VALUE 1e30 /* of a reading or a limit: the field is computed in floats */
+#define PLANT_MAX_VALUE 1e30 /* maximum of a reading or a limit: the field is computed in floats */
 
-/* Reads the plant file into a plant whose path and folder are set. Findings go to diag. tags_path stays NULL if it cannot be read. */
+/* Reads the plant file into a plant whose path and folder are set. Findings go to diag. tags_path stays NULL if the file cannot be read. */
 void plant_file_read(struct plant *plant, struct diag *diag);
-/* Reads the value of the key `environment`; the folder is set. */
+/* Reads the value of the key `environment`; the plant's folder must be set. */
 void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reads the list `convert`. */
 void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
@@ -17,8 +17,8 @@ void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struc
 void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reads the key `notify`. */
 void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
-void plant_notify_free(struct plant_notify **notify); /* &NULL is fine; leaves NULL */
-/* Reads a span such as 22:00-06:00. Returns false after an error, which is reported as of the key `name`. */
+void plant_notify_free(struct plant_notify **notify); /* Frees the recipients. &NULL is fine; leaves NULL. */
+/* Reads a time span such as 22:00-06:00. Returns false after an error, which is reported for the key `name`. */
 bool plant_day_span_read(struct yaml_reader *reader, yaml_node_t *node, const char *name, int *from_min, int *to_min);
 /* Read the lists `views`, `tours`, `other_plants` and `walls`. */
 void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
@@ -27,59 +27,60 @@ void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, stru
 void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reads a group's list `prepare` (plant/influence.h). */
 void plant_influence_read(struct yaml_reader *reader, yaml_node_t *node, void *record);
-/* Reads a group's key `gp`; checks what it says and sets what it does not. */
+/* plant_gp_read() reads a group's key `gp`; plant_gp_check() checks its values and sets defaults. */
 void plant_gp_read(struct yaml_reader *reader, yaml_node_t *node, void *group);
 void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_group *group);
-/* Reports what is missing for fin: the group's ambient, and the thickness of assets with sensors of the group. */
+/* Reports what is missing for the interpolation `fin`: the group's ambient, and the thickness of assets with sensors of the group. */
 void plant_influence_check(const struct plant *plant, struct diag *diag);
-/* Report views, tags, tours and plants that stops and panes name and that are not there; the tag list has been read. */
+/* Report unknown views, tags, tours and plants that tour stops and wall panes name. Call them after the tag list has been read. */
 void plant_tours_check(const struct plant *plant, struct diag *diag);
 void plant_walls_check(const struct plant *plant, struct diag *diag);
 void plant_views_free(struct plant *plant);
 void plant_tours_free(struct plant *plant);
 void plant_other_plants_free(struct plant *plant);
 void plant_walls_free(struct plant *plant);
-/* Reads an asset's `nodes`: a pattern, or a list of them. */
+/* Reads an asset's `nodes`: a pattern, or a list of patterns. */
 void plant_nodes_read(struct yaml_reader *reader, yaml_node_t *node, struct plant_asset *asset);
 /* Reads an asset's `properties`. */
 void plant_properties_read(struct yaml_reader *reader, yaml_node_t *node, struct plant_asset *asset);
 void plant_properties_free(struct plant_asset *asset);
-bool plant_properties_same(const struct plant_asset *a, const struct plant_asset *b); /* compares them, including their order */
-/* Reads the key `postgres` of `history`, into a struct plant_history. */
+/* Compares two assets' properties, including their order. */
+bool plant_properties_same(const struct plant_asset *a, const struct plant_asset *b);
+/* Reads the key `postgres` of `history` into a struct plant_history. */
 void plant_postgres_read(struct yaml_reader *reader, yaml_node_t *node, void *history);
-/* Checks the file that it names; the folder of the plant file is set. */
+/* Checks the login file of `postgres`; the plant's folder must be set. */
 void plant_postgres_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant,
                           struct plant_postgres *postgres);
 void plant_postgres_finish(struct plant_postgres *postgres);
 /* Reads the key `publish`. */
 void plant_publish_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
-void plant_publish_free(struct plant_publish **publish); /* &NULL is fine; leaves NULL */
+void plant_publish_free(struct plant_publish **publish); /* Frees the settings. &NULL is fine; leaves NULL. */
 /* Reads the list `sources`. */
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 
 /* Reads a source's `tls`. */
 void plant_mqtt_read_tls(struct yaml_reader *reader, yaml_node_t *node, void *source);
-/* Checks what an MQTT source says, and sets what it does not. */
+/* Checks the keys of an MQTT source, and sets defaults. */
 void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_mqtt_finish(struct plant_mqtt *mqtt);
-/* The same for OPC UA: its key `security`, what it says altogether, and its end. */
+/* The same for OPC UA: reads the key `security`, checks all keys, frees the settings. */
 void plant_opcua_read_security(struct yaml_reader *reader, yaml_node_t *node, void *source);
 void plant_opcua_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_opcua_finish(struct plant_opcua *opcua);
-/* Makes the path of a file that holds a secret, or of a folder, relative to the plant file. Warns, naming the key, if it cannot be read:
-   whoever only prepares the plant may have no right to. */
+/* Resolves the path of a secret file or folder relative to the plant file. Warns, naming the key, if the file cannot be read; not an
+   error, since a user who only prepares the plant may lack the right. */
 void plant_secret_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const char *key, char **path);
 
-/* For lists of records that begin with `char *id`. Allocates records for the items of a list and sets *count; returns NULL if it is no
-   list, or too long (reported). */
+/* For lists of records that begin with `char *id`: allocates records for the items of a list and sets *count. Returns NULL if the node
+   is no list, or too long (reported). */
 void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count);
-/* Reports an id that occurs twice; the last record was just read. */
+/* Reports an id that occurs twice; call it after reading each record. */
 void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,
                          size_t stride, size_t line_offset);
 /* Makes a relative path relative to the folder of the plant file. */
 void plant_resolve_path(const struct plant *plant, char **path);
 
-/* Reads the tag list, plant->tags_path; assets, groups and sources have been read. */
+/* Reads the tag list, plant->tags_path; assets, groups and sources must have been read. */
 void tag_list_read(struct plant *plant, struct diag *diag);
 /* Returns whether limits do not ascend (LL < L < H < HH; NaN: none), with the indices of the first two that do not. */
 bool plant_limits_wrong(const double limits[LIMIT_COUNT], int *lower, int *upper);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes of what an asset is prepared from. */
+/* Hashes the inputs from which an asset is prepared. */
 #include "plant/recipe.h"
 
 #include <errno.h>
@@ -32,7 +32,7 @@ bool plant_model_hash(const char *path, uint64_t *out)
 
 uint64_t plant_recipe(const struct plant_asset *asset, uint64_t model_hash)
 {
-    struct { /* without holes */
+    struct { /* without padding */
         uint64_t model, nodes, whole_model, up;
         double unit_m, tolerance_m;
     } recipe = {

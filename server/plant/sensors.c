@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which tags are sensors of an asset, and where in its own frame. */
+/* Finds the tags that are sensors of an asset, and their positions in its frame. */
 #include "plant/sensors.h"
 
 #include <string.h>
@@ -18,7 +18,7 @@ size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor *
     const struct plant_asset *of = &plant->assets[asset];
     size_t count = 0;
     double asset_from_plant[16];
-    if (!transform_invert(of->placement, asset_from_plant)) /* plant_load refuses such a placement */
+    if (!transform_invert(of->placement, asset_from_plant)) /* plant_load() refuses a placement without an inverse */
         memcpy(asset_from_plant, transform_identity, sizeof(asset_from_plant));
     for (size_t i = 0; i < plant->tag_count; i++)
         count += is_sensor(&plant->tags[i], asset);

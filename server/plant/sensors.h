@@ -8,10 +8,10 @@
 #include "plant/plant.h"
 
 struct plant_sensor {
-    int tag;               /* index in plant->tags */
-    const char *node;      /* the model node whose place it has; "": the middle of the asset; NULL: position_m. Belongs to the plant */
-    uint64_t node_hash;    /* XXH3-64 of node; 0: position_m. Of an assumed place, of node or position_m with another seed */
-    double position_m[3];  /* asset frame (metres, Z up); 0 where node is set */
+    int tag;            /* index in plant->tags */
+    const char *node;   /* model node that gives the position; "": the middle of the asset; NULL: position_m is used. Owned by the plant */
+    uint64_t node_hash; /* XXH3-64 of `node`; 0: position_m is used. For an assumed place, hash of node or position_m with another seed */
+    double position_m[3]; /* position in the asset frame (metres, Z up); 0 if `node` is set */
 };
 
 /* Returns the number of tags that have this asset and a group, and lists them in the order of the tag list; free *out with mem_free(). */

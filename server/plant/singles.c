@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which assets have one sensor of a group. */
+/* Finds assets with a single sensor of a group. */
 #include "plant/singles.h"
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What equipment and buildings measure, and what units make of them. */
+/* Plausible sizes of equipment and buildings, and the effect of wrong units. */
 #include "plant/models/asset_size.h"
 
 #include <math.h>
@@ -9,12 +9,13 @@
 
 #include "base/mem.h"
 
-/* Halls and platforms are smaller, transmitters larger; beside other assets less is enough. */
+/* Bounds of plausible sizes: halls and platforms are below LARGE_M, transmitters above SMALL_M. LARGE_BESIDE_M applies to an asset that
+   is also TIMES_MEDIAN larger than the plant's median. */
 #define LARGE_M 300.0
 #define SMALL_M 0.03
 #define LARGE_BESIDE_M 60.0
 #define TIMES_MEDIAN 50.0
-/* Most of what is drawn. */
+/* Range of the longest side of most assets. */
 #define USUAL_LOW_M 0.1
 #define USUAL_HIGH_M 60.0
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Each model's header once, and every asset and tag against it. */
+/* Reads each model's header once, and checks all assets and tags against it. */
 #include "plant/models/model_check.h"
 
 #include <math.h>
@@ -11,26 +11,26 @@
 #include "plant/models/model_header.h"
 #include "plant/sensors.h"
 
-#define SAME_PLACE_M 1e-3 /* as plantcast-prep has it */
-#define SLACK_M 0.5       /* so far from its box a sensor may be, and a part of the diagonal */
+#define SAME_PLACE_M 1e-3 /* same value as in plantcast-prep */
+#define SLACK_M 0.5       /* tolerated distance of a sensor from its asset's box, in addition to a fraction of the diagonal */
 #define SLACK 0.05
 enum { WHY_BYTES = 400, SHOWN_NODES = 6 };
-/* What serving takes, as measured with 20 million triangles in 3,040 assets: 3.1 GB. */
+/* Memory for serving, measured with 20 million triangles in 3,040 assets: 3.1 GB. */
 enum { TRIANGLE_BYTES = 150, BASE_BYTES = 350 << 20 };
 
 struct plant_models_check {
     const struct plant *plant;
     struct diag *diag;
-    struct model_header header; /* of the model that is looked at */
-    bool *taken;                /* its nodes that the asset has */
-    bool *counted;              /* those that any asset has had */
-    uint64_t triangles;         /* of all models: equal ones of several assets are in memory once */
+    struct model_header header; /* header of the model being checked */
+    bool *taken;                /* by node: belongs to the asset being checked */
+    bool *counted;              /* by node: belongs to any asset checked so far */
+    uint64_t triangles;         /* triangles of all models; a model that several assets share counts once */
     uint32_t *found;
 };
 
 /* --- boxes ---------------------------------------------------------------------------------------------------------------------- */
 
-/* Into metres, Z up. */
+/* Converts a box from model units and axes to metres, Z up. */
 static struct model_box in_asset(const struct model_box *box, double unit_m, enum axis up)
 {
     struct model_box out;
@@ -68,14 +68,15 @@ static size_t count_within(const struct model_box *box, const struct plant_senso
 
 /* --- sensors -------------------------------------------------------------------------------------------------------------------- */
 
-/* Other units or another axis, with which most of the sensors would be within. */
+/* Finds other units or another axis with which at least 90 % of the sensors would be within the box. Returns whether it found any. */
 static bool find_better(const struct plant_asset *asset, const struct model_box *box, const struct plant_sensor *sensors, size_t count,
                         size_t within, char *out, size_t bytes)
 {
     static const struct {
         const char *name;
         double m;
-    } units[] = { { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { "m", 1 } }; /* the smallest that holds them */
+    /* ascending: the smallest unit that fits is chosen */
+    } units[] = { { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { "m", 1 } };
     size_t best = within, placed;
     for (int pass = 0; pass < 3; pass++) /* another axis, other units, both */
         for (int u = pass ? 0 : -1; u < (pass ? 5 : 0); u++) {
@@ -122,7 +123,8 @@ static void place_of(const struct model_header *header, uint32_t node, double ou
         out[axis] = box.low[axis] <= box.high[axis] ? (box.low[axis] + box.high[axis]) / 2 : NAN;
 }
 
-/* Where several nodes have that name, those of the asset before others; they may stand in one place. */
+/* Returns whether all nodes of a name are at one place, considering only the asset's own nodes if it has any. *count receives the number
+   considered. */
 static bool is_one_place(const struct plant_models_check *check, const struct plant_asset *asset, size_t *count)
 {
     size_t own = 0;
@@ -135,7 +137,7 @@ static bool is_one_place(const struct plant_models_check *check, const struct pl
     for (size_t i = 1; i < *count; i++) {
         place_of(&check->header, check->found[i], other);
         for (int axis = 0; axis < 3; axis++)
-            if (fabs(other[axis] - first[axis]) * asset->unit_m > SAME_PLACE_M) /* not where one is unknown */
+            if (fabs(other[axis] - first[axis]) * asset->unit_m > SAME_PLACE_M) /* false if a coordinate is unknown (NaN) */
                 return false;
     }
     return true;
@@ -161,7 +163,7 @@ static void check_node(struct plant_models_check *check, const struct plant_asse
 
 /* --- assets --------------------------------------------------------------------------------------------------------------------- */
 
-/* False: it has no size that is known. */
+/* Checks one asset. Returns false if its size is unknown. */
 static bool check_asset(struct plant_models_check *check, size_t index, double size_m[3])
 {
     const struct plant_asset *asset = &check->plant->assets[index];
@@ -193,7 +195,7 @@ static bool check_asset(struct plant_models_check *check, size_t index, double s
     return true;
 }
 
-/* All assets of one model, the first of which is this. */
+/* Checks all assets of one model; `first` is the index of the first one. */
 static void check_model(struct plant_models_check *check, size_t first, bool *done, double (*sizes_m)[3])
 {
     const struct plant *plant = check->plant;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The first chunk of a GLB file, or a .gltf file, and the walk through its scene. */
+/* Reads the JSON chunk of a GLB file, or a .gltf file, and walks its scene. */
 #include "plant/models/model_header.h"
 
 #include <errno.h>
@@ -35,7 +35,7 @@ static uint32_t u32_of(const unsigned char *at)
     return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
 }
 
-/* The JSON chunk alone; the rest may have gigabytes. NULL: why. */
+/* Reads the JSON chunk only; the other chunks may have gigabytes. Returns NULL with the reason in `why` on failure. */
 static char *read_json_chunk(FILE *file, size_t *count, char *why, size_t why_bytes)
 {
     unsigned char head[GLB_HEAD_BYTES];
@@ -100,7 +100,7 @@ void model_box_add(struct model_box *box, const struct model_box *other)
     }
 }
 
-/* Of normalised integers, what becomes 1. */
+/* Returns the divisor of normalised integers: the integer that represents 1. */
 static double divisor_of(const json_t *accessor)
 {
     if (!json_is_true(json_object_get(accessor, "normalized")))
@@ -114,7 +114,7 @@ static double divisor_of(const json_t *accessor)
     }
 }
 
-/* False: it does not say. */
+/* Returns the bounding box that an accessor states; false if it states none. */
 static bool range_of(const json_t *accessor, struct model_box *out)
 {
     const json_t *low = json_object_get(accessor, "min"), *high = json_object_get(accessor, "max");
@@ -290,7 +290,7 @@ uint64_t model_header_triangles(const struct model_header *header, size_t node)
         json_int_t kind = mode ? json_integer_value(mode) : 4;
         if (kind == 4)
             sum += count / 3;
-        else if (kind > 4) /* strips and fans */
+        else if (kind > 4) /* triangle strips and fans */
             sum += count > 2 ? count - 2 : 0;
     }
     return sum;

@@ -1,25 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the nodes of a glTF file and their bounding boxes from its JSON, without the vertices, for --check, which must be fast. Thread:
-   any. */
+/* Reads the nodes of a glTF file and their bounding boxes from its JSON, without the vertices, so that --check is fast. Thread: any. */
 #ifndef PLANT_MODELS_MODEL_HEADER_H
 #define PLANT_MODELS_MODEL_HEADER_H
 #include "plant/models/nodes.h"
 
-struct model_box { /* low > high: empty */
+struct model_box { /* bounding box; low > high: empty */
     double low[3], high[3];
 };
 
 struct model_header {
-    struct model_node *nodes; /* of the scene, depth first */
-    struct model_box *boxes;  /* of each node's own mesh, in the model's units and axes, placed as in the scene */
+    struct model_node *nodes; /* nodes of the scene, depth first */
+    struct model_box *boxes;  /* bounding box of each node's own mesh in scene coordinates, in the model's units and axes */
     size_t count;
-    bool partial;             /* boxes may be too small: there are instances, or accessors without min and max */
-    void *json;               /* owns the names */
+    bool partial; /* boxes may be too small, because the model has instances, or accessors without min and max */
+    void *json;   /* the parsed JSON, which owns the names */
 };
 
-/* Reads a file. Returns false if it cannot, with the reason in why; then there is nothing to finish. */
+/* Reads a file. Returns false with the reason in `why` on failure, and then there is nothing to finish. */
 bool model_header_read(struct model_header *header, const char *path, char *why, size_t why_bytes);
-/* Returns how many triangles the node's own mesh has, by its accessors' counts. */
+/* Returns the number of triangles of the node's own mesh, from the counts of its accessors. */
 uint64_t model_header_triangles(const struct model_header *header, size_t node);
 void model_header_finish(struct model_header *header);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matching a model's nodes: by name, by number, by the name of a mesh, by path. */
+/* Matches node patterns: by name, by number, by the name of a mesh, by path. */
 #include "plant/models/nodes.h"
 
 #include <fnmatch.h>
@@ -18,9 +18,9 @@ enum pattern_kind { NAME, GLOB, NUMBER, MESH, PATH };
 struct pattern {
     enum pattern_kind kind;
     bool excludes;
-    char *text; /* without ! and mesh:; of a PATH, cut into segments */
+    char *text; /* text without ! and mesh:; for a PATH, cut into segments */
     uint64_t number;
-    bool from_root; /* PATH: begins with a slash */
+    bool from_root; /* the PATH begins with a slash */
     const char *segments[SEGMENTS_MAX];
     size_t segment_count;
 };
@@ -65,7 +65,7 @@ static void cut_path(struct pattern *pattern)
     }
 }
 
-/* What a text means depends on the model: a name that is there as it stands is meant so, whatever signs it has. */
+/* Parses a pattern. A text that equals the name of a node always means that node, whatever special characters it contains. */
 static void pattern_init(struct pattern *pattern, const char *text, const struct node_list *model)
 {
     bool named = any_named(model, text);
@@ -100,7 +100,7 @@ static bool is_instance(const struct model_node *nodes, int node)
     return nodes[node].parent >= 0 && nodes[nodes[node].parent].number == nodes[node].number;
 }
 
-/* Whether the first `left` segments lead to this node (-1: to the scene). */
+/* Returns whether the first `left` segments of the pattern match the path to this node (-1: the scene). */
 static bool path_matches(const struct pattern *pattern, size_t left, const struct model_node *nodes, int node)
 {
     if (left == 0)
@@ -150,7 +150,7 @@ static bool is_mesh(const char *text, const struct node_list *model)
     return false;
 }
 
-/* ": did you mean ...?", or nothing. */
+/* Writes ": did you mean ...?", or nothing if no name is similar. */
 static void suggest(const struct pattern *pattern, const struct node_list *model, char *out, size_t bytes)
 {
     const char *text = pattern->kind == PATH ? pattern->segments[pattern->segment_count - 1] : pattern->text;
@@ -179,7 +179,7 @@ static void say_none(const struct pattern *pattern, const char *text, const stru
 
 /* --- taking ------------------------------------------------------------------------------------------------------------------- */
 
-/* False: there is none. */
+/* Returns false if no node matches. */
 static bool mark(const struct pattern *pattern, const struct node_list *model, bool *marks, bool value)
 {
     bool any = false;
@@ -195,7 +195,7 @@ static bool mark(const struct pattern *pattern, const struct node_list *model, b
     return any;
 }
 
-/* One pass: all that include, or all that exclude. */
+/* Applies all including patterns, or all excluding ones. */
 static bool mark_all(const char *patterns, bool excludes, const struct node_list *model, bool *taken, size_t *done, char *why, size_t bytes)
 {
     bool good = true;
@@ -222,7 +222,7 @@ bool nodes_take(const char *patterns, const struct model_node *nodes, size_t cou
     memset(taken, 0, count * sizeof(*taken));
     bool good = !patterns || mark_all(patterns, false, &model, taken, &including, why, why_bytes);
     if (good && including == 0)
-        memset(taken, 1, count * sizeof(*taken)); /* all but what is left out */
+        memset(taken, 1, count * sizeof(*taken)); /* no including pattern: start from all nodes */
     return good && (!patterns || mark_all(patterns, true, &model, taken, &excluding, why, why_bytes));
 }
 

@@ -6,21 +6,21 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct model_node { /* depth first: a node's sub-tree are the nodes [node, end) */
-    const char *name, *mesh; /* "": none */
-    int parent;              /* or -1 */
+struct model_node {          /* nodes are stored depth first: the sub-tree of a node is the range [node, end) */
+    const char *name, *mesh; /* names of the node and its mesh; "": none */
+    int parent;              /* index of the parent node, or -1 */
     uint32_t end;
-    uint32_t number; /* in the file's list of nodes. Instances below a node have its number */
+    uint32_t number; /* index in the file's list of nodes; instances below a node have the node's number */
 };
 
-#define NODES_SEPARATOR '\n' /* between the patterns of an asset */
+#define NODES_SEPARATOR '\n' /* separates the patterns of an asset */
 
-/* Sets taken[i] for each node that a pattern matches and for its sub-tree; patterns that begin with ! exclude theirs. patterns NULL: all
-   nodes. Returns false if a pattern matches no node, and names it in why. */
+/* Sets taken[i] for each node that a pattern matches and for its sub-tree; patterns that begin with ! exclude such nodes. patterns NULL:
+   all nodes. Returns false with the pattern in `why` if a pattern matches no node. */
 bool nodes_take(const char *patterns, const struct model_node *nodes, size_t count, bool *taken, char *why, size_t why_bytes);
 
-/* Finds the nodes that a pattern matches, without their sub-trees. found: room for count numbers. Returns how many there are; if there is
-   none, why says so. */
+/* Finds the nodes that a pattern matches, without their sub-trees. `found` must hold `count` indices. Returns the number of matches; if
+   it is 0, `why` has a message. */
 size_t nodes_find(const char *pattern, const struct model_node *nodes, size_t count, uint32_t *found, char *why, size_t why_bytes);
 
 #endif

@@ -18,7 +18,7 @@ void transform_multiply(const double a[16], const double b[16], double out[16])
         }
 }
 
-/* Sine and cosine of degrees, exact at multiples of a right angle, so that an upright asset stays upright. */
+/* Computes sine and cosine of degrees, exact at multiples of a right angle, so that an upright asset stays exactly upright. */
 static void sin_cos_deg(double deg, double *sine, double *cosine)
 {
     static const double sines[4] = { 0, 1, 0, -1 };

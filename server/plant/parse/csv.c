@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* CSV, unquoted in place: a cell's text never grows, so the file's own bytes hold it. */
+/* Reads CSV and unquotes it in place: a cell's text never grows, so it fits into the file's own buffer. */
 #include "plant/parse/csv.h"
 
 #include <string.h>
@@ -35,7 +35,7 @@ static void skip_blanks(struct csv *csv)
         step(csv);
 }
 
-/* At the opening quote. Afterwards: past the closing one, and *end is where the text ends. */
+/* Reads a quoted cell from its opening quote on. Leaves csv->at after the closing quote; *end is the end of the text. */
 static void read_quoted(struct csv *csv, struct csv_cell *cell, char **end)
 {
     char *out = csv->at;
@@ -78,7 +78,7 @@ static void read_plain(struct csv *csv, struct csv_cell *cell, char **end)
     }
 }
 
-/* True if another cell of this row follows. */
+/* Reads a cell. Returns whether another cell of this row follows. */
 static bool read_cell(struct csv *csv, struct csv_row *row)
 {
     mem_grow(&row->cells, &row->capacity, row->count + 1, sizeof(*row->cells));
@@ -162,7 +162,7 @@ static void check_header(struct csv *csv)
 
 static const char WANTED[] = "a table (CSV)";
 
-/* Takes text; NULL: it could not be read. */
+/* Begins reading `text`, whose ownership it takes. text NULL: the file could not be read. */
 static bool begin(struct csv *csv, const char *path, char *text, struct diag *diag)
 {
     if (!text)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the rows of a CSV file (RFC 4180, separated by comma, semicolon or tab) with the line and column of each cell. plant_load() makes a
-   tag of each row that csv_next() returns: row n is tag n. Thread: one. */
+/* Reads the rows of a CSV file (RFC 4180, separated by comma, semicolon or tab) with the line and column of each cell. plant_load()
+   makes a tag of each row that csv_next() returns: row n is tag n. Thread: one. */
 #ifndef PLANT_PARSE_CSV_H
 #define PLANT_PARSE_CSV_H
 #include <stdbool.h>
@@ -10,8 +10,8 @@
 #include "base/text/diag.h"
 
 struct csv_cell {
-    char *text;        /* unquoted; without surrounding blanks unless it was quoted */
-    int line, column;  /* from 1; column counts characters */
+    char *text;       /* text without quotes; surrounding blanks are removed unless the cell was quoted */
+    int line, column; /* position in the file, from 1; column counts characters */
 };
 
 struct csv_row {
@@ -19,22 +19,22 @@ struct csv_row {
     size_t count, capacity;
 };
 
-struct csv { /* read only */
+struct csv { /* reader state; read only for callers */
     char *path;
     struct diag *diag;
-    char *bytes, *at;  /* the whole file, and where reading goes on */
-    int line, column;  /* of `at` */
+    char *bytes, *at; /* the whole file, and the read position in it */
+    int line, column; /* line and column of `at` */
     char separator;
     struct csv_row header, row;
 };
 
-/* Reads the file and its header row. Returns false on errors, which go to diag; csv_close() is not needed then. path is copied; diag must
-   outlive csv. */
+/* Reads the file and its header row. Returns false after errors, which go to diag; csv_close() is then not needed. The path is copied;
+   diag must outlive the reader. */
 bool csv_open(struct csv *csv, const char *path, struct diag *diag);
-/* As csv_open(), for a file of another program, in any encoding: see input_read_foreign(). */
+/* Does the same as csv_open() for a file of another program in any encoding: see input_read_foreign(). */
 bool csv_open_foreign(struct csv *csv, const char *path, const char *encoding, struct diag *diag, struct charset_choice *choice);
 void csv_close(struct csv *csv);
-/* Reads the next row that is not blank. Returns false after the last one. Wrong quotes and wrong numbers of cells go to diag. */
+/* Reads the next row that is not blank. Returns false after the last row. Wrong quotes and wrong numbers of cells are reported to diag. */
 bool csv_next(struct csv *csv);
 /* Returns the separator that occurs most often, outside quotes, in the first line that is not blank. */
 char csv_separator(const char *text);
@@ -42,7 +42,7 @@ char csv_separator(const char *text);
 int csv_find(const struct csv *csv, const char *name);
 /* Returns the text of a cell of the current row; "" if column is -1 or the row is shorter. Valid until csv_close(). */
 const char *csv_text(const struct csv *csv, int column);
-/* Return the line and column of that cell; of the row's first cell if there is no such cell. */
+/* Return the line and column of a cell; of the row's first cell if the row has no such cell. */
 int csv_cell_line(const struct csv *csv, int column);
 int csv_cell_column(const struct csv *csv, int column);
 #define csv_error(csv, col, ...) diag_error((csv)->diag, (csv)->path, csv_cell_line(csv, col), csv_cell_column(csv, col), __VA_ARGS__)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of beginnings. */
+/* Table of file signatures. */
 #include "plant/parse/file_kind.h"
 
 #include <stdbool.h>

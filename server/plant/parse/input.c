@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Text files, checked for size and encoding. */
+/* Reads text files and checks their size and encoding. */
 #include "plant/parse/input.h"
 
 #include <errno.h>
@@ -11,9 +11,9 @@
 #include "base/text/utf8.h"
 #include "plant/parse/file_kind.h"
 
-enum { REPORTED_LINES = 10, TEXT_AT_LEAST = 10 /* characters for each byte that is none */ };
+enum { REPORTED_LINES = 10, TEXT_AT_LEAST = 10 /* TEXT_AT_LEAST: characters required for each invalid byte */ };
 
-/* False: it is no text at all, and nothing was reported. */
+/* Returns false if the bytes are not text at all; nothing is then reported. */
 static bool check_characters(char *text, size_t bytes, const char *path, struct diag *diag)
 {
     size_t wrong = 0;
@@ -58,7 +58,7 @@ static bool is_blank(const char *text, size_t bytes)
     return true;
 }
 
-/* NULL: reported. */
+/* Returns NULL after an error (reported). */
 static char *read_bytes(const char *path, const char *wanted, struct diag *diag, size_t *bytes)
 {
     const char *kind = file_kind_of(path);
@@ -74,7 +74,7 @@ static char *read_bytes(const char *path, const char *wanted, struct diag *diag,
     return text;
 }
 
-/* Takes text. NULL: reported, and text is freed. */
+/* Checks `text` and takes its ownership. Returns NULL after an error (reported). */
 static char *check_text(char *text, size_t bytes, const char *path, const char *wanted, struct diag *diag)
 {
     if (is_blank(text, bytes))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decimal numbers, read in the C locale. */
+/* Reads decimal numbers in the C locale. */
 #include "plant/parse/number.h"
 
 #include <locale.h>
@@ -25,7 +25,8 @@ static const char *skip_digits(const char *p, int *count)
     return p;
 }
 
-/* [sign] digits [. digits] [e [sign] digits]: strtod alone would take hexadecimal and leading blanks as well. */
+/* Returns whether the text has the form [sign] digits [. digits] [e [sign] digits]: strtod() alone would accept hexadecimal and leading
+   blanks. */
 static bool is_decimal(const char *p)
 {
     int digits = 0, exponent = 0;

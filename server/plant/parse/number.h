@@ -5,8 +5,8 @@
 
 enum number_result { NUMBER_GOOD, NUMBER_NOT_A_NUMBER, NUMBER_NOT_FINITE };
 
-/* Parses text that must be one decimal number (`-1.5e3`) and nothing else. `inf`, `.nan` and numbers that overflow are NUMBER_NOT_FINITE.
-   Writes *out only if the result is NUMBER_GOOD. */
+/* Parses text that must be one decimal number (`-1.5e3`) and nothing else. `inf`, `.nan` and numbers that overflow give
+   NUMBER_NOT_FINITE. Writes *out only if the result is NUMBER_GOOD. */
 enum number_result number_parse(const char *text, double *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The nearest name by edit distance: insert, delete, replace, and swap of two neighbours. */
+/* Finds the nearest name by edit distance: insert, delete, replace, and swap of two neighbours. */
 #include "plant/parse/suggest.h"
 
 #include <ctype.h>
@@ -18,7 +18,7 @@ static int lower(char c)
     return tolower((unsigned char)c);
 }
 
-/* Optimal string alignment distance of two texts of at most NAME_MAX_BYTES; case counts nothing. */
+/* Returns the optimal string alignment distance of two texts of at most NAME_MAX_BYTES, ignoring case. */
 static int edit_distance(const char *a, size_t a_bytes, const char *b, size_t b_bytes)
 {
     int rows[3][NAME_MAX_BYTES + 1];

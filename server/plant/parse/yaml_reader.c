@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* YAML by libyaml's document API, which keeps the place of every node. */
+/* Reads YAML through libyaml's document API, which keeps the position of every node. */
 #include "plant/parse/yaml_reader.h"
 
 #include <assert.h>
@@ -28,7 +28,7 @@ static struct text_position place_of_byte(const char *text, size_t offset)
     return place;
 }
 
-/* Tabs in front of a line's text: YAML forbids them, and libyaml's own words for it do not say "tab". */
+/* Reports tabs in the indentation of lines: YAML forbids them, and libyaml's message does not mention a tab. */
 static bool report_tabs(struct yaml_reader *reader, const char *text)
 {
     bool any = false;

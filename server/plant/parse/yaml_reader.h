@@ -15,46 +15,46 @@ struct yaml_reader {
 };
 
 struct text_position {
-    int line, column; /* from 1 */
+    int line, column; /* position in the file, from 1 */
 };
 
-struct yaml_choice { /* a table of these ends with { 0 } */
+struct yaml_choice { /* one allowed text and its value; a table of choices ends with { 0 } */
     const char *name;
     double value;
 };
 
 enum key_kind {
-    KEY_TEXT,    /* char *, any text */
-    KEY_NAME,    /* char *, text that is not empty */
-    KEY_NUMBER,  /* double */
-    KEY_INT,     /* int */
-    KEY_CHOICE,  /* int (or an enum), from choices */
-    KEY_FLAG,    /* bool, from choices */
-    KEY_FACTOR,  /* double, from choices */
-    KEY_POINT,   /* double[3] */
-    KEY_CUSTOM   /* by read */
+    KEY_TEXT,   /* char *, any text */
+    KEY_NAME,   /* char *, text that is not empty */
+    KEY_NUMBER, /* double */
+    KEY_INT,    /* int */
+    KEY_CHOICE, /* int (or an enum), from `choices` */
+    KEY_FLAG,   /* bool, from `choices` */
+    KEY_FACTOR, /* double, from `choices` */
+    KEY_POINT,  /* double[3] */
+    KEY_CUSTOM  /* any type, read by the function `read` */
 };
 
-struct yaml_key { /* one key of a mapping; a table of these ends with { 0 } */
+struct yaml_key { /* one key of a mapping; a table of keys ends with { 0 } */
     const char *name;
     enum key_kind kind;
     bool required;
-    size_t offset;                /* in the record */
-    double low, high;             /* of numbers, inclusive; both 0: any that is finite */
+    size_t offset;    /* byte offset of the member in the record */
+    double low, high; /* inclusive bounds of a number; both 0: any finite number */
     const struct yaml_choice *choices;
     void (*read)(struct yaml_reader *reader, yaml_node_t *value, void *record);
 };
 
 #define YAML_MAP_MAX_KEYS 56
-struct yaml_map { /* where things were, and whether they were good */
+struct yaml_map { /* positions of a mapping and its values, and whether the values were good */
     const struct yaml_key *keys;
     struct text_position place;
     struct text_position values[YAML_MAP_MAX_KEYS];
-    bool good[YAML_MAP_MAX_KEYS]; /* given, and read without an error */
+    bool good[YAML_MAP_MAX_KEYS]; /* the key was given, and its value read without an error */
 };
 
-/* Parses a file. Returns false if it is unreadable, no text or no YAML (reported); yaml_reader_close() is not needed then. path is copied;
-   diag must outlive the reader. */
+/* Parses a file. Returns false if it is unreadable, not text or not YAML (reported); yaml_reader_close() is then not needed. The path is
+   copied; diag must outlive the reader. */
 bool yaml_reader_open(struct yaml_reader *reader, const char *path, struct diag *diag);
 void yaml_reader_close(struct yaml_reader *reader);
 
@@ -66,19 +66,20 @@ void yaml_expected(struct yaml_reader *reader, const yaml_node_t *node, const ch
 bool yaml_is_null(const yaml_node_t *node);
 /* Returns the text of a scalar; NULL for lists and mappings. */
 const char *yaml_text(const yaml_node_t *node);
-/* Reads a finite number in [low, high]. Returns false if it is none (reported). */
+/* Reads a finite number in [low, high]. Returns false, reported, if the node is no such number. */
 bool yaml_number(struct yaml_reader *reader, const yaml_node_t *node, const char *name, double low, double high, double *out);
 
-/* Reads a mapping into record; members whose key is absent or null stay unchanged. what names the mapping in messages ("a group"). Returns
-   false if it is no mapping. */
+/* Reads a mapping into `record`; members whose key is absent or null stay unchanged. `what` names the mapping in messages ("a group").
+   Returns false if the node is no mapping. */
 bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct yaml_key *keys, void *record,
                    struct yaml_map *map);
-bool yaml_map_good(const struct yaml_map *map, const char *name); /* returns whether the key was given and read without an error */
-bool yaml_map_has(const struct yaml_map *map, const char *name); /* returns whether the key is present, whatever its value */
-/* Returns the place of a value; of the mapping if the key is absent. */
+/* Returns whether the key was given and its value read without an error. */
+bool yaml_map_good(const struct yaml_map *map, const char *name);
+bool yaml_map_has(const struct yaml_map *map, const char *name); /* Returns whether the key is present, whatever its value. */
+/* Returns the position of a key's value; the position of the mapping if the key is absent. */
 struct text_position yaml_map_place(const struct yaml_map *map, const char *name);
 
-/* Returns the number of items; -1 if it is no list (reported). */
+/* Returns the number of items of a list; -1 if the node is no list (reported). */
 int yaml_list_count(struct yaml_reader *reader, const yaml_node_t *node, const char *name);
 yaml_node_t *yaml_list_item(struct yaml_reader *reader, const yaml_node_t *node, int index);
 

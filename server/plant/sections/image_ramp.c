@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pixels to 256 colours. */
+/* Reads an image into 256 colours. */
 #include "plant/sections/image_ramp.h"
 
 #include <errno.h>
@@ -12,7 +12,7 @@
 
 enum { MOST_PX = 4096 };
 
-/* Of the middle row or column; place: 0 at its beginning. */
+/* Returns a pixel of the middle row or column; place 0 is its beginning. */
 static const uint8_t *pixel_at(const struct image *image, bool lying, uint32_t place)
 {
     uint32_t x = lying ? place : image->width_px / 2, y = lying ? image->height_px / 2 : image->height_px - 1 - place;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the plant file and the tag list say of alarms. PLANT.md describes the form. */
+/* Reads the alarm settings of the plant file and the tag list. PLANT.md describes the form. */
 #include "plant/sections/plant_alarms.h"
 
 #include <string.h>
@@ -11,7 +11,7 @@
 
 struct alarm_reference {
     char *text;
-    size_t tag; /* whose row it is */
+    size_t tag; /* index of the tag whose row has the reference */
     enum tag_column column;
     int line, at_column;
 };
@@ -114,7 +114,7 @@ static void resolve_suppression(struct plant *plant, struct diag *diag, const st
     plant->tags[reference->tag].suppressed_by = by;
 }
 
-/* Takes the last word off, if it is one of the list. */
+/* If the last word of the text is one of the list, cuts it off and returns its index. */
 static int take_word(char *text, const char *const *words, int count)
 {
     char *blank = strrchr(text, ' ');
@@ -128,7 +128,7 @@ static int take_word(char *text, const char *const *words, int count)
     return -1;
 }
 
-/* `TAG LIMIT [acknowledged]`; LIMIT is LL, L, H, HH or ALM. */
+/* Resolves a cell `TAG LIMIT [acknowledged]`; LIMIT is LL, L, H, HH or ALM. */
 static void resolve_mirror(struct plant *plant, struct diag *diag, const struct alarm_reference *reference)
 {
     static const char *const acknowledged[] = { "acknowledged" };

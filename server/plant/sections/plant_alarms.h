@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the plant file and the tag list say of alarms. Only for the files of this folder. */
+/* Reads the alarm settings of the plant file and the tag list. Only for the files of this folder. */
 #ifndef PLANT_SECTIONS_PLANT_ALARMS_H
 #define PLANT_SECTIONS_PLANT_ALARMS_H
 #include "plant/plant_impl.h"
 #include "plant/tags/tag_columns.h"
 
-/* Tags that rows name, which may come in later rows. Zero-initialise. */
+/* Names of other tags found in rows; resolved later, since those tags may follow. Zero-initialise. */
 struct alarm_references {
     struct alarm_reference *at;
     size_t count, capacity;
 };
 
 void plant_alarms_read_mode(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
-void plant_alarms_read_group(struct yaml_reader *reader, yaml_node_t *node, void *group); /* its key `alarm` */
+void plant_alarms_read_group(struct yaml_reader *reader, yaml_node_t *node, void *group); /* Reads the key `alarm` of a group. */
 void plant_alarms_check(struct yaml_reader *reader, struct text_position place, const struct plant *plant);
 void plant_alarms_read_row(struct tag_columns *columns, struct plant *plant, struct plant_tag *tag, struct alarm_references *references);
-/* Resolves the names that alarm cells refer to, once all rows are read and the plant's names are sorted; reports unknown ones. Frees the
+/* Resolves the tag names in alarm cells, once all rows are read and the plant's names are sorted; reports unknown names. Frees the
    references. */
 void plant_alarms_resolve(struct plant *plant, struct diag *diag, struct alarm_references *references);
 

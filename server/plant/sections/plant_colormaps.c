@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant file's `colormaps`: names and images. */
+/* Reads the plant file's `colormaps`: names and images. */
 #include <string.h>
 
 #include "base/mem.h"

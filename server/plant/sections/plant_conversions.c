@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant file's `convert`: models that are made by a program of the site's. */
+/* Reads the plant file's `convert`: models that a program of the site makes. */
 #include <string.h>
 
 #include "base/mem.h"

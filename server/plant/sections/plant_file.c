@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plant.yaml: the tables of its keys, and what must hold between their values. PLANT.md describes the form. */
+/* Reads plant.yaml: the tables of its keys, and the checks across keys. PLANT.md describes the form. */
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
@@ -184,7 +184,8 @@ static void read_nodes(struct yaml_reader *reader, yaml_node_t *node, void *reco
     plant_nodes_read(reader, node, &((struct asset_record *)record)->asset);
 }
 
-/* An unquoted `nodes: #12` is a comment to YAML, and `nodes: !base` a type without a value: the whole model, silently. */
+/* Reports an asset whose key `nodes` has no value. An unquoted `nodes: #12` is a comment in YAML, and `nodes: !base` a type tag without
+   a value: both would silently select the whole model. */
 static void check_nodes(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_asset *asset, int errors)
 {
     struct text_position at = yaml_map_place(map, "nodes");
@@ -224,7 +225,7 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
     int errors = reader->diag->errors;
     bool is_map = yaml_map_read(reader, node, "an asset", keys, &record, &map);
     *asset = record.asset;
-    asset->unit_m *= record.scale; /* distances are measured on the model as it stands, not as it was drawn */
+    asset->unit_m *= record.scale; /* distances are measured at the placed size, not in drawing units */
     transform_compose(record.translate_m, record.rotate_deg, asset->placement);
     if (!is_map)
         return;
@@ -252,7 +253,7 @@ static void read_assets(struct yaml_reader *reader, yaml_node_t *node, void *rec
         read_asset(reader, yaml_list_item(reader, node, i), plant, &plant->assets[plant->asset_count++]);
 }
 
-/* In a plant that is Y up, an asset that is not turned still stands upright. */
+/* In a plant with Y up, keeps assets without a rotation upright. */
 static void stand_upright(struct plant *plant)
 {
     static const double y_up_from_z_up[16] = { 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1 };
@@ -310,7 +311,7 @@ static void read_radius(struct yaml_reader *reader, yaml_node_t *node, void *rec
         yaml_expected(reader, node, "radius_m", "auto or a number");
 }
 
-/* Numbers in ascending order. */
+/* Reads a list of numbers in ascending order. */
 static void read_numbers(struct yaml_reader *reader, yaml_node_t *node, const char *name, int most, double *numbers, int *count)
 {
     int items = yaml_list_count(reader, node, name);
@@ -425,7 +426,7 @@ static void read_environment(struct yaml_reader *reader, yaml_node_t *node, void
     plant_environments_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
-/* They have been read. */
+/* Key handler that does nothing: these keys have been read before. */
 static void skip_conversions(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     (void)reader;
@@ -433,7 +434,7 @@ static void skip_conversions(struct yaml_reader *reader, yaml_node_t *node, void
     (void)record;
 }
 
-/* Before the assets, wherever they stand: a model that is made need not be there yet. */
+/* Reads `convert` before the assets, wherever it is in the file, since a model that will be made need not exist yet. */
 static void read_conversions(struct yaml_reader *reader, const yaml_node_t *root, struct plant *plant)
 {
     if (!root || root->type != YAML_MAPPING_NODE)

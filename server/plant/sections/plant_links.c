@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant file's `links`: where else one reads about an asset or a tag, as templates of addresses. */
+/* Reads the plant file's `links`: URL templates of other systems' pages about an asset or a tag. */
 #include <ctype.h>
 #include <string.h>
 
@@ -16,7 +16,8 @@ static size_t scheme_length(const char *url)
     return 0;
 }
 
-/* What is wrong with an address, or NULL. What is put in must not choose whose address it is: that ends before the first brace. */
+/* Returns what is wrong with a URL template, or NULL. Scheme and host must end before the first brace, so that a value cannot change the
+   host. */
 static const char *wrong_with(const char *url, bool of_tags)
 {
     static const char *const of_asset[] = { "{id}", "{tag}", "{area}" }, *const of_tag[] = { "{name}", "{asset}", "{group}" };

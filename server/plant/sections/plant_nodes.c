@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An asset's `nodes`: which of its model's nodes belong to it. */
+/* Reads an asset's `nodes`: which nodes of its model belong to it. */
 #include <string.h>
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant file's `notify`: recipients of alarms and the rules that choose them. */
+/* Reads the plant file's `notify`: recipients of alarms and the rules that select them. */
 #include "plant/sections/notification.h"
 
 #include <stdio.h>
@@ -13,7 +13,7 @@ enum { MIN_PER_DAY = 24 * 60, DAYS = 7, ALL_DAYS = (1 << DAYS) - 1 };
 
 /* --- addresses -------------------------------------------------------------------------------------------------------------- */
 
-/* One of those that a header line can hold as they are. */
+/* Returns whether the text is a mail address that a header line can hold unquoted. */
 static bool is_mail_address(const char *text)
 {
     const char *at = strchr(text, '@');
@@ -33,7 +33,7 @@ static void check_mail_address(struct yaml_reader *reader, struct text_position 
 
 /* --- lists of texts --------------------------------------------------------------------------------------------------------- */
 
-/* One text, or a list of them. */
+/* Reads one text, or a list of texts. */
 static void read_texts(struct yaml_reader *reader, yaml_node_t *node, const char *name, struct notify_list *list,
                        void (*check)(struct yaml_reader *reader, struct text_position place, const char *name, const char *text))
 {
@@ -98,7 +98,7 @@ static void read_mail(struct yaml_reader *reader, yaml_node_t *node, void *recor
 }
 
 struct recipient_record {
-    struct notify_recipient recipient; /* at the beginning */
+    struct notify_recipient recipient; /* must be the first member */
     char *webhook, *alertmanager;
 };
 
@@ -161,7 +161,7 @@ static void read_recipients(struct yaml_reader *reader, yaml_node_t *node, void 
 /* --- rules ------------------------------------------------------------------------------------------------------------------ */
 
 struct rule_record {
-    struct notify_rule rule; /* at the beginning */
+    struct notify_rule rule; /* must be the first member */
     const struct plant_notify *notify;
 };
 
@@ -231,7 +231,7 @@ static int find_day(const char *text, size_t length)
     return -1;
 }
 
-/* `mon`, or `fri-mon`. Returns 0 where it is neither. */
+/* Parses `mon` or `fri-mon` to a bit mask. Returns 0 if the text is neither. */
 static unsigned days_of(const char *text)
 {
     size_t length = strcspn(text, "-");
@@ -341,7 +341,8 @@ static yaml_node_t *value_of(struct yaml_reader *reader, const yaml_node_t *map,
     return NULL;
 }
 
-/* Rules refer to recipients, and recipients to the mail server, wherever they stand: plant_notify_read() reads them in order. */
+/* Key handler that does nothing: plant_notify_read() reads these keys later in a fixed order, because rules refer to recipients and
+   recipients to the mail server. */
 static void read_later(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     (void)reader;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The database that history is sent to: `postgres` of `history`. PLANT.md describes its keys. */
+/* Reads `postgres` of `history`: the database that receives a copy of the history. PLANT.md describes its keys. */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 
 enum { NAME_MAX_BYTES = 63 };
 
-/* It stands in SQL as it is. */
+/* Returns whether a schema name can be used in SQL without quoting. */
 static bool is_schema(const char *name)
 {
     size_t length = strlen(name);
@@ -17,7 +17,7 @@ static bool is_schema(const char *name)
            strncmp(name, "pg_", 3) != 0;
 }
 
-/* Where a password stands in it, everybody who may read the plant file has it. */
+/* Returns whether the URL contains a password, which everybody could see who may read the plant file. */
 static bool has_password(const char *url)
 {
     const char *host = strstr(url, "://") + 3, *at = memchr(host, '@', strcspn(host, "/?"));
@@ -62,7 +62,7 @@ void plant_postgres_check(struct yaml_reader *reader, const struct yaml_map *map
     plant_resolve_path(plant, &postgres->login);
     if (postgres->url && plant->history.off)
         yaml_error(reader, place, "postgres needs `record: yes`: what it is sent is what was recorded");
-    /* whoever only prepares the plant may have no right to read it */
+    /* only a warning: a user who only prepares the plant may lack the right to read the file */
     if (postgres->login && access(postgres->login, R_OK) != 0)
         diag_warning(reader->diag, reader->path, place.line, place.column, "login: '%s' cannot be read: %s", postgres->login,
                      strerror(errno));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An asset's `properties`: what its people want to know of it, under names of their own. */
+/* Reads an asset's `properties`: user-defined names and values. */
 #include <string.h>
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* [UNIT!]ADDRESS[.BIT][#ORDER], and the names of data types. */
+/* Parses [UNIT!]ADDRESS[.BIT][#ORDER], and the names of data types. */
 #include "plant/sources/address.h"
 
 #include <stdio.h>
@@ -15,7 +15,7 @@ struct type_name {
     enum data_type type;
 };
 
-/* The first name of each type is ours, then Kepware's. */
+/* Names of data types: for each type ours first, then Kepware's. */
 static const struct type_name type_names[] = {
     { "bool", DATA_BIT },       { "boolean", DATA_BIT },   { "bit", DATA_BIT },
     { "int16", DATA_INT16 },    { "short", DATA_INT16 },
@@ -94,7 +94,7 @@ bool byte_order_parse(const char *text, enum byte_order *out)
     return false;
 }
 
-/* Reads decimal digits, at most 6. Returns how many there are (more than 6 count as 7). */
+/* Reads decimal digits, at most 6. Returns their number (more than 6 count as 7). */
 static int read_digits(const char **p, long *value)
 {
     int count = 0;
@@ -108,7 +108,7 @@ static int read_digits(const char **p, long *value)
     return count;
 }
 
-/* hr:0 and the like: from 0, as on the wire. */
+/* Parses hr:0 and similar addresses, which count from 0 as on the wire. */
 static bool read_named_table(const char **p, struct modbus_address *out, char why[200])
 {
     static const struct {
@@ -134,7 +134,7 @@ static bool read_named_table(const char **p, struct modbus_address *out, char wh
     return true;
 }
 
-/* 40001 and 400001: the first digit names the table, the others count from address_base. */
+/* Parses 40001 and 400001: the first digit selects the table, the others count from address_base. */
 static bool read_digit_table(const char **p, int address_base, struct modbus_address *out, char why[200])
 {
     static const enum register_table tables[] = { TABLE_COIL, TABLE_DISCRETE, 0, TABLE_INPUT, TABLE_HOLDING }; /* by first digit */

@@ -7,22 +7,23 @@
 #include "plant/plant.h"
 
 struct modbus_address {
-    int unit;                   /* -1: not stated */
+    int unit; /* Modbus unit identifier; -1: not stated */
     enum register_table table;
     int index;                  /* from 0, as on the wire */
-    int bit;                    /* 0..15, or -1 */
-    enum byte_order byte_order; /* NONE: not stated */
+    int bit;                    /* bit number 0 to 15; -1: the whole register */
+    enum byte_order byte_order; /* byte order; NONE: not stated */
 };
 
-/* Parses an address. address_base: the number of the first register in plain addresses, 0 or 1. Returns false on errors, with what was
-   expected in why. */
+/* Parses an address. address_base: the number of the first register in plain addresses, 0 or 1. Returns false on errors, with the
+   expected form in `why`. */
 bool address_parse(const char *text, int address_base, struct modbus_address *out, char why[200]);
 
-bool data_type_parse(const char *text, enum data_type *out); /* accepts our names and those of Kepware, not "Default" */
-extern const char data_type_all[];                           /* "bool, int16, ...", for messages */
-const char *data_type_suggest(const char *text);             /* returns the most similar name, or NULL */
-const char *data_type_name(enum data_type type);             /* returns our name: "int16", "float32", ... */
-int data_type_registers(enum data_type type);                /* returns how many registers it takes: 1, 2 or 4 */
+/* Accepts our names and those of Kepware, except "Default". Returns false for other texts. */
+bool data_type_parse(const char *text, enum data_type *out);
+extern const char data_type_all[];               /* list of names "bool, int16, ..." for messages */
+const char *data_type_suggest(const char *text); /* Returns the most similar name, or NULL. */
+const char *data_type_name(enum data_type type); /* Returns our name of a type, such as "int16" or "float32". */
+int data_type_registers(enum data_type type);    /* Returns the number of registers of a type: 1, 2 or 4. */
 bool byte_order_parse(const char *text, enum byte_order *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses a path step by step, each time that it is walked. */
+/* Parses a path step by step, each time it is evaluated. */
 #include "plant/sources/json_path.h"
 
 #include <stdio.h>
@@ -35,7 +35,7 @@ static bool add_byte(char out[JSON_PATH_TEXT_BYTES], size_t *count, unsigned byt
     return true;
 }
 
-/* \u0000 and halves of surrogate pairs are no text here. */
+/* Appends a \u escape. Returns false for \u0000 and for surrogates. */
 static bool add_unicode(char out[JSON_PATH_TEXT_BYTES], size_t *count, const char *hex)
 {
     char digits[5] = { 0 }, *end;
@@ -63,7 +63,7 @@ static bool add_escape(char out[JSON_PATH_TEXT_BYTES], size_t *count, const char
     return name && add_byte(out, count, (unsigned char)bytes[name - names]);
 }
 
-/* A string in either kind of quotes. */
+/* Reads a string in single or double quotes. */
 static bool read_string(const char **at, char out[JSON_PATH_TEXT_BYTES], char why[200])
 {
     const char *begin = *at, *p = begin + 1;
@@ -93,7 +93,7 @@ static bool read_word(const char **at, const char *word)
     return true;
 }
 
-/* Returns false without words in `why` if no literal begins there. */
+/* Reads a literal. Returns false with `why` unchanged if no literal begins here. */
 static bool read_literal(const char **at, struct json_path_test *out, char why[200])
 {
     static const char *const words[] = { "true", "false", "null" };
@@ -115,7 +115,7 @@ static bool read_literal(const char **at, struct json_path_test *out, char why[2
     return true;
 }
 
-/* `@.a.b`, `@['a']`, `@`; or the name of a member alone. */
+/* Reads the left side of a comparison: `@.a.b`, `@['a']`, `@`, or the name of a member alone. */
 static bool read_operand(const char **at, struct json_path_test *out, char why[200])
 {
     struct json_path_step step;
@@ -158,7 +158,7 @@ static bool read_test(const char **at, struct json_path_test *out, char why[200]
     return read_literal(at, out, why) || (!*why && wrong(why, "expected a string, a number, true, false or null behind ==", begin));
 }
 
-/* Tests that are joined by &&, perhaps in parentheses. */
+/* Reads comparisons joined by &&, optionally in parentheses. */
 static bool read_tests(const char **at, struct json_path_step *out, int depth, char why[200])
 {
     for (;;) {
@@ -208,7 +208,7 @@ static const char *refusal_in_bracket(const char *at)
     }
 }
 
-/* [0], [-1], ["name"], ['name'] or [?@.name=='text']. */
+/* Reads a step in brackets: [0], [-1], ["name"], ['name'] or [?@.name=='text']. */
 static bool read_bracket(const char **at, struct json_path_step *out, char why[200])
 {
     const char *begin = *at, *p = begin + 1;

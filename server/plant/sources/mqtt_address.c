@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* TOPIC#PATH: `#` stands in no topic, so it parts the two. */
+/* Parses TOPIC#PATH: topics of values cannot contain `#`, so it separates the two. */
 #include "plant/sources/mqtt_address.h"
 
 #include <stdio.h>
@@ -12,7 +12,7 @@
 enum address_field { FIELD_TAG, FIELD_ASSET, FIELD_GROUP, FIELD_ADDRESS, FIELD_COUNT };
 static const char *const field_names[FIELD_COUNT] = { "{tag}", "{asset}", "{group}", "{address}" };
 
-/* The field that text begins with, or FIELD_COUNT. */
+/* Returns the template field at the beginning of the text, or FIELD_COUNT. */
 static enum address_field field_at(const char *text)
 {
     enum address_field field = FIELD_TAG;
@@ -35,7 +35,7 @@ bool mqtt_template_check(const char *text, char why[200])
     return true;
 }
 
-/* What stands for a field, NULL where the tag has none. address: what stands before the #. */
+/* Returns the text that replaces a field, NULL if the tag has none. address: the part of the address before the #. */
 static const char *field_text(const struct plant *plant, const struct plant_tag *tag, const char *address, enum address_field field)
 {
     switch (field) {
@@ -65,7 +65,7 @@ static bool fill_template(const struct plant *plant, const struct plant_tag *tag
     return true;
 }
 
-/* GROUP/NODE or GROUP/NODE/DEVICE. */
+/* Checks the form GROUP/NODE or GROUP/NODE/DEVICE. */
 static bool is_sparkplug(const char *topic)
 {
     int parts = 1;

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Addresses of values that are published over MQTT: `TOPIC#PATH`, of Sparkplug `GROUP/NODE[/DEVICE]#METRIC`,
-   and templates of topics (PLANT.md). Thread: any. */
+/* Addresses of values that are published over MQTT: `TOPIC#PATH`, of Sparkplug `GROUP/NODE[/DEVICE]#METRIC`, and templates of topics
+   (PLANT.md). Thread: any. */
 #ifndef PLANT_SOURCES_MQTT_ADDRESS_H
 #define PLANT_SOURCES_MQTT_ADDRESS_H
 #include <stdbool.h>
 
 #include "plant/plant.h"
 
-enum { MQTT_TOPIC_BYTES = 1024 }; /* no topic of a tag is longer; MQTT itself allows 65535 */
+enum { MQTT_TOPIC_BYTES = 1024 }; /* maximum length of a tag's topic; MQTT itself allows 65535 */
 
-/* Checks the template of a source's topics. Returns false on errors, with what was expected in why. */
+/* Checks the template of a source's topics. Returns false on errors, with the expected form in `why`. */
 bool mqtt_template_check(const char *text, char why[200]);
-/* Sets tag->topic and tag->path from its address and its source's template; name, address, source, group and asset of the tag are known.
-   Returns false on errors, likewise. */
+/* Sets tag->topic and tag->path from its address and its source's template; name, address, source, group and asset of the tag must be
+   set. Returns false on errors, with the expected form in `why`. */
 bool mqtt_address_resolve(const struct plant *plant, struct plant_tag *tag, char why[200]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The element stands in front: names of nodes may end in brackets themselves. */
+/* Parses OPC UA addresses. The element is a prefix because names of nodes may themselves end in brackets. */
 #include "plant/sources/opcua_address.h"
 
 #include <ctype.h>
@@ -12,7 +12,7 @@
 
 static const char EXPECTED[] = "expected nsu=URI;s=NAME, with i=NUMBER, g=GUID or b=BASE64 in place of s=NAME";
 
-/* [3] in front. False: it is wrong. */
+/* Reads an optional prefix such as [3]. Returns false if it is malformed. */
 static bool read_element(const char **at, int *element)
 {
     char *end;
@@ -28,7 +28,7 @@ static bool read_element(const char **at, int *element)
     return true;
 }
 
-/* %3B and %25 stand for ; and % in a URI. NULL: it is wrong. */
+/* Decodes %3B (;) and %25 (%) in a URI. Returns NULL if an escape is malformed. */
 static char *unescaped(const char *uri, size_t length)
 {
     char *out = mem_array(length + 1, 1), *to = out;
@@ -61,7 +61,8 @@ static bool check_identifier(const char *text)
     return true;
 }
 
-/* nsu=URI; in front, or the source's namespace. NULL: neither, with why. */
+/* Returns the namespace from the prefix nsu=URI; or else the source's namespace. Returns NULL with the reason in `why` if there is
+   neither. */
 static char *read_namespace(const char **at, const char *of_source, char why[200])
 {
     const char *end = strchr(*at, ';');

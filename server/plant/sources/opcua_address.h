@@ -7,10 +7,10 @@
 #include "plant/plant.h"
 
 #define OPCUA_STANDARD_NAMESPACE "http://opcfoundation.org/UA/"
-enum { OPCUA_NODE_BYTES = 4096 }; /* no identifier is longer, says the standard */
+enum { OPCUA_NODE_BYTES = 4096 }; /* maximum length of an identifier, according to the standard */
 
-/* Sets tag->topic (the URI of the namespace), tag->path (the identifier, such as s=NAME) and tag->element from its address and its source's
-   namespace. Returns false on errors, with what was expected in why. */
+/* Sets tag->topic (the namespace URI), tag->path (the identifier, such as s=NAME) and tag->element from the tag's address and its
+   source's namespace. Returns false on errors, with the expected form in `why`. */
 bool opcua_address_resolve(const struct plant *plant, struct plant_tag *tag, char why[200]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A source of type mqtt: what its keys must say together. PLANT.md describes them. */
+/* Checks across the keys of a source of type mqtt. PLANT.md describes them. */
 #include <string.h>
 
 #include "base/mem.h"
@@ -38,7 +38,7 @@ static void check_files(struct yaml_reader *reader, const struct yaml_map *map, 
         plant_secret_check(reader, map, plant, "tls", files[i]);
 }
 
-/* A topic that a device could listen to would be a way to write to it. */
+/* Checks the last-will topic: a topic to which a device could subscribe would be a way to write to that device. */
 static void check_will(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_mqtt *mqtt)
 {
     if (mqtt->will && (strncmp(mqtt->will, WILL_PREFIX, strlen(WILL_PREFIX)) != 0 || strpbrk(mqtt->will, "+#")))
@@ -59,7 +59,7 @@ static void check_paths(struct yaml_reader *reader, const struct yaml_map *map, 
             yaml_error(reader, yaml_map_place(map, paths[i].key), "%s: '%.60s': %s", paths[i].key, paths[i].path, why);
 }
 
-/* What a broker kept while we were away looks fresh, unless it says itself how old it is. */
+/* Requires a time path for persistent sessions: messages kept while we were away would look fresh without their own time. */
 static void check_session(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_mqtt *mqtt)
 {
     if (mqtt->persistent && !mqtt->time)

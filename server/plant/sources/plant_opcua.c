@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A source of type opcua: what its keys must say together. PLANT.md describes them. */
+/* Checks across the keys of a source of type opcua. PLANT.md describes them. */
 #include <string.h>
 
 #include "base/mem.h"

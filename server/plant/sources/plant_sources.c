@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The list `sources` of a plant file: field devices, servers, brokers and replays. PLANT.md describes the form. */
+/* Reads the list `sources` of a plant file: field devices, servers, brokers and replays. PLANT.md describes the form. */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
@@ -134,7 +134,7 @@ static int way_of(const struct plant_source *source)
     return source->transport == TRANSPORT_RTU ? BY_LINE : BY_SOCKET;
 }
 
-/* A key that would do nothing is better said than believed. */
+/* Reports keys that have no effect for this kind of source. */
 static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_source *source)
 {
     static const struct {
@@ -161,7 +161,7 @@ static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, c
             yaml_error(reader, yaml_map_place(map, belongs[i].key), "%s: has no meaning for %s", belongs[i].key, what);
 }
 
-/* What a source of its kind cannot do without. */
+/* Reports keys that this kind of source requires. */
 static void check_way(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_source *source)
 {
     bool has_hosts = yaml_map_good(map, "hosts"), has_host = yaml_map_good(map, "host");
@@ -193,7 +193,7 @@ static bool same_text(const char *a, const char *b)
     return a && b && !strcmp(a, b);
 }
 
-/* Many devices take one connection only, and a line has one master. */
+/* Reports two sources for one device: many devices accept one connection only, and a serial line has one master. */
 static void check_alone(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant,
                         const struct plant_source *source)
 {

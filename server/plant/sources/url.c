@@ -21,7 +21,7 @@ bool url_is_here(const char *url)
     return false;
 }
 
-/* What is wrong with an address, or NULL. */
+/* Returns what is wrong with a URL, or NULL. */
 static const char *wrong_with(const char *url, const char *plain, const char *secure)
 {
     size_t plain_length = strlen(plain), secure_length = strlen(secure);
@@ -44,7 +44,8 @@ void url_check(struct yaml_reader *reader, const struct yaml_map *map, const cha
 {
     const char *wrong = yaml_map_good(map, key) && url ? wrong_with(url, plain, secure) : NULL;
     if (wrong)
-        yaml_error(reader, yaml_map_place(map, key), "%s: %s (expected %s... or %s...)", key, wrong, secure, plain); /* not what it is */
+        /* the message does not repeat the URL, which may contain a password */
+        yaml_error(reader, yaml_map_place(map, key), "%s: %s (expected %s... or %s...)", key, wrong, secure, plain);
 }
 
 void url_check_token(struct yaml_reader *reader, const struct yaml_map *map, const char *url)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A parser by recursive descent to steps on a stack. */
+/* A recursive-descent parser that produces steps for a stack machine. */
 #include "plant/tags/expression.h"
 
 #include <assert.h>
@@ -18,7 +18,7 @@ enum operation { OP_NUMBER, OP_INPUT, OP_ADD, OP_SUBTRACT, OP_MULTIPLY, OP_DIVID
 struct expression_step {
     enum operation operation;
     double number;
-    int index, arguments; /* of the input, or of the function */
+    int index, arguments; /* index: of the input or the function */
 };
 
 struct expression {
@@ -77,14 +77,15 @@ static double difference_of(const double *v, int count)
     return v[0] - v[1];
 }
 
-/* Hot in, hot out, cold in, cold out of an exchanger in counterflow: the smaller of its ends' differences. */
+/* Returns the approach temperature of a counterflow heat exchanger: the smaller temperature difference of its two ends. Inputs: hot in,
+   hot out, cold in, cold out. */
 static double approach_of(const double *v, int count)
 {
     (void)count;
     return fmin(v[0] - v[3], v[1] - v[2]);
 }
 
-/* Of the same four: the logarithmic mean. */
+/* Returns the logarithmic mean temperature difference of the same four inputs. */
 static double lmtd_of(const double *v, int count)
 {
     double a = v[0] - v[3], b = v[1] - v[2];

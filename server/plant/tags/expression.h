@@ -9,14 +9,15 @@ enum { EXPRESSION_INPUTS = 64 };
 
 struct expression;
 
-/* Parses an expression. find: returns the index that a name in brackets stands for, or -1. Returns NULL on errors, with the reason in why
-   and the character, from 0, in *at. */
+/* Parses an expression. `find` returns the index of the tag with a name in brackets, or -1. Returns NULL on errors, with the reason in
+   `why` and the character position, from 0, in *at. */
 struct expression *expression_parse(const char *text, int (*find)(const void *arg, const char *name), const void *arg, char why[200],
                                     size_t *at);
-void expression_destroy(struct expression **expression); /* &NULL is fine; leaves NULL */
-/* Returns how many inputs there are, and the indices that find returned for them, each once. */
+void expression_destroy(struct expression **expression); /* Frees the expression. &NULL is fine; leaves NULL. */
+/* Returns the number of inputs, and in *inputs the indices that `find` returned, each once. */
 size_t expression_inputs(const struct expression *expression, const int **inputs);
-/* Computes the value from the values of the inputs, in the order of expression_inputs(). Returns NaN or infinity if it has none. */
+/* Computes the value from the values of the inputs, in the order of expression_inputs(). Returns NaN or infinity if the expression has
+   no value. */
 double expression_value(const struct expression *expression, const double *values);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The columns of the tag list and the reading of cells. */
+/* Finds the columns of the tag list and reads cells. */
 #include "plant/tags/tag_columns.h"
 
 #include <string.h>
@@ -8,12 +8,12 @@
 #include "plant/parse/number.h"
 #include "plant/parse/suggest.h"
 
-struct column_name { /* begins with a name, for suggest_nearest */
+struct column_name { /* the name must be the first member, for suggest_nearest() */
     const char *name;
     enum tag_column column;
 };
 
-static const struct column_name column_names[] = { /* the first name of a column is the one for messages */
+static const struct column_name column_names[] = { /* names of columns; messages use the first name of each */
     { "Tag Name", COL_NAME },
     { "Address", COL_ADDRESS },
     { "Data Type", COL_DATA_TYPE },
@@ -89,7 +89,7 @@ static void report_unknown(struct tag_columns *columns, const struct csv_cell *c
         header_warning(columns, cell, "a column without a name is ignored");
 }
 
-/* Same names are reported by csv_open; these are two names of one thing. */
+/* Reports two different names of one column; equal names are reported by csv_open(). */
 static void check_doubled(struct tag_columns *columns, const struct csv_cell *cell, int before)
 {
     const struct csv_cell *first = before >= 0 ? &columns->csv.header.cells[before] : NULL;
@@ -110,7 +110,7 @@ static void find_columns(struct tag_columns *columns)
             int *at = &columns->at[column_names[n].column];
             check_doubled(columns, cell, *at);
             *at = (int)i;
-        } else if (strncasecmp(cell->text, "Sim ", 4) != 0) { /* plantcast-sim's own */
+        } else if (strncasecmp(cell->text, "Sim ", 4) != 0) { /* columns of plantcast-sim */
             report_unknown(columns, cell);
         }
     }

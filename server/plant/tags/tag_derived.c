@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tags that are computed from others: their expressions, and an order in which each comes after what it needs. */
+/* Derived tags: parses their expressions, and sorts them so that each tag comes after its inputs. */
 #include <math.h>
 
 #include "base/mem.h"
@@ -10,7 +10,7 @@ enum mark { UNSEEN, OPEN, DONE };
 
 struct derived_walk {
     struct plant *plant;
-    char *marks; /* enum mark, by tag */
+    char *marks; /* state of the depth-first search by tag, enum mark */
 };
 
 static int find_tag(const void *plant, const char *name)
@@ -29,7 +29,7 @@ static bool parse(const struct tag_link *link, struct plant *plant, struct diag 
     return tag->expression != NULL;
 }
 
-/* Of units in which one kind of thing is measured there should be one in an expression: it computes in those that the rows say. */
+/* Warns if inputs of one quantity are in different units: an expression computes in the units that the rows state, without conversion. */
 static void check_units(const struct tag_link *link, const struct plant *plant, struct diag *diag)
 {
     const struct plant_tag *tag = &plant->tags[link->tag];
@@ -48,7 +48,8 @@ static void check_units(const struct tag_link *link, const struct plant *plant, 
     }
 }
 
-/* Depth first: what a tag needs comes before it. A tag is stale where it says so, else no sooner than what it needs. */
+/* Depth-first topological sort: inputs come before a tag. Unless its row states stale_s, a tag gets the largest stale_s of its inputs.
+   Returns false on a cycle. */
 static bool visit(struct derived_walk *walk, int index)
 {
     struct plant_tag *tag = &walk->plant->tags[index];
@@ -87,7 +88,7 @@ void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, s
             continue;
         diag_error(diag, plant->tags_path, link->line, link->column, "Address: '%.60s' is computed from itself",
                    plant->tags[link->tag].name);
-        break; /* all tags of the circle would say so */
+        break; /* all other tags of the cycle would be reported too */
     }
     mem_free(walk.marks);
 }

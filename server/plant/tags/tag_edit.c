@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cells of a tag list, replaced in its own text. */
+/* Replaces cells in the text of a tag list. */
 #include "plant/tags/tag_edit.h"
 
 #include <math.h>
@@ -14,22 +14,22 @@
 enum edited { EDIT_NAME, EDIT_ASSET, EDIT_GROUP, EDIT_NODE, EDIT_PLACE, EDIT_X, EDIT_Y, EDIT_Z, EDIT_COLUMNS };
 static const char *const names[EDIT_COLUMNS] = { "Tag Name", "Asset", "Group", "Node", "Place", "X", "Y", "Z" };
 
-struct cell_span { /* a cell as it stands, quotes and blanks taken in */
+struct cell_span { /* a cell in the text, including quotes and blanks */
     const char *begin, *end;
 };
 
 struct tag_row {
     struct cell_span *cells;
     size_t count, capacity;
-    const char *end; /* of its text, before the line's end */
+    const char *end; /* end of the row's text, before the line end */
 };
 
 struct tag_text {
     char separator;
     const char *at;
     struct tag_row row;
-    int column[EDIT_COLUMNS]; /* -1: the header has none */
-    size_t width;             /* columns of the header */
+    int column[EDIT_COLUMNS]; /* column of the file; -1: the header lacks it */
+    size_t width;             /* number of columns in the header */
 };
 
 /* --- reading: as plant/parse/csv.c, but where things stand -------------------------------------------------------------------------- */
@@ -56,7 +56,7 @@ static const char *cell_end(const char *at, char separator)
     return at;
 }
 
-/* False: there is no more. */
+/* Reads the next row. Returns false at the end. */
 static bool next_row(struct tag_text *list)
 {
     struct tag_row *row = &list->row;
@@ -76,7 +76,7 @@ static bool next_row(struct tag_text *list)
     }
 }
 
-/* What is in the cell, into a buffer. */
+/* Copies the unquoted text of a cell into a buffer. */
 static void read_cell(struct cell_span span, char *out, size_t size)
 {
     size_t n = 0;
@@ -136,7 +136,7 @@ static void add_cell(struct text *out, const char *text, char separator)
     text_add_quoted(out, text);
 }
 
-/* Millimetres, without zeros that say nothing. */
+/* Writes metres with millimetre precision, without trailing zeros. */
 static void print_metres(double metres, char out[32])
 {
     snprintf(out, 32, "%.3f", metres);
@@ -148,7 +148,7 @@ static void print_metres(double metres, char out[32])
         strcpy(out, "0");
 }
 
-/* What the edit puts into a column of the file. False: nothing, it stays. */
+/* Returns the new text that the edit gives to a column of the file. False: the column stays unchanged. */
 static bool wanted(const struct tag_text *list, const struct tag_edit *edit, size_t column, char number[32], const char **out)
 {
     if (edit->place_only) {
@@ -209,7 +209,7 @@ static const struct tag_edit *edit_of(const struct tag_text *list, const struct 
     return NULL;
 }
 
-/* Columns that the edits need, at the end of the header's line. */
+/* Appends the columns that the edits need to the header line. */
 static void widen(struct tag_text *list, const struct tag_edit *edits, size_t count, struct text *out)
 {
     bool needed[EDIT_COLUMNS] = { 0 };
@@ -308,7 +308,8 @@ static void say(struct tag_lines *out, int line, const struct cell_span *before,
     out->at[out->count++] = (struct tag_line){ line, before ? copy_of(*before) : NULL, after ? copy_of(*after) : NULL };
 }
 
-/* Lines of the middle, where both texts differ: one by one while there are as many, else what went and then what came. */
+/* Lists the lines between the common head and tail: pairwise if both texts have the same number of lines, else removed lines, then added
+   lines. */
 static void say_middle(const struct text_lines *a, const struct text_lines *b, size_t head, size_t tail, struct tag_lines *out)
 {
     bool even = a->count == b->count;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edits the text of a tag list to move sensors, or to take them off their equipment. Everything else stays the same to the byte: order,
-   unknown columns, blank rows, quotes, the format of numbers, line ends. Pure. Thread: any. */
+/* Edits the text of a tag list to move sensors, or to take them off their equipment. Everything else stays unchanged to the byte: order,
+   unknown columns, blank rows, quotes, number format, line ends. Pure. Thread: any. */
 #ifndef PLANT_TAGS_TAG_EDIT_H
 #define PLANT_TAGS_TAG_EDIT_H
 #include <stdbool.h>
@@ -10,28 +10,28 @@
 
 struct tag_edit {
     const char *tag;
-    const char *asset, *group; /* ids; NULL: unchanged */
-    const char *node, *place;  /* NULL: cleared */
-    double position_m[3];      /* in the frame that the asset states; written to the millimetre. NaN: cleared */
-    bool place_only;           /* `Place` is cleared, and nothing else is changed */
+    const char *asset, *group; /* new ids; NULL: unchanged */
+    const char *node, *place;  /* new texts; NULL: cleared */
+    double position_m[3];      /* new position in the frame that the asset states, written to the millimetre; NaN: cleared */
+    bool place_only;           /* only clears `Place` and changes nothing else */
 };
 
-struct tag_line { /* one line that differs */
-    int line;     /* from 1, in the text after; of a line that was removed, in the text before */
-    char *before, *after; /* without the line end; NULL: none */
+struct tag_line {         /* one line that differs between two texts */
+    int line;             /* line number from 1 in the new text; for a removed line, in the old text */
+    char *before, *after; /* the line without its line end; NULL: absent */
 };
 struct tag_lines { /* zero-initialise */
     struct tag_line *at;
-    size_t count, capacity, more; /* more: how many beyond TAG_LINES */
+    size_t count, capacity, more; /* more: number of differing lines beyond TAG_LINES */
 };
 enum { TAG_LINES = 200 };
 
 /* Returns the new text; free with mem_free(). Returns NULL if a tag is missing or the list is invalid, with the reason in *why
    (mem_free()). */
 char *tag_edit(const char *text, const struct tag_edit *edits, size_t count, struct refusal *why);
-/* Appends the lines in which two texts differ to *out, at most TAG_LINES of them. With as many lines in both, it compares them one by one;
-   otherwise it lists all lines between the first and the last difference, equal ones too: first those removed, then those added.
-   Free with tag_lines_finish(). */
+/* Appends the lines in which two texts differ to *out, at most TAG_LINES of them. If both texts have the same number of lines, they are
+   compared one by one; otherwise all lines between the first and the last difference are listed, including equal ones: removed lines
+   first, then added lines. Free with tag_lines_finish(). */
 void tag_lines(const char *before, const char *after, struct tag_lines *out);
 void tag_lines_finish(struct tag_lines *lines);
 

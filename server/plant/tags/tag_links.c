@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Quality tags, directions and heartbeats: names of other tags. */
+/* Quality tags, directions and heartbeats: resolves the names of other tags. */
 #include "plant/tags/tag_links.h"
 
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "plant/parse/suggest.h"
 
-/* A whole number as C writes it; *text moves behind it. */
+/* Parses an integer in C notation and moves *text past it. */
 static bool take_number(const char **text, uint64_t *out)
 {
     char *end;
@@ -19,7 +19,7 @@ static bool take_number(const char **text, uint64_t *out)
     return true;
 }
 
-/* [!]NAME, or NAME&MASK, or NAME&MASK=VALUE. NULL: not of that form. */
+/* Parses [!]NAME, NAME&MASK or NAME&MASK=VALUE. Returns the name, or NULL if the text has another form. */
 static char *read_form(const char *text, struct plant_quality_tag *out)
 {
     bool turned = *text == '!';
@@ -55,7 +55,7 @@ static void add(struct tag_links *links, struct tag_columns *columns, enum tag_c
     };
 }
 
-/* One name, or three with spaces between them. */
+/* Records one tag name, or three separated by blanks. */
 static void add_direction(struct tag_links *links, struct tag_columns *columns, size_t tag)
 {
     const char *at = cell_text(columns, COL_DIRECTION);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What tags say of other tags, by name: known once the whole list is read. Only for the files of this folder. */
+/* References from tags to other tags by name, resolved after the whole list is read. Only for the files of this folder. */
 #ifndef PLANT_TAGS_TAG_LINKS_H
 #define PLANT_TAGS_TAG_LINKS_H
 #include "plant/plant.h"
@@ -7,9 +7,9 @@
 
 struct tag_link {
     size_t tag;
-    char *to;         /* a name; NULL: its address is an expression */
-    int line, column; /* of the cell */
-    bool direction;   /* of the column Direction; else Quality Tag */
+    char *to;         /* name of the other tag; NULL: the tag's address is an expression */
+    int line, column; /* position of the cell */
+    bool direction;   /* the name is from the column Direction; otherwise from Quality Tag */
 };
 
 struct tag_links { /* zero-initialise */
@@ -17,12 +17,12 @@ struct tag_links { /* zero-initialise */
     size_t count, capacity;
 };
 
-bool tag_is_derived(const struct tag_columns *columns); /* the current row is that of a derived tag */
-/* Takes what the current row, which is that tag's, says. */
+bool tag_is_derived(const struct tag_columns *columns); /* Returns whether the current row is a derived tag's. */
+/* Records the references in the current row, which belongs to `tag`. */
 void tag_links_add(struct tag_links *links, struct tag_links *derived, struct tag_columns *columns, struct plant *plant, size_t tag);
-/* Of tags whose address is an expression: expressions, plant->derived. tags_by_name is there. */
+/* Resolves derived tags: parses their expressions and fills plant->derived. tags_by_name must be set. */
 void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, struct diag *diag);
-/* Names become indices, also those of heartbeats; what names no tag is reported. tags_by_name is there. Frees links. */
+/* Replaces names by indices, including those of heartbeats, and reports unknown tags. tags_by_name must be set. Frees `links`. */
 void tag_links_resolve(struct tag_links *links, struct plant *plant, struct diag *diag);
 
 #endif

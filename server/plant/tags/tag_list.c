@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tag list: rows into tags, and what must hold in each row. PLANT.md describes the form. */
+/* Reads the tag list: turns rows into tags and checks each row. PLANT.md describes the form. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,10 +16,10 @@
 struct tag_list {
     struct plant *plant;
     struct tag_columns columns;
-    struct plant_tag *tag;          /* what the current row becomes */
+    struct plant_tag *tag;           /* the tag of the current row */
     const struct plant_group *group; /* its group, or NULL */
     struct tag_links links, derived;
-    size_t capacity;                /* of plant->tags */
+    size_t capacity; /* of plant->tags */
     struct alarm_references references;
 };
 
@@ -47,7 +47,7 @@ static bool is_lost(const struct tag_list *list)
     return *id && plant_find_asset(list->plant, id) < 0;
 }
 
-/* A plant file without groups or assets is wrong already; its rows need not say so again. */
+/* Reads group and asset of a row. If the plant file has no groups or assets at all, that was reported already, not once per row. */
 static void read_group_and_asset(struct tag_list *list)
 {
     const struct plant *plant = list->plant;
@@ -105,7 +105,7 @@ static void read_place(struct tag_list *list)
 
 /* --- meaning ---------------------------------------------------------------------------------------------------------------- */
 
-/* Why values of the row cannot become values of its group. */
+/* Reports why the unit of a row cannot be converted to its group's unit. */
 static void report_unit(struct tag_list *list, enum unit_match match, const char *text)
 {
     static const char otherwise[] = "'units: as-written' in the group takes values as they stand";
@@ -138,7 +138,7 @@ static void read_unit(struct tag_list *list)
         report_unit(list, match, text);
 }
 
-/* What the row itself gives is in its own unit. */
+/* Reads the limits of a row, which are in the row's own unit. */
 static void read_limits(struct tag_list *list)
 {
     static const enum tag_column names[LIMIT_COUNT] = { [LIMIT_LL] = COL_LL, [LIMIT_L] = COL_L, [LIMIT_H] = COL_H, [LIMIT_HH] = COL_HH };
@@ -160,7 +160,8 @@ static void read_limits(struct tag_list *list)
                    list->tag->change.converts ? list->tag->unit : "");
 }
 
-/* A Sparkplug node says nothing while nothing changes, and its death certificate says when it is gone; likewise an OPC UA server. */
+/* Returns whether the source reports the loss of values by itself, so that silence does not mean stale: a Sparkplug node, whose death
+   certificate tells that it is gone, or an OPC UA server. */
 static bool is_announced(const struct tag_list *list)
 {
     const struct plant_source *source = list->tag->source >= 0 ? &list->plant->sources[list->tag->source] : NULL;

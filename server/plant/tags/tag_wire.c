@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A row of the tag list: where the value lies on the wire, what type it has, and how it becomes engineering units. */
+/* Reads the part of a row that says where the value is on the wire, what type it has, and how it is converted to engineering units. */
 #include "plant/tags/tag_wire.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ struct tag_wire {
 
 /* --- address and type ------------------------------------------------------------------------------------------------------------ */
 
-/* What the row says itself, in the column or in the address. False: reported. */
+/* Reads the byte order that the row states, in the column or in the address. Returns false after an error (reported). */
 static bool read_stated_order(struct tag_wire *wire, const struct modbus_address *address, enum byte_order *out)
 {
     const char *text = cell_text(wire->columns, COL_BYTE_ORDER);
@@ -59,7 +59,7 @@ static void read_byte_order(struct tag_wire *wire, const struct modbus_address *
                data_type_name(tag->type), registers * 16);
 }
 
-/* False: reported. Kepware's "Default" is Word, and Boolean where the address is one bit. */
+/* Reads the data type. Kepware's "Default" means Word, or Boolean if the address is one bit. Returns false after an error (reported). */
 static bool read_type(struct tag_wire *wire, const struct modbus_address *address)
 {
     struct plant_tag *tag = wire->tag;
@@ -83,14 +83,15 @@ static bool read_type(struct tag_wire *wire, const struct modbus_address *addres
     return one_bit == (tag->type == DATA_BIT);
 }
 
-/* It comes as a number in engineering units, from a file or from other tags. */
+/* Returns whether the value already is a number in engineering units, from a file or from other tags. */
 static bool is_number(const struct tag_wire *wire)
 {
     const char *kind = wire->tag->source >= 0 ? wire->plant->sources[wire->tag->source].kind : NULL;
     return tag_is_derived(wire->columns) || (kind && !strcmp(kind, "replay"));
 }
 
-/* Where the place of a register depends on what the first one is called: a longer value at the wrong one still looks like a value. */
+/* Reports a plain address of a multi-register value if its source does not state address_base: a value read one register off still looks
+   plausible. */
 static void check_base(struct tag_wire *wire, int registers)
 {
     struct plant_tag *tag = wire->tag;
@@ -110,7 +111,7 @@ static bool comes_from(const struct tag_wire *wire, const char *kind)
     return !tag_is_derived(wire->columns) && its_kind && !strcmp(its_kind, kind);
 }
 
-/* A value that is published is a number; whether it is a bit, only the row can say. */
+/* Reads type and address of a published value: a number, unless the row states that it is a bit. */
 static void read_published(struct tag_wire *wire)
 {
     struct plant_tag *tag = wire->tag;
@@ -216,7 +217,7 @@ static void read_ne43(struct tag_wire *wire)
         cell_error(wire->columns, COL_NE43, "NE 43: expected Scaling Linear or Square Root, whose Raw Low is 4 mA and Raw High 20 mA");
 }
 
-/* 0x8000 is meant bit by bit, -32768 or 1.5e3 as a number. */
+/* Parses a sentinel: 0x8000 is compared bit by bit, -32768 or 1.5e3 as a number. */
 static bool read_sentinel(const char *text, struct plant_sentinel *out)
 {
     char *end;

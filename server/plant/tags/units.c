@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of units, and names as people write them. */
+/* The table of units, and normalisation of names as people write them. */
 #include "plant/tags/units.h"
 
 #include <ctype.h>
@@ -59,17 +59,17 @@ static const char *const kind_names[] = {
 #define GALLON 3.785411784e-3 /* US */
 #define BARREL 0.158987294928 /* of oil */
 #define CUBIC_FOOT (FOOT * FOOT * FOOT)
-#define PSI 6894.757293168361 /* POUND * 9.80665 / INCH^2 */
-#define MM_HG 133.322387415   /* conventional, as inches of it */
+#define PSI 6894.757293168361        /* POUND * 9.80665 / INCH^2 */
+#define MM_HG 133.322387415          /* conventional millimetre of mercury */
 #define HORSEPOWER 745.6998715822702 /* 550 ft lbf/s */
-#define BTU 1055.05585262     /* international table */
-#define CALORIE 4.1868        /* likewise */
+#define BTU 1055.05585262            /* international table BTU */
+#define CALORIE 4.1868               /* international table calorie */
 #define MINUTE 60.0
 #define HOUR 3600.0
 #define DAY 86400.0
 
 struct unit_entry {
-    const char *names;     /* as normalise() leaves them, the first for messages; | between */
+    const char *names; /* normalised names separated by |; the first one is for messages */
     enum quantity_kind kind;
     double factor, offset; /* SI = value * factor + offset */
 };
@@ -257,7 +257,7 @@ enum { UNIT_COUNT = sizeof(units) / sizeof(*units) };
 
 /* --- names ------------------------------------------------------------------------------------------------------------------ */
 
-/* What is passed over, and what is written in letters. */
+/* Normalises a name: drops blanks, brackets and dots, and replaces signs by letters. */
 static void normalise(const char *name, char out[NAME_BYTES])
 {
     static const struct {
@@ -287,7 +287,7 @@ static void normalise(const char *name, char out[NAME_BYTES])
     out[length] = 0;
 }
 
-/* One name of the list, with or without regard to case. */
+/* Returns whether a unit has this name, comparing exactly or ignoring case. */
 static bool has_name(const struct unit_entry *unit, const char *name, bool exact)
 {
     size_t bytes = strlen(name);
@@ -297,7 +297,7 @@ static bool has_name(const struct unit_entry *unit, const char *name, bool exact
     return false;
 }
 
-/* Without regard to case only where one unit alone is meant: MPA may be two. */
+/* Finds a unit by name. Ignoring case is tried second, and counts only if a single unit matches: MPA may be two. */
 static const struct unit_entry *look_up(const char *name)
 {
     const struct unit_entry *found = NULL;
@@ -323,7 +323,7 @@ static bool take_end(char *name, const char *end)
     return true;
 }
 
-/* A known unit with something said of it: psia, bar(g), kPa abs. */
+/* Finds a pressure unit with a suffix for absolute or gauge: psia, bar(g), kPa abs. */
 static bool find_pressure(const char *name, struct unit_entry *out)
 {
     static const char *const absolute[] = { "absolute", "abs", "a" }, *const gauge[] = { "gauge", "gage", "g" };
@@ -343,7 +343,7 @@ static bool find_pressure(const char *name, struct unit_entry *out)
     return false;
 }
 
-/* Among differences, no zero counts. */
+/* Finds a temperature difference, such as deltaK: the zero point of the scale does not matter. */
 static bool find_difference(const char *name, struct unit_entry *out)
 {
     const struct unit_entry *unit = strncasecmp(name, "delta", 5) == 0 ? look_up(name + 5) : NULL;
@@ -365,7 +365,7 @@ static bool find(const char *name, struct unit_entry *out)
 
 /* --- for others ------------------------------------------------------------------------------------------------------------- */
 
-/* Of names that are not known: M and m, P and p are prefixes that differ. */
+/* Compares unknown units: case-insensitive except for the first letter, since prefixes such as M and m, P and p differ. */
 static bool written_alike(const char *a, const char *b)
 {
     return *a == *b && !strcasecmp(a, b);

@@ -1,37 +1,37 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Engineering units: which measure the same quantity, and conversion between them. Pure. Thread: any.
-   Names are UCUM's codes (https://ucum.org/ucum, 2.1) and those in use beside them; factors are those of NIST SP 811 (2008), appendix B. */
+/* Engineering units: which of them measure the same quantity, and conversion between them. Pure. Thread: any. Names are UCUM codes
+   (https://ucum.org/ucum, 2.1) and others in common use; factors are from NIST SP 811 (2008), appendix B. */
 #ifndef PLANT_TAGS_UNITS_H
 #define PLANT_TAGS_UNITS_H
 #include <stdbool.h>
 
-/* A conversion: to = from * factor + offset. All zero: none is needed. */
+/* A conversion: to = from * factor + offset. All zero: no conversion. */
 struct unit_change {
     bool converts;
     double factor, offset;
 };
 
 enum unit_match {
-    UNITS_SAME,       /* also where neither is known and both are written alike */
+    UNITS_SAME, /* the same unit; also two unknown units that are written alike */
     UNITS_CONVERT,
-    UNITS_OTHER_KIND, /* two known units that measure different things, also absolute and gauge pressure */
-    UNITS_UNKNOWN     /* one of them, or both */
+    UNITS_OTHER_KIND, /* two known units of different quantities, including absolute and gauge pressure */
+    UNITS_UNKNOWN     /* at least one of the units is unknown */
 };
 
-/* Compares two units and sets *change to the conversion, all zero if there is none. Blanks, brackets, dots, raised digits and variants of
-   the degree sign do not matter; case matters only where it distinguishes units (mW, MW). */
+/* Compares two units and sets *change to the conversion, all zero if there is none. Blanks, brackets, dots, superscript digits and
+   variants of the degree sign do not matter; case matters only where it distinguishes units (mW, MW). */
 enum unit_match units_compare(const char *from, const char *to, struct unit_change *change);
 /* Returns the quantity that a unit measures, such as "volume flow" (static); NULL if the unit is unknown. */
 const char *unit_kind(const char *name);
 enum { UNIT_NAME_BYTES = 16 };
-bool unit_suggest(const char *name, char near[UNIT_NAME_BYTES]); /* finds a known unit of a similar name; returns whether there is one */
+bool unit_suggest(const char *name, char near[UNIT_NAME_BYTES]); /* Finds a known unit with a similar name; returns whether one exists. */
 
-/* Converts a value. */
+/* Converts a value from `from` to `to`. */
 static inline double unit_change_value(const struct unit_change *change, double from)
 {
     return change->converts ? from * change->factor + change->offset : from;
 }
-/* Converts a value back. */
+/* Converts a value back, from `to` to `from`. */
 static inline double unit_change_back(const struct unit_change *change, double to)
 {
     return change->converts ? (to - change->offset) / change->factor : to;

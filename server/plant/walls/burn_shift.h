@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* By how much all that a wall shows is moved, so that nothing burns in. The page does the same (clients/web/core/wall.js). Pure. */
+/* Offset that moves the whole content of a wall display slowly, against burn-in. The page uses the same function
+   (clients/web/core/wall.js). Pure. */
 #ifndef PLANT_WALLS_BURN_SHIFT_H
 #define PLANT_WALLS_BURN_SHIFT_H
 #include <stdint.h>
 
-#define BURN_SHIFT_PX 3 /* at most, in each direction */
+#define BURN_SHIFT_PX 3 /* maximum offset in pixels in each direction */
 
 struct burn_shift {
-    int x_px, y_px; /* to the right, down */
+    int x_px, y_px; /* offset in pixels to the right and down */
 };
-/* Returns it at a time of the plant's clock: displays of a wall are moved together. */
+/* Returns the offset at a time of the plant's clock: all displays of a wall move together. */
 struct burn_shift burn_shift_at(int64_t utc_ns);
 
 #endif

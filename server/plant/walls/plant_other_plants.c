@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant file's `other_plants`: servers of other plants, whose pictures panes of walls show. */
+/* Reads the plant file's `other_plants`: servers of other plants, whose pictures wall panes show. */
 #include <string.h>
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant file's `tours`: views in order, each for a while and with a text. */
+/* Reads the plant file's `tours`: sequences of views, each with a duration and a text. */
 #include <string.h>
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant file's `views`: what is looked at often, by names. */
+/* Reads the plant file's `views`: named views. */
 #include <string.h>
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant file's `walls`: what each display of a control room shows. */
+/* Reads the plant file's `walls`: what each display of a control room shows. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +22,7 @@ static void add_item(struct wall_pane *pane, const yaml_node_t *node)
     pane->items[pane->item_count++] = mem_strdup(yaml_text(node));
 }
 
-/* One text, or a list of them. */
+/* Reads one text, or a list of texts. */
 static void read_items(struct yaml_reader *reader, yaml_node_t *node, struct wall_pane *pane)
 {
     const char *name = pane_kind_names[pane->kind];
@@ -77,7 +77,7 @@ static int word_count(const char *row)
     return count;
 }
 
-/* The word at a column of a row, which has it. */
+/* Returns the word in a column of a row; the row must have that many. */
 static const char *word_at(const char *row, int column, size_t *length)
 {
     const char *at = row + strspn(row, " ");
@@ -216,7 +216,7 @@ static void read_panes(struct yaml_reader *reader, yaml_node_t *node, void *reco
         read_pane(reader, yaml_list_item(reader, node, i), display, &display->panes[display->pane_count++]);
 }
 
-/* A number, or two: across and down. */
+/* Reads one number, or two: horizontal and vertical. */
 static void read_bezel(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     double *bezel_mm = ((struct wall_tile *)record)->bezel_mm;
@@ -307,7 +307,7 @@ static void pane_copy(const struct wall_pane *from, struct wall_pane *to)
         to->items[i] = mem_strdup(from->items[i]);
 }
 
-/* The displays of the large picture come before the others. */
+/* Puts the displays of the tiled picture before the wall's other displays. */
 static void add_tiles(struct yaml_reader *reader, const struct yaml_map *map, struct wall *wall)
 {
     size_t tiles = (size_t)(wall->tile.columns * wall->tile.rows), others = wall->display_count;
@@ -369,7 +369,7 @@ const struct wall *wall_find(const struct plant *plant, const char *id)
     return NULL;
 }
 
-/* --- what panes name -------------------------------------------------------------------------------------------------------- */
+/* --- references in panes ------------------------------------------------------------------------------------------------------ */
 
 static void check_items(const struct plant *plant, const struct wall_pane *pane, struct diag *diag)
 {
@@ -400,7 +400,7 @@ static void check_items(const struct plant *plant, const struct wall_pane *pane,
     }
 }
 
-/* The displays of a large picture name the same: one of them is checked. */
+/* Returns how many displays of the tiled picture to skip: all of them show the same, so only one is checked. */
 static size_t tiles_but_one(const struct wall *wall)
 {
     int count = wall->tile.columns * wall->tile.rows;
