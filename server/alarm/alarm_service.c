@@ -357,6 +357,8 @@ void alarm_service_end(struct alarm_service *service, struct settling_ticket *ti
     pthread_mutex_lock(&service->thread.lock);
     if (service->journal)
         journal_end(service->journal, ticket);
+    else if (service->ending || service->lost) /* halted since alarm_service_begin: whether rows were lost is not known yet, or they were */
+        ticket->last = UINT64_MAX;
     pthread_mutex_unlock(&service->thread.lock);
 }
 

@@ -72,9 +72,7 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
 static void count_written(struct journal *journal, size_t count, int error)
 {
     pthread_mutex_lock(&journal->thread.lock);
-    journal->settling.done += count;
-    journal->settling.failures += error != 0;
-    journal->settling.error = error;
+    settling_wrote(&journal->settling, count, error);
     pthread_mutex_unlock(&journal->thread.lock);
 }
 

@@ -222,9 +222,7 @@ static void *run(void *arg)
         pthread_mutex_unlock(&audit->thread.lock);
         int error = write_entry(audit, &first->entry, first->utc_us);
         pthread_mutex_lock(&audit->thread.lock);
-        audit->settling.error = error;
-        audit->settling.done += !error;
-        audit->settling.failures += error != 0;
+        settling_wrote(&audit->settling, !error, error);
         pthread_cond_broadcast(&audit->settled);
         if (!error) {
             free_first(audit);

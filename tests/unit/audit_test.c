@@ -269,6 +269,21 @@ TEST(test_full_disk)
     clean(dir);
 }
 
+/* A row of two fails and then succeeds, as on a disk that is full for a moment: whoever waits for the second row hears of the failure. */
+TEST(test_an_error_outlasts_the_next_success)
+{
+    struct settling settling = { .queued = 0 };
+    struct settling_ticket ticket = settling_begin(&settling);
+    settling.queued = 2;
+    settling_end(&settling, &ticket, 0);
+    assert_int_equal(settling_state(&settling, &ticket, 0), -EINPROGRESS);
+    settling_wrote(&settling, 0, -ENOSPC);
+    settling_wrote(&settling, 1, 0);
+    assert_int_equal(settling_state(&settling, &ticket, 0), -ENOSPC);
+    settling_wrote(&settling, 1, 0);
+    assert_int_equal(settling_state(&settling, &ticket, 0), 0);
+}
+
 /* What strangers send stands in a line, and stays one line of JSON. */
 TEST(test_strangers_texts)
 {

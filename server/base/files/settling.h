@@ -11,7 +11,7 @@ struct settling {
     uint64_t queued, done; /* rows since the start; done: written or dropped */
     uint64_t lost;         /* the newest row that was dropped; 0: none */
     uint64_t failures;     /* tries to write that failed */
-    int error;             /* error of the last of them, -errno */
+    int error;             /* of the last try that failed, -errno; a later success keeps it for tickets of that time */
 };
 
 /* The rows that are queued between settling_begin() and settling_end(). All zero: no rows. */
@@ -36,6 +36,14 @@ static inline void settling_drop(struct settling *settling)
 {
     settling->lost = ++settling->queued;
     settling->done++;
+}
+
+/* Counts a try to write: `rows` are on disk. error: 0 or -errno. */
+static inline void settling_wrote(struct settling *settling, uint64_t rows, int error)
+{
+    settling->done += rows;
+    settling->failures += error != 0;
+    settling->error = error ? error : settling->error;
 }
 
 /* Returns 0 if all rows of the ticket are on disk, -EINPROGRESS, or the reason why they count as not kept. */
