@@ -26,6 +26,7 @@
 #include "session/view/resume.h"
 
 static const int64_t SETTLE_NS = 5 * NS_PER_MS; /* interval between checks whether an action is on disk */
+static const int64_t SETTLED_NS = 1500 * NS_PER_MS; /* longest wait for that at shutdown: settling_end() gives each action a second */
 /* interval between ticks; REST_NS: when no session waits for anything */
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS;                  /* time for close frames and answers to be sent at shutdown */
@@ -175,26 +176,29 @@ static void set_timer(struct net *net, int64_t at_ns)
     lws_sul_schedule(net->server.lws, 0, &net->timer, on_timer, at_ns > now_ns ? (at_ns - now_ns) / 1000 + 1 : 1);
 }
 
-/* Does what is due now, and schedules the wake-up for what is due next. libwebsockets waits in whole milliseconds, rounded down, and
-   polls repeatedly in the last one; so whatever is due within a millisecond is done at once. */
-/* Returns the monotonic time of the next check; INT64_MAX: no answer waits for the disk. */
-static int64_t settle_answers(struct server_context *server, int64_t now_ns)
+bool net_settle_answers(struct net *net)
 {
-    if (!server->kept_answers)
-        return INT64_MAX;
-    server->kept_answers = false;
+    struct server_context *server = &net->server;
+    struct kept_answers *answers = &server->kept_answers;
+    if (!answers->waiting)
+        return false;
+    answers->waiting = false;
+    session_settle_gone(answers);
     streams_settle(server);
     renderers_settle(server);
-    return server->kept_answers ? now_ns + SETTLE_NS : INT64_MAX;
+    return answers->waiting;
 }
 
+/* Does what is due now, and schedules the wake-up for what is due next. libwebsockets waits in whole milliseconds, rounded down, and
+   polls repeatedly in the last one; so whatever is due within a millisecond is done at once. */
 static void do_what_is_due(struct net *net)
 {
     int64_t soon_ns = clock_mono_ns() + NS_PER_MS, readings_ns = net_update_readings(net, soon_ns);
     if (soon_ns - net->ticked_ns >= (net->server.restless ? TICK_NS : REST_NS))
         tick(net, soon_ns);
     int64_t tick_ns = net->ticked_ns + (net->server.restless ? TICK_NS : REST_NS);
-    int64_t settle_ns = settle_answers(&net->server, soon_ns), next_ns = tick_ns < readings_ns ? tick_ns : readings_ns;
+    int64_t settle_ns = net_settle_answers(net) ? soon_ns + SETTLE_NS : INT64_MAX;
+    int64_t next_ns = tick_ns < readings_ns ? tick_ns : readings_ns;
     set_timer(net, settle_ns < next_ns ? settle_ns : next_ns);
 }
 
@@ -515,6 +519,7 @@ void net_destroy(struct net **net_ptr)
     openid_stop(&net->server.openid);
     if (net->server.lws)
         lws_context_destroy(net->server.lws);
+    session_settle_gone(&net->server.kept_answers);
     atomic_store(&lws_log_to, NULL);
     tls_destroy(&net->server.tls);
     tokens_destroy(&net->server.tokens);
@@ -544,6 +549,16 @@ int net_port(const struct net *net)
     return net->server.params.socket_fd >= 0 ? net->server.params.port : lws_get_vhost_listen_port(net->vhost);
 }
 
+/* Goes on serving until the disk has decided on the actions of clients, and renderers have the answers. */
+static void finish_actions(struct net *net)
+{
+    for (int64_t now_ns = clock_mono_ns(), end_ns = now_ns + SETTLED_NS;
+         (net_settle_answers(net) || renderers_owe_answers(&net->server)) && now_ns < end_ns; now_ns = clock_mono_ns()) {
+        set_timer(net, now_ns + SETTLE_NS);
+        lws_service(net->server.lws, 0);
+    }
+}
+
 void net_run(struct net *net)
 {
     struct server_context *server = &net->server;
@@ -553,12 +568,13 @@ void net_run(struct net *net)
         collect(net);
     net_calls_close(net);
     net_unwatch_readings(net);
+    finish_actions(net);
     streams_close(server);
     renderers_close(server, "the core goes down");
     server->goes_down = true;
     set_timer(net, clock_mono_ns() + GOODBYE_NS);
     for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS;
-         (server->stream_count > 0 || server->unanswered_count > 0) && clock_mono_ns() < end_ns;)
+         (server->stream_count > 0 || server->unanswered_count > 0 || server->renderers) && clock_mono_ns() < end_ns;)
         lws_service(server->lws, 0);
 }
 

@@ -30,6 +30,11 @@ struct net {
     } call;
 };
 
+/* --- net.c; thread: the loop --- */
+
+/* Answers actions that are on disk by now, or cannot be kept. Returns whether others still wait for the disk. */
+bool net_settle_answers(struct net *net);
+
 /* --- net_calls.c --- */
 
 void net_calls_init(struct net *net);

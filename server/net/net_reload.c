@@ -51,10 +51,9 @@ void net_release_recording(struct net *net)
 void net_release_plant(struct net *net)
 {
     struct server_context *server = &net->server;
-    for (struct stream *stream = server->streams; stream; stream = stream->next) {
-        session_settle(stream->session); /* the old journal is complete on disk by now */
+    net_settle_answers(net); /* takes the verdict of the old journal, which is complete on disk by now */
+    for (struct stream *stream = server->streams; stream; stream = stream->next)
         stream->carried = session_carry(stream->session);
-    }
     http_release_plant(server);
     if (server->picture_signer)
         picture_signer_settle(server->picture_signer);

@@ -143,7 +143,8 @@ static void on_open(struct server_context *server, struct lws *wsi, struct rende
 
 static void end_deed(struct deed *deed)
 {
-    session_destroy(&deed->session);
+    if (deed->session)
+        session_retire(&deed->session);
     json_decref(deed->id);
     mem_free(deed);
 }
@@ -168,6 +169,14 @@ void renderers_settle(struct server_context *server)
 {
     for (struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next)
         settle(renderer);
+}
+
+bool renderers_owe_answers(const struct server_context *server)
+{
+    for (const struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next)
+        if (renderer->deeds || json_array_size(renderer->answers) > 0)
+            return true;
+    return false;
 }
 
 static void on_close(struct server_context *server, struct renderer_peer **slot)
@@ -647,6 +656,12 @@ static int on_writeable(struct server_context *server, struct renderer_peer *ren
 {
     if (!renderer->close_text)
         return send_next(server, renderer) ? 0 : -1;
+    if (renderer->deeds) /* settle() asks for the next callback */
+        return 0;
+    if (json_array_size(renderer->answers) > 0 && !server->goes_down) {
+        lws_callback_on_writable(renderer->wsi);
+        return send_answer(renderer) ? 0 : -1;
+    }
     lws_close_reason(renderer->wsi, LWS_CLOSE_STATUS_GOINGAWAY, (unsigned char *)renderer->close_text, strlen(renderer->close_text));
     return -1;
 }

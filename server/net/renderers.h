@@ -17,6 +17,8 @@ void renderers_make_key(struct server_context *server);
 void renderers_on_change(struct server_context *server);
 /* Sends answers to forwarded actions once the actions are on disk. */
 void renderers_settle(struct server_context *server);
+/* Returns whether a forwarded action is not answered yet. */
+bool renderers_owe_answers(const struct server_context *server);
 /* Closes the connections to all renderers, because the plant changes or the daemon ends. why: static text. */
 void renderers_close(struct server_context *server, const char *why);
 

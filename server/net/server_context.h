@@ -96,7 +96,7 @@ struct server_context {
     uint64_t next_client;
     char goodbye[64];                   /* close reason that streams get at shutdown */
     int start_s;                        /* seconds that the daemon took to start, rounded up; 0: it is not ready */
-    bool kept_answers;                  /* an answer waits until its action is on disk (session_kept.c) */
+    struct kept_answers kept_answers;
     bool restless;                      /* a session has work that depends on time: a tick is due soon */
     int64_t still_ns;                   /* render time of the last refined frame that was drawn and not shared */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* libwebsockets writes its framing into the LWS_PRE bytes before the data */

@@ -122,7 +122,7 @@ static void on_close(struct server_context *server, struct stream **slot)
     stream->usage->sessions--;
     session_leave(stream->session, may_return(stream), clock_mono_ns());
     admission_leave(&server->admission, &stream->usage->share);
-    session_destroy(&stream->session);
+    session_retire(&stream->session);
     encoded_frame_destroy(&stream->sending);
     text_finish(&stream->in);
     known_markers_finish(&stream->known);
@@ -497,8 +497,18 @@ void stream_on_historical_snapshot(struct server_context *server, const struct h
 
 /* --- libwebsockets events --------------------------------------------------------------------------------------------- */
 
+/* Answers to actions leave before the server does: a client that lacks one cannot tell whether its action is in force. */
+static bool owes_answer(const struct stream *stream)
+{
+    return stream->close_code == LWS_CLOSE_STATUS_GOINGAWAY && stream->session->owed.reply_count > 0;
+}
+
 static int on_writeable(struct server_context *server, struct stream *stream)
 {
+    if (owes_answer(stream)) {
+        lws_callback_on_writable(stream->wsi);
+        return stream_send(server, stream) ? 0 : -1;
+    }
     if (stream->close_code) {
         lws_close_reason(stream->wsi, (enum lws_close_status)stream->close_code, (unsigned char *)stream->close_text,
                          strlen(stream->close_text));

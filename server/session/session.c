@@ -50,15 +50,20 @@ void session_introduce(struct session *session, const struct session_client *cli
     session->demand.starting = true;
 }
 
+void session_let_go(struct session *session)
+{
+    session_drop_ready(session);
+    session_time_end(session);
+    session_place_leave(session);
+    session_scope_end(session);
+}
+
 void session_destroy(struct session **session_ptr)
 {
     struct session *session = *session_ptr;
     if (!session)
         return;
-    session_drop_ready(session);
-    session_time_end(session);
-    session_place_leave(session);
-    session_scope_end(session);
+    session_let_go(session);
     session_kept_drop(session);
     for (int i = 0; i < session->owed.reply_count; i++)
         mem_free(session->owed.replies[i]);

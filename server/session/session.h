@@ -27,6 +27,11 @@ void session_leave(struct session *session, bool keep, int64_t now_ns);
 void session_record_leave(const struct session *session, const char *why);
 /* Queues the answers to actions that are on disk by now or can never be written. Returns whether it queued any. */
 bool session_settle(struct session *session);
+/* Destroys a session whose client has gone. While the disk has not decided on an action on alarms, the session joins `gone` of its
+   context, so that a failure still gets into the audit trail. */
+void session_retire(struct session **session);
+/* Settles the sessions of `gone`, and destroys those that wait for nothing more. */
+void session_settle_gone(struct kept_answers *answers);
 /* Asks the event loop to close the connection once all queued texts are sent. text: static. If called more than once, the first reason
    counts. */
 void session_close(struct session *session, int code, const char *text);

@@ -13,6 +13,12 @@ struct view_token_keys;
 
 enum audience_lists { LISTS_NAMED, LISTS_OPEN, LISTS_VIEWS, LISTS };
 
+/* Answers to actions that wait for the disk, of all sessions (session_kept.c). */
+struct kept_answers {
+    bool waiting;         /* one waits: session_settle() and session_settle_gone() are due soon */
+    struct session *gone; /* sessions without a client, kept until the disk has decided on their actions */
+};
+
 struct session_context {
     const struct plant *plant;
     const struct scene *scene;
@@ -55,7 +61,7 @@ struct session_context {
     int64_t lock_ns;                       /* monotonic duration without user activity after which the user must sign in again; 0: never */
     struct login_throttle *login_throttle; /* changed by hello; NULL: wrong tokens are not counted */
     struct audit *audit;                   /* the audit trail; NULL: nothing is recorded */
-    bool *kept_answers; /* set to true when an answer waits for the disk, so that session_settle() is due soon; may be NULL */
+    struct kept_answers *kept_answers;     /* shared by all sessions; NULL: session_destroy() drops answers that wait */
     struct resumes *resumes;               /* changed by hello */
     struct admission *admission;           /* admission budget; its pixel counts are changed by hello, resize and visible */
     struct tag_text_cache *tag_texts;      /* cache of `tags` messages; NULL: no caching */

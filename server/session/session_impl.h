@@ -79,6 +79,9 @@ char *session_scope_text(const struct session *session, char *text);
 
 /* --- session.c --------------------------------------------------------------------------------------------------------- */
 
+/* Frees everything that the session holds of the plant. Only its answers and its identity may be used after that. */
+void session_let_go(struct session *session);
+
 /* Stores the client's token if this daemon forwards actions to a core, which verifies the token itself. */
 void session_keep_token(struct session *session, const char *token);
 

@@ -12,17 +12,22 @@
 
 struct kept_answer {
     char *text, *what; /* what: description of an action on alarms for the audit trail; NULL: no alarm action */
-    const struct alarm_service *alarms; /* alarm service that carried out the action; NULL: no alarm action */
+    const struct alarm_service *alarms; /* alarm service whose journal has yet to decide; NULL: it has, or no alarm action */
+    int journal_error;                  /* the journal's decision: 0 or -errno */
     struct settling_ticket journal, audit;
     struct kept_answer *next;
 };
 
-/* Returns whether the journal has the action on disk: 0, -EINPROGRESS or an error. After a plant reload there is a new journal, and what
-   the old one had not written counts as not kept (-ECANCELED). */
-static int journal_state(const struct session *session, const struct kept_answer *kept)
+/* Returns whether the journal has the action on disk: 0, -EINPROGRESS or an error. A plant reload replaces the journal: the decision of the
+   old one stands, and without a decision the action counts as not kept (-ECANCELED). */
+static int journal_state(const struct session *session, struct kept_answer *kept)
 {
     struct alarm_service *service = session->context->alarm_service;
-    return !kept->alarms ? 0 : kept->alarms != service ? -ECANCELED : alarm_service_settled(service, &kept->journal);
+    if (kept->alarms)
+        kept->journal_error = kept->alarms == service ? alarm_service_settled(service, &kept->journal) : -ECANCELED;
+    if (kept->journal_error != -EINPROGRESS)
+        kept->alarms = NULL;
+    return kept->journal_error;
 }
 
 static void say_not_kept(json_t *answer, int error)
@@ -35,7 +40,7 @@ static void say_not_kept(json_t *answer, int error)
 static void answer_now(struct session *session, struct kept_answer *kept, int journal_error, int audit_error)
 {
     json_t *answer = journal_error || audit_error ? json_loads(kept->text, 0, NULL) : NULL;
-    if (answer && journal_error) {
+    if (answer && journal_error && json_integer_value(json_object_get(answer, "done")) > 0) {
         say_not_kept(answer, journal_error);
         session_record_not_kept(session, kept->what, refusal_words(atomic_file_not_kept(journal_error)));
     }
@@ -99,8 +104,44 @@ bool session_settle(struct session *session)
         else
             at = &(*at)->next;
     if (session->kept && session->context->kept_answers)
-        *session->context->kept_answers = true;
+        session->context->kept_answers->waiting = true;
     return answered;
+}
+
+static bool waits_for_journal(const struct session *session)
+{
+    const struct kept_answer *kept = session->kept;
+    while (kept && !kept->alarms)
+        kept = kept->next;
+    return kept != NULL;
+}
+
+void session_retire(struct session **session_ptr)
+{
+    struct session *session = *session_ptr;
+    struct kept_answers *answers = session->context->kept_answers;
+    session_settle(session);
+    if (!answers || !waits_for_journal(session)) {
+        session_destroy(session_ptr);
+        return;
+    }
+    session_let_go(session);
+    session->next_gone = answers->gone;
+    answers->gone = session;
+    *session_ptr = NULL;
+}
+
+void session_settle_gone(struct kept_answers *answers)
+{
+    for (struct session **at = &answers->gone, *session; (session = *at);) {
+        session_settle(session);
+        if (waits_for_journal(session)) {
+            at = &session->next_gone;
+            continue;
+        }
+        *at = session->next_gone;
+        session_destroy(&session);
+    }
 }
 
 void session_kept_drop(struct session *session)

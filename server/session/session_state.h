@@ -212,6 +212,7 @@ struct session {
     struct owed_texts owed;
     struct kept_answer *kept; /* answers that wait for the disk, oldest first (session_kept.c) */
     int kept_count;
+    struct session *next_gone; /* in struct kept_answers */
     struct session_placement placement;
     struct session_pick pick;
     struct message_rate rate;

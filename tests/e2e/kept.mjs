@@ -234,6 +234,8 @@ test('while the disk hangs, an alarm is answered with "not kept", and others are
         await own.startDaemon('--history', join(small.disk, 'history'), '--audit', join(small.disk, 'audit.log'));
         const client = await PlainClient.open(own.port), at = `http://127.0.0.1:${own.port}/api/v1/alarms`;
         await client.hello();
+        const leaver = await PlainClient.open(own.port);
+        await leaver.hello();
         await until('the alarm', async () => (await (await fetch(at)).json()).alarms.some(({ tag }) => tag === 'TI-1'));
         assert.ok(small.freeze());
         let answered = false, served = 0;
@@ -257,6 +259,22 @@ test('while the disk hangs, an alarm is answered with "not kept", and others are
         assert.match(first.unaudited, /the server’s disk does not answer/);
         assert.equal(last.done, 0);
         assert.ok(served > 20, `${served} requests in ${ms} ms`);
+        // A page that closes at once: the trail still says that its action is not kept.
+        leaver.say({ ...onAlarm({ ...shelve, reason: 'leaves at once' }), seq: 1 });
+        leaver.close();
+        const answerTo = (seq) => client.until('alarmed', ({ texts }) => texts.find((one) => one.type === 'alarmed' && one.seq === seq));
+        client.say({ ...onAlarm({ action: 'acknowledge' }), seq: 20 });
+        await answerTo(20);
+        // An action that waits for the disk while the daemon is told to end is answered before the connection closes.
+        client.say({ ...onAlarm({ action: 'unshelve' }), seq: 30 });
+        client.say({ type: 'ping', t: 30 });
+        await client.until('pong', ({ texts }) => texts.find(({ type, t: of }) => type === 'pong' && of === 30));
+        const ended = own.daemon.stop('SIGTERM');
+        assert.deepEqual([(await answerTo(30)).done, (await answerTo(30)).not_kept], [0, 1]);
+        small.thaw();
+        await ended;
+        const lines = readFileSync(join(small.disk, 'audit.log'), 'utf8').trim().split('\n').map((line) => JSON.parse(line));
+        assert.deepEqual(lines.filter(({ what }) => /leaves at once/.test(what)).map(({ result }) => result), ['done', 'failed']);
         client.close();
     } finally {
         small.thaw();
