@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sorts draws by state, keeping the order in which they came. */
+/* Collects draws into batches of equal GL state; draws within a batch keep their order. */
 #include "render/gl/draw_batches.h"
 
 #include <string.h>
@@ -59,8 +59,8 @@ size_t draw_batches_choose(struct draw_batches *batches, const struct draw_batch
     return batches->count++;
 }
 
-/* Of one asset, what follows in the buffer of indices is drawn as one. */
-static void add(struct draw_batches *batches, size_t batch, uint32_t instance, uint32_t first_index, uint32_t count, uint32_t shown)
+/* Adds a draw command. It is merged with the last command if both belong to one asset and their indices are contiguous. */
+static void add_command(struct draw_batches *batches, size_t batch, uint32_t instance, uint32_t first_index, uint32_t count, uint32_t shown)
 {
     size_t at = batches->command_count;
     struct draw_command *last = at > 0 ? &batches->commands[at - 1] : NULL;
@@ -86,7 +86,7 @@ void draw_batches_add_submesh(struct draw_batches *batches, size_t batch, const 
                               uint32_t shown)
 {
     for (GLsizei i = 0; i < submesh->draws; i++)
-        add(batches, batch, instance, index_of(submesh, i), (uint32_t)submesh->counts[i], shown);
+        add_command(batches, batch, instance, index_of(submesh, i), (uint32_t)submesh->counts[i], shown);
 }
 
 static size_t first_cluster(const struct asset_view *file, uint32_t first_index)
@@ -112,7 +112,7 @@ int draw_batches_add_seen(struct draw_batches *batches, size_t batch, const stru
         uint32_t first = index_of(submesh, i), end = first + (uint32_t)submesh->counts[i];
         for (size_t c = first_cluster(file, first); c < file->header->cluster_count && file->clusters[c].first_index < end; c++)
             if (culling_sees(culling, &file->clusters[c], state->two_sided)) {
-                add(batches, batch, instance, file->clusters[c].first_index, file->clusters[c].index_count, 1);
+                add_command(batches, batch, instance, file->clusters[c].first_index, file->clusters[c].index_count, 1);
                 indices += file->clusters[c].index_count;
             }
     }

@@ -10,7 +10,7 @@
 #include "render/gl/model.h"
 
 struct draw_instance {   /* as in shaders/instance.glsl */
-    float normals[3][4]; /* rows of eye_from_normal; then blocks of light and field, nothing */
+    float normals[3][4]; /* rows of eye_from_normal; the fourth column holds block of light, block of field, unused */
     float clip_from_file[16];
     float from_file[3][4]; /* rows */
 };
@@ -18,7 +18,7 @@ struct draw_instance {   /* as in shaders/instance.glsl */
 struct draw_batch_state {
     GLuint program;
     const struct gl_model *model;
-    const struct pool_page *light, *field; /* field NULL: the asset has no data or no field */
+    const struct pool_page *light, *field; /* GPU memory pages of light and scalars; field NULL: the asset has no data or no field */
     int front;                             /* as scene_asset.front */
     int material;                          /* -1: the program does not use it */
     int alone;                             /* index of an asset that must not share its batch; -1: may be shared */
@@ -33,17 +33,17 @@ struct draw_command { /* for glMultiDrawElementsIndirect */
 
 struct draw_batch {
     struct draw_batch_state state;
-    size_t first, count; /* range in `sorted`; valid after draw_batches_upload() */
+    size_t first, count; /* range in `sorted`, valid after draw_batches_upload() */
     size_t older;        /* the batch made before this one for the same model; SIZE_MAX: none */
 };
 
 struct draw_batches { /* zero-initialise, then set log */
     struct log *log;
     struct draw_batch *at;
-    size_t count, from; /* number of batches; draws may join those with an index of at least `from` */
+    size_t count, from; /* count: batches; from: draws may only join batches with this index or higher */
     struct draw_instance *instances;
-    struct draw_command *commands, *sorted; /* in the order added; ordered by batch */
-    uint32_t *batch_of, *place_of;          /* per command in the order added: its batch, its index in `sorted` */
+    struct draw_command *commands, *sorted; /* commands: in the order added; sorted: by batch */
+    uint32_t *batch_of, *place_of;          /* per command in the order added: its batch; its index in `sorted` */
     size_t *newest;                         /* per model: the batch made last */
     size_t instance_count, command_count;
     size_t capacity, instance_capacity, command_capacity, sorted_capacity, batch_of_capacity, place_capacity, newest_capacity;
@@ -63,16 +63,16 @@ size_t draw_batches_choose(struct draw_batches *batches, const struct draw_batch
 /* Adds the draw of a whole submesh. shown: instances to draw, 1; or 0 if an occlusion test on the GPU decides (render/gl/occlusion.h). */
 void draw_batches_add_submesh(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                               uint32_t shown);
-/* Adds draws of those clusters of a submesh that are not culled. Returns their number of triangles. */
+/* Adds draws of those clusters of a submesh that culling leaves. Returns their number of triangles. */
 int draw_batches_add_seen(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                           const struct culling *culling);
-/* Sorts the commands by batch and uploads commands and instances. places: uploads place_buffer as well. Returns false if the GPU is out of
-   memory; that is logged. */
+/* Sorts the commands by batch and uploads commands and instances; with `places` also place_buffer. Returns false when the GPU is out of
+   memory, logged. */
 bool draw_batches_upload(struct draw_batches *batches, bool places);
-/* Draws one batch. The caller has set its state and bound its mesh. */
+/* Draws one batch. The caller has set the batch's state and bound its mesh. */
 void draw_batches_draw(const struct draw_batches *batches, const struct draw_batch *batch);
 
-/* Writes data into a buffer that changes with every picture and grows it if needed. Returns false if the GPU is out of memory; that is
+/* Writes data into a buffer that changes with every frame; grows the buffer if needed. Returns false when the GPU is out of memory,
    logged. */
 bool draw_batches_refill(struct log *log, GLuint *buffer, size_t *room, size_t bytes, const void *data);
 

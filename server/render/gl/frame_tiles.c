@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the next tile of a frame begins, and what it shows. */
+/* Divides a frame into tiles and chooses the next tile and its size. */
 #include "render/gl/frame_tiles.h"
 
 #include "base/mem.h"
 
-/* Tiles are squares of 1, 4 or 16 cells; the rasteriser works on 64 x 64 pixels at a time. */
-enum { BLOCK_PX = 256, SIDE_CELLS = 4, BLOCK_CELLS = SIDE_CELLS * SIDE_CELLS };
+/* Tiles are squares of 1, 4 or 16 cells. A cell is 64 x 64 pixels, the unit in which the GL rasterizer works. */
+enum { TILE_BLOCK_PX = 256, SIDE_CELLS = 4, BLOCK_CELLS = SIDE_CELLS * SIDE_CELLS };
 
 void frame_tiles_init(struct frame_tiles *tiles, const struct frame_context *context, bool whole)
 {
     *tiles = (struct frame_tiles){ .width_px = context->view->width_px, .height_px = context->view->height_px };
-    tiles->block_px = whole ? VIEW_MAX_SIDE_PX : BLOCK_PX;
+    tiles->block_px = whole ? VIEW_MAX_SIDE_PX : TILE_BLOCK_PX;
     tiles->columns = (tiles->width_px + tiles->block_px - 1) / tiles->block_px;
     tiles->rows = (tiles->height_px + tiles->block_px - 1) / tiles->block_px;
     tiles->in_tile = mem_array(context->gpu_scene->scene->asset_count, sizeof(*tiles->in_tile));
@@ -31,7 +31,7 @@ int frame_tiles_cells(const struct frame_tiles *tiles)
     return tiles->columns * tiles->rows * (is_whole(tiles) ? 1 : BLOCK_CELLS);
 }
 
-/* Every second bit of a cell's place in the Z. */
+/* Returns the x of a cell from its index in Z-order (Morton code): collects every second bit. */
 static int cell_at(int place)
 {
     return (place & 1) | (place >> 1 & 2) | (place >> 2 & 4);
@@ -49,7 +49,7 @@ static struct tile clip_tile(const struct frame_tiles *tiles, int x_px, int y_px
 struct tile frame_tiles_choose(struct frame_tiles *tiles, double most_px)
 {
     int index = tiles->next % frame_tiles_cells(tiles), cells = is_whole(tiles) ? 1 : BLOCK_CELLS;
-    int block = index / cells, place = index % cells, cell_px = is_whole(tiles) ? VIEW_MAX_SIDE_PX : BLOCK_PX / SIDE_CELLS;
+    int block = index / cells, place = index % cells, cell_px = is_whole(tiles) ? VIEW_MAX_SIDE_PX : TILE_BLOCK_PX / SIDE_CELLS;
     int side = 1;
     while (!tiles->span && !is_whole(tiles) && 2 * side <= SIDE_CELLS && place % (4 * side * side) == 0 &&
            4.0 * side * side * cell_px * cell_px <= most_px)

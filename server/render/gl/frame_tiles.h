@@ -1,28 +1,28 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A frame cut into tiles, which are drawn one after the other with the camera of the whole, so that they fit without a seam. Thread: the
-   one of the GL context. */
+/* A frame cut into tiles that are drawn one after the other with the camera of the whole frame, so that they join without a seam. Thread:
+   the one of the GL context. */
 #ifndef RENDER_GL_FRAME_TILES_H
 #define RENDER_GL_FRAME_TILES_H
 #include "render/frame_context.h"
 
 struct frame_tiles {
     int width_px, height_px;
-    int block_px, columns, rows; /* blocks of cells; in a block the cells follow a Z, so that tiles of any size follow one another */
-    int next, span;              /* the next cell, counted through all passes, and how many cells its tile has; 0: not chosen yet */
-    int *in_tile;                /* assets */
+    int block_px, columns, rows; /* blocks of cells; within a block, cells are in Z-order, so that tiles of any size are contiguous */
+    int next, span;              /* next: the next cell, counted through all passes; span: number of cells of its tile, 0: not chosen yet */
+    int *in_tile;                /* indices of the assets that the current tile shows */
 };
 struct tile {
-    int x_px, y_px, width_px, height_px; /* from the top left */
+    int x_px, y_px, width_px, height_px; /* in pixels from the top left of the frame */
 };
 
-/* whole: one tile holds all. */
+/* whole: one tile covers the frame. */
 void frame_tiles_init(struct frame_tiles *tiles, const struct frame_context *context, bool whole);
 void frame_tiles_finish(struct frame_tiles *tiles);
-int frame_tiles_cells(const struct frame_tiles *tiles); /* of one pass */
-/* Returns the largest tile that begins with the next cell and has at most so many pixels, or the smallest. Of no size: outside the
-   frame. */
+int frame_tiles_cells(const struct frame_tiles *tiles); /* number of cells of one pass */
+/* Returns the largest tile that begins with the next cell and has at most most_px pixels, or the smallest tile. A tile outside the frame
+   has size 0. */
 struct tile frame_tiles_choose(struct frame_tiles *tiles, double most_px);
-/* Returns the frame with only those assets that the tile shows. Valid until the next call. */
+/* Returns the frame's context with only the assets that the tile shows. Valid until the next call. */
 struct frame_context frame_tiles_context(struct frame_tiles *tiles, const struct frame_context *frame, const struct tile *tile);
 
 #endif

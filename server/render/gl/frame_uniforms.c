@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fills the uniforms that a whole picture shares. */
+/* Fills the uniform block that all draws of a frame share. */
 #include "render/gl/frame_uniforms.h"
 
 #include <math.h>
@@ -8,13 +8,13 @@
 #include "render/light/sky.h"
 #include "render/matrix.h"
 
-/* Side of a cell of the hatching and stippling. */
+/* Returns the cell size of hatch and stipple patterns. */
 static double pattern_px(const struct view *view)
 {
     return fmax(PATTERN_LEAST_PX, view->height_px / (double)PATTERN_PERIODS);
 }
 
-/* Width of an isoline. */
+/* Returns the width of an isoline. */
 static double line_px(const struct view *view)
 {
     return fmax(1.2, view->height_px / 640.0);
@@ -43,10 +43,10 @@ static void fill_scale(struct frame_uniforms *block, const struct frame_context 
     block->lines[2] = block->lines[3] = 0;
 }
 
-/* Light to a row of the colormap: all of them, or the middle one where light must not touch the colours. */
+/* Sets how brightness maps to a row of the colour map: over all rows, or to the middle row where light must not change colours. */
 static void fill_shade(struct frame_uniforms *block, const struct view *view)
 {
-    static const double dark = 0.14, bright = 0.86; /* what is darker or brighter looks the same */
+    static const double dark = 0.14, bright = 0.86; /* brightness range that the rows cover; darker or brighter surfaces are clamped */
     double rows = COLORMAP_ROWS - 1;
     bool shaded = view->look == LOOK_DEFAULT;
     block->shade[0] = shaded ? (float)(rows / (bright - dark)) : 0;
@@ -70,7 +70,7 @@ static void fill_clip(struct frame_uniforms *block, const struct frame_context *
     }
 }
 
-/* Before a dark backdrop, what has no field would glare: floors are large and pale. */
+/* Brightness of context before a dark backdrop: floors are large and pale, and would glare. */
 static const float DIM_CONTEXT = 0.55f;
 
 void frame_uniforms_fill(struct frame_uniforms *block, const struct frame_context *context)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A fixed number of slots for pictures whose results the GPU has not delivered yet: pixels, visibility of markers and of labels. With
-   several slots one picture is drawn while the pixels of another are read back. Thread: the one of the GL context. */
+/* A fixed number of slots for frames whose results the GPU has not delivered yet: pixels, visibility of markers and of labels. With several
+   slots one frame is drawn while the pixels of another are read back. Thread: the one of the GL context. */
 #ifndef RENDER_GL_FRAMES_IN_FLIGHT_H
 #define RENDER_GL_FRAMES_IN_FLIGHT_H
 #include "gpu/readback.h"
@@ -18,10 +18,10 @@ struct frames_in_flight {
     struct frame_in_flight at[FRAMES_IN_FLIGHT];
 };
 
-/* Compiles the program. Returns false if that fails; it is logged. */
+/* Compiles the program. Returns false on failure, logged. */
 bool frames_in_flight_init(struct frames_in_flight *frames_in_flight, struct log *log);
 void frames_in_flight_finish(struct frames_in_flight *frames_in_flight);
-/* Takes a free slot. Returns NULL if all are taken; that is logged. */
+/* Takes a free slot. Returns NULL if all are taken; logged. */
 struct frame_in_flight *frames_in_flight_take(struct frames_in_flight *frames_in_flight, struct log *log);
 /* Frees a slot whose results have been read or are no longer wanted. Accepts NULL. */
 void frames_in_flight_give(struct frame_in_flight *in_flight);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ghosts have a depth buffer of their own; what is drawn is found in it. */
+/* Draws ghosted assets: their depth goes into a buffer of its own, in which a full-screen pass finds lines. */
 #include "render/gl/ghosts.h"
 
 #include <math.h>
@@ -50,7 +50,7 @@ static void draw_depth(const struct ghosts *ghosts, const struct frame_context *
         }
 }
 
-/* Where ghosts may be: low and high corner, -1 to 1 over the picture. */
+/* Finds the rectangle that ghosts may cover: low and high corner, -1 to 1 over the frame. */
 static void find_part(const struct frame_context *context, double low[2], double high[2])
 {
     const struct scene *scene = context->gpu_scene->scene;
@@ -64,7 +64,7 @@ static void find_part(const struct frame_context *context, double low[2], double
                 place[c] = corner >> c & 1 ? asset->bounds_max_m[c] : asset->bounds_min_m[c];
             matrix_point(context->constants.clip_from_plant, place, clip);
             for (int c = 0; c < 2; c++) {
-                low[c] = clip[3] > 0 ? fmin(low[c], clip[c] / clip[3]) : -1; /* behind the eye: anywhere */
+                low[c] = clip[3] > 0 ? fmin(low[c], clip[c] / clip[3]) : -1; /* a corner behind the eye may project anywhere */
                 high[c] = clip[3] > 0 ? fmax(high[c], clip[c] / clip[3]) : 1;
             }
             if (clip[3] <= 0)
@@ -73,7 +73,7 @@ static void find_part(const struct frame_context *context, double low[2], double
     }
 }
 
-/* Rows from the top. */
+/* Sets the scissor rectangle to the area of the ghosts; rows from the top. */
 static void scissor(const struct frame_context *context)
 {
     double low[2] = { 1, 1 }, high[2] = { -1, -1 }, width = context->target->width_px, height = context->target->height_px;

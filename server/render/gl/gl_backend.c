@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames drawn with GL. */
+/* The GL render backend: draws a frame at once on a GPU, tile by tile where GL runs on the processor. */
 #include "render/gl/gl_backend.h"
 
 #include <limits.h>
@@ -17,23 +17,24 @@
 #include "render/renderer_impl.h"
 
 enum { REFINED_SAMPLES = 4 };
-/* Of what is drawn tile by tile, on a processor: how long a tile may take. */
+/* Target duration of a tile where GL runs on the processor, and expected time per triangle. */
 static const int64_t TILE_NS = 4 * NS_PER_MS;
 static const double TRIANGLE_NS = 36;
 enum { TILE_TRIANGLES = 80000 };
-static const int64_t QUICK_NS = 12 * NS_PER_MS; /* a refined frame that a GPU draws in less is drawn as previews are */
-/* Of frames of so many triangles what is hidden is left out: half a millisecond of a slow GPU's. On a processor boxes cost more than they
-   save. */
-enum { LEAST_HIDING = 250000 };
-/* Expected of GL on a processor before anything was measured. */
-static const double FIRST_PIXEL_NS[GL_PASSES] = { 200, 20 };
+/* A refined frame that a GPU draws in less time is quick: drawn at once, like a preview. */
+static const int64_t MAX_QUICK_NS = 12 * NS_PER_MS;
+/* Occlusion culling runs for frames with at least this many triangles, about half a millisecond of a slow GPU. On a processor, testing
+   boxes costs more than it saves. */
+enum { OCCLUSION_MIN_TRIANGLES = 250000 };
+/* Expected time per pixel and pass of GL on a processor, until measured. */
+static const double INITIAL_PIXEL_NS[GL_PASSES] = { 200, 20 };
 
 struct gl_job {
     struct target target;
     struct frame_tiles tiles;
-    struct frame_in_flight *in_flight; /* it is given to the GPU, whole; NULL: not yet */
-    size_t drawn;                      /* of the tile's assets, nearest first */
-    bool short_of_memory;              /* the GPU was, while it was drawn: it shows anything */
+    struct frame_in_flight *in_flight; /* set once the whole frame is submitted to the GPU; NULL: not yet */
+    size_t drawn;                      /* number of assets of the current tile that are drawn, nearest first */
+    bool short_of_memory;              /* the GPU ran out of memory while drawing, so the frame's content is undefined */
 };
 
 /* --- life ------------------------------------------------------------------------------------------------------------------- */
@@ -61,7 +62,7 @@ static bool init(struct renderer *renderer)
         return true;
     struct gl_backend *backend = mem_new(sizeof(*backend));
     renderer->by_gl = backend;
-    memcpy(backend->pixel_ns, FIRST_PIXEL_NS, sizeof(backend->pixel_ns));
+    memcpy(backend->pixel_ns, INITIAL_PIXEL_NS, sizeof(backend->pixel_ns));
     backend->frame_buffer = mesh_buffer(log, "frame block", sizeof(struct frame_uniforms), NULL, GL_DYNAMIC_STORAGE_BIT);
     if (!backend->frame_buffer || !surface_pass_init(&backend->surface_pass, log) || !lines_init(&backend->lines, log) ||
         !ghosts_init(&backend->ghosts, log) || !section_caps_init(&backend->section_caps, log) ||
@@ -69,7 +70,7 @@ static bool init(struct renderer *renderer)
         finish(renderer);
         return false;
     }
-    backend->surface_pass.least_hiding = renderer->gl->software ? INT_MAX : LEAST_HIDING;
+    backend->surface_pass.least_hiding = renderer->gl->software ? INT_MAX : OCCLUSION_MIN_TRIANGLES;
     return true;
 }
 
@@ -82,7 +83,7 @@ static bool can(const struct frame_context *context)
 static bool is_quick(struct renderer *renderer, const struct frame_context *context)
 {
     int64_t refined_ns = renderer->by_gl->refined_ns;
-    return context->view->tier == TIER_PREVIEW || (refined_ns > 0 && refined_ns <= QUICK_NS);
+    return context->view->tier == TIER_PREVIEW || (refined_ns > 0 && refined_ns <= MAX_QUICK_NS);
 }
 
 /* --- jobs ------------------------------------------------------------------------------------------------------------------- */
@@ -100,7 +101,7 @@ bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context
     return true;
 }
 
-/* Others drew meanwhile. From now on its light stays. */
+/* Continues a job after other frames were drawn meanwhile. From now on the job holds its light. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     return renderer_light_job(renderer, job) && gl_backend_take_up(renderer, &job->context);
@@ -120,7 +121,7 @@ static bool begin(struct renderer *renderer, struct render_job *job, const struc
     job->of.gl = mem_new(sizeof(*job->of.gl));
     job->of.gl->target = target;
     job->context.target = &job->of.gl->target;
-    /* A GPU draws the whole in the time that a processor takes for a tile. */
+    /* A GPU draws the whole frame in the time that a processor needs for one tile. */
     frame_tiles_init(&job->of.gl->tiles, &job->context, at_once || !renderer->gl->software);
     renderer_upload_fields(renderer, plan, &job->context, job->frame);
     return true;
@@ -140,7 +141,8 @@ static void abandon(struct renderer *renderer, struct render_job *job)
 
 /* --- tiles ------------------------------------------------------------------------------------------------------------------ */
 
-/* Some of the tile. Returns about how long its triangles took, and that is not for their pixels; done: all is drawn. */
+/* Draws a part of the tile. Returns the expected time of the triangles drawn, which is independent of pixels. *done: all of the tile is
+   drawn. */
 static double draw_surfaces(struct renderer *renderer, struct render_job *job, const struct tile *tile, bool *done)
 {
     struct gl_job *own = job->of.gl;
@@ -156,14 +158,14 @@ static double draw_surfaces(struct renderer *renderer, struct render_job *job, c
     own->drawn = surface_pass_draw_some(pass, &context, first, triangles);
     *done = own->drawn == context.visible_count;
     if (*done) {
-        sky_draw(&renderer->sky, &context, &renderer->light); /* seen through what is blended */
+        sky_draw(&renderer->sky, &context, &renderer->light); /* drawn before blended surfaces, through which it is visible */
         surface_pass_draw_blended(pass, &context);
         target_resolve(&own->target, tile->x_px, tile->y_px, tile->width_px, tile->height_px);
     }
     return TRIANGLE_NS * pass->triangles;
 }
 
-/* First the surfaces of all tiles, then their edges: those look over the rim of a tile. */
+/* Returns the number of cells of all passes: surfaces of all tiles, then edges, which read pixels beyond a tile's border. */
 static int count_cells(const struct render_job *job)
 {
     return frame_tiles_cells(&job->of.gl->tiles) * (job->view.tier == TIER_REFINED ? GL_PASSES : 1);
@@ -201,8 +203,8 @@ static struct drawn_tile draw_tile(struct renderer *renderer, struct render_job 
     return drawn;
 }
 
-/* took_ns: of a machine that has nothing else to do; smaller tiles would not help one that has. */
-static void learn(struct renderer *renderer, const struct drawn_tile *drawn, int64_t took_ns)
+/* Updates the measured time per pixel. took_ns: CPU time of this process; a busy machine is no reason for smaller tiles. */
+static void update_pixel_time(struct renderer *renderer, const struct drawn_tile *drawn, int64_t took_ns)
 {
     double *pixel_ns = &renderer->by_gl->pixel_ns[drawn->pass], now_ns = ((double)took_ns - drawn->triangles_ns) / fmax(drawn->pixels, 1);
     if (drawn->pixels > 0)
@@ -216,12 +218,12 @@ static bool step(struct renderer *renderer, struct render_job *job, int64_t budg
     int cells = count_cells(job);
     unsigned shortages = gl_out_of_memory_count();
     if (own->tiles.next < cells && !take_up(renderer, job))
-        own->tiles.next = cells; /* end fails likewise */
+        own->tiles.next = cells; /* if taking up the job fails, end fails as well */
     while (own->tiles.next < cells && (spent_ns == 0 || spent_ns + (last_ns > TILE_NS ? last_ns : TILE_NS) <= budget_ns)) {
         int64_t work_ns = clock_work_ns();
         struct drawn_tile drawn = draw_tile(renderer, job);
         glFinish();
-        learn(renderer, &drawn, (clock_work_ns() - work_ns) / workers_count(field_workers(renderer->fields.field)));
+        update_pixel_time(renderer, &drawn, (clock_work_ns() - work_ns) / workers_count(field_workers(renderer->fields.field)));
         last_ns = clock_mono_ns() - start_ns - spent_ns;
         spent_ns += last_ns;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is drawn with GL, and what it is drawn with: whole on a GPU, tile by tile on a processor. Thread: the one of the GL context. */
+/* State of the GL render backend, which draws whole frames on a GPU and tile by tile on a processor. Thread: the one of the GL context. */
 #ifndef RENDER_GL_BACKEND_H
 #define RENDER_GL_BACKEND_H
 #include "render/gl/frames_in_flight.h"
@@ -10,7 +10,7 @@
 #include "render/gl/targets.h"
 #include "render/render_backend.h"
 
-enum gl_pass { GL_SURFACES, GL_EDGES, GL_PASSES }; /* of what is drawn tile by tile */
+enum gl_pass { GL_SURFACES, GL_EDGES, GL_PASSES }; /* passes of a frame drawn tile by tile */
 
 struct gl_backend {
     struct surface_pass surface_pass;
@@ -18,13 +18,14 @@ struct gl_backend {
     struct ghosts ghosts;
     struct section_caps section_caps;
     struct frames_in_flight frames_in_flight;
-    GLuint frame_buffer; /* struct frame_uniforms */
+    GLuint frame_buffer; /* uniform buffer of struct frame_uniforms */
     struct targets targets;
-    double pixel_ns[GL_PASSES]; /* as measured lately */
-    int64_t refined_ns;         /* what a GPU took for the last refined frame; 0: not known */
+    double pixel_ns[GL_PASSES]; /* recent measurement of the time per pixel */
+    int64_t refined_ns;         /* GPU time of the last refined frame; 0: unknown */
 };
 
-/* Light, colour map and uniforms of a frame, others having drawn meanwhile. Returns false when out of GPU memory, logged. */
+/* Binds light, colour map and uniforms of a frame, after other frames were drawn meanwhile. Returns false when out of GPU memory,
+   logged. */
 bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context);
 
 #endif

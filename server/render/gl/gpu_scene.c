@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Models by asset, and the pass that draws their depth. */
+/* Uploads the models of all assets, and draws the depth of one asset. */
 #include "render/gl/gpu_scene.h"
 
 #include <math.h>
@@ -43,7 +43,7 @@ static bool make_depth_programs(struct gpu_scene *gpu_scene)
     return good;
 }
 
-/* False: logged. */
+/* Returns false on failure, logged. */
 static bool add_model(const struct gpu_scene *gpu_scene, struct gl_model *model, const struct asset *file,
                       const struct environment_light *sky)
 {
@@ -112,7 +112,7 @@ void gpu_scene_clip_end(const struct clip *clip)
         glDisable(GL_CLIP_DISTANCE0 + (GLenum)i);
 }
 
-/* Uniform locations and the texture unit, as in the shaders. */
+/* Uniform locations and the texture unit; must match the shaders. */
 enum { CLIP_FROM_FILE = 0, MATERIAL = 2, PLANES = 4, UNIT_BASE_COLOR = 3 };
 
 static void set_planes(const double clip_from_plant[16], const struct clip *clip)

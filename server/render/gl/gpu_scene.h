@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The scene on the GPU: one model for each asset file, with all its levels. Thread: the one of the GL context. */
+/* The scene on the GPU: one model for each asset file, with all its levels of detail. Thread: the one of the GL context. */
 #ifndef RENDER_GL_GPU_SCENE_H
 #define RENDER_GL_GPU_SCENE_H
 #include "gpu/gl.h"
@@ -14,12 +14,12 @@ struct gpu_scene {
     struct gl_model *models;
     size_t model_count;
     const struct gl_model **of_asset; /* by index in scene->assets: the asset's model */
-    double middle_m[3], radius_m;  /* a sphere that encloses the scene; plant frame */
+    double middle_m[3], radius_m;  /* a sphere that encloses the scene, in the plant frame */
     double up[3];
     GLuint depth_programs[2][2]; /* [clip planes][alpha-masked textures] */
 };
 
-/* Uploads all models. sky: what previews are lit by. Returns false if that fails; it is logged. */
+/* Uploads all models. sky: the light for the colour ramps of previews. Returns false on failure, logged. */
 bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct scene *scene, const struct environment_light *sky);
 void gpu_scene_finish(struct gpu_scene *gpu_scene);
 

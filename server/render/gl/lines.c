@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edges and outlines, found in depth and in a mask. */
+/* Draws feature edges, found in the depth buffer, and outlines, found in a mask of the selected asset. */
 #include "render/gl/lines.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ void lines_finish(struct gl_lines *lines)
     glDeleteVertexArrays(1, &lines->vao);
 }
 
-/* Draws over the resolved picture, blended. */
+/* Draws a full-screen triangle over the resolved frame, with blending. */
 static void draw_over(const struct gl_lines *lines, const struct frame_context *context, GLuint program)
 {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, context->target->over_framebuffer);

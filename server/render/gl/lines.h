@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The passes that draw lines over the resolved picture: feature edges, and the outline of the selected asset.
-   Thread: the one of the GL context. */
+/* The passes that draw lines over the resolved frame: feature edges, and the outline of the selected asset. Thread: the one of the GL
+   context. */
 #ifndef RENDER_GL_LINES_H
 #define RENDER_GL_LINES_H
 #include "gpu/target.h"
@@ -11,12 +11,12 @@ struct gl_lines {
     struct render_texture mask;
 };
 
-/* Compiles the programs. Returns false if that fails; it is logged. */
+/* Compiles the programs. Returns false on failure, logged. */
 bool lines_init(struct gl_lines *lines, struct log *log);
 void lines_finish(struct gl_lines *lines);
-/* Darkens the picture where depth or normal jump. */
+/* Darkens the frame where depth or normal change abruptly. */
 void lines_draw_edges(const struct gl_lines *lines, const struct frame_context *context);
-/* Returns the width in pixels of the outline's dark line; the light line beside it is as wide. Pure. */
+/* Returns the width in pixels of the outline's dark line; the adjacent light line is as wide. Pure. */
 double lines_outline_px(const struct view *view);
 /* Draws the outline of view->selected_asset, also where other surfaces hide it. */
 void lines_draw_outline(struct gl_lines *lines, const struct frame_context *context);

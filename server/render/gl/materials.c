@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* glTF metallic-roughness materials on the GPU. */
+/* Uploads glTF metallic-roughness materials to the GPU. */
 #include "render/gl/materials.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "base/mem.h"
 #include "render/soft/ramps.h"
 
-/* As in shaders/material.glsl. */
+/* Must match shaders/material.glsl. */
 struct material_block {
     float base_color[4], factors[4], emissive[4];
 };
@@ -31,7 +31,7 @@ static GLuint upload_texture(const struct asset_view *view, const struct asset_t
     return name;
 }
 
-/* The texture's mean in linear light, from every 7th texel or so. */
+/* Averages a texture in linear light, over about 10,000 evenly spaced texels. */
 static void texture_mean(const struct asset_view *view, const struct asset_texture *texture, float mean[3])
 {
     const uint8_t *texels = view->texels + texture->offset;
@@ -46,7 +46,7 @@ static void texture_mean(const struct asset_view *view, const struct asset_textu
         mean[c] = (float)(sum[c] / (double)taken);
 }
 
-/* The mean of the vertex colours that triangles of this material have. */
+/* Averages the vertex colours of this material's triangles. */
 static void tint_mean(const struct asset_view *view, uint32_t material, float mean[3])
 {
     double sum[3] = { 0 };

@@ -6,9 +6,10 @@
 #include "render/gl/model.h"
 #include "render/light/environments.h"
 
-/* Uploads materials and textures of a model that model_init() made. up: of the plant. Returns false if the GPU is out of memory. */
+/* Uploads materials and textures of a model that model_init() made. up: the plant's up direction. Returns false when the GPU is out of
+   memory. */
 bool materials_upload(struct gl_model *model, struct gl *gl, const struct environment_light *sky, const double up[3]);
-/* Deletes what materials_upload() made; before model_finish(). */
+/* Deletes the objects that materials_upload() made; call before model_finish(). */
 void materials_finish(struct gl_model *model);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Uploads an asset file and sorts its triangles by material. */
+/* Uploads an asset file and groups its triangles by material. */
 #include "render/gl/model.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ static bool make_mesh(struct gl_model *model, struct gl *gl)
     return mesh_init(&model->mesh, gl, model->file->path, &params);
 }
 
-/* All primitives of one level that have that material. */
+/* Collects all primitives of one level that have this material. */
 static void fill_batch(struct model_submesh *submesh, const struct asset_view *view, const struct asset_level *level, uint32_t material)
 {
     submesh->material = material;
@@ -65,7 +65,7 @@ static void make_level(struct model_level *level, const struct asset_view *view,
         }
 }
 
-/* Those of a level follow one another, from its first primitive's first index on. */
+/* Finds the level's first cluster. A level's clusters are contiguous and begin at the first index of its first primitive. */
 static void find_clusters(struct model_level *level, const struct asset_view *view)
 {
     uint32_t first_index = level->primitive_count ? view->primitives[level->first_primitive].first_index : 0;
@@ -118,7 +118,7 @@ void model_draw_submesh(const struct model_submesh *submesh)
         glMultiDrawElements(GL_TRIANGLES, submesh->counts, GL_UNSIGNED_INT, submesh->offsets, submesh->draws);
 }
 
-/* Neighbours are drawn as one. */
+/* Adds a draw, merged with the last one if their indices are contiguous. Returns the new number of draws. */
 static size_t add_draw(struct model_draws *draws, size_t count, uint32_t first_index, uint32_t index_count)
 {
     const void *offset = (const void *)((uintptr_t)first_index * 4);

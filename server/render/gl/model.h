@@ -8,7 +8,7 @@
 #include "scene/asset.h"
 
 enum model_map { MODEL_BASE_COLOR, MODEL_METALLIC_ROUGHNESS, MODEL_NORMAL, MODEL_OCCLUSION, MODEL_EMISSIVE, MODEL_MAPS };
-enum { MODEL_MUTED, MODEL_OWN, MODEL_RAMPS }; /* ramps: as context is shown, as the material is */
+enum { MODEL_MUTED, MODEL_OWN, MODEL_RAMPS }; /* colour ramps: muted, for context; in the material's own colours */
 enum { MODEL_LIGHT_STEPS = 64 }; /* texels of a material's ramp */
 
 struct model_submesh { /* the triangles of one material in one level */
@@ -31,7 +31,7 @@ struct model_level {
 
 struct model_material {
     GLuint maps[MODEL_MAPS]; /* 0: none; owned by the model's textures */
-    int mask;                /* bit per map that the material has */
+    int mask;                /* bit per map that uses the second set of texture coordinates */
     int second;              /* bit per map that uses the second set of texture coordinates */
     bool masked;             /* alpha of the base colour cuts holes (glTF alphaMode MASK) */
 };
@@ -44,8 +44,8 @@ struct gl_model {
     GLuint *textures;
     size_t level_count, material_count, texture_count;
     GLuint material_buffer;
-    uint32_t *ramp_texels[MODEL_RAMPS]; /* MODEL_LIGHT_STEPS per material: ramp_fill() */
-    GLuint ramps[MODEL_RAMPS];          /* textures of these, a row per material */
+    uint32_t *ramp_texels[MODEL_RAMPS]; /* MODEL_LIGHT_STEPS per material, from ramp_fill() */
+    GLuint ramps[MODEL_RAMPS];          /* the same as textures, one row per material */
 };
 
 struct model_draws { /* scratch memory for the draws of one submesh; zero-initialise */
@@ -55,8 +55,8 @@ struct model_draws { /* scratch memory for the draws of one submesh; zero-initia
 };
 void model_draws_finish(struct model_draws *draws);
 
-/* Uploads the geometry of an asset file; materials_upload() does the rest. Returns false if the GPU is out of memory; model_finish() must
-   still be called. */
+/* Uploads the geometry of an asset file; materials_upload() uploads the rest. Returns false when the GPU is out of memory; model_finish()
+   must still be called. */
 bool model_init(struct gl_model *model, struct gl *gl, const struct asset *file);
 void model_finish(struct gl_model *model);
 /* Returns the coarsest level with an error of at most error_m. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Boxes, the commands that they switch on, and the buffers of both. */
+/* Occlusion culling: bounding boxes, the draw commands that their test enables, and the GPU buffers of both. */
 #include "render/gl/occlusion.h"
 
 #include <limits.h>
@@ -10,10 +10,11 @@
 #include "render/matrix.h"
 
 enum { BIND_COMMANDS = 1, BIND_PLACES = 2, STRIP_VERTICES = 14 };
-enum { FIRST_PART = 8 };              /* of all triangles: drawn before anything is tested; then as many as until then */
-static const int BOX_TRIANGLES = 200; /* an asset of fewer costs no more than its box */
-static const double RIM_PART = 1e-3;  /* of its size, all round: places are 32-bit floats */
-static const double RIM_PX = 1;       /* likewise, where it is farthest: what covers a sample is found to parts of a pixel */
+/* The first round draws 1/8 of all triangles untested; each later round draws as many as all rounds before. */
+enum { FIRST_ROUND_DIVISOR = 8 };
+static const int MIN_TESTED_TRIANGLES = 200; /* an asset with fewer triangles costs no more than testing its box */
+static const double MARGIN_PART = 1e-3;      /* margin around a box, relative to its size, since positions are 32-bit floats */
+static const double MARGIN_PX = 1;           /* additional margin at the far side, since sample coverage is not exact */
 
 bool occlusion_init(struct occlusion *occlusion, struct log *log)
 {
@@ -54,10 +55,10 @@ static double rim_of(const struct view_constants *constants, const struct scene_
         distance += far * far;
     }
     double pixel_m = constants->pixel_per_metre > 0 ? 1 / constants->pixel_per_metre : sqrt(distance) / constants->pixel_per_radian;
-    return RIM_PART * sqrt(size) + RIM_PX * pixel_m;
+    return MARGIN_PART * sqrt(size) + MARGIN_PX * pixel_m;
 }
 
-/* False: some of it lies before the near plane, where its faces would be missing. */
+/* Returns false if the box crosses the near plane, where its faces would be missing. */
 static bool make_box(const struct view_constants *constants, const struct scene_asset *asset, struct occlusion_box *box)
 {
     double rim_m = rim_of(constants, asset), clip_from_box[16];
@@ -77,13 +78,13 @@ static bool make_box(const struct view_constants *constants, const struct scene_
     return true;
 }
 
-/* What is brought forward where faces coincide may come out of its box: that is drawn in any case. */
+/* Adds an asset. Assets shifted forward (scene_asset.front) may extend beyond their box, and are drawn untested. */
 static struct occlusion_asset add_asset(struct occlusion *occlusion, const struct frame_context *context, int index)
 {
     const struct scene_asset *asset = &context->gpu_scene->scene->assets[index];
     struct occlusion_asset it = { .boxes_before = occlusion->box_count, .triangles = frame_level(context, index)->triangles };
     struct occlusion_box box = { 0 };
-    it.tested = asset->front == 0 && it.triangles >= BOX_TRIANGLES && make_box(&context->constants, asset, &box);
+    it.tested = asset->front == 0 && it.triangles >= MIN_TESTED_TRIANGLES && make_box(&context->constants, asset, &box);
     if (!it.tested)
         return it;
     mem_grow(&occlusion->boxes, &occlusion->box_capacity, occlusion->box_count + 1, sizeof(*occlusion->boxes));
@@ -135,7 +136,7 @@ size_t occlusion_round(const struct occlusion *occlusion, size_t first)
         all += occlusion->assets[i].triangles;
         before += i < first ? occlusion->assets[i].triangles : 0;
     }
-    int64_t enough = first > 0 ? before : all / FIRST_PART;
+    int64_t enough = first > 0 ? before : all / FIRST_ROUND_DIVISOR;
     while (end < occlusion->asset_count && (end == first || here < enough))
         here += occlusion->assets[end++].triangles;
     return end - first;

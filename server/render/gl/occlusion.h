@@ -7,31 +7,32 @@
 #include "render/gl/draw_batches.h"
 #include "render/frame_context.h"
 
-struct occlusion_box { /* as shaders/occlusion.vert reads it */
+struct occlusion_box { /* layout that shaders/occlusion.vert reads */
     float clip_from_box[16];
-    uint32_t first_place, place_count, unused[2]; /* range of the asset's draw commands (render/gl/draw_batches.h) */
+    /* first_place, place_count: range of the asset's draw commands (render/gl/draw_batches.h) */
+    uint32_t first_place, place_count, unused[2];
 };
-struct occlusion_asset { /* one per visible asset, and one that ends the list */
+struct occlusion_asset { /* one per visible asset, and one more as the end of the list */
     size_t boxes_before;
     bool tested;
     int triangles;
 };
 
-struct occlusion { /* state of the picture drawn last; zero-initialise, then set log */
+struct occlusion { /* state of the frame drawn last; zero-initialise, then set log */
     struct log *log;
     GLuint program, vao, box_buffer;
     struct occlusion_box *boxes;
     struct occlusion_asset *assets;
     size_t box_count, asset_count;
-    size_t box_capacity, asset_capacity; /* in memory */
-    size_t box_room;                     /* on the GPU */
+    size_t box_capacity, asset_capacity; /* capacities in main memory */
+    size_t box_room;                     /* capacity of box_buffer on the GPU, bytes */
 };
 
-/* Compiles the program. Returns false if that fails; it is logged. */
+/* Compiles the program. Returns false on failure, logged. */
 bool occlusion_init(struct occlusion *occlusion, struct log *log);
 void occlusion_finish(struct occlusion *occlusion);
-/* Collects the boxes of all visible assets; call it before opaque draws are collected. Returns false if the picture has fewer than
-   least_triangles triangles: then testing does not pay, and all assets are to be drawn. */
+/* Collects the boxes of all visible assets; call before opaque draws are collected. Returns false if the frame has fewer than
+   least_triangles triangles: testing would not pay, so all assets must be drawn. */
 bool occlusion_begin(struct occlusion *occlusion, const struct frame_context *context, int least_triangles);
 /* Returns how many of the visible assets, from index `first` on, the next round should draw before it tests again. The first round draws an
    eighth of all triangles, each later one but the last as many as all rounds before it. Pure. */
@@ -39,7 +40,7 @@ enum { OCCLUSION_ROUNDS = 6 };
 size_t occlusion_round(const struct occlusion *occlusion, size_t first);
 /* Records the range of draw commands that the box test of an asset enables. */
 void occlusion_decides(struct occlusion *occlusion, const struct occlusion_asset *asset, size_t first_command, size_t count);
-/* Uploads the boxes. Returns false if the GPU is out of memory; that is logged. */
+/* Uploads the boxes. Returns false when the GPU is out of memory, logged. */
 bool occlusion_upload(struct occlusion *occlusion);
 /* Tests the boxes of visible assets first..end-1 against the depth drawn so far. Changes the program, bindings, face culling and polygon
    offset; leaves all other GL state of the pass (render/gl/surface_pass.c) as it was. */

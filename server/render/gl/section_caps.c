@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts the bodies that each pixel's ray is in where it passes the cut, and draws planes there. */
+/* Draws section caps: counts the closed bodies that contain each pixel's ray at the section plane, and draws the plane there. */
 #include "render/gl/section_caps.h"
 
 #include "base/mem.h"
@@ -7,7 +7,7 @@
 #include "render/matrix.h"
 #include "render/gl/surface_pass.h"
 
-enum { MOST_PIXELS = 4 * 1024 * 1024 }; /* with several texels each */
+enum { MAX_SUPERSAMPLED_PIXELS = 4 * 1024 * 1024 }; /* above this size one texel per pixel is used */
 
 bool section_caps_init(struct section_caps *caps, struct log *log)
 {
@@ -50,8 +50,9 @@ static void count_asset(struct section_caps *caps, const struct frame_context *c
     model_draw_closed(&caps->draws, model, frame_level(context, asset));
 }
 
-/* Cuts by the planes that rays come in by. What lies beyond the way out of what is left is met, too: a ray that leaves a body there was in
-   it. In clip space a plane is come in by everywhere or nowhere, by how it rises with depth; neither, where it holds the eye. */
+/* Enables clipping by the planes through which rays enter the remaining space. Geometry beyond the exit stays, because a ray that leaves a
+   body there was inside it. In clip space a plane is an entry everywhere or nowhere, by the sign of its depth coefficient; a plane through
+   the eye is neither. */
 static void clip_entries(const struct frame_context *context)
 {
     const struct clip *clip = &context->view->visibility.clip;
@@ -66,12 +67,12 @@ static void clip_entries(const struct frame_context *context)
     }
 }
 
-/* Returns how many texels there are to a pixel's side; 0: no room for them. */
+/* Counts bodies into a texture. Returns the number of texels along a pixel's side; 0: no memory for the texture. */
 static int count_bodies(struct section_caps *caps, const struct frame_context *context)
 {
     const struct target *target = context->target;
     const struct clip *clip = &context->view->visibility.clip;
-    int texels = target->samples > 1 && target->width_px * target->height_px <= MOST_PIXELS ? 2 : 1;
+    int texels = target->samples > 1 && target->width_px * target->height_px <= MAX_SUPERSAMPLED_PIXELS ? 2 : 1;
     if (!render_texture_fit(&caps->bodies, GL_R16F, GL_COLOR_ATTACHMENT0, target->width_px * texels, target->height_px * texels))
         return 0;
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, caps->bodies.framebuffer);

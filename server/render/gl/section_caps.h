@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pass that caps closed bodies where a section plane cuts them. Caps have a neutral colour, since no sensor measures the field inside.
-   It draws over the resolved picture, with its depth. Thread: the one of the GL context. */
+   The pass draws over the resolved frame and writes its depth. Thread: the one of the GL context. */
 #ifndef RENDER_GL_SECTION_CAPS_H
 #define RENDER_GL_SECTION_CAPS_H
 #include "gpu/target.h"
@@ -12,7 +12,7 @@ struct section_caps {
     struct model_draws draws;
 };
 
-/* Compiles the programs. Returns false if that fails; it is logged. */
+/* Compiles the programs. Returns false on failure, logged. */
 bool section_caps_init(struct section_caps *caps, struct log *log);
 void section_caps_finish(struct section_caps *caps);
 /* Draws the caps of all section planes; does nothing if the view has none. */

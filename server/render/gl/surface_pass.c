@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws assets: with their field, or as muted context. */
+/* Draws assets with their field, or as muted context. */
 #include "render/gl/surface_pass.h"
 
 #include <limits.h>
@@ -9,14 +9,15 @@
 #include "render/plan/culling.h"
 #include "render/matrix.h"
 
-/* Uniform locations and texture units, as in the shaders. */
+/* Uniform locations and texture units; must match the shaders. */
 enum { MATERIAL = 2, TEXTURES = 3 };
-/* Of how much depth changes from pixel to pixel, for each step of scene_asset.front: GPUs round corners to parts of a pixel, each triangle
-   in its own way. */
+/* Polygon offset factor per step of scene_asset.front: GPUs round corners to fractions of a pixel, differently for each triangle, so
+   coincident faces differ in depth by a fraction of their slope. */
 static const double FORWARD_SLOPE = 0.05;
 enum { UNIT_COLORMAP = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LIGHTS = 12, UNIT_SCALARS = 13, UNIT_LINES = 15 };
 
-/* From the beginning. Of textures the moving tier has only the holes that they cut; rich scales and gloss go with a field. */
+/* Returns whether a program is compiled at start. Previews use textures only for the holes they cut; rich scales and gloss exist only with
+   a field. */
 static bool is_used(int tier, int variant)
 {
     if (variant & SURFACE_CLIP)
@@ -77,7 +78,7 @@ static enum surface_program_kind kind_of(const struct frame_context *context, co
     return reference ? SURFACE_PER_FRAGMENT : SURFACE_PICTURE;
 }
 
-/* cut: some of the asset is cut away. */
+/* cut: a section plane cuts the asset. */
 static int choose_variant(const struct frame_context *context, const struct model_material *material, const struct fields_entry *field,
                           bool cut)
 {
@@ -85,7 +86,7 @@ static int choose_variant(const struct frame_context *context, const struct mode
     int variant = field ? SURFACE_FIELD : 0;
     if (field && (context->colormap.lines || view->color_scale.log))
         variant |= SURFACE_RICH;
-    if (!field && view_is_operator(view)) /* grey: no material near the tints that mean limits */
+    if (!field && view_is_operator(view)) /* grey: no material may have a colour close to those that mean alarm limits */
         variant |= SURFACE_RICH;
     if (field && view->look == LOOK_GLOSSY)
         variant |= SURFACE_GLOSSY;
@@ -98,7 +99,7 @@ static int choose_variant(const struct frame_context *context, const struct mode
     return variant | (cut ? SURFACE_CLIP : 0);
 }
 
-/* 0: it could not be made; logged. */
+/* Returns 0 if the program cannot be compiled; logged. */
 static GLuint choose_program(struct surface_pass *pass, const struct frame_context *context, const struct fields_entry *field, int variant)
 {
     enum surface_program_kind kind = kind_of(context, field);
@@ -148,8 +149,8 @@ static void place_instance(const struct frame_context *context, int index, const
     out->normals[2][3] = 0;
 }
 
-/* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. hidden: it is
-   drawn only if the GPU says so. */
+/* Collects one asset's surfaces, either the blended or the opaque ones. The field is never blended, since that would mix its colours.
+   hidden: drawn only if the GPU's occlusion test enables the draw. */
 static void gather(struct surface_pass *pass, struct draw_batches *batches, const struct frame_context *context, int index, bool hidden)
 {
     const struct gpu_scene *gpu_scene = context->gpu_scene;
@@ -177,7 +178,7 @@ static void gather(struct surface_pass *pass, struct draw_batches *batches, cons
         state.program = choose_program(pass, context, field, variant);
         if (!state.program)
             continue;
-        state.two_sided = submesh->double_sided || state.cut; /* the inner side of what is cut shows */
+        state.two_sided = submesh->double_sided || state.cut; /* cut assets show their inner side */
         state.material = looks_at_material(context, variant) ? (int)submesh->material : -1;
         if (!placed) {
             struct draw_instance place;
@@ -207,7 +208,7 @@ static void set_material(const struct frame_context *context, const struct draw_
         glBindTextures(UNIT_MAPS, MODEL_MAPS, material->maps);
 }
 
-/* was: what is set; NULL: nothing. */
+/* Sets the GL state that differs. was: the present state; NULL: unknown. */
 static void set_state(const struct draw_batches *batches, const struct frame_context *context, const struct draw_batch_state *is,
                       const struct draw_batch_state *was)
 {
@@ -235,8 +236,8 @@ static void set_state(const struct draw_batches *batches, const struct frame_con
         set_material(context, is);
 }
 
-/* The batches from `first` on. */
-static void draw_bundles(const struct draw_batches *batches, const struct frame_context *context, size_t first, size_t end)
+/* Draws the batches first..end-1. */
+static void draw_batch_range(const struct draw_batches *batches, const struct frame_context *context, size_t first, size_t end)
 {
     const struct draw_batch_state *was = NULL;
     for (size_t i = first; i < end; i++) {
@@ -279,7 +280,7 @@ static void end_pass(const struct frame_context *context)
 static void draw_gathered(struct draw_batches *batches, const struct frame_context *context)
 {
     if (batches->command_count > 0 && draw_batches_upload(batches, false))
-        draw_bundles(batches, context, 0, batches->count);
+        draw_batch_range(batches, context, 0, batches->count);
     draw_batches_begin(batches, context->gpu_scene->model_count);
 }
 
@@ -288,7 +289,7 @@ static bool leaves_out(struct surface_pass *pass, const struct frame_context *co
     return !context->measured && !context->reference && occlusion_begin(&pass->occlusion, context, pass->least_hiding);
 }
 
-/* In rounds, nearest first: each is tested against all before it. */
+/* Draws in rounds, nearest assets first: each round is tested against the depth of all earlier rounds. */
 static void draw_seen(struct surface_pass *pass, const struct frame_context *context)
 {
     struct occlusion *occlusion = &pass->occlusion;
@@ -312,7 +313,7 @@ static void draw_seen(struct surface_pass *pass, const struct frame_context *con
         end = first + occlusion_round(occlusion, first);
         if (round > 0)
             occlusion_test(occlusion, batches, first, end);
-        draw_bundles(batches, context, round ? ends[round - 1] : 0, ends[round]);
+        draw_batch_range(batches, context, round ? ends[round - 1] : 0, ends[round]);
     }
     batches->command_count = 0;
 }

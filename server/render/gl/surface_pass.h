@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pass that draws the surfaces of all visible assets, for previews and refined pictures. Thread: the one of the GL context. */
+/* The pass that draws the surfaces of all visible assets, for previews and refined frames. Thread: the one of the GL context. */
 #ifndef RENDER_GL_SURFACE_PASS_H
 #define RENDER_GL_SURFACE_PASS_H
 #include "render/gl/draw_batches.h"
 #include "render/gl/occlusion.h"
 #include "render/frame_context.h"
 
-/* Features a program is compiled with, or'ed. Each draw uses the program with the fewest, since a software GL runs every branch.
-   RICH: isolines and scales that are not linear; without FIELD, greys only. */
+/* Features that a program is compiled with, or'ed. Each draw uses the program with the fewest features, since a software GL runs every
+   branch. RICH: isolines and non-linear scales; without FIELD: grey only. */
 enum surface_variant {
     SURFACE_FIELD = 1,
     SURFACE_RICH = 2,
@@ -17,20 +17,20 @@ enum surface_variant {
     SURFACE_VARIANTS = 32
 };
 
-/* What a program writes. All but SURFACE_PICTURE are compiled when first needed. */
+/* What a program outputs. All kinds but SURFACE_PICTURE are compiled when first needed. */
 enum surface_program_kind { SURFACE_PICTURE, SURFACE_PER_FRAGMENT, SURFACE_MEASURE, SURFACE_MEASURE_PER_FRAGMENT, SURFACE_KINDS };
 
 struct surface_pass {
     struct log *log;
     struct occlusion occlusion;
-    int least_hiding; /* least number of triangles for occlusion culling; INT_MAX: never, only clusters are culled */
-    bool one_by_one;  /* draws each asset by its own calls; for comparison in tests */
+    int least_hiding; /* fewest triangles of a frame for occlusion culling; INT_MAX: never, only clusters are culled */
+    bool one_by_one;  /* draws each asset with GL calls of its own; for comparison in tests */
     struct draw_batches opaque, blended;
-    int triangles;                                       /* counts triangles drawn, culled ones left out; the caller resets it */
+    int triangles;                                       /* number of triangles drawn, without culled ones; the caller resets it */
     GLuint programs[SURFACE_KINDS][2][SURFACE_VARIANTS]; /* [kind][refined][features]; 0: not compiled yet */
 };
 
-/* Compiles the programs of pictures. Returns false if that fails; it is logged. */
+/* Compiles the programs of SURFACE_PICTURE. Returns false on failure, logged. */
 bool surface_pass_init(struct surface_pass *pass, struct log *log);
 void surface_pass_finish(struct surface_pass *pass);
 /* Draws all visible assets, opaque ones first. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A short list, newest first. */
+/* A cache of render targets: a fixed array, newest first. */
 #include "render/gl/targets.h"
 
 #include <string.h>
@@ -32,7 +32,7 @@ size_t targets_bytes(const struct targets *targets)
     return bytes;
 }
 
-/* The oldest go; the newest stays. */
+/* Frees the oldest targets beyond the bound; the newest one stays. */
 static void keep_bound(struct targets *targets)
 {
     for (int i = TARGETS - 1; i > 0 && targets->bound_bytes && targets_bytes(targets) > targets->bound_bytes; i--)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A cache of render targets, so that the next picture of the same size needs no allocation. Thread: the one of the GL context. */
+/* A cache of render targets, so that the next frame of the same size needs no allocation. Thread: the one of the GL context. */
 #ifndef RENDER_GL_TARGETS_H
 #define RENDER_GL_TARGETS_H
 #include "gpu/target.h"
@@ -10,14 +10,14 @@ struct targets {               /* zero-initialise */
     size_t bound_bytes;        /* memory limit; one target is kept even above it; 0: no limit but TARGETS */
 };
 
-/* Takes a target of that size out of the cache, or makes one; the caller owns it until targets_give(). Returns false if the GPU is out of
-   memory; that is logged. */
+/* Takes a target of that size from the cache, or creates one; the caller owns it until targets_give(). Returns false when the GPU is out of
+   memory, logged. */
 bool targets_take(struct targets *targets, struct log *log, int width_px, int height_px, int samples, struct target *out);
 /* Puts a target back; the least recently used one is deleted when the cache is full. */
 void targets_give(struct targets *targets, const struct target *target);
 /* Returns the memory of the free targets. */
 size_t targets_bytes(const struct targets *targets);
-/* Sets the memory limit and deletes what is above it. */
+/* Sets the memory limit and deletes the targets beyond it. */
 void targets_bound(struct targets *targets, size_t bytes);
 /* Deletes all free targets. */
 void targets_finish(struct targets *targets);

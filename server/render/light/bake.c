@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Depth maps and compute shaders, cut into bits: one asset on one map, some thousand places, some rows of the ground. */
+/* Bakes light with depth maps and compute shaders, in small steps: one asset on one map, a few thousand points, or some rows of the
+   ground. */
 #include "render/light/bake.h"
 
 #include <math.h>
@@ -12,14 +13,16 @@
 #include "render/matrix.h"
 
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
-static const uint8_t ROUGH_OPENNESS = 190; /* of 255 */
-static const double LARGE_FACE_TEXELS = 8; /* of the sky's maps */
-static const double SUN_MARGIN = 0.002;    /* of its map's width, empty at its rim: taps reach beyond a place */
-static const double OPEN_AT_LEAST = 0.6;   /* where what hid a place, and is as large as the plant, is not shown */
-/* Of a bit, on a processor: vertices, or places in faces, with and without sky, rows of the ground likewise. A GPU takes all at once. */
+static const uint8_t ROUGH_OPENNESS = 190; /* openness (0..255) of every point in a rough set */
+static const double LARGE_FACE_TEXELS = 8; /* a face is large if an edge is this long, in texels of the sky's depth maps */
+static const double SUN_MARGIN = 0.002;    /* empty border of the sun's map, as a fraction of its width: lookups reach beyond a point */
+/* lower bound of openness where the hidden assets are as large as the plant; less where they are smaller */
+static const double OPEN_AT_LEAST = 0.6;
+/* Size of a step where GL runs on a processor: vertices, or points in faces, with and without sky; rows of the ground with and without sky.
+   A GPU takes everything in one step. */
 enum { SKY_VERTICES = 4096, SUN_VERTICES = 65536, SKY_ROWS = 8, SUN_ROWS = 128 };
 
-/* As in shaders/bake.comp. */
+/* Must match shaders/bake.comp. */
 struct directions_block {
     float map_from_plant[SKY_DIRECTIONS][16];
     float direction[SKY_DIRECTIONS][4];
@@ -30,7 +33,7 @@ struct bake {
     const struct bake_programs *programs;
     const double *plant_from_ground;
     struct light_set set;
-    struct visibility start; /* of the plant: what the sky's maps have */
+    struct visibility start; /* the plant's initial visibility, with which the sky's maps are drawn */
     bool with_sky;
     struct directions_block *directions;
     GLuint sky_maps, directions_buffer, framebuffer;
@@ -38,7 +41,7 @@ struct bake {
     enum { BAKE_SKY_MAPS, BAKE_SUN_MAP, BAKE_GROUND, BAKE_FACES, BAKE_VERTICES, BAKE_DONE } part;
     int direction, row;
     size_t asset, place, vertex;
-    struct bake_faces faces; /* of the asset whose vertices are next */
+    struct bake_faces faces; /* large faces of the asset whose vertices come next */
 };
 
 bool bake_programs_init(struct bake_programs *programs, struct log *log)
@@ -75,7 +78,7 @@ void light_set_finish(struct light_set *set, const struct gpu_scene *gpu_scene)
 
 /* --- maps ---------------------------------------------------------------------------------------------------------------------- */
 
-/* A depth texture to compare with; outside it nothing stands in the light. */
+/* Creates a depth texture for comparisons; points outside the map are lit. */
 static GLuint make_map(GLenum kind, int size_px, int layers)
 {
     static const float nothing[4] = { 0 };
@@ -100,7 +103,7 @@ static int sun_map_px(const struct gpu_scene *gpu_scene)
     return SUN_MAP_PX < gpu_scene->gl->max_texture_px ? SUN_MAP_PX : gpu_scene->gl->max_texture_px;
 }
 
-/* One asset, if it is shown. layer -1: the texture is not an array. error_m: of the level of detail. */
+/* Draws one asset into a map if it is shown. layer: -1 if the texture is no array. error_m: of the level of detail. */
 static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, const double clip_from_plant[16],
                         const struct visibility *shown, double error_m)
 {
@@ -121,7 +124,8 @@ static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, c
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
 }
 
-/* Evenly over the sphere (Fibonacci lattice). Ground throws back less than half of what the sky gives. */
+/* Directions evenly distributed over the sphere (Fibonacci lattice). Directions from below have less than half the brightness of the sky:
+   light reflected from the ground. */
 static void sky_direction(const struct gpu_scene *gpu_scene, int i, double towards[3], float *brightness)
 {
     double height = 1 - (2 * i + 1.0) / SKY_DIRECTIONS, angle = i * 2.399963229728653, flat = sqrt(1 - height * height);
@@ -238,7 +242,7 @@ static void bind_vertices(const struct bake *bake)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, bake->faces.sums);
 }
 
-/* Without memory for it, vertices are looked at alone. */
+/* Bakes points inside large faces. If there is no memory for them, only vertices are baked. */
 static void faces_bit(struct bake *bake)
 {
     const struct scene_asset *asset = &bake->gpu_scene->scene->assets[bake->asset];

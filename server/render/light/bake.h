@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bakes one set of light in small steps, so that pictures can be drawn in between: a shadow map of the sun, and the light that reaches each
-   vertex and the ground. Sky light and openness (ambient occlusion) come from depth maps taken from 32 directions. Openness depends on
-   neither sun nor environment, so it is copied from a set that has it, or read from a file. It is that of the whole plant; where assets are
-   hidden, it is only kept from being too dark. Thread: the one of the GL context. */
+/* Bakes one light set in small steps, so that frames can be drawn in between: a shadow map of the sun, and the light that reaches each
+   vertex and the ground. Sky light and openness (ambient occlusion) come from depth maps in 32 directions. Openness depends on neither sun
+   nor environment, so it is copied from another set, or read from a file. It is that of the whole plant; where assets are hidden, only a
+   lower bound is applied. Thread: the one of the GL context. */
 #ifndef RENDER_BAKE_H
 #define RENDER_BAKE_H
 #include "gpu/pool.h"
@@ -10,17 +10,17 @@
 #include "render/light/openness.h"
 
 struct light_key {
-    double towards[3];       /* direction to the sun; plant frame, unit length */
-    int environment;         /* its number (render/light/environments.h) */
+    double towards[3];       /* unit vector towards the sun, in the plant frame */
+    int environment;         /* number of the environment (render/light/environments.h) */
     struct visibility shown; /* assets that cast shadows */
-    bool rough;              /* without openness: every place is taken to be equally open */
+    bool rough;              /* without openness: every point is taken to be equally open */
 };
 
 struct light_set {
     uint64_t id; /* unique, never reused; 0: empty */
     struct light_key key;
     double texture_from_plant[16]; /* to texture coordinates and depth of sun_map */
-    double texel_m, depth_m;       /* of sun_map: side of a texel; range of its depths */
+    double texel_m, depth_m;       /* of sun_map: side of a texel, and range of depth */
     GLuint sun_map;
     GLuint ground; /* RG8: sun and openness of the ground */
     struct pool *pool;
@@ -33,20 +33,20 @@ struct light_set {
 struct bake_programs {
     GLuint sky, sun, faces_sky, faces_sun, ground_sky, ground_sun;
 };
-/* Compiles the programs. Returns false if that fails; it is logged. */
+/* Compiles the programs. Returns false on failure, logged. */
 bool bake_programs_init(struct bake_programs *programs, struct log *log);
 void bake_programs_finish(struct bake_programs *programs);
 
 struct bake;
-/* Returns the lower bound of openness, 0..1, when only `shown` is visible: what hidden assets covered must not stay dark. */
+/* Returns the lower bound of openness, 0..1, for this visibility: surfaces that hidden assets covered must not stay dark. */
 double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibility *shown);
 /* Begins to bake a set for `key`. from: a set to copy openness from; it is read during the call only, must not be rough, and must have no
-   larger bake_least_open(). kept: where from is NULL, the plant's openness, read during the call only. Both NULL: openness is baked as
-   well, which is most of the work, unless the key is rough. Returns NULL if the GPU is out of memory; that is logged. The caller ends it
-   with bake_end() or bake_abandon(). */
+   larger bake_least_open(). kept: where `from` is NULL, the plant's openness, read during the call only. Both NULL: openness is baked as
+   well, which is most of the work, unless the key is rough. The caller ends the bake with bake_end() or bake_abandon(). Returns NULL when
+   the GPU is out of memory, logged. */
 struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_programs *programs, const double plant_from_ground[16],
                         const struct light_key *key, const struct light_set *from, struct openness *kept);
-/* Returns the key it was begun with. */
+/* Returns the key that the bake was begun with. */
 const struct light_key *bake_key(const struct bake *bake);
 /* Issues the next few milliseconds of work; the key's environment must be bound (render/light/environments.h). Returns true once all work
    is issued. */
@@ -57,7 +57,7 @@ bool bake_end(struct bake **bake, struct light_set *set);
 /* Frees *bake without a result and sets it to NULL. Accepts a pointer to NULL. */
 void bake_abandon(struct bake **bake);
 
-/* Returns the GPU memory of a set of this scene. Pure. */
+/* Returns the bytes of GPU memory that one light set of this scene takes. Pure. */
 size_t bake_bytes(const struct gpu_scene *gpu_scene);
 /* Deletes the textures and buffers of a set. */
 void light_set_finish(struct light_set *set, const struct gpu_scene *gpu_scene);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which triangles of an asset are large. */
+/* Finds the large triangles of an asset. */
 #include "render/light/bake_faces.h"
 
 #include "base/mem.h"

@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Large triangles of one asset: light is sampled inside them too, since otherwise one vertex in a dark corner would darken the whole
-   triangle. Samples are distributed to the corners by barycentric weight (the right-hand side of Kavan, Bargteil and Sloan, "Least
-   squares vertex baking", 2011, with its matrix lumped). Private to bake.c. Thread: the one of the GL context. */
+/* Large triangles of one asset. Light is also sampled inside them, since otherwise one vertex in a dark corner would darken the whole
+   triangle. Samples are distributed to the corners by barycentric weight (right-hand side of Kavan, Bargteil and Sloan, "Least squares
+   vertex baking", 2011, with a lumped matrix). Private to bake.c. Thread: the one of the GL context. */
 #ifndef RENDER_BAKE_FACES_H
 #define RENDER_BAKE_FACES_H
 #include "render/gl/gpu_scene.h"
 
-enum { BAKE_FACE_SAMPLES = 6 }; /* per triangle; as in shaders/bake.comp */
+enum { BAKE_FACE_SAMPLES = 6 }; /* per triangle; must match shaders/bake.comp */
 
 struct bake_faces {
     size_t count;
     GLuint corners; /* buffer: three vertex indices per triangle */
-    GLuint sums;    /* buffer, per vertex: sums of weight, openness and sun, in 256ths */
+    GLuint sums;    /* buffer, per vertex: sums of weight, openness and sun, in units of 1/256 */
 };
 
-/* Finds the triangles of the finest level with an edge of at least least_m. Returns false if the GPU is out of memory; that is logged, and
-   there are none then. */
+/* Finds the triangles of the finest level with an edge of at least least_m. Returns false when the GPU is out of memory, logged; `count` is
+   0 then. */
 bool bake_faces_init(struct bake_faces *faces, const struct gpu_scene *gpu_scene, size_t asset, double least_m);
 /* Deletes the buffers and sets count to 0. */
 void bake_faces_finish(struct bake_faces *faces);

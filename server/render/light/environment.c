@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Convolutions of the surroundings, on the workers. */
+/* Convolves environment maps into irradiance and prefiltered reflections, on the workers. */
 #include "render/light/environment.h"
 
 #include <math.h>
@@ -9,23 +9,25 @@
 #include "base/mem.h"
 #include "render/light/ggx.h"
 
-enum { SKY_WIDTH = 8, SKY_HEIGHT = 256 }; /* the same all around: as many columns as sums of harmonics need */
+/* size of the built-in sky, which varies with elevation only; the sums of harmonics need a few columns */
+enum { SKY_WIDTH = 8, SKY_HEIGHT = 256 };
 enum { BASE_PX = 256, PYRAMID = 6, SAMPLES = 128 };
-static const double BRIGHTEST = 24; /* times the mean: brighter spots are the sun or lamps, and the sun is one of its own */
-/* Rough layers are smooth: worked out small and enlarged. */
+/* radiance is clipped at this multiple of the mean: brighter spots are sun or lamps, and the sun is a light of its own */
+static const double MAX_RADIANCE_FACTOR = 24;
+/* Resolution per roughness layer: rough layers are smooth, so they are computed at low resolution and enlarged. */
 static const int layer_px[ENVIRONMENT_LAYERS] = { 128, 128, 128, 64, 64, 32, 32, 32 };
 
-struct environment_source { /* equirectangular, as the image; then octahedral, plant axes */
+struct environment_source { /* an environment map: first equirectangular like its image, then an octahedral pyramid in plant axes */
     const float (*pixels)[4];
     int width, height;
-    bool y_up, even; /* even: differs by height alone, as the built-in sky */
-    double factor[3], most; /* most: of the brightest channel, before the factor */
+    bool y_up, even; /* radiance depends on elevation only, as in the built-in sky */
+    double factor[3], most; /* most: limit of the brightest channel, before the factor */
     float (*pyramid[PYRAMID])[4];
 };
 
 /* --- directions ---------------------------------------------------------------------------------------------------------------- */
 
-/* Towards the texel's centre; the mapping of `mirrored`. */
+/* Returns the direction of a texel's centre in the octahedral mapping of `mirrored`. */
 static void texel_direction(int x, int y, int side_px, double towards[3])
 {
     double u = (2.0 * x) / (side_px - 1) - 1, v = (2.0 * y) / (side_px - 1) - 1, z = 1 - fabs(u) - fabs(v);
@@ -40,7 +42,7 @@ static void texel_direction(int x, int y, int side_px, double towards[3])
     towards[2] = z / size;
 }
 
-/* Place in a square of that side, 0 to side - 1. */
+/* Returns the position of a direction in an octahedral square with this side: 0 to side_px - 1. */
 static void texel_of(const double towards[3], int side_px, double *x, double *y)
 {
     double sum = fabs(towards[0]) + fabs(towards[1]) + fabs(towards[2]), u = towards[0] / sum, v = towards[1] / sum;
@@ -67,7 +69,7 @@ static void bilinear(const float (*texels)[4], int width, int height, double x, 
 
 /* --- the source ------------------------------------------------------------------------------------------------------------------ */
 
-/* The built-in sky by height over the horizon: bright there, bluer above, over light ground. */
+/* Radiance of the built-in sky by elevation: bright at the horizon, bluer above, over a light ground. */
 static void sky_color(double height, float out[4])
 {
     static const double horizon[3] = { 1.13, 1.12, 1.10 }, zenith[3] = { 0.86, 0.96, 1.06 }, ground[3] = { 0.43, 0.42, 0.41 };
@@ -88,7 +90,7 @@ static float (*make_sky(void))[4]
     return pixels;
 }
 
-/* Towards the pixel's centre, plant axes. */
+/* Returns the direction of a pixel's centre in plant axes. */
 static void pixel_direction(const struct environment_source *source, int x, int y, double towards[3])
 {
     double down = M_PI * (y + 0.5) / source->height, turn = 2 * M_PI * (x + 0.5) / source->width - M_PI;
@@ -111,7 +113,7 @@ static void clipped(const struct environment_source *source, const float pixel[4
         out[i] *= scale * source->factor[i];
 }
 
-/* Real spherical harmonics without their factors, which are below. */
+/* Real spherical harmonics without their constant factors (term_factors). */
 static void terms_of(const double n[3], double terms[ENVIRONMENT_TERMS])
 {
     const double all[ENVIRONMENT_TERMS] = { 1,           n[1],        n[2], n[0], n[0] * n[1], n[1] * n[2], 3 * n[2] * n[2] - 1,
@@ -119,7 +121,7 @@ static void terms_of(const double n[3], double terms[ENVIRONMENT_TERMS])
     memcpy(terms, all, sizeof(all));
 }
 
-/* Squares of the factors of the real harmonics, times what the cosine lobe leaves of each band over pi. */
+/* Squared factors of the real harmonics, times the cosine lobe's coefficient of each band over pi. */
 static const double term_factors[ENVIRONMENT_TERMS] = {
     0.079577472, 0.238732415 * 2 / 3, 0.238732415 * 2 / 3, 0.238732415 * 2 / 3, 1.092548431 * 1.092548431 / 4,
     1.092548431 * 1.092548431 / 4, 0.315391565 * 0.315391565 / 4, 1.092548431 * 1.092548431 / 4, 0.546274215 * 0.546274215 / 4,
@@ -152,7 +154,7 @@ static void add_up(const struct environment_source *source, struct sums *sums)
     sums->mean /= sums->solid_angle;
 }
 
-/* Clips what is too bright, then exposes and balances. False: there is no light from above. */
+/* Clips bright spots, then applies exposure and white balance. Returns false if no light comes from above. */
 static bool expose(struct environment_source *source, struct environment *environment)
 {
     struct sums sums;
@@ -160,7 +162,7 @@ static bool expose(struct environment_source *source, struct environment *enviro
         source->factor[i] = 1;
     source->most = INFINITY;
     add_up(source, &sums);
-    source->most = BRIGHTEST * sums.mean;
+    source->most = MAX_RADIANCE_FACTOR * sums.mean;
     add_up(source, &sums);
     for (int i = 0; i < 3; i++) {
         if (!(sums.level[i] > 1e-9))
@@ -188,11 +190,11 @@ struct environment_job {
     struct environment_source *source;
     float (*out)[4];
     int side_px, layer;
-    const struct lobe *lobe; /* of the layer; the first has none */
+    const struct lobe *lobe; /* of the layer; NULL for the first layer, a perfect mirror */
 };
 
-/* The texel of the same light that is worked out for all of them: the mapping folds a sky that is the same all around into eight
-   triangles alike, or, where its height is along the mapping's y, into two halves. */
+/* Returns the one texel that is computed for all texels of equal light. An even sky repeats in the octahedral mapping: in eight equal
+   triangles, or with y up in two halves. */
 static size_t twin_of(const struct environment_source *source, int side_px, size_t i)
 {
     int x = (int)(i % (size_t)side_px), y = (int)(i / (size_t)side_px);
@@ -212,7 +214,7 @@ static void copy_to_twins(const struct environment_source *source, int side_px, 
         memcpy(texels[i], texels[twin_of(source, side_px, i)], sizeof(*texels));
 }
 
-/* The base of the pyramid: the mean of 4 x 4 places in each texel. */
+/* Fills rows of the pyramid's base: each texel is the mean of 4 x 4 points. */
 static void base_rows(void *arg, size_t begin, size_t end)
 {
     struct environment_job *job = arg;
@@ -261,7 +263,7 @@ static void frame_of(const double n[3], double t[3], double b[3])
     vec_cross(n, t, b);
 }
 
-/* The level of the pyramid whose texels are as large as the sample is wide. */
+/* Returns the pyramid level whose texels are as large as the solid angle of a sample. */
 static int level_of(double alpha, double n_h)
 {
     double d = n_h * n_h * (alpha * alpha - 1) + 1, density = alpha * alpha / (M_PI * d * d) / 4;
@@ -270,7 +272,7 @@ static int level_of(double alpha, double n_h)
     return level < PYRAMID - 1 ? level : PYRAMID - 1;
 }
 
-struct lobe { /* rays around a normal, the same for each texel of a layer */
+struct lobe { /* sample rays around a normal, the same for each texel of a layer */
     int count, level[SAMPLES];
     double n_l[SAMPLES], flat[SAMPLES], cosine[SAMPLES], sine[SAMPLES];
 };

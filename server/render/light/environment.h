@@ -20,9 +20,9 @@ struct environment {
     float (*mirrored)[4];
 };
 
-/* image: equirectangular, its middle row the horizon, its middle column towards +x of the plant;
-   NULL: the built-in sky. y_up: +y of the plant is up; else +z. Keeps no pointer to the image. Free with environment_finish().
-   Returns false if no light comes from above in some colour channel: a black image, or one without, say, any blue. */
+/* image: equirectangular, its middle row the horizon, its middle column towards +x of the plant; NULL: the built-in sky. y_up: +y of the
+   plant is up; else +z. Keeps no pointer to the image. Free with environment_finish(). Returns false if no light comes from above in a
+   colour channel: a black image, or one without any blue. */
 bool environment_init(struct environment *environment, const struct image_float *image, bool y_up, struct workers *workers);
 void environment_finish(struct environment *environment);
 

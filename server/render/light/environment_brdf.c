@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How much of even surroundings a surface reflects: GGX with height-correlated Smith masking, as glTF has it. */
+/* Computes which part of a uniform environment a surface reflects: GGX with height-correlated Smith masking, as glTF specifies. */
 #include "render/light/environment.h"
 #include "render/light/ggx.h"
 
 enum { SAMPLES = 512 };
 
-struct facets { /* towards which light is mirrored, of one roughness */
+struct facets { /* half vectors sampled from the GGX distribution of one roughness */
     double alpha, n_h[SAMPLES], side[SAMPLES];
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tasks for the workers, and what they make on the GPU. */
+/* Loads environment maps on the workers and uploads the results to the GPU. */
 #include "render/light/environments.h"
 
 #include <pthread.h>
@@ -13,7 +13,7 @@
 
 enum { SOURCE_MAX_PX = 1024, BLOCK_BINDING = 1, UNIT_MIRRORED = 8, UNIT_BRDF = 9 };
 
-/* Lives until the worker and the renderer are both done with it. */
+/* Shared by worker and renderer: freed when both have released it. */
 struct environment_task {
     atomic_int refs;
     struct log *log;
@@ -55,7 +55,7 @@ static bool read_task(const struct environment_task *task, struct environment *e
     return good;
 }
 
-/* On a worker. */
+/* Runs on a worker. */
 static void run_task(void *arg)
 {
     struct environment_task *task = arg;
@@ -99,12 +99,12 @@ static bool upload(const struct environments *environments, struct environment_s
     return slot->irradiance && gl_no_errors();
 }
 
-/* What is the same for every renderer is computed once, and kept until the process ends. */
+/* Tables that are the same for every renderer are computed once and kept until the process ends. */
 static pthread_mutex_t lock_built_in = PTHREAD_MUTEX_INITIALIZER;
 
 static const float (*built_in_brdf(void))[2]
 {
-    static float texels[ENVIRONMENT_BRDF_PX * ENVIRONMENT_BRDF_PX][2]; /* under the lock while they are made */
+    static float texels[ENVIRONMENT_BRDF_PX * ENVIRONMENT_BRDF_PX][2]; /* written under the lock */
     static bool made;
     pthread_mutex_lock(&lock_built_in);
     if (!made)
@@ -128,7 +128,7 @@ static void make_brdf(struct environments *environments)
 
 static const struct environment *built_in_sky(bool y_up, struct workers *workers)
 {
-    static struct environment skies[2]; /* under the lock while they are made */
+    static struct environment skies[2]; /* written under the lock */
     pthread_mutex_lock(&lock_built_in);
     if (!skies[y_up].mirrored)
         environment_init(&skies[y_up], NULL, y_up, workers);
@@ -154,7 +154,7 @@ void environments_finish(struct environments *environments)
         struct environment_slot *slot = &environments->slots[i];
         glDeleteBuffers(1, &slot->irradiance);
         glDeleteTextures(1, &slot->mirrored);
-        if (i > 0) /* the sky stays */
+        if (i > 0) /* slot 0, the built-in sky, is shared */
             environment_finish(&slot->of);
         task_unref(&slot->task);
     }
@@ -183,7 +183,7 @@ bool environments_wait(struct environments *environments, int number, int64_t ti
     if (!wait_done(slot->task, timeout_ns))
         return false;
     if (slot->task->good) {
-        slot->of = slot->task->environment; /* the worker is done with it */
+        slot->of = slot->task->environment; /* the worker no longer accesses the task */
         slot->task->environment = (struct environment){ 0 };
     }
     if (slot->of.mirrored && !upload(environments, slot)) {

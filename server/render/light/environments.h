@@ -14,32 +14,33 @@
 
 struct environment_slot {
     struct environment of;
-    GLuint irradiance, mirrored; /* the same as a uniform buffer and a 3D texture; 0: not loaded (yet) */
+    GLuint irradiance, mirrored; /* `of` as a uniform buffer and a 3D texture; 0: not loaded */
     struct environment_task *task;
 };
 struct environments {
     struct gl *gl;
     struct environment_slot slots[1 + PLANT_ENVIRONMENTS];
     int count;
-    const float (*brdf_texels)[2]; /* environment_brdf() of ENVIRONMENT_BRDF_PX; of all renderers */
-    GLuint brdf;             /* texture of these */
+    const float (*brdf_texels)[2]; /* environment_brdf() of ENVIRONMENT_BRDF_PX; shared by all renderers */
+    GLuint brdf;             /* texture of brdf_texels */
 };
 enum { ENVIRONMENT_BRDF_PX = 48 };
 
-struct environment_light { /* what surfaces are lit by */
+struct environment_light { /* image-based light for shading */
     const struct environment *of;
     const float (*brdf)[2];
 };
 
-/* Uploads the sky and starts to load the others. plant and workers must outlive it. Returns false if the GPU is out of memory; that is
-   logged. */
+/* Uploads the built-in sky and starts to load the plant's environments. plant and workers must outlive the environments. Returns false when
+   the GPU is out of memory, logged. */
 bool environments_init(struct environments *environments, struct gl *gl, const struct plant *plant, struct workers *workers);
 void environments_finish(struct environments *environments);
-/* Waits at most timeout_ns for one to load. Returns true if it is final: loaded, or unreadable, which is logged; then the sky is used. */
+/* Waits up to timeout_ns for an environment to load. Returns true once its state is final: loaded, or unreadable, which is logged; the sky
+   is used then. */
 bool environments_wait(struct environments *environments, int number, int64_t timeout_ns);
-/* Returns one; the sky as long as it is not loaded. Valid until the environments are finished. */
+/* Returns an environment's light, or the sky's until the environment is loaded. Valid until environments_finish(). */
 struct environment_light environments_get(const struct environments *environments, int number);
-/* Binds that for all programs that include shaders/environment.glsl. */
+/* Binds an environment for all programs that include shaders/environment.glsl. */
 void environments_bind(const struct environments *environments, int number);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A short list of sets of light, and the one that is being baked. */
+/* The cache of light sets, and the bake in progress. */
 #include "render/light/light.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "base/mem.h"
 
 static const size_t LIGHT_BYTES = 256 << 20;
-static const int64_t READ_NS = 60 * NS_PER_S; /* a picture of surroundings is read by then */
+static const int64_t LOAD_TIMEOUT_NS = 60 * NS_PER_S; /* an environment map is loaded within this time */
 
 static void find_ground(struct light *light)
 {
@@ -20,7 +20,8 @@ static void find_ground(struct light *light)
     for (int i = 0; i < 2; i++)
         side_m = fmax(side_m, scene->bounds_max_m[across[i]] - scene->bounds_min_m[across[i]]);
     side_m += 1.2 * gpu_scene->radius_m;
-    light->ground_height_m = scene->bounds_min_m[up] - 0.001 * gpu_scene->radius_m; /* nothing of the plant in its plane */
+    /* below the plant, so that no surface lies in the ground's plane */
+    light->ground_height_m = scene->bounds_min_m[up] - 0.001 * gpu_scene->radius_m;
     memset(light->plant_from_ground, 0, sizeof(light->plant_from_ground));
     for (int i = 0; i < 2; i++) {
         light->plant_from_ground[4 * i + across[i]] = side_m;
@@ -106,7 +107,7 @@ void light_drop(struct light *light, const struct light_key *usual)
             drop(light, &light->sets[i]);
 }
 
-/* An empty place for another set, with the bound kept as far as what is held allows. NULL: all are held. */
+/* Returns an empty slot, after dropping sets beyond the bound as far as they are not held. NULL: all are held. */
 static struct light_set *make_room(struct light *light, size_t bytes)
 {
     for (;;) {
@@ -124,7 +125,7 @@ static struct light_set *make_room(struct light *light, size_t bytes)
     }
 }
 
-/* One that knows how open places are. NULL: none does. */
+/* Returns a set from which openness can be copied. NULL: there is none. */
 static const struct light_set *find_open(const struct light *light, const struct light_key *key)
 {
     double most = bake_least_open(light->gpu_scene, &key->shown);
@@ -147,7 +148,7 @@ static bool begin(struct light *light, const struct light_key *key)
     return light->bake != NULL;
 }
 
-/* Once: where assets are hidden, a set has not the openness of the whole plant. */
+/* Starts to write openness to its file, once. Sets baked while assets were hidden are no source: their openness has a lower bound. */
 static void keep_openness(struct light *light, const struct light_set *set)
 {
     if (light->kept || set->key.rough || bake_least_open(light->gpu_scene, &set->key.shown) > 0)
@@ -163,7 +164,7 @@ static void drop_rough(struct light *light)
             drop(light, &light->sets[i]);
 }
 
-/* All of it was issued. */
+/* Ends a bake whose work is all issued and puts the set into the cache. Returns NULL on failure, logged. */
 static struct light_set *end(struct light *light)
 {
     struct light_set baked, *set;
@@ -189,7 +190,7 @@ struct light_set *light_get(struct light *light, const struct light_key *key)
     struct light_set *set = find(light, key);
     if (set)
         return set;
-    environments_wait(light->environments, key->environment, READ_NS);
+    environments_wait(light->environments, key->environment, LOAD_TIMEOUT_NS);
     if (light->bake && !same(bake_key(light->bake), key))
         bake_abandon(&light->bake);
     if (!light->bake && !begin(light, key))
@@ -209,7 +210,7 @@ bool light_step(struct light *light, const struct light_key *key, int64_t budget
     if (!environments_wait(light->environments, key->environment, budget_ns / 2))
         return false;
     if (!light->bake && !begin(light, key))
-        return true; /* light_get fails likewise */
+        return true; /* light_get() fails in the same way */
     environments_bind(light->environments, bake_key(light->bake)->environment);
     while (!issued && spent_ns + last_ns <= budget_ns) {
         issued = bake_step(light->bake);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A cache of baked light: shadow map, and light at each vertex and on the ground, baked once per position of the sun, environment and
-   visible assets (render/light/bake.h), kept within a memory limit. Thread: the one of the GL context. */
+/* A cache of baked light: shadow map, and light at each vertex and on the ground, baked once per direction of the sun, environment and
+   visible assets (render/light/bake.h), within a memory limit. Thread: the one of the GL context. */
 #ifndef RENDER_LIGHT_H
 #define RENDER_LIGHT_H
 #include "render/light/bake.h"
@@ -11,31 +11,31 @@ struct light {
     const struct gpu_scene *gpu_scene;
     struct environments *environments;
     struct bake_programs programs;
-    double plant_from_ground[16]; /* from texture coordinates of the ground and height above it */
+    double plant_from_ground[16]; /* from the ground's texture coordinates and the height above the ground */
     double ground_height_m;       /* along `up` */
     size_t bound_bytes, bytes;    /* limit and sum over all sets; a held set is never dropped */
     struct light_set sets[LIGHT_SETS];
     struct bake *bake; /* in progress; NULL: none */
     uint64_t uses, last_id;
-    bool kept; /* openness is in its file, or cannot be */
-    struct openness_writer *writer; /* of that file; NULL: none */
+    bool kept; /* openness is written to its file, or the attempt was made */
+    struct openness_writer *writer; /* writer of that file; NULL: none */
 };
 
-/* Compiles the programs; bakes nothing yet. Returns false if that fails; it is logged. */
+/* Compiles the programs; bakes nothing yet. Returns false on failure, logged. */
 bool light_init(struct light *light, const struct gpu_scene *gpu_scene, struct environments *environments);
 void light_finish(struct light *light);
-/* Returns the set for `key`; bakes it now, and waits, if it is not cached. A rough one takes a fraction of the time and is meant to be used
-   until the first full set is ready. Returns NULL if the GPU is out of memory; that is logged. */
+/* Returns the set for `key`; if it is not cached, bakes it and waits. A rough set takes a fraction of the time and is used until the first
+   full set is ready. Returns NULL when the GPU is out of memory, logged. */
 struct light_set *light_get(struct light *light, const struct light_key *key);
-/* Returns the cached set most similar to `key`: same environment first, then same visible assets, then the nearest sun. Returns NULL if
-   none is cached. */
+/* Returns the cached set most similar to `key`: same environment first, then same visible assets, then the nearest sun. NULL: none is
+   cached. */
 struct light_set *light_near(struct light *light, const struct light_key *key);
 /* Bakes the set for `key` for about budget_ns, at least one step, unless another set is being baked. Returns true if the set is cached, so
    that light_get() does not wait. */
 bool light_step(struct light *light, const struct light_key *key, int64_t budget_ns);
-/* Sets the memory limit and drops sets above it, but keeps two: one to show while the next is baked. */
+/* Sets the memory limit and drops sets beyond it, but keeps two: one to show while the next is baked. */
 void light_bound(struct light *light, size_t bytes);
-/* Drops all sets but the one for `usual`, or, where that is not cached, the one most similar to it; abandons a bake of any other. */
+/* Drops all sets but the one for `usual`, or, if that is not cached, the most similar one; abandons a bake of any other set. */
 void light_drop(struct light *light, const struct light_key *usual);
 /* Hold and release a set; a held set is not dropped. light_release() accepts NULL. */
 void light_hold(struct light_set *set);

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The key names all that openness depends on: what is drawn on the maps of the sky, where, and by what. */
+/* Reads and writes the openness file. Its key hashes everything that openness depends on: assets, their placement and files, GL driver and
+   program. */
 #include "render/light/openness.h"
 
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* the hash state is on the stack */
 #include <xxhash.h>
 
 #include "base/mem.h"

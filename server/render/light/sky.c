@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One triangle at the far plane, and one square of ground. */
+/* Draws the sky as one triangle at the far plane, and the ground as one square. */
 #include "render/light/sky.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "gpu/program.h"
 #include "render/matrix.h"
 
-/* What the frame shows where there is nothing, even and bright: for an operator, not a game. height: over the horizon, -1 to 1. sRGB. */
+/* Backdrop colour (sRGB) by elevation, -1 to 1: even and bright, for an operator's screen rather than a game. */
 static double backdrop(double height, bool dark, int channel)
 {
     static const double zenith[2][3] = { { 0.757, 0.816, 0.870 }, { 0.090, 0.110, 0.135 } };
@@ -18,7 +18,8 @@ static double backdrop(double height, bool dark, int channel)
     return from + (end - from) * pow(fmin(height > 0 ? height : -1.6 * height, 1), 0.65);
 }
 
-/* A row rounds at another place for each pixel of a 4x4 tile, so that its slow gradients show no steps. */
+/* Fills the backdrop table. Each row adds another dither offset, for the 16 pixels of a 4x4 tile, so that the slow gradients show no
+   bands. */
 static void make_backdrops(struct sky *sky)
 {
     static const int bayer[SKY_ROUNDINGS] = { 0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5 };
@@ -77,7 +78,7 @@ static void draw_ground(const struct sky *sky, const struct frame_context *conte
     glUniformMatrix4fv(1, 1, GL_FALSE, matrix);
     glBindTextureUnit(1, context->light->ground);
     glBindTextureUnit(2, context->light->sun_map);
-    glEnable(GL_DEPTH_CLAMP); /* the far plane only holds the plant */
+    glEnable(GL_DEPTH_CLAMP); /* the far plane encloses the plant only, not the ground */
     glEnable(GL_BLEND);
     glBlendFunc(GL_ZERO, GL_SRC_COLOR);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);

@@ -9,16 +9,16 @@
 enum { SKY_BACKDROPS = 2048, SKY_ROUNDINGS = 16, SKY_ROWS = 2 * SKY_ROUNDINGS };
 struct sky {
     GLuint sky_program, ground_programs[2]; /* [refined] */
-    uint32_t (*texels)[SKY_BACKDROPS];      /* SKY_ROWS: blue | green << 8 | red << 16 | 0xff000000 */
-    GLuint backdrops;                       /* texture of these */
+    uint32_t (*texels)[SKY_BACKDROPS];      /* SKY_ROWS rows: blue | green << 8 | red << 16 | 0xff000000 */
+    GLuint backdrops;                       /* the same as a texture */
     GLuint vao;                             /* without attributes */
 };
 
-/* Compiles the programs and computes the backdrops. Returns false if that fails; it is logged. */
+/* Compiles the programs and computes the backdrops. Returns false on failure, logged. */
 bool sky_init(struct sky *sky, struct log *log);
 void sky_finish(struct sky *sky);
-/* Returns whether the ground is drawn: the camera is above it, and no asset is cut, hidden or ghosted, since its shadow is that of the
-   whole plant. Pure. */
+/* Returns whether the ground is drawn: the camera is above it, and no asset is cut, hidden or ghosted, since the ground's shadow is that of
+   the whole plant. Pure. */
 bool sky_sees_ground(const struct frame_context *context, const struct light *light);
 /* Draws backdrop and ground behind everything drawn so far. */
 void sky_draw(const struct sky *sky, const struct frame_context *context, const struct light *light);

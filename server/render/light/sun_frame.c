@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The boxes of all assets, seen from the sun and turned until the longer side is shortest. */
+/* Fits the sun's frustum: bounds all assets as seen from the sun, turned so that the longer side is shortest. */
 #include "render/light/sun_frame.h"
 
 #include <math.h>
@@ -7,10 +7,10 @@
 #include "base/math/vec.h"
 #include "render/matrix.h"
 
-enum { TURNS = 32 }; /* tried, in a quarter of a circle */
+enum { TRIED_ANGLES = 32 }; /* number of angles tried in a quarter turn */
 
 struct sun_extent {
-    double low[3], high[3]; /* across, upward, towards the sun; from the middle of the scene */
+    double low[3], high[3]; /* across, up, towards the sun; relative to the centre of the scene */
 };
 
 static void axes_of(const double towards[3], double turn, double axes[3][3])
@@ -50,7 +50,7 @@ static struct sun_extent extent_of(const struct gpu_scene *gpu_scene, const doub
             add_box(&extent, axes, gpu_scene->middle_m, asset);
     }
     for (int a = 0; a < 3; a++)
-        if (!(extent.low[a] < extent.high[a])) { /* nothing throws a shadow */
+        if (!(extent.low[a] < extent.high[a])) { /* nothing casts a shadow */
             extent.low[a] = -gpu_scene->radius_m;
             extent.high[a] = gpu_scene->radius_m;
         }
@@ -67,8 +67,8 @@ void sun_frame_fit(struct sun_frame *frame, const struct gpu_scene *gpu_scene, c
 {
     double best[3][3], axes[3][3];
     struct sun_extent extent = { 0 };
-    for (int turn = 0; turn < TURNS; turn++) {
-        axes_of(towards, turn * M_PI_2 / TURNS, axes);
+    for (int turn = 0; turn < TRIED_ANGLES; turn++) {
+        axes_of(towards, turn * M_PI_2 / TRIED_ANGLES, axes);
         struct sun_extent tried = extent_of(gpu_scene, (const double(*)[3])axes, shown);
         if (turn > 0 && longer_side(&tried) >= longer_side(&extent))
             continue;

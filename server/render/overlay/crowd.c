@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A grid of those drawn so far, hashed, so that thousands do not each look at all others. */
+/* Thins out overlapping markers. A hashed grid of the markers drawn so far spares comparing each marker with all others. */
 #include "render/overlay/crowd.h"
 
 #include <math.h>
@@ -8,13 +8,13 @@
 
 #include "base/mem.h"
 
-enum { MOST = 6 };
-static const double NEAR = 30, HELD = 0.8;
+enum { MAX_NEIGHBOURS = 6 };
+static const double NEIGHBOUR_UNITS = 30, HELD_FACTOR = 0.8;
 
 struct item_buckets {
     const struct crowd_item *items;
     double cell;
-    int *heads, *next; /* by bucket; by item: the one before it in its bucket; -1: none */
+    int *heads, *next; /* heads: last item of each bucket; next: per item, the previous one in its bucket; -1: none */
     size_t mask;
 };
 
@@ -49,14 +49,14 @@ static void put(struct item_buckets *crowd, int index)
     *head = index;
 }
 
-/* How many of that cell are nearer than the root of `least`. */
+/* Counts the items of a cell that are nearer than sqrt(least), up to the limit. */
 static int count_cell(const struct item_buckets *crowd, double column, double row, const struct crowd_item *item, double least)
 {
     int count = 0;
-    for (int i = crowd->heads[bucket(crowd, column, row)]; i >= 0 && count < MOST; i = crowd->next[i]) {
+    for (int i = crowd->heads[bucket(crowd, column, row)]; i >= 0 && count < MAX_NEIGHBOURS; i = crowd->next[i]) {
         const struct crowd_item *other = &crowd->items[i];
         double x = other->x - item->x, y = other->y - item->y;
-        bool is_here = cell_of(crowd, other->x) == column && cell_of(crowd, other->y) == row; /* not only in the same bucket */
+        bool is_here = cell_of(crowd, other->x) == column && cell_of(crowd, other->y) == row; /* several cells may share a bucket */
         count += is_here && x * x + y * y < least;
     }
     return count;
@@ -64,17 +64,17 @@ static int count_cell(const struct item_buckets *crowd, double column, double ro
 
 static bool is_crowded(const struct item_buckets *crowd, const struct crowd_item *item)
 {
-    double near = crowd->cell * (item->held ? HELD : 1), column = cell_of(crowd, item->x), row = cell_of(crowd, item->y);
+    double near = crowd->cell * (item->held ? HELD_FACTOR : 1), column = cell_of(crowd, item->x), row = cell_of(crowd, item->y);
     int count = 0;
     for (int i = -1; i <= 1; i++)
-        for (int k = -1; k <= 1 && count < MOST; k++)
+        for (int k = -1; k <= 1 && count < MAX_NEIGHBOURS; k++)
             count += count_cell(crowd, column + i, row + k, item, near * near);
-    return count >= MOST;
+    return count >= MAX_NEIGHBOURS;
 }
 
 void crowd_thin(const struct crowd_item *items, size_t count, double unit, bool *drawn)
 {
-    struct item_buckets crowd = { .items = items, .cell = NEAR * unit, .mask = 63 };
+    struct item_buckets crowd = { .items = items, .cell = NEIGHBOUR_UNITS * unit, .mask = 63 };
     int *order = mem_array(count, sizeof(*order));
     size_t others = 0;
     while (crowd.mask < count)

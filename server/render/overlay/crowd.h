@@ -8,8 +8,8 @@
 struct crowd_item {
     double x, y, depth_m;
     bool occluded;
-    bool kept; /* is always drawn */
-    bool held; /* was drawn in the picture before */
+    bool kept; /* drawn whatever is near */
+    bool held; /* was drawn in the previous frame */
 };
 
 /* Sets drawn[i] to whether items[i] is drawn. unit: size of one pixel at 1280x720. */

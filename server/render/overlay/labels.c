@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Labels by rank, distance and room. */
+/* Chooses labels by rank, distance and free space. */
 #include "render/overlay/labels_impl.h"
 
 #include <math.h>
@@ -8,8 +8,8 @@
 #include "base/mem.h"
 
 enum { PASSES = 3 };
-static const double SPACINGS[PASSES] = { 0.16, 0.08, 0 }, HELD = 0.8;
-static const double MARK = 5, RING = 13, NEAR_GAP = 8, FAR_GAP = 22, ROOM = 0.06, CELL = 96;
+static const double SPACINGS[PASSES] = { 0.16, 0.08, 0 }, HELD_FACTOR = 0.8;
+static const double MARK_UNITS = 5, RING_UNITS = 13, NEAR_GAP = 8, FAR_GAP = 22, MAX_COVERED_PART = 0.06, CELL_UNITS = 96;
 
 static bool is_held(const struct label_item *item)
 {
@@ -18,7 +18,7 @@ static bool is_held(const struct label_item *item)
 
 static double order_depth(const struct label_item *item)
 {
-    return item->depth_m * (is_held(item) ? HELD : 1);
+    return item->depth_m * (is_held(item) ? HELD_FACTOR : 1);
 }
 
 static int by_importance(const void *a, const void *b, void *arg)
@@ -40,10 +40,10 @@ static int clamp(double value, int count)
     return value < 0 ? 0 : value >= count ? count - 1 : (int)value;
 }
 
-/* The cells of a box: first and last column and row. */
+/* Finds the grid cells that a box covers: first and last column, first and last row. */
 static void cells_of(const struct label_layout *layout, const struct label_box *box, int range[4])
 {
-    double cell = CELL * layout->area->unit, x = box->x - layout->area->box.x, y = box->y - layout->area->box.y;
+    double cell = CELL_UNITS * layout->area->unit, x = box->x - layout->area->box.x, y = box->y - layout->area->box.y;
     range[0] = clamp(x / cell, layout->columns);
     range[1] = clamp((x + box->width) / cell, layout->columns);
     range[2] = clamp(y / cell, layout->rows);
@@ -87,7 +87,7 @@ struct label_box layout_box(const struct label_item *item, int slot, double unit
                                                    { 0, -1.9 }, { 0, 0.9 },   { 1, -2 },   { -1, -2 }, { 1, 1 },     { -1, 1 },
                                                    { 1, -3.2 }, { -1, -3.2 }, { 1, 2.2 },  { -1, 2.2 } };
     double side = places[slot][0], gap = (slot < LABEL_FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
-    double above = places[slot][1] < -0.5 ? -1 : places[slot][1] > -0.5 ? 1 : 0, more = item->ring ? (RING - MARK) * unit : 0;
+    double above = places[slot][1] < -0.5 ? -1 : places[slot][1] > -0.5 ? 1 : 0, more = item->ring ? (RING_UNITS - MARK_UNITS) * unit : 0;
     double beside = across + gap + more;
     double x = side > 0 ? item->x + beside : side < 0 ? item->x - beside - item->width : item->x - item->width / 2;
     double y = item->y + places[slot][1] * item->height + (side == 0 ? above * (more + down) : 0);
@@ -118,7 +118,8 @@ static bool fits(const struct label_layout *layout, int index, int slot)
 static void place(struct label_layout *layout, int index)
 {
     const struct label_item *item = &layout->items[index];
-    for (int n = is_held(item) && item->held < LABEL_SLOTS ? -1 : 0; n < LABEL_SLOTS; n++) { /* not where a call-out was */
+    /* the slot that the item held comes first, unless that was a call-out's */
+    for (int n = is_held(item) && item->held < LABEL_SLOTS ? -1 : 0; n < LABEL_SLOTS; n++) {
         int slot = n < 0 ? item->held : n;
         if (!fits(layout, index, slot))
             continue;
@@ -147,8 +148,8 @@ static void place_rank(struct label_layout *layout, const int *order, size_t cou
     for (int pass = 0; pass < PASSES; pass++)
         for (size_t i = 0; i < count; i++) {
             const struct label_item *item = &layout->items[order[i]];
-            bool room = item->rank >= LABEL_BAD || layout->used < ROOM * area->width * area->height;
-            double least = SPACINGS[pass] * area->width * (is_held(item) ? HELD : 1);
+            bool room = item->rank >= LABEL_BAD || layout->used < MAX_COVERED_PART * area->width * area->height;
+            double least = SPACINGS[pass] * area->width * (is_held(item) ? HELD_FACTOR : 1);
             if (room && layout->places[order[i]].slot == LABEL_NONE && is_apart(layout, item, least))
                 place(layout, order[i]);
         }
@@ -167,7 +168,7 @@ void layout_set(struct label_layout *layout, const int *members, size_t count, c
 static void layout_init(struct label_layout *layout, const struct label_item *items, size_t count, const struct label_area *area,
                         struct label_place *places)
 {
-    double cell = CELL * area->unit;
+    double cell = CELL_UNITS * area->unit;
     *layout = (struct label_layout){ .items = items, .area = area, .places = places };
     layout->columns = (int)(area->box.width / cell) + 1;
     layout->rows = (int)(area->box.height / cell) + 1;
@@ -178,7 +179,7 @@ static void layout_init(struct label_layout *layout, const struct label_item *it
     for (size_t i = 0; i < area->blocked_count; i++)
         take(layout, &area->blocked[i], -1, OVER_ALL);
     for (size_t i = 0; i < count; i++) {
-        double radius = (items[i].ring ? RING : MARK) * area->unit;
+        double radius = (items[i].ring ? RING_UNITS : MARK_UNITS) * area->unit;
         struct label_box mark = { items[i].x - radius, items[i].y - radius, 2 * radius, 2 * radius };
         take(layout, &mark, (int)i, items[i].ring ? OVER_RINGS : OVER_MARKS);
         places[i] = (struct label_place){ .slot = LABEL_NONE, .callout = LABEL_NONE };

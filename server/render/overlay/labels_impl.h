@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The layout of one picture while its labels are placed: shared by labels.c and labels_rings.c. */
+/* State of label placement in one frame, shared by labels.c and labels_rings.c. */
 #ifndef RENDER_OVERLAY_LABELS_IMPL_H
 #define RENDER_OVERLAY_LABELS_IMPL_H
 #include "render/overlay/labels.h"
 
-#define LABEL_CLEARANCE 3.0 /* units of room around a label that was not there before */
+#define LABEL_CLEARANCE 3.0 /* free space, in units, around a label that was not in the previous frame */
 
-enum label_over { /* what a label may cover; also the kind of a taken box */
+enum label_over { /* what a label may cover; also the kind of an occupied box */
                   OVER_NOTHING,
                   OVER_MARKS, /* markers without an alarm ring */
-                  OVER_RINGS, /* markers with one as well */
+                  OVER_RINGS, /* also markers with an alarm ring */
                   OVER_ALL
 };
 
@@ -23,23 +23,23 @@ struct label_layout {
     const struct label_item *items;
     const struct label_area *area;
     struct label_place *places;
-    int columns, rows, *heads; /* a grid over the picture: per cell, a list of taken boxes */
+    int columns, rows, *heads; /* grid over the frame: per cell, the head of a list of occupied boxes */
     struct cell_entry *entries;
     size_t entry_count, entry_capacity;
-    int *labelled; /* items that have a label */
+    int *labelled; /* indices of items that have a label */
     int labelled_count;
     double used;
 };
 
-/* Returns the box of an item's label in a slot. across, down: half extent of its markers around item->x, item->y. */
+/* Returns the box of an item's label in a slot. across, down: half extent of the group of markers centred on item->x, item->y. */
 struct label_box layout_box(const struct label_item *item, int slot, double unit, double across, double down);
-/* Returns whether a box lies within the picture's area. */
+/* Returns whether a box lies within the label area. */
 bool layout_is_inside(const struct label_layout *layout, const struct label_box *box);
-/* Returns whether a box covers nothing but boxes of its owner and of kinds it may cover. */
+/* Returns whether a box covers only boxes of its owner and of kinds that it may cover. */
 bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, enum label_over over);
-/* Places the label of these items and marks its box as taken; with more than one item it is a call-out. */
+/* Places the label of these items and marks its box as occupied; more than one item makes it a call-out. */
 void layout_set(struct label_layout *layout, const int *members, size_t count, const struct label_box *box, int slot);
-/* Gives every item with an alarm ring a label or a place in a call-out. order: their indices, most important first. */
+/* Gives every item with an alarm ring a label or a place in a call-out. order: indices of the items, most important first. */
 void layout_place_rings(struct label_layout *layout, const int *order, size_t count);
 
 #endif

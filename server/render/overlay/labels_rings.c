@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rings of alarms: each in a label of its own, or in a call-out together with those close to it. */
+/* Places labels of alarm rings: each ring gets a label of its own or shares a call-out with near rings. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
 #include "render/overlay/labels_impl.h"
 
-static const double CLOSE = 26, STILL_CLOSE = 34; /* units between rings that share a call-out; that did in the picture before */
-static const double FARTHER = 1.25;               /* both grow by, until there are no more labels of rings than: */
-enum { MOST_GROUPS = 24 };
-static const double FARTHEST = 170; /* units, unless there is no other label to join */
-/* Where else a label may be, from the middle of its rings; steps in units. */
+/* units between rings that share a call-out; STILL_CLOSE: if they did in the previous frame */
+static const double CLOSE = 26, STILL_CLOSE = 34;
+static const double GROWTH = 1.25; /* factor by which both distances grow until at most MAX_GROUPS labels remain */
+enum { MAX_GROUPS = 24 };
+static const double MAX_DISTANCE = 170; /* largest distance of a label, in units, unless it is the last one and has no other to join */
+/* Further positions of a label: offsets from the centre of its rings, in steps of these units. */
 enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
 
 struct offset {
@@ -18,23 +19,23 @@ struct offset {
 };
 
 struct ring_group {         /* rings that share a label */
-    struct label_item item; /* in the middle between them; the size of their label */
-    double across, down;    /* from there to the outermost */
-    int *members;           /* indices of items, by importance; in rings.members */
+    struct label_item item; /* centre of the rings, and size of their label */
+    double across, down;    /* half extents of the group's rings around the centre */
+    int *members;           /* indices of items, by importance; points into rings.members */
     size_t count;
     struct label_box box;
-    int slot, mate; /* mate: the group that it joins, since there was no room */
+    int slot, mate; /* mate: for a group without room, the group that it joins */
 };
 
 struct rings {
     struct label_layout *layout;
     const int *order;
     size_t count, group_count;
-    double least; /* a unit, or more where many rings are close together */
+    double least; /* one unit, or more where many rings are close together */
     struct ring_group *groups;
-    int *group_of;          /* by place in `order` */
-    int *members;           /* of all groups, one after the other */
-    struct offset *offsets; /* the nearest first */
+    int *group_of;          /* by index in `order` */
+    int *members;           /* members of all groups, group after group */
+    struct offset *offsets; /* sorted by distance */
 };
 
 static int by_distance(const void *a, const void *b)
@@ -82,7 +83,7 @@ static void join(int *first, int i, int k)
     first[a > b ? a : b] = a < b ? a : b;
 }
 
-/* Returns how many groups there are. */
+/* Joins close rings. Returns the number of groups. */
 static size_t join_close(const struct rings *rings, int *first)
 {
     size_t groups = 0;
@@ -97,7 +98,7 @@ static size_t join_close(const struct rings *rings, int *first)
     return groups;
 }
 
-/* A group's place and size, and what it had in the picture before. */
+/* Computes a group's centre and size, and the slot that it held in the previous frame. */
 static void measure(struct rings *rings, struct ring_group *group)
 {
     const struct label_area *area = rings->layout->area;
@@ -110,7 +111,7 @@ static void measure(struct rings *rings, struct ring_group *group)
         right = fmax(right, item->x);
         top = fmin(top, item->y);
         bottom = fmax(bottom, item->y);
-        if ((item->callout == LABEL_NONE) == (group->count == 1)) /* it had such a label, or another kind */
+        if ((item->callout == LABEL_NONE) == (group->count == 1)) /* only a slot of the same kind of label, single or call-out */
             group->item.held = item->held;
     }
     if (group->count > 1)
@@ -124,7 +125,7 @@ static void measure(struct rings *rings, struct ring_group *group)
     group->down = (bottom - top) / 2;
 }
 
-/* first: by place in `order`, the roots of who belongs together. */
+/* Collects the groups. first: by index in `order`, union-find roots. */
 static void make_groups(struct rings *rings, int *first)
 {
     int *next = rings->members;
@@ -162,7 +163,7 @@ static struct label_box box_at(const struct rings *rings, const struct ring_grou
                                item->height };
 }
 
-/* before: groups whose labels stand already, as far as they do. */
+/* Returns whether the group's label fits in a slot with `more` pixels of free space around. Labels of earlier groups count as occupied. */
 static bool is_free(const struct rings *rings, const struct ring_group *group, int slot, double more, enum label_over over)
 {
     struct label_box box = box_at(rings, group, slot);
@@ -187,14 +188,14 @@ static int find_slot(const struct rings *rings, const struct ring_group *group)
     for (int i = 0; i < 2 * LABEL_SLOTS; i++)
         if (is_free(rings, group, i % LABEL_SLOTS, clearance, i < LABEL_SLOTS ? OVER_NOTHING : OVER_MARKS))
             return i % LABEL_SLOTS;
-    for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++) /* at last over its own rings */
-        for (int i = 0; i < OFFSETS && (alone || rings->offsets[i].squared <= FARTHEST * FARTHEST); i++)
+    for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++) /* as a last resort over the group's own rings */
+        for (int i = 0; i < OFFSETS && (alone || rings->offsets[i].squared <= MAX_DISTANCE * MAX_DISTANCE); i++)
             if (is_free(rings, group, LABEL_SLOTS + i, clearance, (enum label_over)over))
                 return LABEL_SLOTS + i;
     return alone ? FORCED : NOWHERE;
 }
 
-/* Over other things, but within the area. */
+/* Returns a box at the centre, moved into the area, whatever it covers. */
 static struct label_box forced_box(const struct rings *rings, const struct ring_group *group)
 {
     const struct label_box *area = &rings->layout->area->box;
@@ -225,7 +226,7 @@ static int nearest_to(const struct rings *rings, int index)
     return nearest;
 }
 
-/* False: some groups found no room; each has chosen one to join. */
+/* Places the labels of all groups. Returns false if some found no room; each of those has chosen a mate to join. */
 static bool place_groups(struct rings *rings)
 {
     bool all = true;
@@ -248,7 +249,7 @@ void layout_place_rings(struct label_layout *layout, const int *order, size_t co
     rings.group_of = mem_array(count, sizeof(*rings.group_of));
     rings.members = mem_array(count, sizeof(*rings.members));
     rings.offsets = count ? make_offsets() : NULL;
-    for (rings.least = layout->area->unit; join_close(&rings, first) > MOST_GROUPS; rings.least *= FARTHER) {
+    for (rings.least = layout->area->unit; join_close(&rings, first) > MAX_GROUPS; rings.least *= GROWTH) {
     }
     make_groups(&rings, first);
     while (count && !place_groups(&rings)) {

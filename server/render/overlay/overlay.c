@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The overlay: what plant, when, how fresh; and the parts that the other overlay files draw. */
+/* Draws the overlay's header and banners, and calls the parts that the other overlay files draw. */
 #include "render/overlay/overlay.h"
 
 #include <math.h>
@@ -132,7 +132,7 @@ static void format_age(const struct pen *pen, int64_t age_ns, char out[AGE_BYTES
 
 enum { CLOCK_BYTES = 64 };
 
-/* In the plant's own time zone. */
+/* Formats a time in the plant's time zone. */
 static void format_clock(int64_t utc_ns, char out[CLOCK_BYTES])
 {
     time_t seconds = (time_t)(utc_ns / NS_PER_S);
@@ -156,14 +156,14 @@ static bool shows_simulated(const struct pen *pen)
     return false;
 }
 
-/* The plant's name, then lines of small text. */
+/* Returns the height of the plant's name and these many lines of small text. */
 static double header_height(const struct pen *pen, int lines)
 {
     return (1.25 + 1.35 * lines) * pen->text_px + 12 * pen->unit;
 }
 
-/* Plant name; its clock and the age of the oldest value that takes part; and what speaks against them: a clock that is not set, values
-   that were not measured. It has a line of its own, so that the card hides less of the plant. */
+/* Draws the header: plant name; its clock and the age of the oldest reading used; and warnings on a line of their own, which keeps the card
+   narrow: clock not set, simulated values. */
 static void draw_header(struct pen *pen)
 {
     char clock[CLOCK_BYTES], lines[2][160], age[AGE_BYTES];
@@ -175,7 +175,7 @@ static void draw_header(struct pen *pen)
     else
         snprintf(age, sizeof(age), "%s", pen_word(pen, WORD_NO_VALUES));
     const struct view *view = &pen->frame->view;
-    bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS); /* else no value takes part */
+    bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS); /* otherwise no reading is used */
     bool unset = pen->frame->clock_unset, simulated = has_age && shows_simulated(pen);
     snprintf(lines[0], sizeof(lines[0]), "%s%s%s", clock, has_age ? "  ·  " : "", has_age ? age : "");
     snprintf(lines[1], sizeof(lines[1]), "%s%s%s", unset ? pen_word(pen, WORD_CLOCK_UNSET) : "", unset && simulated ? "  ·  " : "",
@@ -199,7 +199,7 @@ static void draw_header(struct pen *pen)
     pen_take(pen, &box);
 }
 
-/* Whether any sensor that is shown tells a value. */
+/* Returns whether any shown sensor has a usable reading. */
 static bool is_live(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;
@@ -227,7 +227,7 @@ static void draw_banner(struct pen *pen, const char *text, const double rgb[3])
 
 static const double NO_DATA_RGB[3] = { 0.66, 0.12, 0.10 }, PAST_RGB[3] = { 0.36, 0.18, 0.56 };
 
-/* A frame around all of it, and the words: nobody takes it for now, even where the banner is cut off. */
+/* Draws a border around the frame and a banner, so that a past picture is recognised even where the banner is cropped. */
 static void draw_past(struct pen *pen)
 {
     char text[CLOCK_BYTES + 80], clock[CLOCK_BYTES];
@@ -265,7 +265,7 @@ static void pen_init(struct pen *pen, cairo_surface_t *surface, const struct fra
     pen_scale(pen, fmin(frame->width_px / 1280.0, frame->height_px / 720.0));
 }
 
-/* What is over a picture besides its header and banners. */
+/* Draws everything but header and banners. */
 static void draw_rest(struct pen *pen)
 {
     int halves = pen->frame->view.split ? 2 : 1;
@@ -274,7 +274,7 @@ static void draw_rest(struct pen *pen)
     bool shared = pen->frame->view.split && overlay_legend_is_shared(pen);
     for (int half = shared ? 1 : 0; half < halves; half++) {
         pen_choose_half(pen, half);
-        if (pen->view.look != LOOK_MATERIALS) /* no field, nothing to explain */
+        if (pen->view.look != LOOK_MATERIALS) /* without a field there is nothing to explain */
             overlay_legend(pen);
     }
     if (!pen->bare && !pen->calm)
@@ -300,7 +300,7 @@ static void draw(struct frame *frame, const struct scene *scene, const struct sn
         draw_banner(pen, pen_word(pen, WORD_NO_LIVE_DATA), NO_DATA_RGB);
     draw_rest(pen);
     cairo_surface_flush(surface);
-    if (frame->view.strip && frame->view.look != LOOK_MATERIALS) { /* colours of materials say nothing */
+    if (frame->view.strip && frame->view.look != LOOK_MATERIALS) { /* material colours show no values */
         pen_choose_half(pen, 0);
         overlay_strip(pen, frame->bgrx, frame->stride_bytes);
     }
@@ -346,7 +346,7 @@ static double legend_share(struct pen *pen, const struct view *view)
     return legend_px / width_px;
 }
 
-/* unit 0: as large as of a snapshot, which has a header. */
+/* Computes the free window. unit: as in overlay_draw_pane(); 0: as for a snapshot, which has a header. */
 static void find_window(const struct scene *scene, const struct view *view, double unit, struct camera_window *out)
 {
     cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);

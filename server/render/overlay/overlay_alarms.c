@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The list of alarms that the picture does not show: behind something, outside it, of other groups, or of no place at all. */
+/* Lists alarms that no visible marker shows: of hidden or off-screen sensors, of other groups, or of tags without a position. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,8 +8,8 @@
 #include "render/overlay/overlay_pen.h"
 #include "value/quality.h"
 
-enum { MOST_ROWS = 5 };
-static const double ROW = 1.5, MOST_HEIGHT = 0.3; /* in text_px; of the picture */
+enum { MAX_ROWS = 5 };
+static const double ROW = 1.5, MAX_HEIGHT = 0.3; /* ROW: row height in text_px; MAX_HEIGHT: largest part of the frame's height */
 
 struct unseen {
     int tag, priority;
@@ -21,7 +21,7 @@ static int by_priority(const void *a, const void *b)
     return i->priority != k->priority ? (i->priority > k->priority) - (i->priority < k->priority) : (i->tag > k->tag) - (i->tag < k->tag);
 }
 
-/* By tag; the caller frees it. */
+/* Returns per tag whether a visible marker shows it. The caller frees the array. */
 static bool *find_seen(struct pen *pen)
 {
     bool *seen = mem_array(pen->scene->plant->tag_count, sizeof(*seen));
@@ -34,7 +34,7 @@ static bool *find_seen(struct pen *pen)
     return seen;
 }
 
-/* Into `list`, which has room for every tag. */
+/* Writes these alarms to `list`, which has room for every tag. Returns their number. */
 static size_t find_unseen(struct pen *pen, struct unseen *list)
 {
     const struct plant *plant = pen->scene->plant;
@@ -81,8 +81,8 @@ static void draw_rows(struct pen *pen, const struct label_box *card, double pad,
 
 static void draw_list(struct pen *pen, const struct unseen *list, size_t count)
 {
-    double pad = 8 * pen->unit, most_px = MOST_HEIGHT * pen->frame->height_px - 2 * pad;
-    size_t rows = (size_t)fmin(fmin((double)count, MOST_ROWS), fmax(most_px / (ROW * pen->text_px) - 1, 0));
+    double pad = 8 * pen->unit, most_px = MAX_HEIGHT * pen->frame->height_px - 2 * pad;
+    size_t rows = (size_t)fmin(fmin((double)count, MAX_ROWS), fmax(most_px / (ROW * pen->text_px) - 1, 0));
     char title[120], text[200], number[24];
     snprintf(number, sizeof(number), "%zu", count);
     pen_say(pen,

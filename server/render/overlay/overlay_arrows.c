@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Arrows of a field with directions: as long as its value, and a cross where it is not known where to. */
+/* Draws arrows of a field with directions: length shows the value, a cross an unknown direction. */
 #include <math.h>
 #include <stdio.h>
 
 #include "render/overlay/overlay_pen.h"
 
-#define HALO 0.85 /* of white around what is dark, so that it stands out on every colour */
+#define HALO 0.85 /* alpha of the white halo that makes dark lines visible on every colour */
 
 bool overlay_has_arrows(const struct pen *pen)
 {
@@ -74,7 +74,7 @@ void overlay_unknown_direction(struct pen *pen, double x, double y)
     stroke_both(pen, 1.6 * pen->unit, false);
 }
 
-/* The points of a stroke that begins at `from`, with a head at its end. Returns the index of its last. */
+/* Draws the stroke whose points begin at label `from`, with an arrowhead at its end. Returns the index of its last point. */
 static size_t draw_stroke(struct pen *pen, size_t from)
 {
     const struct frame_label *label = &pen->frame->labels[from], *last = label;

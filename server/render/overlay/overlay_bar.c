@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The legend's bar: colours, bands, isolines, numbers beside it, and where the limits lie. */
+/* Draws the legend's colour bar: colours, bands, isolines, tick labels and the group's limits. */
 #include <math.h>
 #include <stdio.h>
 
 #include "render/overlay/overlay_pen.h"
 
-enum { TICKS = 40 };
+enum { MAX_TICKS = 40 };
 struct ticks {
-    double values[TICKS], places[TICKS]; /* places: 0 at MIN, 1 at MAX, where the text goes */
+    double values[MAX_TICKS], places[MAX_TICKS]; /* places: position of the text, 0 at MIN, 1 at MAX */
     int count;
 };
-static const double GAP = 1.12; /* between lines of text, in text_px */
+static const double LINE_GAP = 1.12; /* distance between lines of text, in text_px */
 
-/* 1, 2 or 5 times a power of ten; at most `count` of them in the range. */
+/* Returns a step of 1, 2 or 5 times a power of ten that divides the range into at most `count` steps. */
 static double nice_step(double range, double count)
 {
     double rough = range / fmax(count, 1), power = pow(10, floor(log10(rough)));
@@ -23,7 +23,7 @@ static double nice_step(double range, double count)
 static void add_tick(struct ticks *ticks, const struct scale *scale, double value)
 {
     double place = scale_place(scale, value);
-    if (ticks->count == TICKS || place < -1e-9 || place > 1 + 1e-9)
+    if (ticks->count == MAX_TICKS || place < -1e-9 || place > 1 + 1e-9)
         return;
     ticks->values[ticks->count] = value;
     ticks->places[ticks->count++] = place;
@@ -36,7 +36,7 @@ static void round_ticks(struct ticks *ticks, const struct scale *scale, double m
         add_tick(ticks, scale, n * step);
 }
 
-/* 1, 2 and 5 of each decade; only 1 where they are many. */
+/* Adds ticks at 1, 2 and 5 of each decade, or only at 1 if there are many decades. */
 static void log_ticks(struct ticks *ticks, const struct scale *scale, double most)
 {
     static const double leads[3] = { 1, 2, 5 };
@@ -56,7 +56,7 @@ static void line_ticks(struct ticks *ticks, const struct scale *scale, const dou
     add_tick(ticks, scale, scale->max);
 }
 
-/* What has a line, with both ends, if all can be written; else round numbers. */
+/* Chooses both ends and all isolines as ticks, if their texts fit; else round numbers. */
 static void choose_ticks(struct ticks *ticks, const struct view *view, double most)
 {
     struct scale scale;
@@ -76,7 +76,7 @@ static void choose_ticks(struct ticks *ticks, const struct view *view, double mo
     }
 }
 
-/* Moves them apart, so that what is written there can be read; none leaves the bar. */
+/* Moves positions apart so that the texts do not overlap; none leaves the bar. */
 static void spread(double *places, int count, double gap)
 {
     for (int i = 1; i < count; i++)
@@ -141,7 +141,7 @@ double overlay_bar_width(struct pen *pen)
     return overlay_bar_left(pen) + 2.3 * pen->text_px + text_width(pen, &ticks);
 }
 
-/* Each row of pixels by the legend's own rule. */
+/* Fills each row of pixels by the rule that the colour map uses. */
 static void draw_colors(struct pen *pen, const struct label_box *bar, const struct scale *scale)
 {
     int top = (int)lround(bar->y), rows = (int)lround(bar->height);
@@ -183,7 +183,7 @@ static void draw_ticks(struct pen *pen, const struct label_box *bar, const struc
     struct ticks ticks;
     double right = bar->x + bar->width;
     choose_ticks(&ticks, &pen->view, most_ticks(pen, bar->height));
-    spread(ticks.places, ticks.count, GAP * pen->text_px / bar->height);
+    spread(ticks.places, ticks.count, LINE_GAP * pen->text_px / bar->height);
     pen_font(pen, 0.9, false);
     for (int i = 0; i < ticks.count; i++) {
         char text[40];
@@ -200,7 +200,7 @@ static void draw_limits(struct pen *pen, const struct label_box *bar, const stru
     static const char *const texts[LIMIT_COUNT] = { "LL", "L", "H", "HH" };
     struct ticks limits;
     int names[LIMIT_COUNT], count = choose_limits(pen, &limits, names);
-    spread(limits.places, count, GAP * pen->text_px / bar->height);
+    spread(limits.places, count, LINE_GAP * pen->text_px / bar->height);
     pen_font(pen, 0.8, true);
     for (int i = 0; i < count; i++) {
         double y = height_of(bar, scale_place(scale, limits.values[i])), text_y = height_of(bar, limits.places[i]);

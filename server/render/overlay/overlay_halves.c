@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the halves of a split view differ in that no legend says: how the field is made. */
+/* Captions of a split view's halves: differences that no legend shows, such as how the field is computed. */
 #include <math.h>
 #include <string.h>
 
 #include "render/overlay/overlay_pen.h"
 
-enum { LINES = 10 };
-struct caption { /* of one half */
-    char lines[LINES][96];
+enum { MAX_LINES = 10 };
+struct caption { /* caption of one half */
+    char lines[MAX_LINES][96];
     int count;
 };
 
-/* value: what is put into a sentence; NULL: it is a word. */
+/* Adds a line. value: inserted into the sentence; NULL: a word without a gap. */
 static void add_line(struct caption *caption, const struct pen *pen, enum overlay_word word, const char *value)
 {
-    if (caption->count < LINES)
+    if (caption->count < MAX_LINES)
         pen_say(pen, word, value, NULL, caption->lines[caption->count++], sizeof(caption->lines[0]));
 }
 
@@ -25,7 +25,7 @@ static void add_number(struct caption *caption, const struct pen *pen, enum over
     add_line(caption, pen, word, number);
 }
 
-/* What `own` has where `other` has something else, in the words of the options. */
+/* Lists the parameters of `own` that differ from `other`, in the words of the page's options. */
 static void write_caption(struct caption *caption, const struct pen *pen, const struct view *own, const struct view *other)
 {
     const struct field_params *a = &own->field, *b = &other->field;
@@ -52,7 +52,7 @@ static void write_caption(struct caption *caption, const struct pen *pen, const 
         add_number(caption, pen, isfinite(a->reach_m) ? WORD_REACH : WORD_REACH_UNLIMITED, a->reach_m);
     if (a->fill != b->fill)
         add_line(caption, pen, a->fill == FILL_NONE ? WORD_NOT_FILLED : WORD_FILLED, NULL);
-    bool same_sensors = a->override_count == b->override_count && /* as field_params_equal has it */
+    bool same_sensors = a->override_count == b->override_count && /* as in field_params_equal() */
                         !memcmp(a->overrides, b->overrides, a->override_count * sizeof(*a->overrides));
     if (!same_sensors && a->override_count > 0)
         add_number(caption, pen, WORD_WEIGHTED, (double)a->override_count);
@@ -60,7 +60,7 @@ static void write_caption(struct caption *caption, const struct pen *pen, const 
         add_line(caption, pen, WORD_AS_CONFIGURED, NULL);
 }
 
-/* In the upper left corner; below what lies there. */
+/* Draws the caption in the upper left corner, below anything already there. */
 static void draw_caption(struct pen *pen, const struct caption *caption)
 {
     double pad = 8 * pen->unit, width = 0, line_px = 1.35 * pen->text_px;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The legend: what each colour, stripe, dot and ring means. */
+/* Draws the legend: the meaning of each colour, pattern and ring. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "render/shaded_colormap.h"
 
 enum { NOTES = 6, ROWS = 7 + ALARM_PRIORITIES };
-static const double ROW = 1.5, NOTE = 1.3; /* heights, in text_px */
+static const double ROW = 1.5, NOTE = 1.3; /* heights in text_px */
 enum row {
     ROW_BELOW,
     ROW_NO_LIMITS,
@@ -21,12 +21,12 @@ enum row {
     ROW_ASSUMED,
     ROW_ARROW,
     ROW_NOWHERE,
-    ROW_ALARM /* and the other priorities */
+    ROW_ALARM /* priority 1; further priorities follow */
 };
-/* What it says, and where its parts lie. */
+/* Texts of the legend, and positions of its parts. */
 struct legend {
     char title[160], above[60], below[60], since[120], longest[80], drawn_error[120];
-    enum row rows[ROWS]; /* under the bar */
+    enum row rows[ROWS]; /* rows below the colour bar */
     const char *notes[NOTES];
     int row_count, note_count;
     struct label_box card, bar;
@@ -44,7 +44,7 @@ static void write_title(const struct pen *pen, struct legend *legend)
     const struct plant *plant = pen->scene->plant;
     const struct view *view = &pen->view;
     const char *unit = view_unit(plant, view), *quantity = plant->groups[view->field.group].quantity;
-    static const char *const forms[] = { "%s", "", "\u0394 %s", "%s", "\u00b1 %s", "" }; /* by enum field_show */
+    static const char *const forms[] = { "%s", "", "\u0394 %s", "%s", "\u00b1 %s", "" }; /* indexed by enum field_show */
     const char *name = view->field.show == SHOW_DISTANCE ? plant->tags[view->field.sensor].name : quantity;
     char what[128];
     if (view->field.show == SHOW_DISTANCE || view->field.show == SHOW_BLIND)
@@ -54,7 +54,8 @@ static void write_title(const struct pen *pen, struct legend *legend)
     snprintf(legend->title, sizeof(legend->title), *unit ? "%s [%s]" : "%s", what, unit);
 }
 
-/* Of all active alarms, since those out of sight are listed; bits: 1 << priority. Without readings: as wide as with them. */
+/* Returns the priorities of all active alarms as bits (1 << priority), also of hidden sensors, since these are listed. Without readings
+   one priority is returned, so that the legend is as wide as with readings. */
 static unsigned priorities_shown(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;
@@ -75,7 +76,7 @@ static bool shows_unproven(const struct pen *pen)
     return false;
 }
 
-/* Of the group, whether or not a mark of it is in sight: its equipment may be. */
+/* Returns whether the group has a tag with an assumed position. Its marker need not be visible: its equipment may be. */
 static bool shows_assumed(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;
@@ -85,7 +86,7 @@ static bool shows_assumed(const struct pen *pen)
     return false;
 }
 
-/* Whether a cross stands in the picture, in either half: a legend that halves share speaks of both. */
+/* Returns whether the frame shows a cross for an unknown direction, in either half, since a shared legend explains both. */
 static bool shows_unknown_direction(const struct pen *pen)
 {
     for (size_t i = 0; i < pen->frame->label_count; i++)
@@ -94,7 +95,8 @@ static bool shows_unknown_direction(const struct pen *pen)
     return false;
 }
 
-/* Distances, and what depends on no reading, are never uncertain, and below the range only where it does not begin at their least. */
+/* Chooses the rows below the bar. Distances, and quantities that depend on no reading, are never uncertain, and have a row "below" only if
+   the range does not begin at their minimum. */
 static void choose_rows(const struct pen *pen, struct legend *legend)
 {
     const struct view *view = &pen->view;
@@ -113,7 +115,7 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
         legend->rows[legend->row_count++] = ROW_UNPROVEN;
     if (shows_assumed(pen))
         legend->rows[legend->row_count++] = ROW_ASSUMED;
-    if (overlay_has_arrows(pen)) { /* a stroke's length says nothing */
+    if (overlay_has_arrows(pen)) { /* the length of a stroke has no meaning */
         if (view->directions == DIRECTIONS_ARROWS)
             legend->rows[legend->row_count++] = ROW_ARROW;
         if (shows_unknown_direction(pen))
@@ -125,7 +127,7 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
             legend->rows[legend->row_count++] = (enum row)(ROW_ALARM + i - 1);
 }
 
-/* What the difference is from: a name, or the plant's clock then. */
+/* Writes the reference of a difference: the baseline's name, or its time on the plant's clock. */
 static void write_baseline(const struct pen *pen, struct legend *legend)
 {
     const struct baseline *baseline = &pen->frame->baseline;
@@ -151,7 +153,7 @@ static void write_hot_spot(const struct pen *pen, struct legend *legend)
     add_note(legend, legend->since);
 }
 
-/* The cause of the dots where triangles cannot follow the field. */
+/* Notes how far triangles deviate from the field, which causes the dots. */
 static void write_drawn_error(const struct pen *pen, struct legend *legend)
 {
     const char *unit = view_is_operator(&pen->view) ? "" : view_unit(pen->scene->plant, &pen->view);
@@ -210,7 +212,7 @@ static const char *row_text(const struct pen *pen, const struct legend *legend, 
     return row == ROW_BELOW ? legend->below : row == ROW_ARROW ? legend->longest : pen_word(pen, texts[row]);
 }
 
-/* Below what lies over the picture already, where the card would lie on it. */
+/* Returns the y below anything already drawn that the card would overlap. */
 static double free_from(const struct pen *pen, const struct label_box *card)
 {
     double from = pen->area.y;
@@ -235,7 +237,7 @@ static void lay_out(struct pen *pen, struct legend *legend)
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, legend->rows[i])));
     for (int i = 0; i < legend->note_count; i++)
         width = fmax(width, pen_text_width(pen, legend->notes[i]));
-    if (overlay_has_arrows(pen)) /* listed or not: the window that the plant is fitted into is known before the crosses are */
+    if (overlay_has_arrows(pen)) /* reserved even if not listed: the free window is computed before crosses are known */
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, ROW_NOWHERE)));
     width = fmax(width, overlay_bar_width(pen));
     if (legend->longest[0])
@@ -322,7 +324,7 @@ static void draw_swatch(struct pen *pen, const struct label_box *box, enum row r
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.27 * box->height, false);
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.47 * box->height, false);
         break;
-    case ROW_ARROW: /* beside it: draw_longest */ break;
+    case ROW_ARROW: /* draw_longest() draws it next to the text */ break;
     case ROW_NOWHERE: overlay_unknown_direction(pen, box->x + box->width / 2, box->y + box->height / 2); break;
     default:
         overlay_ring(pen, box->x + box->width / 2, box->y + box->height / 2, 0.5 * box->height, (int)row - ROW_ALARM + 1, ALARM_ACTIVE);
@@ -336,7 +338,7 @@ static void draw_text(struct pen *pen, const struct legend *legend, double y, co
     pen_text(pen, legend->bar.x + legend->bar.width + 0.55 * pen->text_px, y + 0.92 * pen->text_px, text);
 }
 
-/* An arrow in its true length, and what it stands for. */
+/* Draws an arrow of the longest length, and the value that this length means. */
 static void draw_longest(struct pen *pen, const struct legend *legend, double y)
 {
     double left = legend->card.x + legend->pad, long_px = overlay_arrow_px(pen);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors: a mark at each place, and a label wherever it covers nothing else. */
+/* Draws sensor markers, and labels wherever they cover nothing else. */
 #include <math.h>
 #include <stdio.h>
 #include <time.h>
@@ -29,7 +29,7 @@ void overlay_outline(struct pen *pen, double x, double y, double radius, bool br
     cairo_set_dash(pen->cairo, NULL, 0, 0);
 }
 
-/* Filled: in sight. Hollow: something stands before it. Crossed: bad. Broken: unproven. Twofold: its place is assumed. */
+/* Draws a marker. Filled: visible. Hollow: behind a surface. Crossed: Bad. Dashed: unproven. Double circle: assumed position. */
 static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool bad)
 {
     double radius = 4.2 * pen->unit, x = marker->x_px, y = marker->y_px;
@@ -40,7 +40,7 @@ static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool b
     pen_ink(pen, marker->occluded ? 0.7 : 1);
     overlay_outline(pen, x, y, radius, overlay_unproven(pen, marker->tag));
     if (pen->scene->plant->tags[marker->tag].place_assumed)
-        overlay_outline(pen, x, y, 1.75 * radius, false); /* somewhere here */
+        overlay_outline(pen, x, y, 1.75 * radius, false); /* outer circle: the position is only approximate */
     if (bad) {
         double arm = 0.62 * radius;
         cairo_move_to(pen->cairo, x - arm, y - arm);
@@ -94,13 +94,13 @@ static void draw_alarm(struct pen *pen, const struct frame_marker *marker)
     overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, priority, (enum alarm_status)reading->alarm_status);
 }
 
-/* On equipment that has no distance from the chosen sensor: there is nothing to say of it, but for its alarm. */
+/* Returns whether the marker's equipment has no distance to the chosen sensor: only its alarm is shown then. */
 static bool is_elsewhere(const struct pen *pen, const struct frame_marker *marker)
 {
     return pen->view.field.show == SHOW_DISTANCE && isnan(marker->value);
 }
 
-/* Writes the label of a Bad reading: its alarm stays as it was when the last value came. A time of more than a day ago has its date. */
+/* Formats the label of a Bad reading. Its alarm is the one at the last value. A time more than a day ago includes the date. */
 static void format_bad(const struct pen *pen, const struct reading *reading, char out[64])
 {
     enum alarm_kind alarm = (enum alarm_kind)reading->alarm;
@@ -144,7 +144,7 @@ struct label_text {
     double name_width;
 };
 
-/* From the rim of the mark, or of its ring, to the nearest point of the label. */
+/* Draws a leader line from the rim of the marker, or of its ring, to the nearest point of the label. */
 static void draw_leader(struct pen *pen, const struct label_item *item, const struct label_box *box)
 {
     double x = fmax(box->x, fmin(box->x + box->width, item->x)), y = fmax(box->y, fmin(box->y + box->height, item->y));
@@ -169,7 +169,7 @@ static void draw_label(struct pen *pen, const struct label_box *box, const struc
     pen_text(pen, box->x + pad + text->name_width, box->y + pad + 0.72 * pen->text_px, text->value);
 }
 
-/* Along the view. */
+/* Returns the depth of a tag's sensor along the view direction. */
 static double depth_of(const struct pen *pen, int tag)
 {
     const struct scene_asset *asset = &pen->scene->assets[pen->scene->plant->tags[tag].asset];
@@ -194,7 +194,7 @@ static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
            marker->y_px < area->height;
 }
 
-/* What there is to place: every mark in sight that no card covers. The caller owns both lists. */
+/* Label items for every visible marker that no card covers. The caller owns both arrays. */
 struct marker_labels {
     struct label_item *items;
     struct label_text *texts;
@@ -235,7 +235,7 @@ struct callout_text {
     char what[200], worst[200];
 };
 
-/* The asset, where it is only one; how many alarms; and the gravest of them. */
+/* Writes a call-out's text: the asset if all alarms are on one, the number of alarms, and the most severe. */
 static void write_callout(const struct marker_labels *wanted, const int *members, size_t count, struct callout_text *text)
 {
     const struct pen *pen = wanted->pen;
@@ -244,7 +244,7 @@ static void write_callout(const struct marker_labels *wanted, const int *members
     int asset = plant->tags[wanted->tags[members[0]]].asset, worst = -1, least = 0;
     for (size_t i = 0; i < count; i++) {
         int tag = wanted->tags[members[i]], word = (int)readings[tag].alarm_status;
-        bool gone = word == ALARM_RETURNED || word == ALARM_LATCHED; /* these come last */
+        bool gone = word == ALARM_RETURNED || word == ALARM_LATCHED; /* returned and latched alarms rank behind all others */
         int grave = alarm_priority(&plant->tags[tag], (enum alarm_kind)readings[tag].alarm) + (gone ? ALARM_PRIORITIES : 0);
         if (worst < 0 || grave < least || (grave == least && tag < worst)) {
             worst = tag;
@@ -262,7 +262,7 @@ static void write_callout(const struct marker_labels *wanted, const int *members
     pen_say(pen, WORD_WORST, grave, NULL, text->worst, sizeof(text->worst));
 }
 
-static const double LINE = 1.25; /* of text_px */
+static const double LINE = 1.25; /* line height of call-outs, in text_px */
 
 static void measure_callout(void *arg, const int *members, size_t count, double size[2])
 {
@@ -275,7 +275,7 @@ static void measure_callout(void *arg, const int *members, size_t count, double 
     size[1] = (0.95 + LINE) * pen->text_px + 8 * pen->unit;
 }
 
-/* lead: the first of its items. */
+/* Draws a call-out. lead: index of its first item. */
 static void draw_callout(const struct marker_labels *wanted, const struct label_place *places, size_t lead)
 {
     struct pen *pen = wanted->pen;
@@ -332,7 +332,7 @@ static bool is_under(const struct pen *pen, int cards, const struct label_box *m
     return false;
 }
 
-/* The value on its line, wherever nothing else is; those of one value stand far apart. */
+/* Draws values on isolines wherever there is room; labels of the same value are far apart. */
 static void label_isolines(struct pen *pen)
 {
     const struct frame *frame = pen->frame;
@@ -374,7 +374,7 @@ bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marke
     return !marker->occluded && is_inside(pen, marker) && !is_under(pen, pen->taken_count, &mark);
 }
 
-/* It has its place in any case, whatever crowds about it. */
+/* Returns whether the marker is drawn in any case, however many are near. */
 static bool is_kept(const struct pen *pen, const struct frame_marker *marker)
 {
     return has_alarm(pen, marker) || is_bad(marker) || quality_is_uncertain(marker->quality) ||
@@ -382,7 +382,7 @@ static bool is_kept(const struct pen *pen, const struct frame_marker *marker)
            pen->scene->plant->tags[marker->tag].asset == pen->view.selected_asset;
 }
 
-/* The indices of those that are drawn, of those that no card covers; how many there are. The caller frees the list. */
+/* Chooses the markers to draw, among those that no card covers. Returns their number; the caller frees the array of indices. */
 static size_t choose_markers(const struct pen *pen, int cards, size_t **chosen)
 {
     const struct frame *frame = pen->frame;
@@ -411,7 +411,7 @@ static size_t choose_markers(const struct pen *pen, int cards, size_t **chosen)
 
 void overlay_markers(struct pen *pen)
 {
-    int cards = pen->taken_count; /* what lies over the picture already */
+    int cards = pen->taken_count; /* number of areas occupied before markers are drawn */
     struct marker_labels wanted = { .pen = pen };
     size_t *chosen, count = choose_markers(pen, cards, &chosen);
     wanted.items = mem_array(count, sizeof(*wanted.items));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The drawing context shared by the parts of the overlay. Sizes scale with the picture: `unit` is one pixel at 1280x720.
-   Thread: any; one pen belongs to one thread. */
+/* The drawing context shared by the parts of the overlay. Sizes scale with the frame: `unit` is one pixel at 1280x720. Thread: any; one pen
+   belongs to one thread. */
 #ifndef RENDER_OVERLAY_PEN_H
 #define RENDER_OVERLAY_PEN_H
 #include <stdbool.h>
@@ -20,21 +20,21 @@ enum { PEN_MAX_TAKEN = 512 };
 struct pen {
     cairo_t *cairo;
     const struct frame *frame;
-    struct view view; /* of the half being drawn */
-    int half;         /* of a split view; else 0 */
-    struct label_box area; /* area of that half, in pixels */
+    struct view view; /* view of the half being drawn */
+    int half;         /* index of the half of a split view; else 0 */
+    struct label_box area; /* area of that half, in pixels of the frame */
     const struct scene *scene;
     const struct snapshot *snapshot;
     const struct loop_checks *loop_checks; /* NULL: none */
-    bool bare;                             /* draws nothing about sensors and alarms */
-    bool calm;                             /* only what is abnormal has a label */
+    bool bare;                             /* nothing about sensors and alarms is drawn */
+    bool calm;                             /* labels only for alarms and Bad readings */
     double unit, text_px;
-    struct burn_shift legend_shift;  /* of the legend, within the margin around it */
+    struct burn_shift legend_shift;  /* shift of the legend, within its margin */
     struct label_box taken[PEN_MAX_TAKEN]; /* occupied areas */
     int taken_count;
 };
 
-/* Makes a half of a split view the one to draw over. */
+/* Selects the half of a split view to draw on. */
 void pen_choose_half(struct pen *pen, int half);
 /* Returns whether a box lies inside the area and covers nothing that is taken. */
 bool pen_is_free(const struct pen *pen, const struct label_box *box);
@@ -42,7 +42,7 @@ bool pen_is_free(const struct pen *pen, const struct label_box *box);
 void pen_take(struct pen *pen, const struct label_box *box);
 /* Draws a light card with a thin border, as a background for text. */
 void pen_card(struct pen *pen, const struct label_box *box);
-/* Set the colour: any sRGB colour; that of text. */
+/* pen_rgb sets an sRGB colour, pen_ink the text colour. */
 void pen_rgb(struct pen *pen, const uint8_t rgb[3]);
 void pen_ink(struct pen *pen, double alpha);
 /* Sets the font. size: a multiple of text_px. */
@@ -52,60 +52,60 @@ double pen_text_width(struct pen *pen, const char *text);
 /* Draws text that starts at x and is centred on y. */
 void pen_text(struct pen *pen, double x, double y, const char *text);
 
-/* Return a word, and write a sentence, in the language of the picture (overlay_words.h). */
+/* pen_word returns a word, pen_say writes a sentence, in the language of the view (overlay_words.h). */
 const char *pen_word(const struct pen *pen, enum overlay_word word);
 void pen_say(const struct pen *pen, enum overlay_word word, const char *a, const char *b, char *out, size_t size);
 
-/* Prints a value with as few decimals as tell apart values that differ by a 5000th of the range. */
+/* Formats a value with as few decimals as distinguish a 5000th of the range. */
 void pen_number(double value, double range, char out[40]);
-/* Returns how many decimals tell apart values that differ by a 500th of the range. */
+/* Returns how many decimals distinguish a 500th of the range. */
 int pen_decimals(double range);
-/* Returns the value rounded to so many decimals, and 0 instead of -0. */
+/* Returns the value rounded to this many decimals, and 0 instead of -0. */
 double pen_rounded(double value, int decimals);
 
 /* Draws the colour bar of pen->view: MIN at the bottom, MAX at the top, ticks on the right, the group's limits on the left. */
 void overlay_bar(struct pen *pen, const struct label_box *bar);
-/* Return the width of the colour bar with all text beside it, and the part of it that is left of the bar itself. */
+/* overlay_bar_width returns the width of the colour bar with all text, overlay_bar_left the part of it left of the bar. */
 double overlay_bar_width(struct pen *pen);
 double overlay_bar_left(struct pen *pen);
-/* Returns the height in pixels of the legend strip of a picture of that size; 0: it has none, being too small. */
+/* Returns the height in pixels of the legend strip of a frame of that size; 0: the frame is too small for one. */
 int overlay_strip_height(int width_px, int height_px);
-/* Writes the legend strip over the lowest rows of the picture, where it is wide and high enough. bgrx: the frame's pixels. */
+/* Writes the legend strip over the lowest rows of the frame, if the frame is large enough. bgrx: the frame's pixels. */
 void overlay_strip(struct pen *pen, uint8_t *bgrx, int stride_bytes);
-/* Draws the legend of the half that is chosen. */
+/* Draws the legend of the selected half. */
 void overlay_legend(struct pen *pen);
 /* Returns whether the legends of both halves of a split view are the same. Leaves the pen on the right half. */
 bool overlay_legend_is_shared(struct pen *pen);
 /* Returns the width of the legend with its margins. */
 double overlay_legend_width(struct pen *pen);
-/* Draws, in each half of a split view, a caption of what it shows otherwise than the other half, where no legend says so. The view must be
-   split. Leaves the pen on the right half (pen_choose_half). */
+/* Draws a caption in each half of a split view with its differences from the other half that no legend shows. The view must be split.
+   Leaves the pen on the right half (pen_choose_half). */
 void overlay_halves(struct pen *pen);
 /* Draws the outline of a marker. broken: dashed, for a tag that no loop check has proven. */
 void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken);
 /* Returns whether loop checks are given and none has proven the tag. */
 bool overlay_unproven(const struct pen *pen, int tag);
-/* Draws an alarm ring. Its colour is the priority, its form the state: thick, unacknowledged; thin, acknowledged; hollow, returned to
+/* Draws an alarm ring. The colour shows the priority, the form the state: thick: unacknowledged; thin: acknowledged; hollow: returned to
    normal but not acknowledged. */
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_status word);
-/* Returns whether the half that is chosen has arrows. */
+/* Returns whether the selected half has arrows. */
 bool overlay_has_arrows(const struct pen *pen);
-/* Return how long the longest arrow is, in pixels, and the value that is as long. */
+/* overlay_arrow_px returns the length of the longest arrow in pixels, overlay_arrow_value the value that this length means. */
 double overlay_arrow_px(const struct pen *pen);
 double overlay_arrow_value(const struct pen *pen);
-/* Draws an arrow with its middle at (x, y); a dot where it has no length. uncertain: dashed. */
+/* Draws an arrow centred on (x, y), or a dot if its length is 0. uncertain: dashed. */
 void overlay_arrow(struct pen *pen, double x, double y, double dx_px, double dy_px, bool uncertain);
-/* Returns whether a cross stands for this label: an arrow whose direction is not known. */
+/* Returns whether the label is an arrow of unknown direction, which is drawn as a cross. */
 bool overlay_is_unknown_direction(const struct frame_label *label);
-/* Draws the cross that stands where a direction is not known. */
+/* Draws the cross that marks an unknown direction. */
 void overlay_unknown_direction(struct pen *pen, double x, double y);
-/* Draws the arrows of the half that is chosen. */
+/* Draws the arrows of the selected half. */
 void overlay_arrows(struct pen *pen);
-/* Draws markers, alarm rings and labels of the half that is chosen. */
+/* Draws markers, alarm rings and labels of the selected half. */
 void overlay_markers(struct pen *pen);
-/* Returns whether a marker lies in the chosen half, is not hidden by the plant, and is not covered by the overlay drawn so far. */
+/* Returns whether a marker is within the selected half, and neither the plant nor the overlay drawn so far hides it. */
 bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marker);
-/* Lists active alarms of the whole plant that no marker in the picture shows, gravest first. */
+/* Lists active alarms of the whole plant that no marker in the frame shows, most severe first. */
 void overlay_alarms(struct pen *pen);
 
 #endif

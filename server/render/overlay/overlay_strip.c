@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The legend strip (protocol/strip_format.h), pixel by pixel: no edge of a cell is smoothed. */
+/* Draws the legend strip (protocol/strip_format.h) pixel by pixel, without smoothing the cells' edges. */
 #include <stdio.h>
 #include <string.h>
 
@@ -36,7 +36,7 @@ static void choose_ink(const struct pen *pen, struct strip_ink *ink)
     }
 }
 
-/* The colour at a place along the inner cells, 0 to STRIP_INNER: below, MIN to MAX, above. */
+/* Returns the colour at a column of the inner cells, 0 to STRIP_INNER: below range, MIN to MAX, above range. */
 static const uint8_t *color_at(const struct strip_ink *ink, int shade, double column)
 {
     if (column < STRIP_BEYOND)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Words of overlays, in English, Korean or German (clients/web/words/overlay.*.js). */
+/* Words of the overlay in English, Korean or German (clients/web/words/overlay.*.js). */
 #ifndef RENDER_OVERLAY_WORDS_H
 #define RENDER_OVERLAY_WORDS_H
 #include <stdbool.h>
@@ -12,17 +12,17 @@
 enum overlay_word {
     OVERLAY_WORDS(OVERLAY_MEMBER)
     OVERLAY_WORDS,
-    WORD_LOOKS = WORD_LOOK_DEFAULT, /* plus an enum look */
+    WORD_LOOKS = WORD_LOOK_DEFAULT, /* base of the words for looks: add an enum look */
     WORD_INTERPOLATIONS = WORD_INTERPOLATION_SHEPARD,
     WORD_DISTANCES = WORD_DISTANCE_GEODESIC,
 };
 #undef OVERLAY_MEMBER
 
-/* Returns a word or a sentence. Static. Thread: any. */
+/* Returns a word or sentence; static storage. Thread: any. */
 const char *overlay_word(enum language language, enum overlay_word word);
-/* Finds a language by its name: en, ko or de. Returns false if it is none of them. */
+/* Finds a language by its code: en, ko or de. Returns false for any other. */
 bool overlay_language_find(const char *name, enum language *out);
-/* Writes a sentence into out, with the values in place of its {}; b: NULL where it has one. Thread: any. */
+/* Writes a sentence into `out`, replacing each {} by a, then b. b: NULL if the sentence has one {}. Thread: any. */
 void overlay_say(enum language language, enum overlay_word word, const char *a, const char *b, char *out, size_t size);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* By fontconfig. One font has all of a text, as cairo's own text functions change none within it. */
+/* Chooses fonts with fontconfig. A text uses a single font, because cairo's toy text functions do not switch fonts within a text. */
 #include "render/overlay/text_face.h"
 
 #include <cairo-ft.h>
@@ -8,16 +8,16 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { FIRST_BEYOND = 0x590 }; /* Hebrew and all after it */
+enum { FIRST_UNCOVERED = 0x590 }; /* first code point that DejaVu Sans may lack: Hebrew */
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 /* --- below: under lock. What was found last, regular and bold */
 static struct found_face {
-    FcCharSet *letters; /* NULL: nothing yet */
+    FcCharSet *letters; /* NULL: no search yet */
     cairo_font_face_t *face;
 } found[2];
 
-/* The letters of a text; NULL: DejaVu Sans has them. */
+/* Returns the set of a text's letters; the caller frees it. NULL: DejaVu Sans covers the text. */
 static FcCharSet *letters_beyond(const char *text)
 {
     FcCharSet *letters = FcCharSetCreate();
@@ -26,7 +26,7 @@ static FcCharSet *letters_beyond(const char *text)
     FcChar32 letter;
     for (int count = (int)strlen(text), n; count > 0 && (n = FcUtf8ToUcs4(at, &letter, count)) > 0; at += n, count -= n) {
         FcCharSetAddChar(letters, letter);
-        beyond |= letter >= FIRST_BEYOND && !(letter >= 0x2000 && letter < 0x2c00); /* but for dashes, arrows, signs */
+        beyond |= letter >= FIRST_UNCOVERED && !(letter >= 0x2000 && letter < 0x2c00); /* but not punctuation, arrows and symbols */
     }
     if (beyond)
         return letters;

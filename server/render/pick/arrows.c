@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Points of triangles, thinned out. */
+/* Spreads arrow positions over the triangles of an asset, and finds the direction at each. */
 #include "render/pick/arrows.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "render/pick/coarse_level.h"
 
-enum { PLACES = 400, CANDIDATES_MOST = 20000, CUTS_MOST = 64 };
+enum { MAX_POSITIONS = 400, MAX_CANDIDATES = 20000, MAX_CUTS = 64 };
 
 size_t arrows_vertex_count(const struct scene_asset *asset)
 {
@@ -40,7 +40,7 @@ static void point_of(const struct asset_view *view, const struct direction_place
     }
 }
 
-/* The middles of equal pieces, each about half as long as arrows are apart. */
+/* Adds the centres of equal parts of a triangle, each about half an arrow spacing long. */
 static void add_triangle(struct arrow_candidates *candidates, const uint32_t corners[3], uint32_t triangle)
 {
     double at[3][3], normal[3];
@@ -49,9 +49,9 @@ static void add_triangle(struct arrow_candidates *candidates, const uint32_t cor
     double longest_m = max_of(vec_distance(at[0], at[1]), max_of(vec_distance(at[1], at[2]), vec_distance(at[2], at[0])));
     if (!(vec_normalize(normal) > 0))
         return;
-    int cuts = (int)min_of(ceil(2 * longest_m / candidates->spacing_m), CUTS_MOST);
+    int cuts = (int)min_of(ceil(2 * longest_m / candidates->spacing_m), MAX_CUTS);
     for (int i = 0; i < cuts; i++)
-        for (int j = 0; j < 2 * (cuts - i) - 1; j++) { /* j odd: the pieces that stand on their heads */
+        for (int j = 0; j < 2 * (cuts - i) - 1; j++) { /* odd j: upside-down parts */
             double third = j % 2 ? 2.0 / 3 : 1.0 / 3, a = (i + third) / cuts, b = (j / 2 + third) / cuts;
             mem_grow(&candidates->at, &candidates->capacity, candidates->count + 1, sizeof(*candidates->at));
             candidates->at[candidates->count++] =
@@ -69,29 +69,30 @@ static bool is_apart(const struct arrow_set *set, const struct asset_view *view,
     for (size_t i = 0; i < set->count; i++) {
         const float *a = set->places[i].normal, *b = place->normal;
         point_of(view, &set->places[i], there);
-        if (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0 && vec_distance(here, there) < least_m) /* else: the other side of a wall */
+        /* opposite normals are the two sides of a wall */
+        if (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0 && vec_distance(here, there) < least_m)
             return false;
     }
     return true;
 }
 
-/* Far apart first, so that whoever takes them in this order while there is room has them evenly spread. */
-static void thin_out(struct arrow_set *set, const struct arrow_candidates *candidates)
+/* Selects positions with the widest spacing first, so that any prefix of the list is evenly spread. */
+static void select_spread(struct arrow_set *set, const struct arrow_candidates *candidates)
 {
-    set->places = mem_array(PLACES, sizeof(*set->places));
-    size_t step = candidates->count / CANDIDATES_MOST + 1;
+    set->places = mem_array(MAX_POSITIONS, sizeof(*set->places));
+    size_t step = candidates->count / MAX_CANDIDATES + 1;
     for (double least_m = 4 * candidates->spacing_m; least_m >= candidates->spacing_m; least_m /= 2)
-        for (size_t i = 0; i < candidates->count && set->count < PLACES; i += step)
+        for (size_t i = 0; i < candidates->count && set->count < MAX_POSITIONS; i += step)
             if (is_apart(set, candidates->view, &candidates->at[i], least_m))
                 set->places[set->count++] = candidates->at[i];
     set->found = mem_array(set->count, sizeof(*set->found));
 }
 
-static void seek(struct arrow_set *set, const struct scene_asset *asset)
+static void find_positions(struct arrow_set *set, const struct scene_asset *asset)
 {
     struct arrow_candidates candidates = { .view = &asset->file->view };
     const struct asset_level *level = coarse_level(asset);
-    for (int pass = 0; pass < 2; pass++) { /* the area, then places by it */
+    for (int pass = 0; pass < 2; pass++) { /* pass 0 measures the area, pass 1 adds positions spaced by it */
         double area_m2 = 0;
         uint32_t triangle = 0;
         for (uint32_t p = 0; p < level->primitive_count; p++) {
@@ -106,7 +107,7 @@ static void seek(struct arrow_set *set, const struct scene_asset *asset)
                     add_triangle(&candidates, corners + i, triangle);
             }
         }
-        candidates.spacing_m = sqrt(area_m2 / PLACES);
+        candidates.spacing_m = sqrt(area_m2 / MAX_POSITIONS);
         if (!(candidates.spacing_m > 0))
             break;
     }
@@ -114,7 +115,7 @@ static void seek(struct arrow_set *set, const struct scene_asset *asset)
     set->error_m = level->error_m;
     set->sought = true;
     if (candidates.count > 0)
-        thin_out(set, &candidates);
+        select_spread(set, &candidates);
     mem_free(candidates.at);
 }
 
@@ -123,7 +124,7 @@ static void seek(struct arrow_set *set, const struct scene_asset *asset)
 void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, const struct fields_entry *field)
 {
     if (!set->sought)
-        seek(set, &scene->assets[asset]);
+        find_positions(set, &scene->assets[asset]);
     if (set->content == field->directions_content)
         return;
     set->content = field->directions_content;

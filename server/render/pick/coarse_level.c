@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Levels are sorted, the finest first. */
+/* Chooses a coarse level of detail. Levels are sorted from fine to coarse. */
 #include "render/pick/coarse_level.h"
 
 #include <math.h>
 
-static const double COARSE = 0.01; /* of an asset's size */
+static const double MAX_ERROR_PART = 0.01; /* largest error of the level, relative to the asset's size */
 
 double coarse_size_m(const struct scene_asset *asset)
 {
@@ -17,7 +17,7 @@ double coarse_size_m(const struct scene_asset *asset)
 const struct asset_level *coarse_level(const struct scene_asset *asset)
 {
     const struct asset_view *view = &asset->file->view;
-    const double error_m = COARSE * coarse_size_m(asset);
+    const double error_m = MAX_ERROR_PART * coarse_size_m(asset);
     uint32_t level = 0;
     while (level + 1 < view->header->level_count && (double)view->levels[level + 1].error_m <= error_m)
         level++;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Crossings of triangle edges with isolines, thinned out. */
+/* Finds where triangle edges cross isolines, thins the points out, and tests their visibility. */
 #include "render/pick/isolines.h"
 
 #include <math.h>
@@ -11,9 +11,9 @@
 #include "render/pick/coarse_level.h"
 #include "render/pick/markers.h"
 
-enum { POINTS_PER_LINE = 16, POINTS_MOST = 2048, LABELS_MOST = 128, ARROWS_MOST = 192, STROKES_SHOWN = 48 };
-static const double SPACING = 0.1; /* of an asset's size: between points */
-static const double SAME_LINE = 4;                /* times as far apart as labels of different lines */
+enum { POINTS_PER_LINE = 16, MAX_POINTS = 2048, MAX_LABELS = 128, MAX_ARROWS = 192, MAX_STROKES = 48 };
+static const double SPACING = 0.1; /* between points, relative to the asset's size */
+static const double SAME_LINE_FACTOR = 4; /* labels of one line keep this multiple of the distance between labels of different lines */
 
 void isolines_init(struct isolines *isolines, size_t asset_count)
 {
@@ -37,7 +37,7 @@ void isolines_finish(struct isolines *isolines)
 
 /* --- points on lines --------------------------------------------------------------------------------------------------------- */
 
-/* One asset being searched. */
+/* State of the search in one asset. */
 struct isoline_search {
     const struct scene_asset *asset;
     const struct fields_entry *field;
@@ -140,7 +140,7 @@ static void collect_lines(struct isolines *isolines, const struct frame_context 
         update_set(set, &context->gpu_scene->scene->assets[asset], context->fields[asset], lines, line_count);
         if (set->count == 0)
             continue;
-        if (out->count + set->count > POINTS_MOST)
+        if (out->count + set->count > MAX_POINTS)
             break;
         mem_grow(&out->at, &out->capacity, out->count + set->count, sizeof(*out->at));
         for (size_t p = 0; p < set->count; p++)
@@ -168,7 +168,7 @@ static void add_arrow(const struct arrow_set *set, size_t place, const struct fr
     out->at[out->count++] = point;
 }
 
-/* All points of a stroke, or none; where nothing is known, the arrow that says so. */
+/* Adds the points of a stroke. Where the direction is unknown, adds an arrow instead, which is drawn as a cross. */
 static void add_stroke(const struct isolines *isolines, size_t place, const struct frame_context *context, int asset,
                        struct isoline_points *out)
 {
@@ -196,14 +196,14 @@ static void add_stroke(const struct isolines *isolines, size_t place, const stru
     }
 }
 
-/* The first place of each asset, then the second of each, and so on, until there are enough: so all have their share, and as each asset's
-   places begin with those that are farthest apart, what it has is spread over it. */
+/* Collects the first position of each asset, then the second of each, and so on up to a limit. All assets get a share, and each share is
+   spread over its asset, because any prefix of an asset's positions is. */
 static void collect_arrows(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
 {
     const struct scene *scene = context->gpu_scene->scene;
-    const size_t most = out->count + 2 * POINTS_MOST;
+    const size_t most = out->count + 2 * MAX_POINTS;
     size_t longest = 0;
-    if (!isolines_has_arrows(scene, context->view)) /* fields that a trial leaves alone have theirs from before it */
+    if (!isolines_has_arrows(scene, context->view)) /* in a trial, fields that it does not change still have old directions */
         return;
     for (size_t i = 0; i < context->visible_count; i++) {
         int asset = context->visible[i];
@@ -238,7 +238,7 @@ void isolines_collect(struct isolines *isolines, const struct frame_context *con
     collect_arrows(isolines, context, out);
 }
 
-/* Eye space, and slack. */
+/* Writes eye-space positions and depth tolerances. */
 static void fill_places(const struct frame_context *context, const struct isoline_points *points, float (*places)[4])
 {
     for (size_t i = 0; i < points->count; i++) {
@@ -260,7 +260,8 @@ bool isolines_start(struct point_visibility *queries, const struct frame_context
     return point_visibility_start(queries, context, count);
 }
 
-/* A message goes with each frame: no more places than a picture has room for, and few of one line. */
+/* Returns whether there is room for another label. Labels are sent with each frame, so their number, and that of each line, is limited by
+   the frame's size. */
 static bool has_room(const struct frame *frame, const float place[4], const struct isoline_point *point)
 {
     double lines_px = fmax(40, frame->width_px / 32.0), arrows_px = FRAME_ARROW_PX(frame->width_px);
@@ -270,14 +271,14 @@ static bool has_room(const struct frame *frame, const float place[4], const stru
         double away_px = hypot((double)(label->x_px - place[0]), (double)(label->y_px - place[1]));
         if (label->arrow != point->arrow)
             continue;
-        if (away_px < (point->arrow ? arrows_px : label->value == point->value ? SAME_LINE * lines_px : lines_px))
+        if (away_px < (point->arrow ? arrows_px : label->value == point->value ? SAME_LINE_FACTOR * lines_px : lines_px))
             return false;
         count++;
     }
-    return count < (point->arrow ? ARROWS_MOST : LABELS_MOST);
+    return count < (point->arrow ? MAX_ARROWS : MAX_LABELS);
 }
 
-/* How a unit vector at the point looks in the picture, in parts of its length if it lay in the picture's plane. */
+/* Projects a unit vector at the point into the frame, as a fraction of its length if it were parallel to the image plane. */
 static void project_arrow(const struct frame_context *context, const struct isoline_point *point, struct frame_label *label)
 {
     const struct view_constants *constants = &context->constants;
@@ -296,42 +297,43 @@ static void project_arrow(const struct frame_context *context, const struct isol
     double length = fmax(hypot(dx, dy), 1);
     label->dx = (float)(round(100 * dx / length) / 100);
     label->dy = (float)(round(100 * dy / length) / 100);
-    if (label->dx == 0 && label->dy == 0 && vec_length(point->along) > 0) /* straight at the eye or away from it: known all the same */
+    /* the arrow points straight towards or away from the eye; its direction is known nevertheless */
+    if (label->dx == 0 && label->dy == 0 && vec_length(point->along) > 0)
         label->dx = dx < 0 ? -0.01f : 0.01f;
 }
 
-/* Which stroke is being given, and how: of each, the first of its parts that is in sight. */
-struct giving {
+/* The stroke being emitted. Only its first visible section is drawn. */
+struct emitted_stroke {
     uint16_t stroke;
     bool begun, ended;
     int count;
 };
 
-/* Returns whether a point of a stroke is part of the picture. Strokes begin as far apart as arrows. */
-static bool goes_on(struct giving *giving, const struct frame *frame, const float place[4], const struct isoline_point *point)
+/* Returns whether a point of a stroke is drawn. Starts of strokes keep the same distance as arrows. */
+static bool on_stroke(struct emitted_stroke *stroke, const struct frame *frame, const float place[4], const struct isoline_point *point)
 {
-    if (point->stroke != giving->stroke)
-        *giving = (struct giving){ .stroke = point->stroke, .count = giving->count };
-    bool hidden = place[2] >= 0.5f, begins = !giving->begun;
-    if (giving->ended || (hidden && begins))
+    if (point->stroke != stroke->stroke)
+        *stroke = (struct emitted_stroke){ .stroke = point->stroke, .count = stroke->count };
+    bool hidden = place[2] >= 0.5f, begins = !stroke->begun;
+    if (stroke->ended || (hidden && begins))
         return false;
-    giving->ended = hidden;
+    stroke->ended = hidden;
     if (hidden || !begins)
         return !hidden;
-    giving->begun = true;
+    stroke->begun = true;
     for (size_t i = 0; i < frame->label_count; i++) {
         const struct frame_label *label = &frame->labels[i];
         bool first = i == 0 || label->stroke == 0 || frame->labels[i - 1].stroke != label->stroke;
         if (label->arrow && first && hypot((double)(label->x_px - place[0]), (double)(label->y_px - place[1])) <
             FRAME_ARROW_PX(frame->width_px))
-            giving->ended = true;
+            stroke->ended = true;
     }
-    giving->ended |= giving->count == STROKES_SHOWN;
-    giving->count += !giving->ended;
-    return !giving->ended;
+    stroke->ended |= stroke->count == MAX_STROKES;
+    stroke->count += !stroke->ended;
+    return !stroke->ended;
 }
 
-/* Takes the stroke that was given last away again if no more than one of its points is in sight. */
+/* Removes the last stroke from the frame if only one of its points is visible. */
 static void drop_short_stroke(struct frame *frame, uint16_t next)
 {
     const size_t count = frame->label_count;
@@ -340,15 +342,15 @@ static void drop_short_stroke(struct frame *frame, uint16_t next)
         frame->label_count--;
 }
 
-/* places: x, y in pixels, hidden. */
-static void give(const struct frame_context *context, const struct isoline_points *points, float (*places)[4], struct frame *frame)
+/* places: x, y in pixels, then whether hidden. */
+static void emit_labels(const struct frame_context *context, const struct isoline_points *points, float (*places)[4], struct frame *frame)
 {
-    struct giving giving = { 0 };
+    struct emitted_stroke stroke = { 0 };
     frame->labels = mem_array(points->count, sizeof(*frame->labels));
     for (size_t i = 0; i < points->count; i++) {
         const struct isoline_point *point = &points->at[i];
         drop_short_stroke(frame, point->stroke);
-        bool seen = point->stroke ? goes_on(&giving, frame, places[i], point) : places[i][2] < 0.5f && has_room(frame, places[i], point);
+        bool seen = point->stroke ? on_stroke(&stroke, frame, places[i], point) : places[i][2] < 0.5f && has_room(frame, places[i], point);
         if (!seen)
             continue;
         struct frame_label *label = &frame->labels[frame->label_count++];
@@ -368,7 +370,7 @@ void isolines_get(const struct point_visibility *queries, const struct frame_con
                   struct frame *frame)
 {
     if (points->count > 0)
-        give(context, points, queries->places, frame);
+        emit_labels(context, points, queries->places, frame);
 }
 
 void isolines_find(const struct frame_context *context, const struct isoline_points *points, const float *depth, size_t pitch_px,
@@ -380,6 +382,6 @@ void isolines_find(const struct frame_context *context, const struct isoline_poi
     fill_places(context, points, places);
     for (size_t i = 0; i < points->count; i++)
         markers_look(context, depth, pitch_px, places[i]);
-    give(context, points, places, frame);
+    emit_labels(context, points, places, frame);
     mem_free(places);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds points on isolines where labels may be placed, spread over each asset, and which of them are visible in a picture; likewise places
-   of arrows (arrows.h). The lines themselves are drawn with the field (shaders/field.glsl). Thread: the one of the GL context. */
+/* Finds points on isolines where labels may be placed, spread over each asset, and tests which are visible in a frame. Does the same for
+   positions of arrows (arrows.h). The lines themselves are drawn with the field (shaders/field.glsl). Thread: the one of the GL context. */
 #ifndef RENDER_PICK_ISOLINES_H
 #define RENDER_PICK_ISOLINES_H
 #include "render/frame.h"
@@ -10,12 +10,12 @@
 
 struct isoline_point {
     double value, place_m[3]; /* plant frame */
-    double along[3];          /* of an arrow: where it points, plant frame; 0: not known */
+    double along[3];          /* direction of an arrow, plant frame; 0: unknown */
     bool arrow, uncertain;
-    uint16_t stroke;          /* its number in this picture, from 1, the same for all of its points; 0: not of a stroke */
-    float slack_m;            /* depth tolerance: how far it may lie behind the surface drawn */
+    uint16_t stroke;          /* number of the stroke in this frame, from 1, equal for all of its points; 0: no stroke */
+    float slack_m;            /* depth tolerance in metres: how far the point may lie behind the drawn surface */
 };
-struct isoline_set { /* of one asset */
+struct isoline_set { /* points of one asset */
     uint64_t content;
     double lines[VIEW_ALL_LINES];
     int line_count;
@@ -24,31 +24,31 @@ struct isoline_set { /* of one asset */
 };
 
 struct isolines {
-    struct isoline_set *sets; /* by asset, as the next */
+    struct isoline_set *sets; /* the three arrays are indexed by asset */
     struct arrow_set *arrows;
     struct stroke_set *strokes;
     size_t asset_count;
 };
-struct isoline_points { /* the points of one picture; zero-initialise, free `at` with mem_free() */
+struct isoline_points { /* the points of one frame; zero-initialise, free `at` with mem_free() */
     struct isoline_point *at;
     size_t count, capacity;
     uint16_t stroke_count;
 };
 
-/* Returns whether a picture of this view has arrows. Pure. */
+/* Returns whether a frame of this view has arrows. Pure. */
 bool isolines_has_arrows(const struct scene *scene, const struct view *view);
 void isolines_init(struct isolines *isolines, size_t asset_count);
 void isolines_finish(struct isolines *isolines);
-/* Returns how many of an asset's first vertices must have current scalars for isolines_collect(). Pure. */
+/* Returns how many vertices of an asset, from the first, must have current scalars for isolines_collect(). Pure. */
 size_t isolines_vertex_count(const struct scene_asset *asset);
-/* Collects the candidate points of all visible assets; call it while context->fields hold the field shown. */
+/* Collects the candidate points of all visible assets. context->fields must hold the fields shown. */
 void isolines_collect(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out);
-/* isolines_start() begins the visibility test on the GPU once the picture is resolved, and returns false if the GPU is out of memory, which
-   is logged; isolines_get() stores the result in the frame once the GPU is done. */
+/* isolines_start() begins the visibility test on the GPU, after the frame is resolved. It returns false when the GPU is out of memory,
+   logged. isolines_get() stores the result in the frame once the GPU is done. */
 bool isolines_start(struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points);
 void isolines_get(const struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points,
                   struct frame *frame);
-/* Does both on the CPU, from the picture's depth buffer: rows from the top, pitch_px apart. */
+/* Tests visibility and stores the result on the CPU, from the frame's depth buffer: rows from the top, pitch_px apart. */
 void isolines_find(const struct frame_context *context, const struct isoline_points *points, const float *depth, size_t pitch_px,
                    struct frame *frame);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Markers by a compute shader that looks at the depth buffer. */
+/* Projects sensor markers and tests their visibility: by a compute shader on the depth buffer, or on the CPU. */
 #include "render/pick/markers.h"
 
 #include <math.h>
@@ -24,7 +24,7 @@ bool marker_next(struct marker_iterator *iterator, struct marker_place *out)
     return true;
 }
 
-/* Of the shown group, on an asset that is not hidden, and not cut away. */
+/* Returns whether the sensor is in the shown group, and its asset neither hidden nor cut away there. */
 bool marker_is_shown(const struct scene *scene, const struct view *view, const struct marker_place *place)
 {
     return scene->plant->tags[place->tag].group == view->field.group && visibility_of(&view->visibility, place->asset) != ASSET_HIDDEN &&
@@ -37,7 +37,7 @@ static struct marker_iterator iterator_of(const struct frame_context *context, c
     return (struct marker_iterator){ .scene = context->gpu_scene->scene, .trial = *trial };
 }
 
-/* The next of those that are shown. */
+/* Advances to the next shown sensor. */
 static bool next_shown(struct marker_iterator *iterator, const struct frame_context *context, struct marker_place *place)
 {
     while (marker_next(iterator, place))
@@ -91,8 +91,8 @@ bool markers_start(struct point_visibility *queries, const struct frame_context 
     return point_visibility_start(queries, context, count);
 }
 
-/* NULL: it does not stand on that asset, or is tried out elsewhere. */
-static const struct scene_sensor *standing(const struct marker_iterator *iterator, int asset, int tag)
+/* Returns the sensor of a tag on this asset. NULL: the tag has none there, or a trial moves it. */
+static const struct scene_sensor *sensor_on(const struct marker_iterator *iterator, int asset, int tag)
 {
     const struct scene_asset *on = &iterator->scene->assets[asset];
     for (size_t i = 0; i < on->sensor_count && !trial_find(iterator->trial, tag); i++)
@@ -101,18 +101,21 @@ static const struct scene_sensor *standing(const struct marker_iterator *iterato
     return NULL;
 }
 
-/* From the sensor that distances are shown of. NAN: it stands on another asset, there is no way, or the way is not known yet. */
+/* Returns the distance from the sensor that distances are shown of. NAN: it is on another asset, no path exists, or the distance is not
+   computed yet. */
 static double distance_m(const struct marker_iterator *iterator, const struct marker_place *place, const struct field_params *params)
 {
     const struct trial_sensor *tried = trial_find(iterator->trial, params->sensor);
     const struct trial_sensor *tried_to = trial_find(iterator->trial, place->tag);
-    const struct scene_sensor *from = standing(iterator, place->asset, params->sensor), *to = standing(iterator, place->asset, place->tag);
+    const struct scene_sensor *from = sensor_on(iterator, place->asset, params->sensor);
+    const struct scene_sensor *to = sensor_on(iterator, place->asset, place->tag);
     const struct asset_view *file = &iterator->scene->assets[place->asset].file->view;
     if ((!from && !tried) || (tried && tried->asset != place->asset))
         return NAN;
     if (place->tag == params->sensor)
         return 0;
-    if (params->distance == DISTANCE_HEAT) /* the colours are by another way than the asset file's, which are at hand here */
+    /* heat distances differ from the asset file's geodesic ones, which are the only ones available here */
+    if (params->distance == DISTANCE_HEAT)
         return NAN;
     if (params->distance == DISTANCE_EUCLIDEAN) {
         const double *a = tried ? tried->place_m : from->surface_m, *b = place->surface_m;
@@ -124,7 +127,7 @@ static double distance_m(const struct marker_iterator *iterator, const struct ma
     return away_m < 1e30 ? away_m : NAN;
 }
 
-static void give(const struct frame_context *context, float (*places)[4], size_t count, struct frame *frame)
+static void emit_markers(const struct frame_context *context, float (*places)[4], size_t count, struct frame *frame)
 {
     const struct trial *trial;
     struct marker_iterator iterator = iterator_of(context, &trial);
@@ -153,13 +156,13 @@ void markers_measure(const struct frame_context *context, struct frame *frame)
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame)
 {
     size_t count = count_shown(context);
-    if (count > 0 && count <= queries->capacity) /* a trial may have gone since it was started */
-        give(context, queries->places, count, frame);
+    if (count > 0 && count <= queries->capacity) /* a trial may have ended since the test was started */
+        emit_markers(context, queries->places, count, frame);
 }
 
 /* --- without GL ------------------------------------------------------------------------------------------------------------- */
 
-/* The farthest depth around a pixel. */
+/* Returns the farthest depth in the 3x3 pixels around a pixel. */
 static float farthest_near(const float *depth, size_t pitch_px, int width_px, int height_px, int x, int y)
 {
     float farthest = 1;
@@ -202,6 +205,6 @@ void markers_find(const struct frame_context *context, const float *depth, size_
     fill_places(context, places);
     for (size_t i = 0; i < count; i++)
         markers_look(context, depth, pitch_px, places[i]);
-    give(context, places, count, frame);
+    emit_markers(context, places, count, frame);
     mem_free(places);
 }

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Projects the sensors of the shown group into the picture and finds which of them are hidden. Thread: the one of the GL context. */
+/* Projects the sensors of the shown group into the frame and tests which of them are hidden. Thread: the one of the GL context. */
 #ifndef RENDER_PICK_MARKERS_H
 #define RENDER_PICK_MARKERS_H
 #include "render/frame.h"
 #include "render/pick/point_visibility.h"
 
-/* Iterates over all sensors with their positions: as prepared, or as moved in a trial placement. */
+/* Iterates over all sensors and their positions: as prepared, or as moved by a trial. */
 struct marker_iterator {
     const struct scene *scene;
     const struct trial *trial;   /* NULL: none */
-    size_t asset, sensor, tried; /* begin at 0 */
+    size_t asset, sensor, tried; /* zero-initialise */
 };
 struct marker_place {
     int tag, asset;
@@ -22,13 +22,13 @@ bool marker_is_shown(const struct scene *scene, const struct view *view, const s
 
 /* Returns the depth tolerance of an asset's markers: how far the drawn surface may lie in front of the position of a sensor on it. */
 double markers_slack_m(const struct scene_asset *asset);
-/* markers_start() begins the visibility test on the GPU once the picture is resolved, and returns false if the GPU is out of memory, which
-   is logged; markers_get() stores the result in the frame once the GPU is done. */
+/* markers_start() begins the visibility test on the GPU, after the frame is resolved. It returns false when the GPU is out of memory,
+   logged. markers_get() stores the result in the frame once the GPU is done. */
 bool markers_start(struct point_visibility *queries, const struct frame_context *context);
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame);
-/* Works out anew what the markers of a frame say, their places being as they are. */
+/* Recomputes the distances that a frame's markers show; their positions stay. */
 void markers_measure(const struct frame_context *context, struct frame *frame);
-/* Does both on the CPU, from the picture's depth buffer: rows from the top, pitch_px apart. */
+/* Tests visibility and stores the result on the CPU, from the frame's depth buffer: rows from the top, pitch_px apart. */
 void markers_find(const struct frame_context *context, const float *depth, size_t pitch_px, struct frame *frame);
 /* Tests one point as shaders/point_visibility.comp does. place: in, eye-space position and depth tolerance in metres; out, x and y in
    pixels, then 1 if hidden, else 0. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Four floats a pixel. */
+/* A framebuffer with four floats per pixel, and reading it back. */
 #include "render/pick/measure_target.h"
 
 

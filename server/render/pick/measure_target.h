@@ -8,14 +8,14 @@
 #include "base/log/log.h"
 #include <glad/gl.h>
 
-enum { MEASURE_CONTEXT = -1, MEASURE_NOTHING = -2 }; /* instead of "no data": an asset without a field; no asset */
+enum { MEASURE_CONTEXT = -1, MEASURE_NOTHING = -2 }; /* values of the no-data channel: an asset without a field; no asset */
 
 struct measure_target {
     int width_px, height_px;
     GLuint framebuffer, numbers, depth;
 };
 
-/* Creates the target, clears it to MEASURE_NOTHING and binds it. Returns false if the GPU is out of memory; that is logged, and
+/* Creates the target, clears it to MEASURE_NOTHING and binds it. Returns false when the GPU is out of memory, logged;
    measure_target_finish() must still be called. */
 bool measure_target_begin(struct measure_target *measure, struct log *log, int width_px, int height_px);
 /* Reads all pixels, rows from the top; waits for the GPU. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A ray, the triangle that it meets, and the field between its corners, as it is drawn. */
+/* Picks by casting a ray and interpolating the field in the triangle hit. */
 #include "render/pick/pick.h"
 
 #include <math.h>
@@ -11,21 +11,21 @@
 #include "scene/raycast.h"
 #include "value/quality.h"
 
-static const double MARKER_PX = 9;                       /* so near, the marker is meant */
-static const double MEASURED_PX = 3, MEASURED_M = 0.005; /* so near a sensor, its reading is what is seen */
+static const double MARKER_PX = 9;                       /* a marker within this distance is picked */
+static const double MEASURED_PX = 3, MEASURED_M = 0.005; /* within these distances of a sensor, the value counts as measured */
 
-struct pick_spot { /* one pick */
+struct pick_spot { /* state of one pick */
     const struct scene *scene;
-    const struct view *view; /* a whole one */
+    const struct view *view; /* not split */
     const struct snapshot *snapshot;
     struct raycast_hit hit;
-    double meter_per_pixel; /* at the hit */
+    double meter_per_pixel; /* size of a pixel at the hit point */
 };
 
 /* --- which sensor's marker --------------------------------------------------------------------------------------------------- */
 
 struct lens {
-    double right[3], up[3], forward[3], pixel_per_unit; /* per metre, at 1 m in perspective */
+    double right[3], up[3], forward[3], pixel_per_unit; /* pixels per metre; in perspective at a distance of 1 m */
 };
 
 static void lens_init(struct lens *lens, const struct view *view)
@@ -36,7 +36,7 @@ static void lens_init(struct lens *lens, const struct view *view)
         camera->height_m > 0 ? view->height_px / camera->height_m : view->height_px / (2 * tan(camera->fov_deg * M_PI / 360));
 }
 
-/* Pixels and depth of a place. False: behind the eye. */
+/* Projects a point to pixels. Returns false if the point is behind the eye. */
 static bool lens_project(const struct lens *lens, const struct view *view, const double place_m[3], double *x_px, double *y_px)
 {
     double right = 0, up = 0, ahead = 0;
@@ -57,7 +57,7 @@ static void ray_through(const struct view *view, double x_px, double y_px, struc
     ray_init(ray, &view->camera, (double)view->width_px / view->height_px, 2 * x_px / view->width_px - 1, 1 - 2 * y_px / view->height_px);
 }
 
-/* A ray towards it meets nothing before. */
+/* Returns whether a ray towards the marker hits nothing in front of it. */
 static bool in_sight(const struct pick_spot *spot, const struct marker_place *place, double x_px, double y_px)
 {
     struct ray ray;
@@ -78,7 +78,7 @@ static void find_sensor(const struct pick_spot *spot, const struct trial *trial,
     struct marker_place place;
     struct lens lens;
     double near_px = MARKER_PX * (spot->view->pixel_ratio > 0 ? spot->view->pixel_ratio : 1);
-    double least[2] = { near_px, near_px }; /* in sight, and not */
+    double least[2] = { near_px, near_px }; /* smallest distance to a visible marker, and to a hidden one */
     lens_init(&lens, spot->view);
     while (marker_next(&iterator, &place)) {
         double x, y;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A buffer that both sides see, and a compute shader. */
+/* Tests points with a compute shader, in a buffer mapped by CPU and GPU. */
 #include "render/pick/point_visibility.h"
 
 #include "gpu/mesh.h"
 
-enum { LEAST_PLACES = 256 };
+enum { MIN_POINTS = 256 };
 
 float (*point_visibility_reserve(struct point_visibility *queries, const struct gl *gl, size_t count))[4]
 {
@@ -14,7 +14,7 @@ float (*point_visibility_reserve(struct point_visibility *queries, const struct 
     if (count <= queries->capacity)
         return queries->places;
     point_visibility_finish(queries);
-    size_t capacity = count > LEAST_PLACES ? count : LEAST_PLACES, bytes = capacity * sizeof(*queries->places);
+    size_t capacity = count > MIN_POINTS ? count : MIN_POINTS, bytes = capacity * sizeof(*queries->places);
     queries->buffer = mesh_buffer(gl->log, "places in a picture", bytes, NULL, both | GL_CLIENT_STORAGE_BIT);
     queries->places = queries->buffer ? glMapNamedBufferRange(queries->buffer, 0, (GLsizeiptr)bytes, both) : NULL;
     queries->capacity = queries->places ? capacity : 0;

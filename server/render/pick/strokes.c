@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Neighbours of triangles by the places of their corners, and steps from one to the next. */
+/* Traces strokes over a surface: finds neighbours of triangles by their corner positions, and steps from triangle to triangle. */
 #include "render/pick/strokes.h"
 
 #include <math.h>
@@ -11,15 +11,16 @@
 #include "render/pick/coarse_level.h"
 
 #define STROKE_NONE UINT32_MAX
-enum { CROSSINGS_MOST = 64 };         /* of edges within one step */
-static const double STEP = 0.35;      /* of the distance between arrows */
-static const double LEAST_DOT = -0.5; /* a direction that turns by more than 120 degrees in one step is a vortex too small to follow */
+enum { MAX_CROSSINGS = 64 };          /* edges crossed within one step */
+static const double STEP_PART = 0.35; /* step length, relative to the distance between arrows */
+/* a direction that turns by more than 120 degrees in one step belongs to a vortex too small to follow */
+static const double MIN_DOT = -0.5;
 
 /* --- neighbours ------------------------------------------------------------------------------------------------------------- */
 
 struct triangle_side { /* one side of a triangle */
     float low[3], high[3];
-    uint32_t at; /* 3 times the triangle plus the corner that it begins at */
+    uint32_t at; /* 3 times the triangle plus the corner where the side begins */
 };
 
 static int compare_sides(const void *a, const void *b)
@@ -27,7 +28,8 @@ static int compare_sides(const void *a, const void *b)
     return memcmp(a, b, 6 * sizeof(float));
 }
 
-/* Corners are split where normals or materials differ: what counts is where they are. Sides that more than two triangles share are ends. */
+/* Finds neighbours by corner positions, since vertices are duplicated where normals or materials differ. A side shared by more than two
+   triangles is a border. */
 static void find_neighbours(struct stroke_set *set, const struct asset_view *view, const struct asset_level *level, size_t tri_count)
 {
     struct triangle_side *sides = mem_array(3 * tri_count + 1, sizeof(*sides));
@@ -40,7 +42,7 @@ static void find_neighbours(struct stroke_set *set, const struct asset_view *vie
         for (uint32_t i = 0; i < primitive->index_count; i += 3, tri++)
             for (uint32_t e = 0; e < 3; e++) {
                 struct triangle_side *side = &sides[3 * tri + e];
-                for (int c = 0; c < 3; c++) { /* + 0: -0 is 0 */
+                for (int c = 0; c < 3; c++) { /* + 0.0 turns -0 into 0 */
                     side->low[c] = view->positions_m[corners[i + e]][c] + 0.0f;
                     side->high[c] = view->positions_m[corners[i + (e + 1) % 3]][c] + 0.0f;
                 }
@@ -81,7 +83,7 @@ static void corners_of(const struct tracing *tracing, uint32_t tri, double out[3
     vec_normal(out[0], out[1], out[2], normal);
 }
 
-/* How the weights of the three corners change along v. Returns false for a triangle without an area. */
+/* Computes the change of the three corner weights along v. Returns false for a triangle without an area. */
 static bool rates_of(const double at[3][3], const double normal[3], const double v[3], double rates[3])
 {
     const double square = vec_dot(normal, normal);
@@ -96,17 +98,17 @@ static bool rates_of(const double at[3][3], const double normal[3], const double
     return true;
 }
 
-/* From the place as far as step_m along `along` (unit), straight on over edges. Returns false where the surface ends. */
+/* Moves a position by step_m along `along` (unit vector), straight on across edges. Returns false where the surface ends. */
 static bool step(const struct tracing *tracing, struct direction_place *place, const float along[3], double step_m)
 {
     double weights[3], v[3], at[3][3], normal[3], rates[3];
     uint32_t tri = place->triangle;
-    int from = -1; /* the edge that it came in by */
+    int from = -1; /* edge through which the current triangle was entered */
     for (int c = 0; c < 3; c++) {
         weights[c] = (double)place->weights[c];
         v[c] = (double)along[c];
     }
-    for (int crossing = 0; crossing < CROSSINGS_MOST; crossing++) {
+    for (int crossing = 0; crossing < MAX_CROSSINGS; crossing++) {
         corners_of(tracing, tri, at, normal);
         double unit[3] = { normal[0], normal[1], normal[2] }, lifted;
         vec_normalize(unit);
@@ -116,7 +118,7 @@ static bool step(const struct tracing *tracing, struct direction_place *place, c
         if (!(vec_normalize(v) > 0) || !rates_of(at, normal, v, rates))
             return false;
         double most_m = step_m;
-        int edge = -1; /* from corner `edge` to the next: where the weight of the third gets 0 */
+        int edge = -1; /* exit edge, from corner `edge` to the next: there the third corner's weight reaches 0 */
         for (int i = 0; i < 3; i++) {
             double room_m = rates[(i + 2) % 3] < 0 ? max_of(weights[(i + 2) % 3], 0) / -rates[(i + 2) % 3] : INFINITY;
             if (i != from && room_m < most_m) {
@@ -140,7 +142,7 @@ static bool step(const struct tracing *tracing, struct direction_place *place, c
         const uint32_t next = tracing->set->across[tri][edge];
         if (next == STROKE_NONE)
             return false;
-        /* The edge runs the other way round there; where triangles are wound against each other, the same. */
+        /* The neighbour has the edge in the opposite direction, or in the same if the triangles are wound inconsistently. */
         double mirror[3], there[3][3], turned[3], share = weights[(edge + 1) % 3] / max_of(weights[edge] + weights[(edge + 1) % 3], 1e-30);
         from = (int)(next % 3);
         corners_of(tracing, next / 3, there, mirror);
@@ -164,7 +166,7 @@ static double dot(const float a[3], const float b[3])
     return (double)(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
 }
 
-/* The direction half a step on, brought back to where the step begins: with it a stroke stays on a circle (the midpoint rule). */
+/* Returns the direction half a step ahead, turned back into the plane of the step's start (midpoint rule); strokes then stay on circles. */
 static struct direction midway(const struct stroke_point *last, const struct direction_place *half, const struct direction *there)
 {
     double v[3], from[3], to[3];
@@ -174,14 +176,14 @@ static struct direction midway(const struct stroke_point *last, const struct dir
         from[c] = (double)half->normal[c];
         to[c] = (double)last->place.normal[c];
     }
-    if (vec_dot(from, to) > 0) /* else triangles are wound against each other */
+    if (vec_dot(from, to) > 0) /* otherwise the triangles are wound inconsistently */
         vec_turn(v, from, to);
     for (int c = 0; c < 3; c++)
         out.along[c] = (float)v[c];
     return out;
 }
 
-/* All strokes together, a step at a time: directions are found for many places at once. */
+/* Traces all strokes together, step by step, since directions are computed for many positions at once. */
 static void trace(struct stroke_set *set, const struct tracing *tracing, const struct arrow_set *arrows, const struct scene *scene,
                   int asset, const struct fields_entry *field)
 {
@@ -192,7 +194,7 @@ static void trace(struct stroke_set *set, const struct tracing *tracing, const s
         set->points[i][0] = (struct stroke_point){ arrows->places[i], arrows->found[i] };
         set->lengths[i] = arrows->found[i].known;
     }
-    const double step_m = STEP * arrows->spacing_m;
+    const double step_m = STEP_PART * arrows->spacing_m;
     for (int n = 1; n < STROKE_POINTS; n++, going = 0) {
         for (size_t i = 0; i < set->count; i++) {
             const struct stroke_point *last = &set->points[i][n - 1];
@@ -213,7 +215,7 @@ static void trace(struct stroke_set *set, const struct tracing *tracing, const s
         directions_find(scene, asset, &field->params, field->directions, field->direction_count, places, going, found);
         for (size_t k = 0; k < going; k++) {
             const struct stroke_point *last = &set->points[of[k]][n - 1];
-            if (!found[k].known || dot(found[k].along, last->to.along) < LEAST_DOT)
+            if (!found[k].known || dot(found[k].along, last->to.along) < MIN_DOT)
                 continue;
             set->points[of[k]][n] = (struct stroke_point){ places[k], found[k] };
             set->lengths[of[k]]++;

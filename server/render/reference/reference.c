@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Buffers for shaders/reference.glsl. */
+/* Fills the buffers that shaders/reference.glsl reads. */
 #include "render/reference/reference.h"
 
 #include <string.h>
@@ -9,9 +9,9 @@
 #include "protocol/asset_distance.h"
 
 enum { BIND_SENSORS = 5, BIND_CORNERS = 6, BIND_POSITIONS = 7, UNIT_DISTANCES = 14, FIRST_TRIANGLE = 8 };
-enum { LANES = 4, CONFIGURED = 1, USABLE = 2, UNCERTAIN = 4 };
+enum { SENSORS_PER_TEXEL = 4, CONFIGURED = 1, USABLE = 2, UNCERTAIN = 4 };
 
-struct sensors_head { /* std430, as in the shader */
+struct sensors_head { /* std430 layout; must match the shader */
     float power, radius_m, reach_m, empty;
     float range, vertices, unused[2];
     int32_t paper, geodesic, fill, show;
@@ -58,7 +58,8 @@ static struct sensors_head head_of(const struct reference *reference, int asset,
         .range = places ? 1 : (float)(group->max - group->min),
         .vertices = (float)reference->gpu_scene->of_asset[asset]->file->view.header->vertex_count,
         .paper = params->interpolation == INTERPOLATION_PAPER,
-        .geodesic = params->distance != DISTANCE_EUCLIDEAN, /* by heat: those of the asset file stand in */
+        /* geodesic distances come from the asset file, also where the view uses heat distances */
+        .geodesic = params->distance != DISTANCE_EUCLIDEAN,
         .fill = params->fill == FILL_NEIGHBOURS,
         .show = (int32_t)params->show,
     };
@@ -77,7 +78,7 @@ GLuint reference_sensors(const struct reference *reference, int asset, const str
         const struct field_sensor *from = &sensors[i];
         blocks[i] = (struct sensor_block){ .strength = from->strength, .decay = from->decay, .value = from->value, .column = from->column };
         memcpy(blocks[i].place_m, from->surface_m, sizeof(from->surface_m));
-        /* One that is tried out has no column, and no say here. */
+        /* A sensor of a trial has no column of distances, so it is ignored here. */
         bool has_column = from->column < reference->gpu_scene->scene->assets[asset].file->view.header->sensor_count;
         blocks[i].state = (from->configured ? CONFIGURED : 0) | (from->usable ? USABLE : 0) | (from->uncertain ? UNCERTAIN : 0);
         blocks[i].state = has_column ? blocks[i].state : 0;
@@ -90,24 +91,25 @@ GLuint reference_sensors(const struct reference *reference, int asset, const str
 
 /* --- distances ------------------------------------------------------------------------------------------------------------- */
 
-/* Four sensors to a texel, so that a plant of thousands fits into one texture. */
+/* Packs the distances of four sensors into one texel, so that a plant with thousands of sensors fits one texture. */
 static GLuint upload_distances(struct log *log, const struct asset_view *view)
 {
-    size_t vertices = view->header->vertex_count, sensors = view->header->sensor_count, groups = (sensors + LANES - 1) / LANES;
+    size_t vertices = view->header->vertex_count, sensors = view->header->sensor_count;
+    size_t groups = (sensors + SENSORS_PER_TEXEL - 1) / SENSORS_PER_TEXEL;
     GLint limit = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limit);
     if (groups * vertices > (size_t)limit) {
         log_err(log, "per-fragment field: %zu sensors at %zu vertices do not fit into one buffer texture", sensors, vertices);
         return 0;
     }
-    float(*texels)[LANES] = mem_try_array(groups * vertices, sizeof(*texels));
+    float(*texels)[SENSORS_PER_TEXEL] = mem_try_array(groups * vertices, sizeof(*texels));
     if (!texels) {
         log_err(log, "per-fragment field: out of memory for %zu sensors at %zu vertices", sensors, vertices);
         return 0;
     }
     for (size_t i = 0; i < sensors; i++)
         for (size_t j = 0; j < vertices; j++)
-            texels[i / LANES * vertices + j][i % LANES] = asset_distance_m(view, i, j);
+            texels[i / SENSORS_PER_TEXEL * vertices + j][i % SENSORS_PER_TEXEL] = asset_distance_m(view, i, j);
     GLuint buffer = mesh_buffer(log, "distances", groups * vertices * sizeof(*texels), texels, 0);
     mem_free(texels);
     return buffer;
