@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The heat method on a point cloud: sampling, neighbours, two systems, and places between the points. */
+/* Implements the heat method on a point cloud: sampling, neighbours, the two linear systems, and interpolation between points. */
 #include "preprocess/influence/cloud_heat.h"
 
 #include <float.h>
@@ -12,14 +12,14 @@
 #include "surface/mesh/point_cloud.h"
 #include "surface/mesh/trimesh.h"
 
-#define PACKING 0.7         /* points to the square of a spacing, of Poisson discs */
-#define HEAT_TIME 2.25      /* t, in squares of the spacing */
-#define LONGEST 400.0       /* roots of t along the part: heat falls by e with each, and is lost beyond 708 (DBL_MIN) */
-#define REGULARISATION 1e-9 /* of a row's own entry */
-enum { PITCHES = 3, PLACES = 4 }; /* candidates along a spacing; points that a place lies between */
+#define PACKING 0.7    /* Poisson-disc points per square of the spacing */
+#define HEAT_TIME 2.25 /* diffusion time t, in squares of the spacing */
+#define LONGEST 400.0 /* largest extent of the part in units of sqrt(t): heat decays by e per unit, and underflows (DBL_MIN) at 708 units */
+#define REGULARISATION 1e-9       /* relative to the matrix's diagonal entry */
+enum { PITCHES = 3, PLACES = 4 }; /* PITCHES: candidates along a spacing; PLACES: points that a position is interpolated from */
 
 struct heat_link {
-    uint32_t from, to; /* from < to */
+    uint32_t from, to; /* indices of two neighbouring points, from < to */
     double weight;
 };
 
@@ -27,15 +27,15 @@ struct cloud_heat {
     struct log *log;
     double spacing_m, time_m2;
     size_t count, capacity;
-    double (*points)[3], (*across)[2][3]; /* axes of its tangent plane */
-    uint32_t *piece;                      /* points that hang together */
+    double (*points)[3], (*across)[2][3]; /* across: the two axes of each point's tangent plane */
+    uint32_t *piece;                      /* connected component of each point */
     struct heat_link *links;
     size_t link_count, link_capacity;
-    uint32_t *first, *order; /* links by point */
+    uint32_t *first, *order; /* links grouped by point */
     int k;
     cholmod_factor *diffusion, *poisson;
     cholmod_common common;
-    /* a grid of cells a spacing wide, for points next to a place */
+    /* A grid of cells one spacing wide, to find the points near a position: */
     uint32_t *cells, *next;
     size_t cell_count, next_capacity;
 };
@@ -80,7 +80,7 @@ static double area_of(const struct surface_debug_mesh *mesh, size_t t)
     return vec_length(n) / 2;
 }
 
-/* Candidates on a lattice of each triangle, those of corners first: so narrow parts keep their ends. */
+/* Generates candidates on a lattice in each triangle, corners first so that narrow parts keep their ends. */
 static void sample(struct cloud_heat *cloud, const struct surface_debug_mesh *mesh)
 {
     for (size_t t = 0; t < mesh->visible_count; t++)
@@ -134,7 +134,8 @@ static uint32_t other_end(const struct heat_link *link, size_t point)
     return link->from == point ? link->to : link->from;
 }
 
-/* Goes along chains of neighbours from a point. Returns how many have been come to, in queue[], the farthest last; with their hops. */
+/* Breadth-first search over neighbours from a point. Returns the number of points reached; queue[] lists them, the farthest last, and
+ * hops[] their hop counts. */
 static size_t spread(const struct cloud_heat *cloud, uint32_t from, uint32_t *queue, uint32_t *hops)
 {
     size_t count = 1;
@@ -151,8 +152,8 @@ static size_t spread(const struct cloud_heat *cloud, uint32_t from, uint32_t *qu
     return count;
 }
 
-/* Numbers points that chains of neighbours join. Returns how long the longest of these pieces is, nearly: from the point that is farthest
-   from any to the one farthest from it. */
+/* Numbers the connected components of the point cloud. Returns the approximate length of the longest component: from any point to the
+ * farthest one, and from there to the farthest again. */
 static double find_pieces(struct cloud_heat *cloud)
 {
     uint32_t *queue = mem_array(cloud->count + 1, sizeof(*queue)), *hops = mem_array(cloud->count + 1, sizeof(*hops)), pieces = 0, most = 0;
@@ -176,8 +177,8 @@ static double find_pieces(struct cloud_heat *cloud)
     return most * CLOUD_REACH * cloud->spacing_m;
 }
 
-/* Two axes across the direction in which the neighbours spread least: the covariance's cofactors, of which the largest is its eigenvector
-   as nearly as the third eigenvalue is 0, improved by inverse iteration. */
+/* Computes two axes of the tangent plane at a point, perpendicular to the direction of least spread. The largest cofactor vector of the
+ * covariance approximates that direction if the smallest eigenvalue is near 0; inverse iteration refines it. */
 static void find_plane(struct cloud_heat *cloud, size_t point)
 {
     double c[3][3] = { { 0 } }, normal[3] = { 0, 0, 1 }, trace = 0;
@@ -219,7 +220,7 @@ static void find_plane(struct cloud_heat *cloud, size_t point)
 
 /* --- systems ---------------------------------------------------------------------------------------------------------------- */
 
-/* diagonal + scale L, its lower triangle. */
+/* Assembles the lower triangle of diagonal + scale * L. */
 static cholmod_sparse *assemble(struct cloud_heat *cloud, const double *diagonal, double scale)
 {
     cholmod_triplet *t =
@@ -345,7 +346,7 @@ double cloud_heat_spacing_m(const struct cloud_heat *cloud)
 
 /* --- distances -------------------------------------------------------------------------------------------------------------- */
 
-/* The slope of values at a point, in its tangent plane, by weighted least squares. */
+/* Computes the gradient of values at a point, in its tangent plane, by weighted least squares. */
 static void slope_at(const struct cloud_heat *cloud, size_t point, const double *values, double slope[3])
 {
     double xx = 0, xy = 0, yy = 0, bx = 0, by = 0;
@@ -376,7 +377,8 @@ struct nearby {
     int count;
 };
 
-/* The points next to a place, nearest first: within two spacings there is one, for the candidates cover the surface. */
+/* Finds the points nearest to a position, nearest first. There is always one within two spacings, because the candidates cover the
+ * surface. */
 static void find_nearby(const struct cloud_heat *cloud, const double p[3], struct nearby *near)
 {
     near->count = 0;
@@ -400,7 +402,7 @@ static void find_nearby(const struct cloud_heat *cloud, const double p[3], struc
     }
 }
 
-/* Each of the nearest points carries its value on along its slope; the nearer, the more it says. */
+/* Interpolates at a position: each of the nearest points extrapolates its value along its gradient, weighted by proximity. */
 static double value_at(const struct cloud_heat *cloud, const double *values, const double (*slopes)[3], const double p[3],
                        uint32_t piece, const struct nearby *near)
 {
@@ -425,11 +427,11 @@ static cholmod_dense *solve(const struct cloud_heat *cloud, cholmod_factor *fact
     return x;
 }
 
-/* From heat to its unit direction away from the source, then to distances in place of b. */
+/* Converts heat u to unit directions away from the source (slopes), and writes the right-hand side of the distance system to b. */
 static void flow(const struct cloud_heat *cloud, double *u, double (*slopes)[3], double *b)
 {
     for (size_t i = 0; i < cloud->count; i++)
-        u[i] = -log(fmax(u[i], DBL_MIN)); /* Varadhan: distance over the root of t; it bends less than heat does */
+        u[i] = -log(fmax(u[i], DBL_MIN)); /* Varadhan's formula: distance / sqrt(t), which is smoother than the heat itself */
     for (size_t i = 0; i < cloud->count; i++) {
         slope_at(cloud, i, u, slopes[i]);
         double length = vec_length(slopes[i]);
@@ -471,7 +473,7 @@ bool cloud_heat_distances(const struct cloud_heat *cloud, const double source_m[
         double start = values[near.at[0]];
         for (size_t i = 0; i < cloud->count; i++)
             slope_at(cloud, i, values, slopes[i]);
-        double zero = near.away_m[0]; /* what the source's own point is away from it */
+        double zero = near.away_m[0]; /* distance between the source and the cloud point nearest to it */
         for (size_t v = 0; v < count; v++) {
             const double p[3] = { (double)positions_m[v][0], (double)positions_m[v][1], (double)positions_m[v][2] };
             find_nearby(cloud, p, &near);

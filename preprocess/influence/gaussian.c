@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One sparse factor of k^2 C + G; two solves for each sensor, one for each sample; the rest is dense. */
+/* Solves the Gaussian process: one sparse factor of k^2 C + G, two solves for each sensor and one for each sample; the rest is dense
+ * algebra. */
 #include "preprocess/influence/gaussian.h"
 
 #include <cblas.h>
@@ -14,11 +15,11 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-#define BLOCK 32  /* right-hand sides solved together; also samples, so that these do not depend on how many threads there are */
-#define TILE 256  /* points that a thread works on at once */
-#define STRIP 64  /* vertices, too */
-#define FIXED 1e9 /* steps of squares, as shares of the deviation's: whole numbers add up to the same in any order */
-#define FIXED_MOST 1e7
+#define BLOCK 32  /* right-hand sides per solve; fixed, so that random samples do not depend on the thread count */
+#define TILE 256  /* mesh points per unit of a thread's work */
+#define STRIP 64  /* vertices per unit of a thread's work */
+#define FIXED 1e9 /* fixed-point scale of squares, relative to the squared deviation: integer sums do not depend on their order */
+#define FIXED_MAX 1e7
 
 struct solving {
     const struct influence_mesh *mesh;
@@ -29,15 +30,15 @@ struct solving {
     struct laplacian laplacian;
     cholmod_factor *factor;
     struct gaussian_bodies bodies;
-    double *covariance;        /* [sensor][sensor], as the system gives it */
-    double *root_mass_m;       /* by row: of the area */
-    double *root_scale;        /* by component: of `scale` */
-    double *scale;             /* by component: to that of the stated deviation; 0: no sensor */
-    double *means;             /* by sensor: its weight in the mean of its body */
-    double *levels;            /* by sensor: S m, of its body */
-    float *at_points;          /* [point of the mesh][sensor]: kernels, then H */
-    float *taken;              /* by vertex: the variance that sensors take away */
-    _Atomic uint64_t *squares; /* by vertex: of what samples miss */
+    double *covariance;        /* [sensor][sensor]; unscaled */
+    double *root_mass_m;       /* by row: square root of the point's area */
+    double *root_scale;        /* by component: square root of `scale` */
+    double *scale;             /* by component: factor from the system's variance to the stated one; 0: no sensor */
+    double *means;             /* by sensor: its weight in the estimated mean of its body */
+    double *levels;            /* by sensor: S m of the sensor's body, see mean_variance() */
+    float *at_points;          /* [mesh point][sensor]: kernels, later H */
+    float *taken;              /* by vertex: variance that the sensors remove */
+    _Atomic uint64_t *squares; /* by vertex: sum of squared sample errors, fixed point */
     atomic_bool failed;
 };
 
@@ -102,9 +103,9 @@ static uint32_t body_of_vertex(const struct solving *solving, size_t vertex)
     return solving->bodies.component[solving->anchors[vertex].points[0]];
 }
 
-/* --- the kernel of each sensor ----------------------------------------------------------------------------------------------- */
+/* --- kernels ----------------------------------------------------------------------------------------------------------------- */
 
-/* What is the same everywhere on the body is taken out here, where there are digits for it. */
+/* Returns the constant part of a body's covariance. Subtracting it before anything else avoids cancellation later. */
 static double constant_of(const struct solving *solving, uint32_t body)
 {
     const double k2 = 8 / (solving->params.range_m * solving->params.range_m);
@@ -120,7 +121,8 @@ static void take_covariance(const struct solving *solving, size_t sensor, const 
         solving->covariance[sensor * count + other] = solving->bodies.of_sensor[other] == body ? on_disc(solving, other, u) - constant : 0;
 }
 
-/* The same at all points, of `width` sensors from `first` on. u: a column for each. */
+/* Converts solutions u (one column per sensor) to kernels at all mesh points, for `width` sensors from `first` on. Subtracts the constant
+ * part. */
 static void take_kernels(const struct solving *solving, size_t first, size_t width, const double *u)
 {
     const size_t count = solving->mesh->source_count, rows = solving->laplacian.row_count;
@@ -179,7 +181,7 @@ static double variance_of(const struct solving *solving, size_t sensor)
     return solving->params.deviation * solving->params.deviation * solving->scale[solving->bodies.of_sensor[sensor]];
 }
 
-/* S m of a sensor, the same for all of its body: the least variance of a weighted mean of its readings. */
+/* Returns S m of a sensor, which is equal for all sensors of its body: the smallest variance of a weighted mean of the body's readings. */
 static double mean_variance(const struct solving *solving, size_t sensor)
 {
     const size_t n = solving->influence->count;
@@ -190,7 +192,7 @@ static double mean_variance(const struct solving *solving, size_t sensor)
     return sum;
 }
 
-/* H = P k + the weights in the mean, in place of k. Points [begin, end) in tiles. */
+/* Replaces kernels k by H = P k + mean weights, for tiles [begin, end) of mesh points. */
 static void weigh_tiles(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -222,7 +224,7 @@ static void add_bends(void *arg, size_t begin, size_t end)
         influence_bend_add(solving->bend, solving->at_points + first, n, end - first < BEND_WIDTH ? end - first : BEND_WIDTH);
 }
 
-/* --- from points to vertices ------------------------------------------------------------------------------------------------- */
+/* --- mesh points to vertices ------------------------------------------------------------------------------------------------- */
 
 static void at_vertex(const struct solving *solving, size_t vertex, float *out)
 {
@@ -242,7 +244,7 @@ static void turn_to_shares(const struct solving *solving, size_t first, size_t w
             solving->influence->shares[i * vertices + first + v] = strip[v * n + i];
 }
 
-/* Strips [begin, end) of vertices take kernels for shares until H is known. */
+/* Stores the kernels of vertex strips [begin, end) in `shares` until H is known. */
 static void keep_kernels(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -257,8 +259,7 @@ static void keep_kernels(void *arg, size_t begin, size_t end)
     mem_free(strip_h);
 }
 
-/* Strips [begin, end) of vertices take H in place of their kernels; k' P k + 2 m' k - m' S m: what is left of the variance around the
-   body's mean, less that. */
+/* Replaces the kernels of vertex strips [begin, end) by H and computes the variance removed by the sensors: k' P k + 2 m' k - m' S m. */
 static void weigh_strips(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -272,7 +273,7 @@ static void weigh_strips(void *arg, size_t begin, size_t end)
         double taken[STRIP] = { 0 };
         for (size_t v = 0; v < width; v++)
             at_vertex(solving, first + v, strip_h + v * n);
-        for (size_t i = 0; i < n; i++) /* of other bodies it is 0 */
+        for (size_t i = 0; i < n; i++) /* H is 0 for sensors of other bodies */
             for (size_t v = 0; v < width; v++)
                 if (body_of_vertex(solving, first + v) == solving->bodies.of_sensor[i])
                     taken[v] += variance_of(solving, i) * (double)solving->influence->shares[i * vertices + first + v] *
@@ -298,10 +299,10 @@ static bool find_precision(struct solving *solving)
     return good;
 }
 
-/* --- how far it may err ------------------------------------------------------------------------------------------------------ */
+/* --- standard error ---------------------------------------------------------------------------------------------------------- */
 
-/* SplitMix64 (Steele, Lea & Flood, 2014), whose bits are signs by chance. Of what is linear in them, signs give the variance as normal
-   numbers do, with no larger an error (Hutchinson, 1990). */
+/* SplitMix64 (Steele, Lea & Flood, 2014), used as a source of random signs. Sums with random signs have the same variance as with normal
+ * numbers, and an error no larger (Hutchinson, 1990). */
 struct signs {
     uint64_t state, bits;
     int left;
@@ -322,8 +323,8 @@ static double next_sign(struct signs *signs)
     return sign;
 }
 
-/* One field out of the prior (in shares of the deviation), and what the sensors read of it, negative. The constant of each body is of no
-   matter: it is taken out at the first sensor, where there are digits for it. levels: of the bodies. */
+/* Takes a field u drawn from the prior (in units of the deviation) and computes the negative readings of all sensors. The constant of each
+ * body is irrelevant: the value at its first sensor is subtracted (written to levels, by component), which avoids cancellation later. */
 static void take_readings(const struct solving *solving, const double *u, struct signs *signs, double *levels, float *readings)
 {
     const size_t n = solving->mesh->source_count;
@@ -336,8 +337,8 @@ static void take_readings(const struct solving *solving, const double *u, struct
     }
 }
 
-struct gaussian_samples { /* a block of them; a thread's */
-    float *missed;   /* [point][sample] */
+struct gaussian_samples { /* one thread's buffers for a block of samples */
+    float *missed;        /* [mesh point][sample]: field minus prediction */
     float *readings; /* [sample][sensor] */
     double *levels;  /* by component */
     struct solver solver;
@@ -365,7 +366,7 @@ static bool take_samples(const struct solving *solving, struct gaussian_samples 
     return u != NULL;
 }
 
-/* At the vertices. */
+/* Adds the squared errors of the samples at each vertex. */
 static void add_squares(const struct solving *solving, const float *missed)
 {
     for (size_t v = 0; v < solving->influence->vertex_count; v++) {
@@ -374,13 +375,13 @@ static void add_squares(const struct solving *solving, const float *missed)
         uint64_t sum = 0;
         for (size_t k = 0; k < BLOCK; k++) {
             double miss = (double)(at->weights[0] * a[k] + at->weights[1] * b[k] + at->weights[2] * c[k]);
-            sum += (uint64_t)(min_of(miss * miss, FIXED_MOST) * FIXED);
+            sum += (uint64_t)(min_of(miss * miss, FIXED_MAX) * FIXED);
         }
         atomic_fetch_add_explicit(&solving->squares[v], sum, memory_order_relaxed);
     }
 }
 
-/* Blocks of samples [begin, end). */
+/* Processes blocks [begin, end) of samples. */
 static void sample_blocks(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;

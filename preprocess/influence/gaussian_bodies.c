@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Areas and sensors added up by component. */
+/* Computes areas and the component of each sensor. */
 #include "preprocess/influence/gaussian_bodies.h"
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A dense Cholesky factor, its inverse, and a mean taken out of each body. */
+/* Inverts a dense covariance by Cholesky factorisation and removes the mean of each body. */
 #include "preprocess/influence/gaussian_contrast.h"
 
 #include <math.h>
@@ -7,11 +7,11 @@
 
 #include "base/mem.h"
 
-/* LAPACK, which comes with OpenBLAS, as Fortran calls it. Its columns are our rows: "U" is our lower triangle. */
+/* LAPACK routines of OpenBLAS, with Fortran's calling convention. Fortran's columns are our rows, so "U" means our lower triangle. */
 void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t uplo_length);
 void dpotri_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t uplo_length);
 
-/* a = L L', in place of its lower triangle. */
+/* Factors a = L L' in place; L overwrites the lower triangle. */
 static bool factor(size_t count, double *a, double *log_det)
 {
     const int n = (int)count, pitch = n > 1 ? n : 1;
@@ -23,7 +23,7 @@ static bool factor(size_t count, double *a, double *log_det)
     return info == 0 && isfinite(*log_det);
 }
 
-/* From L the inverse of L L', whole. */
+/* Computes the full inverse of L L' from L. */
 static bool invert(size_t count, const double *lower, double *inverse)
 {
     const int n = (int)count, pitch = n > 1 ? n : 1;

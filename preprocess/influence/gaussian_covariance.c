@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The slope is a central difference between k^2 a STEP below and above. */
+/* Computes the derivative as a central difference between k^2 one STEP below and above. */
 #include "preprocess/influence/gaussian_covariance.h"
 
 #include <math.h>
@@ -9,11 +9,11 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define STEP 0.02 /* of log k^2: the difference errs by its square over 6; less would cost digits */
+#define STEP 0.02 /* in log k^2; the relative error of the difference is STEP^2 / 6, and a smaller step would lose digits to cancellation */
 
-/* --- what ranges share ------------------------------------------------------------------------------------------------------- */
+/* --- shared by all ranges ---------------------------------------------------------------------------------------------------- */
 
-/* By point: the sensors that touch it, sorted. */
+/* Lists for each mesh point the sensors that touch it, sorted. */
 static void list_sensors(const struct influence_mesh *mesh, const struct laplacian *laplacian, size_t *first, uint32_t *sensors,
                          double *shares)
 {
@@ -34,7 +34,7 @@ static void list_sensors(const struct influence_mesh *mesh, const struct laplaci
     mem_free(at);
 }
 
-/* A bound of k^2 |D' A^-1 D|, which is at most |D' C^-1 D|: of two sensors that share a point by how much they weigh there. */
+/* Returns an upper bound of k^2 |D' A^-1 D|, which is at most |D' C^-1 D|, computed from the weights of sensors that share a point. */
 static double find_bound(size_t rows, const size_t *first, const uint32_t *sensors, const double *shares, const double *mass_m2,
                          size_t count)
 {
@@ -52,7 +52,7 @@ static double find_bound(size_t rows, const size_t *first, const uint32_t *senso
     return bound;
 }
 
-/* Columns of G with the sensors' rows below; then the sensors' columns, of which there is a diagonal only. */
+/* Extends the matrix G by the sensors' rows below it and the sensors' columns, which have only a diagonal. */
 static cholmod_sparse *add_border(const cholmod_sparse *inner, size_t count, const size_t *first, const uint32_t *sensors,
                                   const double *shares, cholmod_common *common)
 {
@@ -84,7 +84,7 @@ static cholmod_sparse *add_border(const cholmod_sparse *inner, size_t count, con
     return matrix;
 }
 
-/* The points in an order that keeps the factor sparse, the sensors last. */
+/* Computes a fill-reducing elimination order of the points, with the sensors last. */
 static cholmod_factor *analyze(cholmod_sparse *inner, cholmod_sparse *bordered, cholmod_common *common)
 {
     cholmod_factor *points = cholmod_analyze(inner, common);
@@ -163,8 +163,8 @@ void gaussian_covariance_finish(struct gaussian_covariance *covariance)
 struct slope {
     const struct gaussian_covariance *covariance;
     double k2[2];
-    double *between[2]; /* D' A^-1 D less the part of what is the same everywhere, [sensor][sensor], its lower triangle */
-    atomic_int status;  /* of CHOLMOD, the first that is not CHOLMOD_OK */
+    double *between[2]; /* [sensor][sensor], lower triangle: D' A^-1 D minus its constant part */
+    atomic_int status;  /* first CHOLMOD status other than CHOLMOD_OK */
 };
 
 static size_t sensor_of(const struct gaussian_covariance *covariance, const cholmod_factor *factor, int row)
@@ -172,7 +172,7 @@ static size_t sensor_of(const struct gaussian_covariance *covariance, const chol
     return (size_t)((int *)factor->Perm)[row] - covariance->row_count;
 }
 
-/* Subtracts l l' for each column l of the sensors' part of the factor. */
+/* Subtracts l l' for each column l of the sensors' block of the factor. */
 static void take_columns(const struct gaussian_covariance *covariance, const cholmod_factor *factor, double *from)
 {
     const size_t count = covariance->count;
@@ -203,7 +203,7 @@ static void fill_diagonal(const struct gaussian_covariance *covariance, double k
             values[first[c]] = border;
 }
 
-/* D' A^-1 D = border - what the factor has for the sensors, squared. */
+/* Computes D' A^-1 D = border - F F', where F is the sensors' block of the factor. */
 static void find_side(const struct gaussian_covariance *covariance, double k2, double *between, cholmod_common *common)
 {
     const size_t count = covariance->count;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Between sensors alone, what gaussian.h's prior says for one range after another: from two sparse factors a range, without solving for a
-   sensor. With A = k^2 C + G and sensors D, the covariance D' A^-1 C A^-1 D is the slope of -D' A^-1 D along k^2, and D' A^-1 D is what the
-   factor of a matrix bordered by D leaves for its last rows (a Schur complement). Thread: one; the workers are used. */
+/* Computes the prior covariance between sensors (gaussian.h) for one range after another, from two sparse factors per range and without a
+ * solve per sensor. With A = k^2 C + G and sensor weights D, the covariance D' A^-1 C A^-1 D is the derivative of -D' A^-1 D with respect
+ * to k^2. D' A^-1 D is a Schur complement: the last rows of the factor of A bordered by D contain it. Thread: one, which uses the
+ * workers. */
 #ifndef PREPROCESS_INFLUENCE_GAUSSIAN_COVARIANCE_H
 #define PREPROCESS_INFLUENCE_GAUSSIAN_COVARIANCE_H
 #include <cholmod.h>
@@ -12,23 +13,24 @@
 #include "preprocess/influence/influence_mesh.h"
 
 struct gaussian_covariance {
-    size_t count; /* sensors */
+    size_t count; /* number of sensors */
     struct gaussian_bodies bodies;
-    double *values; /* [sensor][sensor]: for deviation 1 and no noise */
+    double *values; /* covariance [sensor][sensor] for deviation 1 and no noise */
     size_t row_count;
-    double *mass_m2, *scale; /* by row; room, by component */
-    double bound;            /* that k^2 D' A^-1 D stays below: what the border's diagonal has to exceed */
+    double *mass_m2, *scale; /* mass_m2: by row; scale: scratch array, by component */
+    double bound;            /* upper bound of k^2 D' A^-1 D; the border's diagonal must exceed it for the matrix to be positive definite */
     cholmod_common common;
-    cholmod_sparse *bordered; /* the lower triangle of G, below it D', then a diagonal still to be filled */
-    cholmod_factor *symbolic; /* its order and places */
+    cholmod_sparse *bordered; /* lower triangle of G, the rows D' below it, and the border's diagonal, filled per range */
+    cholmod_factor *symbolic; /* symbolic factor: elimination order and sparsity */
 };
 
-/* Sets up what all ranges share. Returns false if out of memory, logged. Call gaussian_covariance_finish() in both cases. */
+/* Prepares everything that does not depend on the range. Returns false after logging if out of memory. Call gaussian_covariance_finish() in
+ * both cases. */
 bool gaussian_covariance_init(struct gaussian_covariance *covariance, struct log *log, const struct influence_mesh *mesh);
-/* Frees it. */
+/* Frees what gaussian_covariance_init() allocated. */
 void gaussian_covariance_finish(struct gaussian_covariance *covariance);
-/* Fills values; they err by about 1e-4 of the deviation's square. workers may be NULL. Returns false if out of memory or if the system
-   has no solution, logged. */
+/* Computes `values` for a range, with errors of about 1e-4 of the squared deviation. workers may be NULL. Returns false after logging if
+ * out of memory or if the system is singular. */
 bool gaussian_covariance_find(struct gaussian_covariance *covariance, struct log *log, struct workers *workers, double range_m);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A grid of ranges by some of the sensors, then by all of them a parabola through the best ones; for each range a grid of shares of noise
-   and a finer one around the best. The deviation follows from both. */
+/* Searches a grid of ranges with a subset of the sensors, then refines the best by parabolas with all sensors. For each range, searches a
+ * grid of noise shares and a finer one around the best. The deviation follows from range and noise. */
 #include "preprocess/influence/gaussian_fit.h"
 
 #include <math.h>
@@ -14,14 +14,14 @@
 #include "preprocess/influence/gaussian_contrast.h"
 #include "preprocess/influence/gaussian_covariance.h"
 
-#define RANGES 9  /* of the grid, evenly in logarithms */
-#define FEW 96    /* sensors that these are tried with */
-#define CLOSER 3  /* times that the parabola is laid through better ones */
-#define SHARES 13 /* noise by deviation, from GAUSSIAN_LEAST_NOISE to MOST_SHARE */
-#define MOST_SHARE 3.0
-#define SAME 0.02        /* logarithms of ranges: nearer than readings can tell */
-#define LEAST_INSTANTS 8 /* fewer say nothing about three numbers */
-#define LEAST_SENSORS 3
+#define RANGES 9  /* ranges of the grid, evenly spaced in logarithms */
+#define FEW 96    /* maximum number of sensors in the grid search */
+#define CLOSER 3  /* number of parabola steps */
+#define SHARES 13 /* noise shares of the grid, from GAUSSIAN_LEAST_NOISE to MAX_SHARE of the deviation */
+#define MAX_SHARE 3.0
+#define SAME 0.02      /* ranges whose logarithms differ by less are equal: readings cannot distinguish them */
+#define MIN_INSTANTS 8 /* minimum; fewer instants cannot determine three parameters */
+#define MIN_SENSORS 3
 
 /* --- the table --------------------------------------------------------------------------------------------------------------- */
 
@@ -57,9 +57,9 @@ static void read_rows(struct readings_table *table, struct csv *csv, const char 
             else
                 table->left_out++;
         }
-        if (csv->diag->errors == 0 && table->instants < LEAST_INSTANTS)
+        if (csv->diag->errors == 0 && table->instants < MIN_INSTANTS)
             diag_error(csv->diag, csv->path, 0, 0, "%zu lines have a number of all %zu sensors, %zu do not; at least %d are needed",
-                       table->instants, table->count, table->left_out, LEAST_INSTANTS);
+                       table->instants, table->count, table->left_out, MIN_INSTANTS);
     }
     mem_free(columns);
 }
@@ -101,7 +101,7 @@ struct gaussian_fit {
     struct log *log;
     struct workers *workers;
     struct gaussian_covariance covariance;
-    double *scatter; /* [sensor][sensor]: sum over instants of products of two readings less the mean over all of both */
+    double *scatter; /* [sensor][sensor]: sum over instants of the product of two readings, each minus the overall mean */
     double *room[2], *means;
     struct gaussian_params best;
     double best_likelihood;
@@ -112,7 +112,7 @@ static void find_scatter(struct gaussian_fit *fit)
     const struct readings_table *table = fit->table;
     const size_t n = table->count;
     double *less = mem_array(n, sizeof(*less)), level = 0;
-    for (size_t i = 0; i < n; i++) /* precision takes any constant out; so do we, for the digits */
+    for (size_t i = 0; i < n; i++) /* the precision matrix removes any constant; subtracting the mean avoids cancellation */
         level += table->values[i] / (double)n;
     for (size_t t = 0; t < table->instants; t++) {
         for (size_t i = 0; i < n; i++)
@@ -136,7 +136,7 @@ static size_t count_bodies(const uint32_t *body, size_t count)
     return bodies;
 }
 
-/* With covariance s^2 (K + share^2 1); s: as stated, or the best. */
+/* Evaluates the likelihood for the covariance s^2 (K + share^2 1), with s as stated or the best value, and keeps the best parameters. */
 static void try_share(struct gaussian_fit *fit, double range_m, double share, double deviation)
 {
     const size_t n = fit->table->count;
@@ -158,11 +158,12 @@ static void try_share(struct gaussian_fit *fit, double range_m, double share, do
     fit->best = (struct gaussian_params){ range_m, share * sqrt(variance), sqrt(variance) };
 }
 
-/* What is stated is kept: with a stated noise its share follows from the deviation, which is then sought in its place. */
+/* Finds the best noise share for a range. Stated parameters stay fixed: with a stated noise, the deviation is searched and the share
+ * follows from it. */
 static void try_range(struct gaussian_fit *fit, double range_m)
 {
     const struct gaussian_params *stated = fit->stated;
-    double step = log(MOST_SHARE / GAUSSIAN_LEAST_NOISE) / (SHARES - 1), centre = NAN;
+    double step = log(MAX_SHARE / GAUSSIAN_LEAST_NOISE) / (SHARES - 1), centre = NAN;
     for (int pass = 0; pass < 2; pass++) {
         for (int i = 0; i < SHARES; i++) {
             double share = pass ? centre * exp(step * (2.0 * i / (SHARES - 1) - 1)) : GAUSSIAN_LEAST_NOISE * exp(step * i);
@@ -176,16 +177,16 @@ static void try_range(struct gaussian_fit *fit, double range_m)
     }
 }
 
-static double logarithm(double x) /* where `log` is the one that is written to */
+static double logarithm(double x) /* needed where a parameter named `log` hides the function */
 {
     return log(x);
 }
 
-struct range_trial { /* the best for a range */
+struct range_trial { /* result of one range */
     double log_range, likelihood;
 };
 
-/* False: out of memory, logged. */
+/* Evaluates one range. Returns false after logging if out of memory. */
 static bool try_one(struct gaussian_fit *fit, double log_range, struct range_trial *trial)
 {
     const struct gaussian_params best = fit->best;
@@ -202,7 +203,7 @@ static bool try_one(struct gaussian_fit *fit, double log_range, struct range_tri
     return true;
 }
 
-/* False: out of memory, logged; finish_fit() even so. */
+/* Prepares a fit. Returns false after logging if out of memory. Call finish_fit() in both cases. */
 static bool begin_fit(struct gaussian_fit *fit, const struct gaussian_params *stated, struct log *log, struct workers *workers,
                       const struct influence_mesh *mesh, const struct readings_table *table)
 {
@@ -225,7 +226,7 @@ static void finish_fit(struct gaussian_fit *fit)
     mem_free(fit->means);
 }
 
-/* Every so-manieth sensor, so that there are FEW at most. */
+/* Selects at most FEW sensors, evenly spaced by index. */
 static void pick_few(const struct influence_mesh *mesh, const struct readings_table *table, struct influence_mesh *few_of_mesh,
                      struct readings_table *few_of_table)
 {
@@ -243,7 +244,7 @@ static void pick_few(const struct influence_mesh *mesh, const struct readings_ta
     }
 }
 
-/* The best of the grid. */
+/* Finds the best range of the grid with a subset of the sensors. */
 static bool look_around(const struct gaussian_params *stated, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
                         const struct readings_table *table, double first, double step, double *log_range)
 {
@@ -262,7 +263,7 @@ static bool look_around(const struct gaussian_params *stated, struct log *log, s
     return good;
 }
 
-/* Where the parabola through three of them is highest; NAN: nowhere between. */
+/* Returns the maximum of the parabola through three points, or NAN if it is not between them. */
 static double summit(const struct range_trial at[3])
 {
     double a = at[1].log_range - at[0].log_range, b = at[1].log_range - at[2].log_range;
@@ -271,7 +272,7 @@ static double summit(const struct range_trial at[3])
     return over != 0 && isfinite(up / over) ? at[1].log_range - up / over / 2 : NAN;
 }
 
-/* Three of them around the best, a step apart, then closer. */
+/* Refines the best range: three ranges one step apart, then with smaller steps around the parabola's maximum. */
 static bool close_in(struct gaussian_fit *fit, double start, double step, double first, double last)
 {
     struct range_trial at[3];
@@ -311,9 +312,9 @@ bool gaussian_fit(struct gaussian_params *params, struct log *log, struct worker
 {
     const size_t n = table->count;
     struct gaussian_fit fit;
-    if (n < LEAST_SENSORS) {
+    if (n < MIN_SENSORS) {
         snprintf(why, 300, "%zu sensors on one asset: nothing can be fitted to fewer than %d; state range_m, noise and deviation", n,
-                 LEAST_SENSORS);
+                 MIN_SENSORS);
         return false;
     }
     bool good = begin_fit(&fit, params, log, workers, mesh, table);

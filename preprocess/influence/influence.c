@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Conduction between discs: one sparse Cholesky factor, solved for blocks of sensors. */
+/* Solves conduction between sensor discs: one sparse Cholesky factor, solved for blocks of sensors. */
 #include "preprocess/influence/influence.h"
 
 #include <math.h>
@@ -11,11 +11,11 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-#define CONTACT 1e5         /* readings are met within about a hundred-thousandth of what neighbours differ by */
-#define REGULARISATION 1e-9 /* in shares of a body's area: rounding leaves no body quite singular */
-#define BLOCK_LEAST 8       /* right-hand sides solved together; with more of them the factor is read less often */
-#define BLOCK_MOST BEND_WIDTH
-#define BLOCK_BYTES (64 << 20) /* of a block above the least; a thread has three */
+#define CONTACT 1e5 /* conductance relative to the surface; readings are met within about 1e-5 of the difference between neighbours */
+#define REGULARISATION 1e-9 /* share of a body's area added to the diagonal, so that rounding does not make it singular */
+#define MIN_BLOCK 8         /* minimum right-hand sides per solve; with more, the factor is read less often */
+#define MAX_BLOCK BEND_WIDTH
+#define BLOCK_BYTES (64 << 20) /* memory limit of a block above the minimum size; each thread has three such blocks */
 
 struct conduct {
     struct influence *influence;
@@ -24,11 +24,11 @@ struct conduct {
     struct influence_bend *bend;
     struct laplacian laplacian;
     cholmod_factor *factor;
-    size_t block; /* right-hand sides solved together */
+    size_t block; /* right-hand sides per solve */
     atomic_bool failed;
 };
 
-/* On the diagonal: what leaves the wall, and the contacts. */
+/* Returns the diagonal of the system: heat loss of the wall plus contacts. */
 static double *diagonal_of(const struct conduct *conduct, double decay_m)
 {
     const struct laplacian *laplacian = &conduct->laplacian;
@@ -47,7 +47,8 @@ static double *diagonal_of(const struct conduct *conduct, double decay_m)
             diagonal[laplacian->row_of[disc->points[i]]] += CONTACT * disc->shares[i];
         touched[component[disc->points[0]]] = 1;
     }
-    for (size_t p = 0; p < points; p++) /* a body without a sensor has no temperature of its own: any will do, and it is not shown */
+    /* a body without a sensor has an undetermined temperature: any value will do, since it is not shown */
+    for (size_t p = 0; p < points; p++)
         if (laplacian->row_of[p] != TRIMESH_NONE)
             diagonal[laplacian->row_of[p]] +=
                 laplacian->mass_m2[laplacian->row_of[p]] * (loss + (touched[component[p]] ? REGULARISATION : 1) / area_m2[component[p]]);
@@ -68,7 +69,7 @@ static bool factor(struct conduct *conduct, double decay_m, cholmod_common *comm
     return good;
 }
 
-/* One column of H, and one row of the precision. */
+/* Stores one sensor's solution u: a column of H and a row of the precision matrix. */
 static void take(const struct conduct *conduct, size_t sensor, const double *u)
 {
     struct influence *influence = conduct->influence;
@@ -79,7 +80,7 @@ static void take(const struct conduct *conduct, size_t sensor, const double *u)
         double sum = 0;
         for (int i = 0; i < 3; i++)
             sum += (double)at->weights[i] * u[row_of[at->points[i]]];
-        share[v] = (float)max_of(sum, 0); /* rounding apart, none is below 0 */
+        share[v] = (float)max_of(sum, 0); /* negative values are rounding errors */
     }
     for (size_t other = 0; other < influence->count; other++) {
         const struct influence_disc *disc = &conduct->mesh->discs[other];
@@ -90,7 +91,7 @@ static void take(const struct conduct *conduct, size_t sensor, const double *u)
     }
 }
 
-/* What the sensors of a block have at the points of the mesh, for the bend between corners. u: a column for each. */
+/* Passes a block of solutions (one column per sensor) at the mesh points to the bend measurement. */
 static void add_bend(const struct conduct *conduct, const double *u, size_t count, float *at_points)
 {
     const uint32_t *row_of = conduct->laplacian.row_of;
@@ -101,14 +102,14 @@ static void add_bend(const struct conduct *conduct, const double *u, size_t coun
     influence_bend_add(conduct->bend, at_points, count, count);
 }
 
-/* As many as fit, but no more than keep all threads busy. */
+/* Returns the block size: limited by memory, and by the number of sensors per thread so that all threads have work. */
 static size_t block_of(const struct conduct *conduct, const struct workers *workers)
 {
     const size_t threads = workers ? (size_t)workers_count(workers) : 1, each = (conduct->influence->count + threads - 1) / threads;
     size_t block = BLOCK_BYTES / (sizeof(double) * (conduct->laplacian.row_count + 1));
-    block = block < BLOCK_MOST ? block : BLOCK_MOST;
+    block = block < MAX_BLOCK ? block : MAX_BLOCK;
     block = block < each ? block : each;
-    return block > BLOCK_LEAST ? block : BLOCK_LEAST;
+    return block > MIN_BLOCK ? block : MIN_BLOCK;
 }
 
 static void solve_some(void *arg, size_t begin, size_t end)

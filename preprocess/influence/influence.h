@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Influence of sensors on a surface: what each of a group's sensors weighs at each vertex while all of them are good, and the matrix from
-   which follows what a lost one would say. PLANT.md says what the methods mean.
-
-   Conduction (harmonic, fin): the temperature T of a thin wall obeys -div(k t grad T) + h (T - T_ref) = 0, so with u = T - T_ref
-   and the decay length d = sqrt(k t / h): -lap u + u / d^2 = 0; harmonic is d = infinity. Each sensor is a disc that holds its
-   reading: tied to the points it covers by a contact that conducts CONTACT times as well as the surface, so that two sensors at one
-   place share it. What is minimal is E = u' (L + M / d^2) u / 2 + CONTACT / 2 sum_i sum_p s_ip (u_p - v_i)^2. u = H v, and precision
-   P = d^2 E / dv dv is the conductance between the discs. A lost sensor is a disc without flux: (P v)_L = 0 gives its v_L, and u
-   follows with the same H. */
+/* Computes the influence of sensors on a surface: the weight of each sensor of a group at each vertex while all sensors are good, and the
+ * matrix that predicts the value of a lost sensor. PLANT.md explains the methods for users. Conduction (harmonic, fin): the temperature T
+ * of a thin wall obeys -div(k t grad T) + h (T - T_ref) = 0. With u = T - T_ref and the decay length d = sqrt(k t / h) this is -lap u + u /
+ * d^2 = 0; harmonic means d = infinity. Each sensor is a disc at the temperature of its reading, tied to the points it covers by a contact
+ * that conducts CONTACT times as well as the surface, so that two sensors at one position share it. The solution minimises E = u' (L + M /
+ * d^2) u / 2 + CONTACT / 2 sum_i sum_p s_ip (u_p - v_i)^2. It is linear, u = H v, and the precision matrix P = d^2 E / dv dv is the
+ * conductance between the discs. A lost sensor is a disc without flux: (P v)_L = 0 gives its value v_L, and u follows with the same H. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_H
 #include "base/log/log.h"
@@ -17,19 +15,20 @@
 
 struct influence {
     size_t count, vertex_count;
-    float *shares;     /* [sensor][vertex]: H */
-    double *precision; /* [sensor][sensor] */
-    float *deviations; /* by vertex: how far it may err while all sensors are good (gaussian.h), then by vertex what it would be without
-                          sensors; NULL: not known. Room for one more, 0 */
-    float *errors;     /* by vertex: how far drawn triangles may be off (influence_bend_measure()); NULL: not asked for */
+    float *shares;     /* H: weight of each sensor at each vertex, [sensor][vertex] */
+    double *precision; /* P: precision matrix, [sensor][sensor] */
+    /* by vertex: standard error while all sensors are good (gaussian.h), followed by vertex: standard error without any sensor; NULL: not
+     * computed. Allocated with one more element, 0, as padding */
+    float *deviations;
+    float *errors; /* by vertex: largest error of linear interpolation in drawn triangles (influence_bend_measure()); NULL: not requested */
 };
 
-/* Computes the influence by conduction; decay_m: INFINITY for harmonic. anchors: of vertex_count vertices on the mesh. bend: takes what all
-   sensors come to between the corners of drawn triangles, or NULL. workers may be NULL. Returns false if out of memory, logged. Call
-   influence_finish() in both cases. */
+/* Computes the influence by conduction. decay_m: decay length, INFINITY for harmonic. anchors: positions on the mesh of the vertex_count
+ * vertices. bend: receives the shares of all sensors, to measure the error between corners of drawn triangles; may be NULL. workers may be
+ * NULL. Returns false after logging if out of memory. Call influence_finish() in both cases. */
 bool influence_conduct(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
                        double decay_m, const struct influence_anchor *anchors, size_t vertex_count, struct influence_bend *bend);
-/* Frees the arrays. A zeroed one is fine. */
+/* Frees the arrays of a computed or zeroed struct. */
 void influence_finish(struct influence *influence);
 
 #endif

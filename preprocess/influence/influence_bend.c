@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Overlaps in the plane of each drawn triangle, first with what lies in it, then, for what is left, with what lies near it. */
+/* Clips the mesh triangles against each drawn triangle in its plane: first those lying in the plane, then, for the uncovered rest, those
+ * near it. */
 #include "preprocess/influence/influence_bend.h"
 
 #include <math.h>
@@ -11,12 +12,12 @@
 #include "preprocess/influence/polygons.h"
 #include "surface/mesh/bvh.h"
 
-#define OFF_PLANE 1e-5 /* of the size of the surface: drawn corners are floats */
-#define LEAST 1e-7     /* of a triangle's size squared: overlaps no larger are left out */
-#define COVERED 1e-3   /* of a triangle's area: as much may be missing, by what is left out */
-#define SAME 1e-7      /* of a triangle's size: such places are one */
+#define OFF_PLANE 1e-5 /* distance from the plane, relative to the surface's size: drawn corners are single precision */
+#define LEAST 1e-7     /* overlaps up to this share of the triangle's squared size are ignored */
+#define COVERED 1e-3   /* share of a triangle's area that may stay uncovered, because small overlaps are ignored */
+#define SAME 1e-7      /* places closer than this share of a triangle's size are equal */
 #define LEAST_FACING 0.5
-enum { LOOK_BACK = 64 }; /* places that are compared: the same one comes from pieces that are visited soon after each other */
+enum { LOOK_BACK = 64 }; /* recent places compared: duplicates come from mesh triangles that are visited shortly after each other */
 
 struct finding {
     struct influence_bend *bend;
@@ -24,15 +25,15 @@ struct finding {
     double in_plane_m, near_m;
     const struct trimesh *visible, *hidden;
     struct bvh *visible_bvh, *hidden_bvh;
-    /* of the drawn triangle */
+    /* State of the current drawn triangle: */
     uint32_t tri;
-    double origin[3], axes[3][3]; /* two in its plane, and its normal */
+    double origin[3], axes[3][3]; /* two axes in its plane, and its normal */
     double corners[3][2], size_m;
     struct extent extent;
-    size_t first;              /* of its places */
-    uint32_t *taken_by;        /* by point of the mesh: 1 + the triangle that has a place there */
-    struct polygons left, cut; /* what nothing is known of; of that, what this pass leaves */
-    /* of a pass */
+    size_t first;              /* index of its first place */
+    uint32_t *taken_by;        /* by mesh point: 1 + the drawn triangle that last got a place there */
+    struct polygons left, cut; /* left: area not yet covered; cut: the rest of it after the current pass */
+    /* State of the current pass: */
     const struct trimesh *mesh;
     double off_m;
     bool full;
@@ -49,7 +50,7 @@ static void flatten(const struct finding *finding, const double point[3], double
     *off_m = fabs(vec_dot(from, finding->axes[2]));
 }
 
-/* None negative, adding up to 1; what is but rounding is 0. */
+/* Computes barycentric weights that are not negative and sum to 1; rounding noise becomes 0. */
 static void weights_in(const double corners[3][2], const double at[2], float weights[3])
 {
     double sum = 0, w[3], whole = polygon_cross(corners[0], corners[1], corners[2]);
@@ -62,7 +63,8 @@ static void weights_in(const double corners[3][2], const double at[2], float wei
         weights[i] = (float)(w[i] / sum);
 }
 
-/* Points without weight become one with weight, so that a place on an edge or a corner is the same from all sides. */
+/* Normalises an anchor: points with zero weight are replaced by a point with weight, so that a position on an edge or corner has the same
+ * anchor from all sides. */
 static void tidy(struct influence_anchor *anchor)
 {
     int heaviest = 0;
@@ -91,7 +93,7 @@ static bool is_single(const struct influence_anchor *anchor)
     return anchor->points[0] == anchor->points[1] && anchor->points[0] == anchor->points[2];
 }
 
-/* At one corner of the drawn triangle, which has the value of the same point: nothing differs. */
+/* Returns whether the place is at a corner of the drawn triangle that has the value of the same mesh point: there the difference is 0. */
 static bool is_corner(const struct finding *finding, const struct bend_place *place)
 {
     const struct bend_drawn *drawn = &finding->bend->drawn;
@@ -103,7 +105,7 @@ static bool is_corner(const struct finding *finding, const struct bend_place *pl
     return false;
 }
 
-/* Returns whether nothing is to be learnt there, or the triangle has such a place already; a few are found twice. */
+/* Returns whether the place needs no check: it is at such a corner, or the triangle already has it. A few duplicates are missed. */
 static bool is_known(struct finding *finding, const struct bend_place *place)
 {
     const struct influence_bend *bend = finding->bend;
@@ -142,8 +144,8 @@ static void add_place(struct finding *finding, const double at[2], const double 
 
 /* --- passes -------------------------------------------------------------------------------------------------------------------- */
 
-/* A triangle of the mesh whose box comes near that of the drawn one: takes what it covers out of finding->cut. Of those that are solved on,
-   each that covers a place of finding->left says something of it. */
+/* Processes a mesh triangle whose box is near the drawn triangle: removes what it covers from finding->cut. If the triangle belongs to the
+ * solved mesh and overlaps finding->left, adds the corners of the overlap as places. */
 static void visit(void *arg, uint32_t tri)
 {
     struct finding *finding = arg;
@@ -153,7 +155,7 @@ static void visit(void *arg, uint32_t tri)
     double piece[3][2], normal[3], off_m;
     vec_normal(at[points[0]], at[points[1]], at[points[2]], normal);
     double facing = vec_dot(normal, finding->axes[2]), least = LEAST_FACING * vec_length(normal);
-    if (finding->full || !((solved ? facing : fabs(facing)) > least)) /* what hides may face either way */
+    if (finding->full || !((solved ? facing : fabs(facing)) > least)) /* triangles that hide the drawn one may face either way */
         return;
     uint32_t order[3] = { points[0], points[facing > 0 ? 1 : 2], points[facing > 0 ? 2 : 1] };
     for (int i = 0; i < 3; i++) {
@@ -184,7 +186,7 @@ static void visit(void *arg, uint32_t tri)
     memmove(finding->cut.of, finding->cut.of + before, finding->cut.count * sizeof(*finding->cut.of));
 }
 
-/* Returns the area that is covered by triangles which lie within off_m of what was left. */
+/* Clips finding->left by all mesh triangles within off_m of its plane. Returns the area that they cover. */
 static double cover(struct finding *finding, const struct trimesh *mesh, const struct bvh *bvh, double off_m)
 {
     double before_m2 = polygons_area(&finding->left);
@@ -207,7 +209,7 @@ static size_t finest_count(const struct bend_drawn *drawn)
     return drawn->level_count > 0 ? drawn->levels[0].triangle_count : drawn->triangle_count;
 }
 
-/* Returns its area; 0: it has none. */
+/* Sets up a drawn triangle as the current one. Returns its area; 0: degenerate. */
 static double take_triangle(struct finding *finding, const double p[3][3])
 {
     double along[3], off_m;
@@ -262,11 +264,11 @@ static void find_places(struct finding *finding)
 
 /* --- coarser levels ------------------------------------------------------------------------------------------------------------ */
 
-/* Samples of a triangle: the thirds of its sides and its middle. */
+/* Barycentric samples of a triangle (unnormalised): the thirds of its sides and its centre. */
 enum { SAMPLES = 7 };
 static const double samples[SAMPLES][3] = { { 2, 1, 0 }, { 1, 2, 0 }, { 0, 2, 1 }, { 0, 1, 2 }, { 1, 0, 2 }, { 2, 0, 1 }, { 1, 1, 1 } };
 
-/* Samples count as its area. */
+/* Adds the samples of a coarse level's triangle; samples take the place of areas. */
 static void sample_triangle(struct finding *finding, const struct influence_mesh *mesh, const struct surface *surface, size_t tri,
                             double within_m)
 {

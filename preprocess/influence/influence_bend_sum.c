@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the shares of all sensors come to at each place, for the readings that are worst there. */
+/* Sums the share errors of all sensors at each place, for the worst readings there. */
 #include <math.h>
 #include <string.h>
 
@@ -9,11 +9,11 @@
 #include "preprocess/influence/influence_bend.h"
 
 #define STEPS 255.0
-#define FIXED 0x1p40 /* parts of a share: whole numbers add up to the same in any order */
+#define FIXED 0x1p40 /* fixed-point scale of a share: integer sums do not depend on their order */
 
 typedef float shares_of[BEND_WIDTH];
 
-/* Σ weight times what its point has. Sensors beyond `width` have 0. */
+/* Interpolates the shares of `width` sensors at an anchor. Sensors beyond `width` get 0. */
 SIMD_BODY void gather(const struct influence_anchor *anchor, const float *at_points, size_t stride, size_t width, shares_of out)
 {
     const float *a = at_points + anchor->points[0] * stride, *b = at_points + anchor->points[1] * stride;
@@ -57,19 +57,19 @@ void influence_bend_add(struct influence_bend *bend, const float *at_points, siz
     }
 }
 
-/* Readings that are farthest apart are the worst: all with a share above 0 at MAX and the others at MIN, or the other way round. */
+/* Returns the error for the worst readings, in steps: all sensors with positive share error at MAX and the others at MIN, or vice versa. */
 static double worst_of(double plus, double minus, double around)
 {
     double level = around * (plus + minus);
     return STEPS * fmax(fabs(plus - level), fabs(minus - level));
 }
 
-/* --- errors of vertices ------------------------------------------------------------------------------------------------------ */
+/* --- vertex errors ----------------------------------------------------------------------------------------------------------- */
 
-/* Measured errors of a drawn triangle. */
+/* Whether the error of a drawn triangle is known. */
 enum triangle_state { TRIANGLE_BOUNDED, TRIANGLE_HIDDEN, TRIANGLE_UNKNOWN };
-#define ALL_OF_IT 0.999     /* share of a triangle's area that counts as all, for rounding */
-#define COARSE_UNKNOWN 0.5  /* share that may be unknown in a coarse level's triangle, which is not on the surface */
+#define ALL_OF_IT 0.999    /* share of a triangle's area that counts as all of it, because of rounding */
+#define COARSE_UNKNOWN 0.5 /* share that may be unknown in a triangle of a coarse level, which does not lie on the surface */
 
 static enum triangle_state state_of(const struct influence_bend *bend, size_t tri)
 {
@@ -88,8 +88,8 @@ static float mesh_error_at(const struct influence_anchor *anchor, const float *b
     return most;
 }
 
-/* bends: by triangle, in parts of the spread of readings. Places inside parts are seen only in sections: vertices that no other triangle
-   has are unknown. */
+/* Writes the error of each vertex. bends: by triangle, as a share of the spread of readings. Triangles hidden inside other parts are
+ * visible only in sections and do not count; vertices of hidden triangles only have an unknown error. */
 static void write_errors(struct influence_bend *bend, const float *bends, float *errors)
 {
     const struct bend_drawn *drawn = &bend->drawn;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Group by group, interpolation by interpolation; then all in one file. */
+/* Computes interpolations group by group and writes all of them to one file. */
 #include "preprocess/influence/influence_file.h"
 
 #include <math.h>
@@ -18,12 +18,12 @@
 #include "preprocess/influence/transport.h"
 #include "protocol/influence_format.h"
 
-#define EDGES 5.0       /* of a triangle, at least as many to a range: more change nothing that can be seen */
-#define EDGES_LEAST 2.0 /* fewer would let the field seem better known than it is */
-#define LONGEST 10.0    /* ranges in sizes of the surface; longer ones look the same */
-#define FIT_LEAST 0.05  /* ranges that are tried, in the same */
-#define FIT_MOST 3.0
-enum { BEND_PLACES = 8000000 }; /* where the bend between corners is looked for: more would take too long */
+#define EDGES 5.0     /* mesh edges per range, at least; more make no visible difference */
+#define MIN_EDGES 2.0 /* minimum mesh edges per range; fewer would make the field seem more certain than it is */
+#define LONGEST 10.0  /* limit of the range, in sizes of the surface; longer ranges look the same */
+#define FIT_MIN 0.05  /* bounds of fitted ranges, in sizes of the surface */
+#define FIT_MAX 3.0
+enum { BEND_PLACES = 8000000 }; /* limit of places for measuring the bend; more would take too long */
 
 struct influence_making {
     struct log *log;
@@ -33,11 +33,12 @@ struct influence_making {
     struct cloud_heat *cloud; /* NULL until a group asks for it */
     struct influence_header header;
     struct influence_entry *entries;
-    struct influence *found; /* of each entry */
+    struct influence *found; /* result of each entry */
     size_t capacity, found_capacity;
 };
 
-/* The sensors of a group whose place is known, in their order; *places_m: the caller frees it (mem_free). */
+/* Lists the sensors of a group that have a position. Returns their number; *places_m receives the positions, which the caller frees
+ * (mem_free). */
 static size_t places_of(const struct influence_input *input, int group, double (**places_m)[3])
 {
     size_t count = 0;
@@ -63,7 +64,7 @@ static const struct plant_asset *asset_of(const struct influence_input *input)
     return &input->plant->assets[input->plant->tags[input->sensors[0].tag].asset];
 }
 
-/* Names of the group's sensors whose place is known, as places_of. The caller frees the list (mem_free). */
+/* Returns the names of the sensors that places_of() lists, in the same order. The caller frees the list (mem_free). */
 static const char **names_of(const struct influence_input *input, int group)
 {
     const char **names = mem_array(input->sensor_count, sizeof(*names));
@@ -75,7 +76,7 @@ static const char **names_of(const struct influence_input *input, int group)
     return names;
 }
 
-/* Takes what the plant file states, and fits the rest to the readings that it names. */
+/* Determines the parameters: those stated in the plant file, the others fitted to the readings file that it names. */
 static bool find_params(struct influence_making *making, int group, const double (*places_m)[3], size_t count, struct gaussian_params *gp)
 {
     const struct influence_input *input = making->input;
@@ -93,13 +94,13 @@ static bool find_params(struct influence_making *making, int group, const double
     if (!isnan(gp->range_m) && !isnan(gp->noise) && !isnan(gp->deviation))
         return true;
     const char **names = names_of(input, group);
-    double least_m = FIT_LEAST * size, edge_m = (isnan(gp->range_m) ? least_m : min_of(gp->range_m, LONGEST * size)) / EDGES_LEAST;
+    double least_m = FIT_MIN * size, edge_m = (isnan(gp->range_m) ? least_m : min_of(gp->range_m, LONGEST * size)) / MIN_EDGES;
     bool good = readings_table_read(&table, of->gp.fit, names, count, why);
     if (good && !influence_mesh_init(&mesh, input->surface, places_m, count, of->disc_m, edge_m)) {
         snprintf(why, sizeof(why), "out of memory");
         good = false;
     }
-    good = good && gaussian_fit(gp, making->log, making->workers, &mesh, &table, least_m, FIT_MOST * size, why);
+    good = good && gaussian_fit(gp, making->log, making->workers, &mesh, &table, least_m, FIT_MAX * size, why);
     if (good)
         log_info(making->log,
                  "asset %s, group %s: gp fitted to %zu readings of each of %zu sensors: range %.3g m, noise %.3g, deviation %.3g %s", asset,
@@ -112,17 +113,17 @@ static bool find_params(struct influence_making *making, int group, const double
     return good;
 }
 
-/* A range that the triangles cannot show is refused. */
+/* Returns whether the mesh is fine enough for the range; prints an error otherwise. */
 static bool range_good(const struct influence_making *making, int group, const struct influence_mesh *mesh,
                        const struct gaussian_params *gp)
 {
-    if (mesh->longest_m * EDGES_LEAST <= gp->range_m)
+    if (mesh->longest_m * MIN_EDGES <= gp->range_m)
         return true;
     log_err(making->log,
             "asset %s, group %s: gp's range_m %.3g is too short for its surface: with %zu points its triangles are %.3g m long; "
             "at least %.3g is possible",
             asset_of(making->input)->id, making->input->plant->groups[group].id, gp->range_m, mesh->mesh.point_count, mesh->longest_m,
-            mesh->longest_m * EDGES_LEAST);
+            mesh->longest_m * MIN_EDGES);
     return false;
 }
 
@@ -138,7 +139,7 @@ static bool solve(struct influence_making *making, struct influence *found, enum
                : influence_conduct(found, making->log, making->workers, mesh, decay_m, anchors, count, bend);
 }
 
-/* Errors that were not measured may be of any size. Returns false if out of memory. */
+/* Computes found->errors. Without a measurement, errors are unbounded. Returns false if out of memory. */
 static bool bound_errors(const struct influence_making *making, const struct plant_group *group, enum interpolation interpolation,
                          struct influence_bend *bend, struct influence *found)
 {
@@ -155,7 +156,7 @@ static bool bound_errors(const struct influence_making *making, const struct pla
     return true;
 }
 
-/* bend: NULL if there are too many places. */
+/* Computes one interpolation of a group and adds it to the file's entries. bend: NULL if there are too many places to measure. */
 static bool add_entry(struct influence_making *making, int group, enum interpolation interpolation, const struct influence_mesh *mesh,
                       const struct gaussian_params *gp, const struct influence_anchor *anchors, struct influence_bend *bend)
 {
@@ -234,7 +235,7 @@ static void find_by_heat(void *arg, size_t begin, size_t end)
             work->failed = true;
 }
 
-/* What the first sensors' distances differ by is for the report. */
+/* Computes distances by heat for a group. Compares those of the first CLOUD_CHECKED sensors with ours for the report. */
 static bool add_heat(struct influence_making *making, int group, const double (*places_m)[3], size_t count)
 {
     const struct influence_input *input = making->input;
@@ -320,7 +321,7 @@ static uint64_t padded(uint64_t bytes)
     return (bytes + 7) / 8 * 8;
 }
 
-/* One array after the other, each padded. Returns 0 or -errno. */
+/* Writes all arrays to the file, each padded to 8 bytes. Returns 0 or -errno. */
 static int write_file(struct influence_making *making)
 {
     static const char zeros[8];

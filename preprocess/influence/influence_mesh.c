@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edges near sensors halved until they are short enough, and which points a sensor's disc covers. */
+/* Halves edges near sensors until they are short enough, and finds the points covered by each sensor's disc. */
 #include "preprocess/influence/influence_mesh.h"
 
 #include <math.h>
@@ -8,11 +8,12 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define GRADING 0.7      /* an edge at distance D from the nearest sensor is at most this times D, or half the disc's radius */
-#define MOST_ADDED 1000  /* points for each sensor: a radius that is far smaller than the triangles is not resolved */
-#define MOST_EVEN 400000 /* points more, where edges are to be short everywhere */
+/* an edge at distance D from the nearest sensor is at most this times D long, or half the disc's radius if that is more */
+#define GRADING 0.7
+#define MAX_ADDED 1000          /* points added per sensor; a radius far smaller than the triangles is not resolved */
+#define MAX_ADDED_EVENLY 400000 /* points added where edges must be short everywhere */
 
-/* --- smaller triangles near sensors ------------------------------------------------------------------------------------------ */
+/* --- refinement near sensors ------------------------------------------------------------------------------------------------- */
 
 static double nearest_m(const struct influence_mesh *mesh, const double point[3])
 {
@@ -24,10 +25,10 @@ static double nearest_m(const struct influence_mesh *mesh, const double point[3]
 
 struct halving {
     struct influence_mesh *of;
-    double radius_m, edge_m, *near_m; /* by point: distance of the nearest sensor */
+    double radius_m, edge_m, *near_m; /* near_m: distance of each point to the nearest sensor */
     size_t near_capacity, limit;
-    struct edge_table edges; /* to be halved */
-    uint32_t *middle;        /* of each: a point */
+    struct edge_table edges; /* edges to split */
+    uint32_t *middle;        /* by edge: index of the point at its middle */
     size_t middle_capacity;
 };
 
@@ -63,7 +64,7 @@ static void mark_edges(struct halving *halving)
         }
 }
 
-/* Into two, three or four, by how many of its edges are halved. */
+/* Splits a triangle into two, three or four, depending on how many of its edges are split. */
 static void cut_triangle(struct halving *halving, size_t t)
 {
     struct trimesh *mesh = &halving->of->mesh;
@@ -77,7 +78,7 @@ static void cut_triangle(struct halving *halving, size_t t)
     }
     if (cut == 0)
         return;
-    for (int i = 0; i < 3; i++) /* turned so that what differs from the others is first */
+    for (int i = 0; i < 3; i++) /* rotate so that the edge that differs from the other two comes first */
         if ((m[i] != TRIMESH_NONE) == (cut == 1))
             at = i;
     const uint32_t a = p[at], b = p[(at + 1) % 3], c = p[(at + 2) % 3];
@@ -102,7 +103,7 @@ static void refine(struct influence_mesh *mesh, double radius_m, double edge_m)
 {
     struct halving halving = { .of = mesh, .radius_m = radius_m, .edge_m = edge_m };
     size_t before;
-    halving.limit = mesh->mesh.point_count + MOST_ADDED * mesh->source_count + (isfinite(edge_m) ? MOST_EVEN : 0);
+    halving.limit = mesh->mesh.point_count + MAX_ADDED * mesh->source_count + (isfinite(edge_m) ? MAX_ADDED_EVENLY : 0);
     mem_grow(&halving.near_m, &halving.near_capacity, mesh->mesh.point_count, sizeof(*halving.near_m));
     for (size_t p = 0; p < mesh->mesh.point_count; p++)
         halving.near_m[p] = nearest_m(mesh, mesh->mesh.points[p]);
@@ -147,7 +148,7 @@ static void list_triangles(struct influence_mesh *mesh, size_t visible_count)
     }
 }
 
-/* Of a point in the plane of the triangle with these corners. */
+/* Computes the barycentric coordinates of a point in the plane of a triangle. */
 static void barycentric(const struct trimesh *mesh, const uint32_t corners[3], const double point[3], double weights[3])
 {
     const double *a = mesh->points[corners[0]];
@@ -164,7 +165,7 @@ static void barycentric(const struct trimesh *mesh, const uint32_t corners[3], c
     weights[0] = 1 - weights[1] - weights[2];
 }
 
-/* The piece of a visible triangle that holds the point, or comes nearest to it; weights: of its corners, none negative. */
+/* Returns the piece of a visible triangle that contains the point, or is nearest to it. weights: barycentric, not negative. */
 static uint32_t piece_of(const struct influence_mesh *mesh, uint32_t tri, const double point[3], double weights[3])
 {
     double best = -INFINITY, sum = 0;
@@ -188,7 +189,8 @@ static uint32_t piece_of(const struct influence_mesh *mesh, uint32_t tri, const 
 
 /* --- discs ------------------------------------------------------------------------------------------------------------------- */
 
-/* From the nearest corner outwards along the surface, so that the other side of a thin wall is not touched. */
+/* Collects the points of a sensor's disc. Spreads along the surface from the nearest corner, so that the other side of a thin wall is not
+ * touched. */
 static void spread_disc(struct influence_mesh *mesh, size_t sensor, double radius_m, char *seen)
 {
     const struct trimesh *from = &mesh->mesh;

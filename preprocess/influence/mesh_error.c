@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Flux imbalance at each edge as a linear form of the values at points, summed over sensors. */
+/* Expresses the flux imbalance at each edge as a linear form of point values and sums it over sensors. */
 #include "preprocess/influence/mesh_error.h"
 
 #include <math.h>
@@ -9,14 +9,13 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define SAFETY 2.0   /* values at points err as well, by about as much as the values between them */
-#define FIXED 0x1p40 /* parts of a share: integers add up to the same in any order */
+#define SAFETY 2.0   /* factor: values at mesh points have an error too, about as large as between them */
+#define FIXED 0x1p40 /* fixed-point scale of a share: integer sums do not depend on their order */
 
-/* The sum of fluxes out of an edge, times the height of its lowest triangle: by how much that triangle's tip is off the plane of the
-   others. */
+/* Flux imbalance of an edge times the height of its lowest triangle: the distance of that triangle's tip from the plane of the others. */
 struct edge_form {
     uint32_t first, count; /* range of the terms */
-    float low_m, sum_m;    /* heights of its triangles: the lowest, and their sum */
+    float low_m, sum_m;    /* heights of the edge's triangles above it: the lowest, and their sum */
 };
 struct edge_term {
     uint32_t point;
@@ -28,14 +27,14 @@ struct mesh_error {
     struct edge_form *edges;
     struct edge_term *terms;
     size_t edge_count;
-    uint32_t (*edges_of)[3];       /* by triangle: its edges, each from a corner to the next */
-    float (*heights_m)[3];         /* above each of these; 0: the triangle has no area */
-    _Atomic int64_t *plus, *minus; /* by edge: of all sensors, what is above 0 and below */
+    uint32_t (*edges_of)[3];       /* by triangle: edge from each corner to the next */
+    float (*heights_m)[3];         /* by triangle: height above each edge; 0: no area */
+    _Atomic int64_t *plus, *minus; /* by edge: sums over sensors of the positive and of the negative imbalances, fixed point */
 };
 
 /* --- the mesh ----------------------------------------------------------------------------------------------------------------- */
 
-/* Height of the triangle's third corner above an edge, and where its foot is: 0 at the edge's first corner, 1 at its second. */
+/* Returns the height of a triangle's tip above the edge a-b. *foot receives the tip's projection: 0 at a, 1 at b. */
 static double height_m(const double a[3], const double b[3], const double tip[3], double *foot)
 {
     double along[3], to[3];
@@ -64,7 +63,7 @@ static void measure_heights(struct mesh_error *error)
     edge_table_finish(&table);
 }
 
-/* Marks edges whose two ends are in the disc of one sensor. */
+/* Marks edges whose two ends lie in the disc of the same sensor. */
 static char *find_discs(const struct mesh_error *error)
 {
     const struct trimesh *mesh = &error->mesh->mesh;
@@ -97,7 +96,7 @@ static void add_term(struct mesh_error *error, struct edge_form *edge, uint32_t 
     error->terms[edge->first + edge->count++] = (struct edge_term){ point, (float)factor };
 }
 
-/* Reserves terms for each edge: its ends, and the tip of each triangle. */
+/* Reserves the terms of each edge: its two ends, and the tip of each adjacent triangle. */
 static bool reserve_terms(struct mesh_error *error)
 {
     uint32_t *faces = mem_array(error->edge_count, sizeof(*faces)), next = 0;
@@ -199,7 +198,8 @@ void mesh_error_add(struct mesh_error *error, const float *at_points, size_t str
     }
 }
 
-/* The error across one edge of a triangle. With a much lower triangle on the other side it is at most that one's tip off the plane. */
+/* Returns the error across one edge of a triangle. If a much lower triangle is on the other side, the distance of that triangle's tip from
+ * the plane limits it. */
 static double across(const struct mesh_error *error, size_t tri, int i)
 {
     const struct edge_form *edge = &error->edges[error->edges_of[tri][i]];

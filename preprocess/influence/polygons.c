@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Half planes, one after the other. */
+/* Clips polygons by half planes, one after the other. */
 #include "preprocess/influence/polygons.h"
 
 #include <string.h>
@@ -22,7 +22,7 @@ double polygons_area(const struct polygons *polygons)
     return sum;
 }
 
-/* What is left of the line from a to b, or right of it (side -1). */
+/* Writes the part of the polygon left of the line from a to b (side 1), or right of it (side -1). */
 static bool half_of(const struct polygon *polygon, const double a[2], const double b[2], double side, struct polygon *out)
 {
     out->count = 0;
@@ -75,7 +75,7 @@ void polygons_add_outside(struct polygons *polygons, const struct polygon *polyg
                half_of(&inside, triangle[i], triangle[(i + 1) % 3], 1, &next);
         inside = next;
     }
-    if (!good || !(polygon_area(&inside) > least_m2)) { /* as it was: pieces of it would only be more */
+    if (!good || !(polygon_area(&inside) > least_m2)) { /* no relevant overlap: keep the polygon whole instead of splitting it */
         polygons_add(polygons, polygon);
         return;
     }

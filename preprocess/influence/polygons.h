@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Convex polygons in a plane, counter-clockwise: what a triangle leaves of them (Sutherland & Hodgman, Reentrant polygon clipping, 1974).
-   Thread: one. */
+/* Clips convex, counter-clockwise polygons in a plane by triangles (Sutherland & Hodgman, Reentrant polygon clipping, 1974). Thread:
+ * one. */
 #ifndef PREPROCESS_INFLUENCE_POLYGONS_H
 #define PREPROCESS_INFLUENCE_POLYGONS_H
 #include <stdbool.h>
@@ -18,7 +18,7 @@ struct polygons {
     size_t count, capacity;
 };
 
-/* Returns twice the area of a, b, c: above 0 where they go round counter-clockwise. */
+/* Returns twice the signed area of the triangle a, b, c: positive if counter-clockwise. */
 static inline double polygon_cross(const double a[2], const double b[2], const double c[2])
 {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -26,9 +26,9 @@ static inline double polygon_cross(const double a[2], const double b[2], const d
 
 double polygon_area(const struct polygon *polygon);
 double polygons_area(const struct polygons *polygons);
-/* Writes what of the polygon is in the triangle. Returns false, and nothing is left, if it would have too many corners. */
+/* Writes the intersection of the polygon and the triangle. Returns false with an empty result if it would have too many corners. */
 bool polygon_in_triangle(const struct polygon *polygon, const double triangle[3][2], struct polygon *out);
-/* Appends what of the polygon is outside the triangle, in convex pieces; those no larger than least_m2 are left out. */
+/* Appends the part of the polygon outside the triangle, as convex pieces. Drops pieces of at most least_m2. */
 void polygons_add_outside(struct polygons *polygons, const struct polygon *polygon, const double triangle[3][2], double least_m2);
 void polygons_add(struct polygons *polygons, const struct polygon *polygon);
 /* Frees the list. */

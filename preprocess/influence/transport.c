@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One sparse Cholesky factor with two unknowns a point, solved for each sensor. */
+/* Solves the connection Laplacian: one sparse Cholesky factor with two unknowns per point, solved for each sensor. */
 #include "preprocess/influence/transport.h"
 
 #include <math.h>
@@ -10,16 +10,17 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-#define LENGTHS 150.0 /* sqrt(t), the length of the heat, is not below this share of the surface's size: e^-709 is the smallest number */
-#define LONGEST 400.0 /* nor below this share of the longest way along it, which on what is folded is many times its size */
-#define LEAST 1e-280  /* below it, what arrives has lost its direction */
+#define LENGTHS 150.0 /* sqrt(t) is at least the surface's size divided by this, because heat underflows at e^-709 */
+/* sqrt(t) is also at least the longest path along the surface divided by this; on folded parts paths are many times the size */
+#define LONGEST 400.0
+#define LEAST 1e-280 /* vectors shorter than this have lost their direction to rounding */
 
 struct vector_heat {
     struct influence *influence;
     const struct influence_mesh *mesh;
     const struct influence_anchor *anchors;
     const float (*vertex_normals)[3];
-    double (*normals)[3]; /* by point, unit */
+    double (*normals)[3]; /* unit normal of each point */
     struct laplacian laplacian;
     cholmod_factor *factor;
     atomic_bool failed;
@@ -27,7 +28,8 @@ struct vector_heat {
 
 /* --- the surface ------------------------------------------------------------------------------------------------------------ */
 
-/* Of the triangles around it, by their areas; of the largest one where they cancel out, as on a sheet with two sides. */
+/* Computes point normals: area-weighted mean of the triangles around a point, or the largest triangle's normal where they cancel out, as on
+ * a two-sided sheet. */
 static void find_normals(struct vector_heat *transport)
 {
     const struct trimesh *mesh = &transport->mesh->mesh;
@@ -55,15 +57,15 @@ static void find_normals(struct vector_heat *transport)
     mem_free(spare);
 }
 
-/* Edges of triangles around each point: which other end, how long. */
+/* Adjacency lists: the edges of triangles around each point. */
 struct ways {
-    size_t *first; /* by point, and one more */
+    size_t *first; /* by point, with one extra element at the end */
     struct transport_edge {
         uint32_t to;
         double length_m;
     } * at;
     uint32_t *queue;
-    double *gone_m; /* by point; < 0: not come to yet */
+    double *gone_m; /* by point: distance travelled in metres; < 0: not reached yet */
 };
 
 static void find_ways(const struct intrinsic *in, size_t point_count, struct ways *ways)
@@ -89,8 +91,8 @@ static void find_ways(const struct intrinsic *in, size_t point_count, struct way
     mem_free(next);
 }
 
-/* Goes along edges from a point to all that are joined with it. Returns how many these are, in queue[]; *farthest: the one whose way was
-   longest. */
+/* Breadth-first search along edges from a point. Returns the number of connected points, listed in queue[]. *farthest: the point with the
+ * longest path. */
 static size_t spread(struct ways *ways, uint32_t from, uint32_t *farthest)
 {
     size_t count = 1;
@@ -109,7 +111,8 @@ static size_t spread(struct ways *ways, uint32_t from, uint32_t *farthest)
     return count;
 }
 
-/* How long the longest way on any of the pieces is, nearly: from the point that is farthest from any to the one farthest from it. */
+/* Returns the approximate length of the longest path on any connected piece: from any point to the farthest one, and from there to the
+ * farthest again. */
 static double longest_way_m(const struct intrinsic *in, size_t point_count)
 {
     struct ways ways;
@@ -159,7 +162,8 @@ static void put(struct triplets *triplets, uint32_t row, uint32_t column, double
     ((double *)triplets->list->x)[triplets->count++] = value;
 }
 
-/* Two points: weight times the rotation from b's plane to a's, which has the higher row. */
+/* Adds the matrix block of two points: weight times the rotation from the tangent plane of b to that of a. Swaps a and b if a has the lower
+ * row. */
 static void put_pair(const struct vector_heat *transport, struct triplets *triplets, uint32_t a, uint32_t b, double weight)
 {
     const uint32_t *row_of = transport->laplacian.row_of;
@@ -198,8 +202,9 @@ static void put_edges(const struct vector_heat *transport, const cholmod_sparse 
         put(triplets, i, i, laplacian->mass_m2[i / 2] + diagonal[i / 2]);
 }
 
-/* The scalar matrix with a rotation at each of its edges. An edge of negative weight, as may be at a rim opposite an obtuse angle, is left
-   out: rotations that do not add up round a triangle are definite only where all weights are positive. */
+/* Assembles the connection Laplacian: the scalar Laplacian with a rotation at each edge. Edges of negative weight, possible at a rim
+ * opposite an obtuse angle, are dropped: with rotations that do not close around a triangle the matrix is positive definite only if all
+ * weights are positive. */
 static cholmod_sparse *assemble(const struct vector_heat *transport, double time_m2, cholmod_common *common)
 {
     const struct laplacian *laplacian = &transport->laplacian;
@@ -234,7 +239,8 @@ static bool factorize(struct vector_heat *transport, cholmod_common *common)
 
 /* --- one sensor ------------------------------------------------------------------------------------------------------------- */
 
-/* A vector at the point nearest to it, at all points that it touches. */
+/* Sets the right-hand side: a tangent vector at the point nearest to the sensor, transported to all points that the sensor's disc
+ * touches. */
 static void start_from(const struct vector_heat *transport, size_t sensor, double *b)
 {
     const struct influence_disc *disc = &transport->mesh->discs[sensor];
