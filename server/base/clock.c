@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The two clocks. */
+/* Reads the monotonic clock and the UTC clock. */
 #include "base/clock.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Allocation that is zeroed, checked for overflow, and aborts where nothing sensible could follow. */
+/* Zeroed allocation, checked for overflow; aborts when out of memory, where callers could do nothing sensible. */
 #include "base/mem.h"
 
 #include <stdarg.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Refusals: a code with named arguments, from which each reader's language makes a sentence (clients/web/words/refused.*.js). Pure; any
-   thread. */
+/* Refusals: a code with named arguments, which each client turns into a sentence in its user's language
+   (clients/web/words/refused.*.js). Pure; any thread. */
 #ifndef BASE_REFUSAL_H
 #define BASE_REFUSAL_H
 #include <jansson.h>
@@ -14,10 +14,10 @@ enum refusal_code { REFUSAL_NONE, REFUSED_WORDS(REFUSAL_MEMBER) REFUSALS };
 enum { REFUSAL_ARGS_BYTES = 240, REFUSAL_TEXT_BYTES = 400 };
 struct refusal {
     enum refusal_code code;
-    char args[REFUSAL_ARGS_BYTES]; /* lines of NAME=VALUE; "": none */
+    char args[REFUSAL_ARGS_BYTES]; /* lines of NAME=VALUE; "": no arguments */
 };
 
-/* Fills the refusal. args: lines of NAME=VALUE, with a name for each {name} of the words. Values have no line break. */
+/* Fills the refusal. `args`: lines of NAME=VALUE, with a name for each {name} in the sentence. Values must not contain line breaks. */
 void refusal_set(struct refusal *refusal, enum refusal_code code, const char *args, ...) __attribute__((format(printf, 3, 4)));
 /* Writes the English sentence, for the log and the command line. */
 void refusal_text(const struct refusal *refusal, char out[REFUSAL_TEXT_BYTES]);
@@ -25,9 +25,9 @@ void refusal_text(const struct refusal *refusal, char out[REFUSAL_TEXT_BYTES]);
 const char *refusal_words(enum refusal_code code);
 /* Returns {"code": ..., "args": {...}}, or NULL for REFUSAL_NONE. */
 json_t *refusal_json(const struct refusal *refusal);
-/* Sets members of an answer: `why`, the English sentence ("" for REFUSAL_NONE), and `refusal` if something was refused. */
+/* Sets two members of a JSON answer: `why`, the English sentence ("" for REFUSAL_NONE), and `refusal` if something was refused. */
 void refusal_add(json_t *answer, enum refusal_code code);
-/* Sets `unaudited` and `unaudited_refusal` of an answer: why the audit trail misses what was done. */
+/* Sets `unaudited` and `unaudited_refusal` of a JSON answer: the reason why the audit trail does not record the action. */
 void refusal_add_unaudited(json_t *answer, enum refusal_code code);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Start, end and ticks of a thread. */
+/* Starts, stops and times threads. */
 #include "base/thread.h"
 
 #include <string.h>

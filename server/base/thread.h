@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A long-lived thread with what each of them needs: a lock, a condition variable to wait for work, and a flag that asks it to end. */
+/* A long-lived thread with its lock, a condition variable to wait for work, and a flag that asks the thread to end. */
 #ifndef BASE_THREAD_H
 #define BASE_THREAD_H
 #include <pthread.h>
@@ -13,20 +13,20 @@ struct thread {
     bool started;
     pthread_mutex_t lock;
     pthread_cond_t wake; /* timed waits use clock_mono_ns() */
-    bool stopping;       /* under lock */
+    bool stopping;       /* under the lock: the thread must end */
 };
 
-/* Initializes lock and condition variable. End with thread_finish(). */
+/* Initialises lock and condition variable. End with thread_finish(). */
 void thread_init(struct thread *thread);
-/* Starts run(arg). Returns false if there can be no thread; that is logged as `NAME: no thread`. */
+/* Starts run(arg). Returns false if the thread cannot be created, logged as `NAME: no thread`. */
 bool thread_start(struct thread *thread, struct log *log, const char *name, void *(*run)(void *arg), void *arg);
-/* Sets `stopping`, wakes the thread and waits until it has ended. Does no more than set the flag if there is none. */
+/* Sets `stopping`, wakes the thread and waits until it has ended. Only sets the flag if no thread was started. */
 void thread_stop(struct thread *thread);
 void thread_finish(struct thread *thread);
-/* Returns whether the thread is to end. Takes the lock. */
+/* Returns whether the thread must end. Takes the lock. */
 bool thread_is_stopping(struct thread *thread);
-/* Waits for the next tick: *next_ns plus the period, or now if that has passed. Returns false once the thread is to end. Takes the lock.
-   Thread: itself. */
+/* Waits for the next tick: *next_ns plus the period, or now if that has passed. Returns false once the thread must end. Takes the lock.
+   Thread: the thread itself. */
 bool thread_wait_for_tick(struct thread *thread, int64_t period_ns, int64_t *next_ns);
 
 #endif

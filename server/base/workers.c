@@ -19,7 +19,7 @@ struct workers {
     pthread_t *threads;
     pthread_mutex_t lock;
     pthread_cond_t wake;
-    /* --- below: under lock */
+    /* --- below: under `lock` */
     struct worker_job *first, **last;
     bool stopping;
 };
@@ -101,14 +101,14 @@ void workers_submit(struct workers *workers, void (*run)(void *arg), void *arg)
     pthread_mutex_unlock(&workers->lock);
 }
 
-/* One workers_for in flight. Shared by the caller and its helpers; the last one out frees it. */
+/* One call of workers_for() in progress. Shared by the caller and its helpers; the last user frees it. */
 struct loop {
     size_t count, grain;
     void (*body)(void *arg, size_t begin, size_t end);
     void *arg;
     pthread_mutex_t lock;
     pthread_cond_t done;
-    /* --- below: under lock */
+    /* --- below: under `lock` */
     size_t next, finished;
     int users;
 };
@@ -148,7 +148,7 @@ static void loop_help(void *arg)
     loop_unref(arg);
 }
 
-/* All users but the caller are workers. */
+/* Starts a loop with one helper job for each user other than the caller. */
 static struct loop *loop_begin(struct workers *workers, const struct loop *like)
 {
     struct loop *loop = mem_new(sizeof(*loop));

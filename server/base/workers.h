@@ -6,21 +6,21 @@
 
 struct workers;
 
-struct workers *workers_create(int threads); /* 0: one per core. Never NULL. */
+struct workers *workers_create(int threads); /* Creates a pool; 0: one thread per core. Never returns NULL. */
 /* Waits for the submitted jobs and ends the threads. &NULL is fine; leaves NULL. */
 void workers_destroy(struct workers **workers);
 int workers_count(const struct workers *workers);
 
 /* Queues job(arg) to run on some worker. Jobs start in order of submission. */
 void workers_submit(struct workers *workers, void (*job)(void *arg), void *arg);
-/* Runs body(arg, begin, end) over [0, count) in pieces of about `grain`, on the calling thread and idle workers, and returns when all is
-   done. May be called from a job. */
+/* Runs body(arg, begin, end) over [0, count) in pieces of about `grain`, on the calling thread and idle workers, and returns when all
+   pieces are done. May be called from a job. */
 void workers_for(struct workers *workers, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg);
 
-/* Runs body(arg) on an idle worker beside the caller; if none is idle, workers_end() runs it. workers may be NULL. May be called from a
-   job. */
+/* Starts body(arg) on an idle worker while the caller continues; if no worker is idle, workers_end() runs it. `workers` may be NULL. May
+   be called from a job. */
 struct workers_task;
 struct workers_task *workers_begin(struct workers *workers, void (*body)(void *arg), void *arg);
-void workers_end(struct workers_task **task); /* waits until it is done; &NULL is fine; leaves NULL */
+void workers_end(struct workers_task **task); /* Waits until the task is done. &NULL is fine; leaves NULL. */
 
 #endif

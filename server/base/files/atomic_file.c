@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writing beside, and renaming. */
+/* Writes a temporary file in the same folder, then renames it. */
 #include "base/files/atomic_file.h"
 
 #include <errno.h>
@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 
-enum { MOST_TRIES = 1000 }; /* names left by programs that were killed under the same number */
+enum { MOST_TRIES = 1000 }; /* attempts to find a free name: killed programs with the same process id may have left files */
 
 int atomic_file_begin(struct atomic_file *file, const char *path, mode_t mode)
 {
@@ -52,7 +52,7 @@ static void end(struct atomic_file *file)
     *file = (struct atomic_file){ .fd = -1 };
 }
 
-/* Some file systems cannot; the file itself is safe there, too. */
+/* Ignores errors: some file systems cannot sync a folder, and the file itself is safe there too. */
 static void sync_folder_of(const char *path)
 {
     const char *slash = strrchr(path, '/');

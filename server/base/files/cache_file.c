@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A head before the bytes: what it is, of what, how many, and their checksum. */
+/* A header precedes the content: magic, key, byte count and checksum. */
 #include "base/files/cache_file.h"
 
 #include <fcntl.h>
@@ -7,7 +7,7 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* keeps the hash state on the stack */
 #include <xxhash.h>
 
 #include "base/files/atomic_file.h"
@@ -16,7 +16,7 @@
 struct cache_head {
     char magic[8];
     uint64_t key, count;
-    uint64_t checksum; /* XXH3-64 of the bytes, seeded with the key */
+    uint64_t checksum; /* XXH3-64 of the content, seeded with the key */
 };
 
 static bool is_good(const struct cache_file *file, const char *magic, uint64_t key)
@@ -54,7 +54,7 @@ void cache_file_close(struct cache_file *file)
     *file = (struct cache_file){ 0 };
 }
 
-/* Not put together first: there may be tens of megabytes. */
+/* Does not join the parts in memory first: they may have tens of megabytes. */
 int cache_file_write_parts(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count)
 {
     struct cache_head head = { .key = key };

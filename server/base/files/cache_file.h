@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache files: results that would take long to compute again, under a key. A file that is truncated, damaged, of another kind or of another
-   key counts as missing. Thread: any. */
+/* Cache files: results that would take long to compute again, stored under a key. A file that is truncated, damaged, of another kind or
+   of another key counts as missing. Thread: any. */
 #ifndef BASE_FILES_CACHE_FILE_H
 #define BASE_FILES_CACHE_FILE_H
 #include <stdbool.h>
@@ -10,17 +10,18 @@
 #include "base/files/atomic_file.h"
 #include "base/text/text.h"
 
-struct cache_file { /* mapped */
+struct cache_file { /* a mapped cache file */
     void *map;
     size_t map_bytes;
-    const char *bytes; /* the content */
+    const char *bytes; /* content of the file, without its header */
     size_t count;
 };
 
-/* Maps the file into memory. magic: 8 bytes that name its kind. Returns false if there is no valid file; then there is nothing to close. */
+/* Maps the file into memory. `magic`: 8 bytes that name its kind. Returns false if there is no valid file; then there is nothing to
+   close. */
 bool cache_file_open(struct cache_file *file, const char *path, const char *magic, uint64_t key);
-void cache_file_close(struct cache_file *file); /* unmaps it; a zeroed one is fine */
-/* Writes a file, its parts one after the other. Returns 0 or -errno. */
+void cache_file_close(struct cache_file *file); /* Unmaps the file; a zeroed struct is fine. */
+/* Writes a file from parts, one after the other. Returns 0 or -errno. */
 int cache_file_write_parts(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* SQLite files: opening, versions, errors. */
+/* Opens SQLite files, converts old versions, handles errors. */
 #include "base/files/database.h"
 
 #include <errno.h>
@@ -61,7 +61,7 @@ static bool is_on_read_only_disk(const struct database *database)
     return access(database->path, W_OK) != 0 && errno == EROFS;
 }
 
-/* What the system said, where SQLite only says that it cannot. */
+/* Returns the errno behind a general SQLite error such as "unable to open". */
 static int cause_of(const struct database *database)
 {
     return is_on_read_only_disk(database) ? EROFS : sqlite3_system_errno(database->handle);
@@ -183,10 +183,10 @@ static int open_handle(struct database *database, const char *name, int flags)
 
 static int open_to_write(struct database *database, int *version)
 {
-    /* FULL: what was committed outlives a loss of power too. */
+    /* FULL: a committed transaction survives a loss of power. */
     static const char set_up[] = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL";
     int code = open_handle(database, database->path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
-    if (code == SQLITE_OK) /* first: some settings are only for files that have no page yet */
+    if (code == SQLITE_OK) /* must come first: some settings apply only to a file without pages */
         code = sqlite3_exec(database->handle, database->format->set_up, NULL, NULL, NULL);
     if (code == SQLITE_OK)
         code = sqlite3_exec(database->handle, set_up, NULL, NULL, NULL);
@@ -205,7 +205,8 @@ int database_open(struct database *database, bool *renewed)
     return error || !is_newer(database, version) ? error : -EACCES;
 }
 
-/* On a disk that cannot be written SQLite makes no files beside it; where there are none, nothing is missing. */
+/* Opens a database on a read-only disk as immutable, since SQLite cannot create its -wal and -shm files there. Only correct if no -wal
+   file exists. */
 static int open_unchanging(struct database *database)
 {
     struct text uri = { 0 };
@@ -235,7 +236,7 @@ int database_open_to_read(struct database *database)
     int code = open_handle(database, database->path, SQLITE_OPEN_READONLY);
     if (code == SQLITE_OK)
         code = read_version(database, &version);
-    /* elsewhere than on such a disk, somebody may be about to write it */
+    /* not for a writable disk, where another process may be about to write the file */
     if ((code & 0xff) == SQLITE_CANTOPEN && !has_log(database) && is_on_read_only_disk(database)) {
         code = open_unchanging(database);
         if (code == SQLITE_OK)

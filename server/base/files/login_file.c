@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a user and a password. */
+/* Reads a user and a password from a file. */
 #include "base/files/login_file.h"
 
 #include <errno.h>
@@ -21,7 +21,7 @@ bool login_file_read(const char *path, struct login_file *login, char why[200])
     char *rest = login->text;
     login->bytes = strlen(rest);
     login->user = strsep(&rest, "\r\n");
-    rest += rest && *rest == '\n'; /* behind a carriage return */
+    rest += rest && *rest == '\n'; /* a line end may be \r\n */
     login->password = rest ? strsep(&rest, "\r\n") : NULL;
     if (*login->user)
         return true;

@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A file with a user and a password, a line each. Thread: any. */
+/* Reads a file with a user on its first line and a password on its second. Thread: any. */
 #ifndef BASE_FILES_LOGIN_FILE_H
 #define BASE_FILES_LOGIN_FILE_H
 #include <stdbool.h>
 #include <stddef.h>
 
 struct login_file {
-    const char *user, *password; /* password NULL: it has no second line */
+    const char *user, *password; /* user and password; password NULL: the file has no second line */
     char *text;
     size_t bytes;
 };
 
-/* Reads the file. Returns false if it cannot be read or names no user, and says so in why; login_file_forget() is not needed then. */
+/* Reads the file. Returns false with the reason in `why` if the file cannot be read or names no user; login_file_forget() is then not
+   needed. */
 bool login_file_read(const char *path, struct login_file *login, char why[200]);
-void login_file_forget(struct login_file *login); /* overwrites what was read, and frees it; what is zero is fine */
+void login_file_forget(struct login_file *login); /* Overwrites and frees the login; a zeroed struct is fine. */
 
 #endif

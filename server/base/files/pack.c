@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packing arrays: how many, how large each, and their bytes up to a multiple of eight. */
+/* Packs arrays: element count, element size, and the bytes padded to a multiple of eight. */
 #include "base/files/pack.h"
 
 #include <stdint.h>
@@ -28,7 +28,7 @@ void pack_array(struct text *to, const void *array, size_t count, size_t bytes_e
     text_add_bytes(to, zeros, padding_of(count * bytes_each));
 }
 
-/* The array's bytes, of which there are that many; NULL: it is not there. */
+/* Returns the bytes of the next array and its element count; NULL: no such array. */
 static const char *take(struct unpack *from, size_t *count, size_t bytes_each)
 {
     struct array_head head = { 0 };

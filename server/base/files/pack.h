@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Serializes arrays into bytes, for files that only this program reads, on the same kind of machine. Thread: any. */
+/* Serialises arrays into bytes, for files that only this program reads, on the same kind of machine. Thread: any. */
 #ifndef BASE_FILES_PACK_H
 #define BASE_FILES_PACK_H
 #include <stdbool.h>
@@ -9,15 +9,15 @@
 /* Appends an array with its length. */
 void pack_array(struct text *to, const void *array, size_t count, size_t bytes_each);
 
-struct unpack { /* the bytes not read yet; they belong to the caller */
+struct unpack { /* the bytes not read yet; owned by the caller */
     const char *at;
     size_t left;
-    bool bad; /* reading failed; all further reads fail as well */
+    bool bad; /* reading failed; all further reads fail too */
 };
-/* Reads the next array; free with mem_free(). Returns NULL if it is empty, has elements of another size, or memory is out; from->bad tells
-   errors from an empty array. */
+/* Reads the next array; free with mem_free(). Returns NULL if it is empty, has elements of another size, or memory is exhausted;
+   from->bad distinguishes errors from an empty array. */
 void *unpack_array(struct unpack *from, size_t *count, size_t bytes_each);
-/* Reads the next array into memory of the caller; it must have exactly that length. */
+/* Reads the next array, which must have exactly `count` elements, into memory of the caller. */
 void unpack_into(struct unpack *from, void *to, size_t count, size_t bytes_each);
 
 #endif

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A file that holds one secret in its first line: a token, a password. Thread: any. */
+/* Reads a secret, such as a token or a password, from the first line of a file. Thread: any. */
 #ifndef BASE_FILES_SECRET_H
 #define BASE_FILES_SECRET_H
 
-/* Returns the first line of the file, read anew each time; secret_forget(). NULL: it cannot be read, and *why (mem_free) says so. */
+/* Reads the file at each call and returns its first line; free with secret_forget(). Returns NULL with the reason in *why (mem_free) if
+   it cannot be read. */
 char *secret_read(const char *path, char **why);
-void secret_forget(char *secret); /* overwrites and frees it; NULL is fine */
+void secret_forget(char *secret); /* Overwrites and frees a secret; NULL is fine. */
 
 #endif

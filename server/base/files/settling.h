@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tells whether rows that another thread writes are on disk yet, without waiting. The owner of the rows keeps the counts under its lock. */
+/* Tells without waiting whether rows that another thread writes are on disk yet. The owner of the rows keeps the counts under its lock. */
 #ifndef BASE_SETTLING_H
 #define BASE_SETTLING_H
 #include <errno.h>
@@ -8,16 +8,16 @@
 #include "base/clock.h"
 
 struct settling {
-    uint64_t queued, done; /* rows since the start; done: written or dropped */
-    uint64_t lost;         /* the newest row that was dropped; 0: none */
-    uint64_t failures;     /* tries to write that failed */
-    int error;             /* of the last try that failed, -errno; a later success keeps it for tickets of that time */
+    uint64_t queued, done; /* rows counted since the start; done: written or dropped */
+    uint64_t lost;         /* number of the newest dropped row; 0: none */
+    uint64_t failures;     /* number of failed write attempts */
+    int error;             /* -errno of the last failed attempt; a later success does not clear it, for tickets of that time */
 };
 
-/* The rows that are queued between settling_begin() and settling_end(). All zero: no rows. */
+/* The rows queued between settling_begin() and settling_end(). All zero: no rows. */
 struct settling_ticket {
     uint64_t first, last, failures;
-    int64_t until_ns; /* then a row that is still not on disk counts as not kept */
+    int64_t until_ns; /* time after which a row that is not on disk counts as not saved */
 };
 
 static inline struct settling_ticket settling_begin(const struct settling *settling)
@@ -31,14 +31,14 @@ static inline void settling_end(const struct settling *settling, struct settling
     ticket->until_ns = now_ns + NS_PER_S;
 }
 
-/* Counts a row that is dropped because too many wait. */
+/* Counts a row that is dropped because the queue is full. */
 static inline void settling_drop(struct settling *settling)
 {
     settling->lost = ++settling->queued;
     settling->done++;
 }
 
-/* Counts a try to write: `rows` are on disk. error: 0 or -errno. */
+/* Counts a write attempt after which `rows` more rows are on disk. error: 0 or -errno. */
 static inline void settling_wrote(struct settling *settling, uint64_t rows, int error)
 {
     settling->done += rows;
@@ -46,7 +46,7 @@ static inline void settling_wrote(struct settling *settling, uint64_t rows, int 
     settling->error = error ? error : settling->error;
 }
 
-/* Returns 0 if all rows of the ticket are on disk, -EINPROGRESS, or the reason why they count as not kept. */
+/* Returns 0 if all rows of the ticket are on disk, -EINPROGRESS, or the reason why they count as not saved. */
 static inline int settling_state(const struct settling *settling, const struct settling_ticket *ticket, int64_t now_ns)
 {
     if (ticket->last > ticket->first && settling->lost > ticket->first)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes image files into pixels. Only the implementation knows OpenImageIO. Thread: any. */
+/* Decodes image files into pixels. Only the implementation includes OpenImageIO. Thread: any. */
 #ifndef BASE_IMAGE_IMAGE_H
 #define BASE_IMAGE_IMAGE_H
 #include <stdbool.h>
@@ -17,14 +17,15 @@ struct image {
     uint32_t width_px, height_px;
 };
 struct image_float {
-    float *rgba; /* rows from the top, linear light; converted if the file has sRGB; free with mem_free() */
+    float *rgba; /* rows from the top, linear light, converted if the file has sRGB; free with mem_free() */
     uint32_t width_px, height_px;
 };
 
 /* Decodes a PNG, JPEG or WebP file in memory, from an untrusted source. Scales images down to sides of at most max_px. Returns false on
-   failure, with the reason in why. */
+   failure, with the reason in `why`. */
 bool image_decode(struct image *image, const void *bytes, size_t size, uint32_t max_px, char why[IMAGE_WHY_BYTES]);
-/* The same for any file that OpenImageIO reads, from a trusted source: the plant file or the command line names it. */
+/* Does the same as image_decode() for any file that OpenImageIO reads, from a trusted source: the plant file or the command line names
+   the file. */
 bool image_load(struct image *image, const char *path, uint32_t max_px, char why[IMAGE_WHY_BYTES]);
 bool image_load_float(struct image_float *image, const char *path, uint32_t max_px, char why[IMAGE_WHY_BYTES]);
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads images by a module that is loaded when there is one to read: to start with OpenImageIO and the 260 libraries behind it takes a
-   fifth of a second, more than all else that many a program does. */
+/* Reads images through a module that is loaded on first use: loading OpenImageIO with its 260 libraries takes a fifth of a second, more
+   than the whole run of many a program. */
 #include "base/image/image.h"
 #include "base/system/module.h"
 
-static struct module images = MODULE("plantcast-images.so"); /* server/base/image/image_shim.cc */
+static struct module images = MODULE("plantcast-images.so"); /* implemented by server/base/image/image_shim.cc */
 
 bool image_decode(struct image *image, const void *bytes, size_t size, uint32_t max_px, char why[IMAGE_WHY_BYTES])
 {

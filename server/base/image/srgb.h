@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The transfer function of sRGB (IEC 61966-2-1) and its inverse, of values from 0 to 1; those that end in f in single precision.
+/* The transfer function of sRGB (IEC 61966-2-1) and its inverse, for values from 0 to 1; functions that end in f use single precision.
    Thread: any. */
 #ifndef BASE_IMAGE_SRGB_H
 #define BASE_IMAGE_SRGB_H

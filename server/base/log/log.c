@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Log lines in three formats, with repeats counted. */
+/* Writes log lines in three formats, counting repeats. */
 #include "base/log/log.h"
 
 #include <pthread.h>
@@ -20,9 +20,9 @@ static const int64_t REPEAT_NS = 1000000000;
 struct log {
     enum log_level level;
     enum log_format format;
-    char *plant, *journal_socket; /* NULL: not named; the journal's own */
+    char *plant, *journal_socket; /* NULL: no plant name; NULL: the system journal's own socket */
     pthread_mutex_t lock;
-    /* --- below: under lock */
+    /* --- below: under `lock` */
     char last[LINE_BYTES];
     enum log_level last_level;
     enum log_event last_event;
@@ -57,7 +57,7 @@ bool log_is_text(const struct log *log)
 }
 
 static const char *const names[] = { "error", "warn", "info", "debug" };
-static const char *const priorities[] = { "3", "4", "6", "7" }; /* of syslog */
+static const char *const priorities[] = { "3", "4", "6", "7" }; /* priorities of syslog, by log level */
 
 static void stamp_now(char *out, size_t size)
 {
@@ -77,7 +77,7 @@ static void emit_text(enum log_level level, const char *text)
     fprintf(stderr, "%s %-5s %s\n", stamp, names[level], text);
 }
 
-/* Of what may be no UTF-8: paths and names come from outside. */
+/* Makes a JSON string of a text that may be invalid UTF-8: paths and names come from outside. */
 static json_t *json_of(const char *text)
 {
     json_t *string = json_string(text);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts what is left out between two lines. */
+/* Counts the occurrences left out between two log lines. */
 #include "base/log/log_pace.h"
 
 #include <stdio.h>

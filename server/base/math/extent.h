@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The box around points, along the axes. Thread: any. */
+/* Axis-aligned bounding box of points. Thread: any. */
 #ifndef BASE_MATH_EXTENT_H
 #define BASE_MATH_EXTENT_H
 #include "base/math/vec.h"
@@ -8,13 +8,13 @@ struct extent {
     double low[3], high[3];
 };
 
-/* Returns the extent of no point. */
+/* Returns the empty extent. */
 static inline struct extent extent_empty(void)
 {
     return (struct extent){ { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
 }
 
-/* Extends it to a point, which is finite. */
+/* Extends the box to a point, which must be finite. */
 static inline void extent_add(struct extent *extent, const double point[3])
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -23,13 +23,13 @@ static inline void extent_add(struct extent *extent, const double point[3])
     }
 }
 
-/* As extent_add, of a point in floats. */
+/* Does the same as extent_add() for a point in floats. */
 static inline void extent_addf(struct extent *extent, const float point[3])
 {
     extent_add(extent, (double[3]){ (double)point[0], (double)point[1], (double)point[2] });
 }
 
-/* Returns the length of its diagonal; infinite if it has no point. */
+/* Returns the length of the box's diagonal; infinite if the box is empty. */
 static inline double extent_size(const struct extent *extent)
 {
     return vec_distance(extent->low, extent->high);

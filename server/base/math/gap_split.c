@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits triangles at gaps along the axes, found in histograms of their corners. */
+/* Splits a set of triangles at gaps along the axes, found in histograms of their corners. */
 #include "base/math/gap_split.h"
 
 #include <math.h>
@@ -9,9 +9,10 @@
 #include "base/math/vec.h"
 
 enum { BINS = 256, SPLITS_MOST = 64 };
-static const double SMALL_SHARE = 0.02;             /* of the area: small pieces have no more than this together */
-static const double SMALL_GAP = 1, LARGE_GAP = 100; /* sizes of the main part: gaps behind which small and large pieces are left out */
-static const double ONE_PLACE = 1e-3;               /* sizes of the main part: farther apart, two corners are at two places */
+static const double SMALL_SHARE = 0.02; /* fraction of the area that all small stray pieces have together at most */
+/* in sizes of the main part: gap length beyond which small pieces, and pieces of any size, are stray */
+static const double SMALL_GAP = 1, LARGE_GAP = 100;
+static const double ONE_PLACE = 1e-3; /* in sizes of the main part: corners farther apart are at different places */
 
 struct tri_range {
     struct gap_tri *tris;
@@ -40,7 +41,7 @@ static double size_of(const struct gap_tri *tris, size_t count)
     return size_m;
 }
 
-/* Finds the widest gap along an axis. Returns its length; 0: there is none. */
+/* Finds the widest gap along an axis. Returns its length; 0: no gap. */
 static double find_gap(const struct tri_range *part, int axis, double min_m, double max_m, double *from_m, double *to_m)
 {
     struct {
@@ -78,7 +79,7 @@ static void swap(struct gap_tri *a, struct gap_tri *b)
     *b = copy;
 }
 
-/* Moves triangles of the side (below or above the gap) to the front. Returns how many lie there whole. */
+/* Moves the triangles that are entirely on one side of the gap to the front. Returns their number. */
 static size_t gather(struct tri_range *part, int axis, double from_m, double to_m, bool above, double *area_m2)
 {
     size_t count = 0;
@@ -95,7 +96,7 @@ static size_t gather(struct tri_range *part, int axis, double from_m, double to_
     return count;
 }
 
-/* Returns whether corners beyond the gap, of triangles that cross it, are farther apart than within_m. */
+/* Returns whether the far corners of triangles that cross the gap are farther apart than within_m. */
 static bool reach_several_places(const struct gap_tri *tris, size_t count, int axis, double from_m, double to_m, bool above,
                                  double within_m)
 {
@@ -111,7 +112,7 @@ static bool reach_several_places(const struct gap_tri *tris, size_t count, int a
     return extent.low[0] <= extent.high[0] && extent_size(&extent) > within_m;
 }
 
-/* Leaves out what is behind a gap. Returns whether there was one. */
+/* Drops the triangles beyond one gap. Returns whether there was a gap. */
 static bool split(struct tri_range *part, double all_m2)
 {
     double min_m[3], max_m[3];

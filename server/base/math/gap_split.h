@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tells the main part of a model or plant from stray pieces, such as a vertex left at the origin of survey coordinates.
-   Rule: a gap is an interval along one axis without any corner of a triangle. Pieces behind a gap are stray if all pieces left out have at
-   most 2 % of the area and the gap is at least as long as the main part is large, or if the gap is at least 100 times as long, whatever
-   their area. A triangle that crosses such a gap is stray, too, unless crossing triangles have more than 2 % of the area and end at
-   several places on the far side: such a long pipe belongs to what it joins. The main part is the side of larger area.
-   A plain "what 98 % of the area covers" would crop flare stacks, pipe racks and tanks at the edge of a plant, which have less than 2 % of
-   the area but stand next to the rest. It would also keep a stray box that has a third of the area of a small model 7,000 km away.
+/* Separates the main part of a model or plant from stray pieces, such as a vertex left at the origin of survey coordinates.
+   Rule: a gap is an interval along one axis without any corner of a triangle. Pieces beyond a gap are stray if all stray pieces together
+   have at most 2 % of the area and the gap is at least as long as the main part, or if the gap is at least 100 times as long, whatever
+   their area. A triangle that crosses such a gap is stray too, unless crossing triangles have more than 2 % of the area and end at several
+   places on the far side: such a long pipe belongs to what it connects. The main part is the side with the larger area.
+   A simpler rule, the box of 98 % of the area, would crop flare stacks, pipe racks and tanks at the edge of a plant, which have less than 2
+   % of the area but stand next to the rest. It would also keep a stray box that has a third of the area of a small model 7,000 km away.
    Thread: any. */
 #ifndef BASE_MATH_GAP_SPLIT_H
 #define BASE_MATH_GAP_SPLIT_H
@@ -16,16 +16,16 @@
 
 struct gap_tri {
     double at[3][3], area_m2;
-    uint32_t owner; /* for the caller */
+    uint32_t owner; /* value for the caller's use */
 };
 
-/* Moves triangles of the main part to the front. Returns how many they are; *main receives their extent. */
+/* Moves the triangles of the main part to the front. Returns their number; *main receives their extent. */
 size_t gap_split(struct gap_tri *tris, size_t count, struct extent *main);
 
-/* Returns the triangles of an indexed mesh (3 indices a triangle), owned by their numbers. The caller frees them (mem_free). */
+/* Returns the triangles of an indexed mesh (3 indices a triangle); `owner` is the triangle's index. The caller frees them (mem_free). */
 struct gap_tri *gap_tris(const float (*positions_m)[3], const uint32_t *indices, size_t triangle_count);
-/* Returns the diagonal of the main part of an indexed mesh. Tolerances and spacings are shares of it, so that a stray vertex leaves them
-   unchanged. */
+/* Returns the diagonal of the main part of an indexed mesh. Tolerances and spacings are fractions of it, so that a stray vertex does not
+   change them. */
 double gap_main_size(const float (*positions_m)[3], const uint32_t *indices, size_t triangle_count);
 
 #endif

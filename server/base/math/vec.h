@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* 3-vectors, in double precision; those whose names begin with vecf in single precision. Thread: any. */
+/* 3-vectors in double precision; functions whose names begin with vecf take single precision. Thread: any. */
 #ifndef BASE_MATH_VEC_H
 #define BASE_MATH_VEC_H
 #include <math.h>
 
-/* fmin and fmax without their rules for NaN: there is none here, and the calls cost half of a ray. */
+/* fmin and fmax without NaN rules: no NaN occurs here, and the library calls take half of a ray's time. */
 static inline double min_of(double a, double b)
 {
     return a < b ? a : b;
@@ -26,7 +26,7 @@ static inline double vec_dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* out is neither a nor b. */
+/* Cross product. `out` must be neither `a` nor `b`. */
 static inline void vec_cross(const double a[3], const double b[3], double out[3])
 {
     out[0] = a[1] * b[2] - a[2] * b[1];
@@ -34,7 +34,7 @@ static inline void vec_cross(const double a[3], const double b[3], double out[3]
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* (b - a) x (c - a): twice as long as the triangle is large; it points to where a, b, c go round counter-clockwise. */
+/* Computes (b - a) x (c - a): its length is twice the triangle's area; it points to the side from which a, b, c are counter-clockwise. */
 static inline void vec_normal(const double a[3], const double b[3], const double c[3], double out[3])
 {
     double ab[3], ac[3];
@@ -48,7 +48,7 @@ static inline double vec_length(const double a[3])
     return sqrt(vec_dot(a, a));
 }
 
-/* Divides a vector by its length, which it returns; leaves 0 alone. */
+/* Divides a vector by its length, and returns the length; leaves the zero vector unchanged. */
 static inline double vec_normalize(double v[3])
 {
     double length = vec_length(v);
@@ -57,8 +57,8 @@ static inline double vec_normalize(double v[3])
     return length;
 }
 
-/* Two directions that are orthonormal to each other and to `normal`, a unit vector: right-handed, the same for the same normal (Duff et
-   al., Building an orthonormal basis, revisited, JCGT 2017). */
+/* Computes two unit vectors orthogonal to each other and to `normal`, a unit vector: right-handed, deterministic (Duff et al., Building
+   an orthonormal basis, revisited, JCGT 2017). */
 static inline void vec_frame(const double normal[3], double x[3], double y[3])
 {
     double sign = copysign(1, normal[2]), a = -1 / (sign + normal[2]), b = normal[0] * normal[1] * a;
@@ -70,8 +70,8 @@ static inline void vec_frame(const double normal[3], double x[3], double y[3])
     y[2] = -normal[1];
 }
 
-/* Turns v, tangent to a plane with the unit normal `from`, into the plane with the normal `to` by the smallest rotation; whether the
-   normals point to the same side of them makes no difference. */
+/* Rotates v, which is tangent to the plane with unit normal `from`, into the plane with normal `to` by the smallest rotation. The signs
+   of the normals do not matter. */
 static inline void vec_turn(double v[3], const double from[3], const double to[3])
 {
     double sign = copysign(1, vec_dot(from, to)), part = sign * vec_dot(to, v) / (1 + sign * vec_dot(from, to));
@@ -97,9 +97,9 @@ static inline void vec_mix(const double a[3], const double b[3], double t, doubl
         out[i] = a[i] + t * (b[i] - a[i]);
 }
 
-/* --- of floats ------------------------------------------------------------------------------------------------------------------ */
+/* --- single precision ------------------------------------------------------------------------------------------------------------ */
 
-/* a - b, in double precision. */
+/* Computes a - b in double precision. */
 static inline void vecf_sub(const float a[3], const float b[3], double out[3])
 {
     for (int i = 0; i < 3; i++)
@@ -116,7 +116,7 @@ static inline float vecf_dot(const float a[3], const float b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* As vec_normal, in double precision. */
+/* Does the same as vec_normal() for floats, in double precision. */
 static inline void vecf_normal(const float a[3], const float b[3], const float c[3], double out[3])
 {
     double ab[3], ac[3];

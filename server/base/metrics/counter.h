@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A number that threads count without a lock. Thread: any. */
+/* An atomic number that threads change without a lock. Thread: any. */
 #ifndef BASE_METRICS_COUNTER_H
 #define BASE_METRICS_COUNTER_H
 #include <stdatomic.h>
@@ -12,7 +12,7 @@ static inline void counter_inc(counter *c, int64_t by)
 {
     atomic_fetch_add_explicit(c, by, memory_order_relaxed);
 }
-/* Sets a counter, as a gauge. */
+/* Sets a counter that is used as a gauge. */
 static inline void counter_set(counter *c, int64_t to)
 {
     atomic_store_explicit(c, to, memory_order_relaxed);

@@ -12,14 +12,14 @@
 struct counter_entry {
     char *name, *type, *help;
     counter value;
-    bool microseconds;           /* printed in seconds */
-    struct histogram *histogram; /* NULL: a single value */
+    bool microseconds;           /* counted in microseconds, printed in seconds */
+    struct histogram *histogram; /* durations; NULL: a single value */
     struct counter_entry *next;
 };
 
 struct counters {
     pthread_mutex_t lock;
-    /* --- below: under lock; entries are only ever added */
+    /* --- below: under `lock`; entries are only ever added */
     struct counter_entry *first, **last;
 };
 

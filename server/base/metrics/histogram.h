@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A histogram of durations, in the form of Prometheus. Thread: any; each bucket is one atomic. */
+/* A histogram of durations in the form of Prometheus. Thread: any; each bucket is one atomic. */
 #ifndef BASE_METRICS_HISTOGRAM_H
 #define BASE_METRICS_HISTOGRAM_H
 #include "base/metrics/counter.h"
@@ -7,12 +7,12 @@
 
 enum { HISTOGRAM_BUCKETS = 16 };
 struct histogram {
-    counter buckets[HISTOGRAM_BUCKETS + 1]; /* the last one: longer than all bounds */
+    counter buckets[HISTOGRAM_BUCKETS + 1]; /* number of durations per bucket; the last bucket: longer than all bounds */
     counter sum_us;
 };
 
-void histogram_add(struct histogram *histogram, int64_t duration_ns); /* counts a duration; a negative one counts as 0 */
-/* name: with or without labels, as in counters_add. */
+void histogram_add(struct histogram *histogram, int64_t duration_ns); /* Counts a duration; a negative one counts as 0. */
+/* Prints the histogram. `name`: with or without labels, as in counters_add(). */
 void histogram_print(struct histogram *histogram, const char *name, struct text *out);
 
 #endif

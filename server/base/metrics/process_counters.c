@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Metrics of the process, from /proc/self. */
+/* Reads the metrics of the process from /proc/self. */
 #include "base/metrics/process_counters.h"
 
 #include <dirent.h>
@@ -11,7 +11,7 @@
 
 #include "base/clock.h"
 
-/* Fields of /proc/self/stat, counted as proc(5) does. */
+/* Fields of /proc/self/stat, numbered as in proc(5). */
 enum { STAT_THREADS = 20, STAT_START = 22, STAT_VIRTUAL = 23, STAT_RESIDENT = 24, STAT_LAST = STAT_RESIDENT };
 
 static bool read_stat(unsigned long long fields[STAT_LAST + 1])
@@ -21,14 +21,14 @@ static bool read_stat(unsigned long long fields[STAT_LAST + 1])
     bool good = file && fgets(line, sizeof(line), file);
     if (file)
         fclose(file);
-    char *at = good ? strrchr(line, ')') : NULL; /* the name before it may have spaces */
+    char *at = good ? strrchr(line, ')') : NULL; /* the program name before this character may contain spaces */
     if (!at)
         return false;
     at = strchr(at, ' ');
     for (int i = 3; i <= STAT_LAST && at; i++, at = strchr(at, ' ')) {
         at++;
         if (i > 3 && sscanf(at, "%llu", &fields[i]) != 1)
-            fields[i] = 0; /* may be negative: a priority */
+            fields[i] = 0; /* the field may be negative, such as a priority */
     }
     return at != NULL;
 }
@@ -44,7 +44,7 @@ static int64_t boot_s(void)
 static int64_t count_files(void)
 {
     DIR *folder = opendir("/proc/self/fd");
-    int64_t count = -3; /* ".", ".." and the folder itself */
+    int64_t count = -3; /* ".", ".." and the descriptor of the folder itself are not counted */
     for (; folder && readdir(folder);)
         count++;
     if (folder)
@@ -61,7 +61,7 @@ void process_counters_set(struct counters *counters)
     if (read_stat(fields)) {
         counter_set(counters_add(counters, "process_threads", "gauge", "Threads."), (int64_t)fields[STAT_THREADS]);
         counter *start_s = counters_add(counters, "process_start_time_seconds", "gauge", "When the process was started, since 1970.");
-        if (atomic_load(start_s) == 0) /* once: a clock that is set later changes nothing */
+        if (atomic_load(start_s) == 0) /* set only once, so that a later change of the clock has no effect */
             counter_set(start_s, boot_s() + (int64_t)(fields[STAT_START] / (unsigned long long)sysconf(_SC_CLK_TCK)));
         counter_set(counters_add(counters, "process_virtual_memory_bytes", "gauge", "Address space in use."),
                     (int64_t)fields[STAT_VIRTUAL]);

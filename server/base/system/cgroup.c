@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of the kernel's cgroup v2 (Documentation/admin-guide/cgroup-v2.rst). */
+/* Uses the kernel's cgroup v2 files (Documentation/admin-guide/cgroup-v2.rst). */
 #include "base/system/cgroup.h"
 
 #include <errno.h>
@@ -18,7 +18,7 @@
 enum { REMOVE_TRIES = 50, REMOVE_PAUSE_MS = 20 };
 static const char daemon_name[] = "/daemon";
 
-/* Finds the mount point of cgroup v2, which also exists beside cgroup v1. */
+/* Finds the mount point of cgroup v2, which may be mounted together with cgroup v1. */
 static bool find_mount(char out[PATH_MAX])
 {
     char line[2 * PATH_MAX], kind[32];
@@ -31,7 +31,7 @@ static bool find_mount(char out[PATH_MAX])
     return found;
 }
 
-/* The folder of this process's cgroup. */
+/* Finds the folder of this process's cgroup. */
 static bool find_own(char out[PATH_MAX])
 {
     char line[PATH_MAX] = "", mount[PATH_MAX];
@@ -55,14 +55,14 @@ static bool write_file(const char *folder, const char *name, const char *text)
     return good;
 }
 
-/* systemd marks delegated cgroups by this attribute (https://systemd.io/CGROUP_DELEGATION). */
+/* Returns whether systemd delegated a cgroup, which it marks by this attribute (https://systemd.io/CGROUP_DELEGATION). */
 static bool is_delegated(const char *folder)
 {
     char value[8];
     return getxattr(folder, "user.delegate", value, sizeof(value)) == 1 && value[0] == '1';
 }
 
-/* The service's cgroup, once this process is in "daemon" below. */
+/* Finds the service's cgroup, after this process has moved into "daemon" below it. */
 static bool find_service(char out[PATH_MAX])
 {
     const size_t tail = sizeof(daemon_name) - 1;
@@ -93,7 +93,7 @@ char *cgroup_create(const char *name, size_t memory_bytes, int max_tasks)
     bool good = (mkdir(path, 0755) == 0 || errno == EEXIST) && write_file(path, "pids.max", number);
     snprintf(number, sizeof(number), "%zu", memory_bytes);
     good = good && write_file(path, "memory.max", memory_bytes ? number : "max");
-    write_file(path, "memory.swap.max", "0"); /* absent where the kernel does not count swap */
+    write_file(path, "memory.swap.max", "0"); /* absent if the kernel does not count swap */
     if (!good)
         cgroup_destroy(&path);
     return path;
@@ -106,7 +106,7 @@ bool cgroup_add(const char *path, pid_t pid)
     return !path || write_file(path, "cgroup.procs", number);
 }
 
-/* Processes that were killed leave the cgroup when they are gone, which takes milliseconds. */
+/* Killed processes leave the cgroup only when they have ended, which takes milliseconds. */
 void cgroup_destroy(char **path)
 {
     if (!*path)

@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cgroups of child processes, where systemd delegates this service's cgroup to it (Delegate=memory pids; cgroup v2). The daemon moves into
- * the cgroup "daemon" below the service's, because a cgroup that has processes cannot limit its children. */
+/* Cgroups for child processes, if systemd delegates this service's cgroup to it (Delegate=memory pids; cgroup v2). The daemon moves into
+   the cgroup "daemon" below the service's, because a cgroup that has processes cannot limit its children. */
 #ifndef BASE_CGROUP_H
 #define BASE_CGROUP_H
 #include <stdbool.h>
 #include <stddef.h>
 #include <sys/types.h>
 
-/* Moves this process into the cgroup "daemon" and enables limits of memory and tasks beside it. Call it once, before other threads start
- * children. Returns false if the cgroup is not delegated, or lacks these controllers. */
+/* Moves this process into the cgroup "daemon" and enables memory and task limits for its siblings. Call it once, before other threads
+   start children. Returns false if the cgroup is not delegated, or lacks these controllers. */
 bool cgroup_divide(void);
-/* Makes a cgroup NAME beside the daemon's, limited to memory_bytes (0: unlimited) and max_tasks. Returns its folder, or NULL if
- * cgroup_divide() did not succeed. */
+/* Makes a cgroup NAME as a sibling of the daemon's, limited to memory_bytes (0: unlimited) and max_tasks. Returns its folder, or NULL if
+   cgroup_divide() did not succeed. */
 char *cgroup_create(const char *name, size_t memory_bytes, int max_tasks);
 /* Moves a process into a cgroup. path NULL: no-op, returns true. */
 bool cgroup_add(const char *path, pid_t pid);
 /* Ends all processes of the cgroup, removes it and frees its path. &NULL: no-op. */
 void cgroup_destroy(char **path);
 
-/* Returns the smallest memory.max of this process's cgroup and of those above; SIZE_MAX: unlimited. */
+/* Returns the smallest memory.max of this process's cgroup and its ancestors; SIZE_MAX: unlimited. */
 size_t cgroup_memory_bytes(void);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the kernel was told of the clock. */
+/* Reads the kernel's state of the clock. */
 #include "base/system/clock_state.h"
 
 #include "base/clock.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Landlock by its own system calls: the headers of Debian 12 know only ABI 2. */
+/* Calls Landlock by raw system calls: the headers of Debian 12 know only ABI 2. */
 #include "base/system/confine.h"
 
 #include <errno.h>
@@ -23,7 +23,7 @@
 #define SYS_landlock_restrict_self 446
 #endif
 
-/* linux/landlock.h */
+/* constants from linux/landlock.h */
 enum { VERSION_QUERY = 1, RULE_PATH_BENEATH = 1 };
 enum { ABI_RENAME = 2, ABI_TRUNCATE = 3, ABI_TCP = 4, ABI_DEVICES = 5, ABI_SCOPES = 6 };
 enum {
@@ -52,7 +52,7 @@ struct path_rule {
     int32_t parent;
 } __attribute__((packed));
 
-/* Libraries, fonts, what the C library and V8 ask the kernel, and the program that loads others. */
+/* Paths that every program needs: libraries, fonts, kernel files that the C library and V8 read, and the dynamic loader. */
 static const struct confine_path system_paths[] = {
     { "/lib", CONFINE_READ },
     { "/lib32", CONFINE_READ },
@@ -109,7 +109,7 @@ static uint64_t rights_of(enum confine_access access, enum confine_role role)
     return rights;
 }
 
-/* A path that is absent or that this user cannot reach needs no permission. */
+/* Adds a path to the ruleset. A path that is absent or that this user cannot reach needs no permission. */
 static int permit(int ruleset, const char *path, uint64_t rights)
 {
     struct stat st;
@@ -134,7 +134,7 @@ static int restrict_paths(const struct confine_params *params, int abi)
     int status = ruleset < 0 ? -errno : permit(ruleset, "/dev/null", (READ_FILE | WRITE_FILE | TRUNCATE) & known);
     for (size_t i = 0; i < sizeof(system_paths) / sizeof(system_paths[0]) && status == 0; i++)
         status = permit(ruleset, system_paths[i].path, rights_of(system_paths[i].access, params->role) & known);
-    if (status == 0) /* programs that a command starts have entries of their own, unknown before they start */
+    if (status == 0) /* programs that a command starts have /proc entries of their own, unknown in advance */
         status = permit(ruleset, params->role == CONFINE_READER ? "/proc/self" : "/proc", READ_FILE | READ_FOLDER);
     for (size_t i = 0; i < params->path_count && status == 0; i++)
         status = permit(ruleset, params->paths[i].path, rights_of(params->paths[i].access, params->role) & known);
@@ -145,7 +145,7 @@ static int restrict_paths(const struct confine_params *params, int abi)
     return status;
 }
 
-/* Root keeps access to other users' folders, and its commands the right to give files to them. */
+/* Drops all capabilities but a few: root keeps access to other users' folders, and its commands may also change a file's owner. */
 static void drop_capabilities(enum confine_role role)
 {
     uint32_t kept = 1U << CAP_DAC_OVERRIDE | 1U << CAP_DAC_READ_SEARCH;
@@ -166,7 +166,7 @@ static void offer_to_oom_killer(void)
     int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
     if (file >= 0) {
         ssize_t written = write(file, "1000", 4);
-        (void)written; /* a refusal leaves the kernel's own choice */
+        (void)written; /* if the write is refused, the kernel's default stays */
         close(file);
     }
 }
@@ -178,12 +178,12 @@ int confine(const struct confine_params *params)
     drop_capabilities(params->role);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
         return -errno;
-    bool moves_files = params->role != CONFINE_READER; /* between folders, which ABI 1 forbids to all */
+    bool moves_files = params->role != CONFINE_READER; /* moving files between folders; Landlock ABI 1 forbids that to all */
     int status = abi < 1 || (abi < ABI_RENAME && moves_files) ? 0 : restrict_paths(params, abi);
     if (status != 0)
         return status;
     status = confine_calls(params->role, params->notifies);
-    return status == -ENOSYS || status == -EINVAL ? 0 : status; /* a kernel without seccomp filters: confine_lacks() says so */
+    return status == -ENOSYS || status == -EINVAL ? 0 : status; /* the kernel has no seccomp filters: confine_lacks() reports that */
 }
 
 bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
@@ -191,7 +191,7 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
     static const struct {
         int abi;
         const char *missing;
-    } parts[] = { /* seccomp covers TCP and devices for all, and the rest for readers */
+    } parts[] = { /* what seccomp does not cover: it covers TCP and devices for both roles, and the rest for readers */
         { ABI_RENAME, "read and write all files of this user" },
         { ABI_TRUNCATE, "empty all files that this user may write" },
         { ABI_SCOPES, "signal other processes of this user" },

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Confines a process that reads files from strangers: Landlock restricts paths, TCP, signals and abstract sockets, seccomp restricts system
- * calls. A restriction holds for the process and everything that it starts, and cannot be lifted. */
+/* Confines a process that reads untrusted files: Landlock restricts paths, TCP, signals and abstract sockets, seccomp restricts system
+   calls. A restriction holds for the process and everything it starts, and cannot be lifted. */
 #ifndef BASE_SYSTEM_CONFINE_H
 #define BASE_SYSTEM_CONFINE_H
 #include <stdbool.h>
@@ -11,8 +11,8 @@
 
 enum confine_access {
     CONFINE_READ,
-    CONFINE_EXECUTE, /* and read */
-    CONFINE_WRITE    /* and read; create, rename and remove regular files and folders below */
+    CONFINE_EXECUTE, /* execute and read */
+    CONFINE_WRITE    /* read and write; create, rename and remove regular files and folders below */
 };
 
 struct confine_path {
@@ -22,35 +22,36 @@ struct confine_path {
 
 struct confine_params {
     enum confine_role role;
-    const struct confine_path *paths; /* besides system libraries, fonts and kernel files that every program needs */
+    /* allowed paths, in addition to the system libraries, fonts and kernel files that every program needs */
+    const struct confine_path *paths;
     size_t path_count;
-    bool notifies; /* may send datagrams to a Unix socket: the service manager's */
+    bool notifies; /* may send datagrams to the service manager's Unix socket */
 };
 
-/* Confines the calling thread and what it starts. Refused system calls return EPERM; those newer than this list return ENOSYS, so that
- * libraries fall back to older ones. Drops capabilities, sets no_new_privs, and makes the kernel's OOM killer prefer this process. What
- * the kernel lacks is left out (confine_lacks). Call it while the process has one thread, or between fork and exec: it allocates nothing.
- * Returns 0 or -errno; then the process must end. */
+/* Confines the calling thread and what it starts. Refused system calls return EPERM; calls newer than this list return ENOSYS, so that
+   libraries fall back to older ones. Drops capabilities, sets no_new_privs, and makes the kernel's OOM killer prefer this process.
+   Restrictions that the kernel lacks are skipped (see confine_lacks()). Call it while the process has one thread, or between fork and
+   exec: it allocates no memory. Returns 0 or -errno; after an error the process must end. */
 int confine(const struct confine_params *params);
 
 enum { CONFINE_LACKS_BYTES = 320 };
 /* Describes in one line what this kernel cannot enforce and which kernel can. Returns false if nothing is missing. */
 bool confine_lacks(char out[CONFINE_LACKS_BYTES]);
-/* The same for a kernel with this ABI of Landlock (0: none), and with or without seccomp. Pure. */
+/* Does the same as confine_lacks() for a kernel with this Landlock ABI (0: none), and with or without seccomp. Pure. */
 bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES]);
 
 /* The kernel's struct landlock_ruleset_attr: what a ruleset restricts. */
 struct confine_ruleset {
     uint64_t files, tcp, scoped;
 };
-/* Returns all that this ABI of Landlock can restrict; a kernel refuses what is newer. Pure. */
+/* Returns everything that this Landlock ABI can restrict; a kernel refuses newer flags. Pure. */
 struct confine_ruleset confine_ruleset_of(int abi);
 
 /* Makes this process's memory, descriptors and environment unreadable for other processes of its user, and stops core dumps. */
 void confine_hide_memory(void);
 
 /* Returns a copy of the environment that holds only search path, language, time zone, HOME, TMPDIR and, with `notifies`, the service
- * manager's socket. home: the value of HOME and TMPDIR; NULL keeps both. The array and its strings are one block (mem_free). */
+   manager's socket. `home`: the value of HOME and TMPDIR; NULL keeps both. The array and its strings are one block (mem_free). */
 char **confine_environment(const char *home, bool notifies);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An allow-list in classic BPF: the kernel caches calls whose answer does not depend on arguments, so its length costs nothing. */
+/* An allow-list in classic BPF. Its length costs nothing, because the kernel caches the verdict for calls that do not depend on
+   arguments. */
 #include "base/system/confine_calls.h"
 
 #include <errno.h>
@@ -23,7 +24,7 @@
 #endif
 
 #ifdef OWN_ARCH
-enum { MAX_INSTRUCTIONS = 1024, FIRST_NEWER_CALL = 451 /* cachestat, Linux 6.5; x32 calls are above, too */ };
+enum { MAX_INSTRUCTIONS = 1024, FIRST_NEWER_CALL = 451 /* cachestat, Linux 6.5; x32 calls are above it too */ };
 #define NAMESPACES (CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET)
 #ifndef PR_SET_VMA
 #define PR_SET_VMA 0x53564d41
@@ -44,7 +45,7 @@ struct values {
     int count;
 };
 
-/* Memory, threads, time, signals of its own, and files: what parsing takes. Landlock decides which files. */
+/* Calls needed for parsing: memory, threads, time, the process's own signals, and files. Landlock decides which files. */
 static const int reader_calls[] = {
     SYS_brk, SYS_mmap, SYS_munmap, SYS_mprotect, SYS_mremap, SYS_madvise, SYS_msync, SYS_mincore, SYS_mlock, SYS_munlock, SYS_membarrier,
     SYS_exit, SYS_exit_group, SYS_futex, SYS_set_robust_list, SYS_set_tid_address, SYS_rseq, SYS_getpid, SYS_getppid, SYS_gettid,
@@ -67,7 +68,7 @@ static const int reader_calls[] = {
 #endif
 };
 
-/* Programs that the site chose, in the folder that they may write. */
+/* Further calls for the site's own programs, in the folder that they may write. */
 static const int command_calls[] = {
     SYS_kill, SYS_tgkill, SYS_pidfd_open, SYS_pidfd_send_signal, SYS_setpgid, SYS_prctl, SYS_seccomp, SYS_capset, SYS_fchmod, SYS_fchown,
     SYS_landlock_create_ruleset, SYS_landlock_add_rule, SYS_landlock_restrict_self, SYS_sched_setaffinity,
@@ -105,8 +106,9 @@ static void allow(struct filter_program *program, const int *calls, size_t count
     }
 }
 
-/* Compares the lower half of an argument, all that the kernel uses of an int, with values. `test` is BPF_JEQ, or BPF_JSET for any bit of a
- * value. A match is allowed and anything else refused, or the other way round. Both processors are little-endian. */
+/* Emits a test of the lower half of an argument (all that the kernel uses of an int) against values. `test` is BPF_JEQ, or BPF_JSET for
+   any bit of a value. allowed: a match is allowed and anything else refused; otherwise the reverse. Both supported processors are
+   little-endian. */
 static void decide(struct filter_program *program, int call, int argument, unsigned test, const struct values *values, bool allowed)
 {
     add(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, (unsigned)(2 + 2 * values->count));
@@ -118,7 +120,7 @@ static void decide(struct filter_program *program, int call, int argument, unsig
     answer(program, allowed ? SECCOMP_RET_ERRNO | EPERM : SECCOMP_RET_ALLOW);
 }
 
-/* Refuses to empty a file that is opened for reading only, which Landlock allows before ABI 3. */
+/* Refuses O_TRUNC on files that are opened for reading only, which Landlock allows before ABI 3. */
 static void refuse_emptying(struct filter_program *program, int call, int flags_argument)
 {
     add(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, 5);
@@ -131,16 +133,17 @@ static void refuse_emptying(struct filter_program *program, int call, int flags_
 
 static void decide_by_arguments(struct filter_program *program, enum confine_role role, bool notifies)
 {
-    /* no injection of input into a terminal (TIOCSTI), no device controls */
+    /* terminal input cannot be injected (TIOCSTI), devices cannot be controlled */
     static const struct values ioctls = { { TCGETS, TIOCGWINSZ, TIOCGPGRP, FIONREAD, FIONBIO, FIOCLEX, FIONCLEX }, 7 };
-    /* no signals by way of a descriptor's owner */
+    /* signals cannot be sent through a descriptor's owner */
     static const struct values owners = { { F_SETOWN, F_SETOWN_EX, F_SETSIG, F_SETLEASE, F_NOTIFY }, 5 };
     static const struct values names = { { PR_SET_NAME, PR_GET_NAME, PR_SET_VMA, PR_GET_DUMPABLE, PR_CAPBSET_READ, PR_GET_TIMERSLACK }, 6 };
     static const struct values itself = { { 0 }, 1 }, unix_sockets = { { AF_UNIX }, 1 }, thread = { { CLONE_THREAD }, 1 };
     static const struct values namespaces = { { (uint32_t)NAMESPACES }, 1 };
     const struct values own = { { (uint32_t)getpid() }, 1 }, self = { { 0, (uint32_t)getpid() }, 2 };
     decide(program, SYS_fcntl, 1, BPF_JEQ, &owners, false);
-    decide(program, SYS_prlimit64, 0, BPF_JEQ, role == CONFINE_READER ? &self : &itself, true); /* not the daemon's limits */
+    /* the process may change its own limits, not the daemon's */
+    decide(program, SYS_prlimit64, 0, BPF_JEQ, role == CONFINE_READER ? &self : &itself, true);
     if (role == CONFINE_READER) {
         decide(program, SYS_kill, 0, BPF_JEQ, &own, true);
         decide(program, SYS_tgkill, 0, BPF_JEQ, &own, true);
@@ -167,7 +170,8 @@ int confine_calls(enum confine_role role, bool notifies)
     add(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr), 0, 0);
     add(&program, BPF_JMP | BPF_JGE | BPF_K, FIRST_NEWER_CALL, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
-    add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 1, 0); /* their flags are in memory, where a filter does not see them */
+    /* clone3 and openat2 have their flags in memory, where a filter cannot see them */
+    add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 1, 0);
     add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_openat2, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
     refuse_emptying(&program, SYS_openat, 2);

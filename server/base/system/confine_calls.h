@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 enum confine_role {
-    CONFINE_READER, /* parses strangers' files: has threads, but starts no process and signals none but itself */
+    CONFINE_READER, /* parses untrusted files: has threads, but starts no process and signals only itself */
     CONFINE_COMMAND /* a command of the site: starts programs, makes links and changes modes in the folder that it may write */
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Asks the kernel for large pages; it need not listen. */
+/* Asks the kernel for huge pages; the kernel may ignore the request. */
 #include "base/system/huge_pages.h"
 
 #include <stdint.h>

@@ -5,17 +5,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Returns the machine's memory, or that of the control group if it is less. */
+/* Returns the machine's memory, or the control group's limit if that is less. */
 size_t memory_machine_bytes(void);
-/* Returns the default memory limit: a quarter of the machine's memory, or of that of the control group, at most 2 GiB. */
+/* Returns the default memory limit: a quarter of memory_machine_bytes(), at most 2 GiB. */
 size_t memory_default_bytes(void);
 
-struct memory_use {            /* bytes */
-    size_t resident, anonymous; /* in RAM; of these, not mapped from files */
+struct memory_use {             /* all in bytes */
+    size_t resident, anonymous; /* in RAM; the part of it that is not mapped from files */
     size_t allocated;           /* allocated by malloc */
 };
-void memory_measure(struct memory_use *use); /* fills *use with the present numbers */
-/* Returns free pages of the heap to the system. */
+void memory_measure(struct memory_use *use); /* Fills *use with the current numbers. */
+/* Returns free heap pages to the system. */
 void memory_trim(void);
 
 #endif

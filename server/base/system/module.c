@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads modules from beside the program, or from where they are installed. */
+/* Loads modules from the program's folder, or from the installation's ../lib/plantcast. */
 #include "base/system/module.h"
 
 #include <dlfcn.h>
@@ -11,7 +11,7 @@
 
 #define PATH_BYTES 4096
 
-/* Where the module lies; the caller frees it. NULL: nowhere, with the reason. */
+/* Returns the path of a module's file; the caller frees it. Returns NULL with the reason if the file is missing. */
 static char *path_of(const char *name, char *why, size_t why_bytes)
 {
     static const char *const places[] = { "", "../lib/plantcast/" };
@@ -33,7 +33,7 @@ static void *load(const char *name, char *why, size_t why_bytes)
     char *path = path_of(name, why, why_bytes);
     void *library = path ? dlopen(path, RTLD_NOW | RTLD_LOCAL) : NULL;
     if (path && !library) {
-        const char *reason = dlerror(); /* it begins with the file that it is about, which may be another one */
+        const char *reason = dlerror(); /* the message begins with the file that failed, possibly a dependency */
         snprintf(why, why_bytes, "%s cannot be loaded: %s", path, reason ? reason : "no reason is given");
     }
     mem_free(path);

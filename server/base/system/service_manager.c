@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Datagrams to systemd: sd_notify(3) and "Native Journal Protocol". */
+/* Sends datagrams to systemd: sd_notify(3) and "Native Journal Protocol". */
 #include "base/system/service_manager.h"
 
 #include <dirent.h>
@@ -21,14 +21,14 @@
 #include "base/text/text.h"
 
 enum {
-    FIRST_SOCKET = 3 /* sd_listen_fds(3) */,
+    FIRST_SOCKET = 3 /* first descriptor passed by systemd: sd_listen_fds(3) */,
     PATIENCE_S = 60,
     PATIENCE_EVERY_S = 10,
-    PATIENCE_ASKS = 60 /* at least, within the limit */
+    PATIENCE_ASKS = 60 /* minimum number of requests within the time limit */
 };
-static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* of a processor since the last time: less is no work */
+static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* CPU time since the last check; less counts as idle */
 
-/* path: that of a file, or @NAME. */
+/* Sends a datagram. path: a file's path, or @NAME for an abstract socket. */
 static bool send_to(const char *path, const char *bytes, size_t count)
 {
     struct sockaddr_un to = { .sun_family = AF_UNIX };
@@ -81,7 +81,7 @@ int service_take_socket(void)
     if (!pid || !count || strtol(pid, NULL, 10) != (long)getpid() || strtol(count, NULL, 10) < 1)
         return -1;
     bool one = strtol(count, NULL, 10) == 1;
-    unsetenv("LISTEN_PID"); /* plantcast-prep, which a reload starts, has none */
+    unsetenv("LISTEN_PID"); /* plantcast-prep, which a reload starts, must not inherit the socket */
     unsetenv("LISTEN_FDS");
     fcntl(FIRST_SOCKET, F_SETFD, FD_CLOEXEC);
     return one ? FIRST_SOCKET : -EINVAL;
@@ -92,14 +92,14 @@ struct service_patience {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     int64_t limit_ns, every_ns;
-    int64_t used_ns; /* of its thread */
-    /* --- below: under lock */
+    int64_t used_ns; /* CPU time used at the last check; only its thread uses it */
+    /* --- below: under `lock` */
     char *status;
-    int64_t since_ns; /* when it got this status */
+    int64_t since_ns; /* time when the status was set */
     bool ending;
 };
 
-/* What the process with this entry of /proc, and those that it waited for, have used of a processor; 0: it is of another session. */
+/* Returns the CPU time of a process and its waited-for children; 0: it belongs to another session. id: name of its entry in /proc. */
 static int64_t used_by(const char *id)
 {
     char path[32], line[1024];
@@ -115,7 +115,7 @@ static int64_t used_by(const char *id)
     return known && session == getsid(0) ? (int64_t)(ticks[0] + ticks[1] + ticks[2] + ticks[3]) * (NS_PER_S / sysconf(_SC_CLK_TCK)) : 0;
 }
 
-/* Returns whether this process, or one that it started, has worked since the last call. */
+/* Returns whether this process, or one that it started, has used CPU time since the last call. */
 static bool is_at_work(struct service_patience *patience)
 {
     struct timespec own;
@@ -126,18 +126,19 @@ static bool is_at_work(struct service_patience *patience)
             used_ns += used_by(entry->d_name);
     if (folder)
         closedir(folder);
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &own); /* to look is no work */
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &own); /* do not count the CPU time of this check */
     used_ns -= own.tv_sec * NS_PER_S + own.tv_nsec;
     bool works = !folder || used_ns - patience->used_ns >= AT_WORK_NS;
     patience->used_ns = used_ns;
     return works;
 }
 
-/* What hangs is not waited for: it uses no processor, or its status stays for too long. */
+/* Thread: asks for more time at each interval. Stops while the processes use no CPU time, or once the status is too old, so that a
+   hanging start is ended. */
 static void *ask_again_and_again(void *arg)
 {
     struct service_patience *patience = arg;
-    bool works = true; /* once in any case: what was quick has a status too */
+    bool works = true; /* ask at least once, so that a quick start shows its status too */
     pthread_mutex_lock(&patience->lock);
     do {
         if (works && clock_mono_ns() - patience->since_ns < patience->limit_ns)
@@ -212,7 +213,7 @@ bool service_is_journal(int fd)
            st.st_ino == (ino_t)inode;
 }
 
-/* NAME=VALUE, or, with line breaks in it, NAME, the length in 8 bytes, little-endian, and VALUE. */
+/* Appends NAME=VALUE or, if the value has line breaks, NAME, the length in 8 bytes, little-endian, and VALUE. */
 static void add_field(struct text *text, const struct service_field *field)
 {
     size_t length = strlen(field->value);

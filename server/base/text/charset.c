@@ -16,7 +16,7 @@ static const char replacement[] = "\xef\xbf\xbd";
 
 /* --- names ------------------------------------------------------------------------------------------------------------------ */
 
-/* name: ours. iconv_name: iconv's. written: other names, in lower case and without punctuation, each between blanks. */
+/* `name`: our name. `iconv_name`: iconv's. `written`: other names, in lower case without punctuation, separated by blanks. */
 static const struct {
     const char *name, *iconv_name, *written;
 } known[] = {
@@ -88,7 +88,7 @@ char *charset_describe(const struct charset_choice *choice)
 
 /* --- conversion ------------------------------------------------------------------------------------------------------------- */
 
-/* Appends what iconv wrote. Drops and counts zero bytes, which would end the text. */
+/* Appends the output of iconv. Drops and counts zero bytes, which would end the text. */
 static void take_converted(struct text *out, const char *from, const char *to, size_t *damaged)
 {
     for (; from < to; from++)
@@ -98,8 +98,8 @@ static void take_converted(struct text *out, const char *from, const char *to, s
             ++*damaged;
 }
 
-/* Bytes without a meaning become one U+FFFD each. The last call of iconv() fetches a letter that is kept back for an accent after it:
-   Windows-1258 and Windows-1255 write accents behind their letters. */
+/* Converts bytes; each undecodable byte becomes one U+FFFD. The last call of iconv() flushes a letter that iconv holds back for a
+   following accent: Windows-1258 and Windows-1255 write accents after their letters. */
 static void convert(const char *bytes, size_t count, const char *encoding, struct text *out, size_t *damaged)
 {
     char buffer[4096], *from = (char *)bytes;
@@ -173,7 +173,7 @@ static size_t count_utf8(const char *bytes, size_t count, size_t *invalid)
     return characters;
 }
 
-/* Digits, separators and line ends have a zero in one of their two bytes: in the same one throughout. */
+/* Detects UTF-16 without a mark: digits, separators and line ends have a zero byte, always at odd or always at even positions. */
 static const char *find_utf16(const char *bytes, size_t count)
 {
     size_t zeros[2] = { 0 }, looked_at = (count < 65536 ? count : 65536) & ~(size_t)1;
@@ -217,7 +217,7 @@ struct charset_choice charset_find(const char *bytes, size_t count)
         choice.ascii = characters == 0 && invalid == 0;
         if (choice.ascii && has_escape(bytes, count))
             name = "ISO-2022-JP";
-        else if (invalid * 4 > characters) /* a text that is damaged or cut off may have some */
+        else if (invalid * 4 > characters) /* tolerates a few invalid bytes of a damaged or truncated text */
             return charset_find_legacy(bytes, count);
     }
     if (name) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the encoding of a short text by the likelihood of its bytes under a model of each encoding: common characters of tag lists and
-   drawings, the frequency levels of the encodings' standards, and the letters around a character. uchardet adds to one score. */
+/* Detects the encoding of a short text by the likelihood of its bytes under a model of each encoding. The models use common characters
+   of tag lists and drawings, the frequency levels of the encodings' standards, and the letters around a character. The detector uchardet
+   adds to one score. */
 #include <ctype.h>
 #include <math.h>
 #include <stdint.h>
@@ -15,8 +16,8 @@ enum { SAMPLE_BYTES = 1 << 16, MOST_LINE = 512 };
 
 /* --- models of encodings with two bytes a character ------------------------------------------------------------------------- */
 
-/* Frequent characters in words of process plants: simplified and traditional Chinese, Japanese, Korean. The models assume that they make up
-   half of a text. */
+/* Frequent characters in texts about process plants: simplified and traditional Chinese, Japanese, Korean. The models assume that they
+   make up half of a text. */
 static const char simplified[] =
     "℃温度压力流量液位泵阀门罐塔炉汽水油气管线进出口入电机轴承高低报警设备单"
     "元号说明名称地址标签描述位置类型工程值反应器换热冷却循环"
@@ -54,11 +55,11 @@ static const char korean[] =
 struct wide_model {
     const char *name, *frequent;
     double prior;
-    /* Returns the logarithm of the probability of a pair that is not frequent, or of a single byte (second 0); 0: no character. */
+    /* Returns the logarithm of the probability of a byte pair that is not frequent, or of a single byte (second 0); 0: no character. */
     double (*rate)(unsigned first, unsigned second);
 };
 
-/* A class of `cells` characters that makes up a share of a text. */
+/* Returns the logarithm of the probability of one character in a class of `cells` characters that makes up `share` of a text. */
 static double of_class(double share, double cells)
 {
     return log(share / cells);
@@ -69,7 +70,7 @@ static bool in(unsigned byte, unsigned from, unsigned to)
     return byte >= from && byte <= to;
 }
 
-/* Rows 16 to 55 of GB 2312 are its common characters, 56 to 87 the others; GBK adds rare ones around them. */
+/* In GB 2312, rows 16 to 55 are the common characters, 56 to 87 the others; GBK adds rare ones around them. */
 static double rate_gb(unsigned first, unsigned second)
 {
     bool gb2312 = in(second, 0xa1, 0xfe);
@@ -109,7 +110,7 @@ static double rate_big5(unsigned first, unsigned second)
     return in(first, 0xa1, 0xa3) ? of_class(0.06, 400) : 0;
 }
 
-/* Half-width katakana are one byte. Kanji of JIS X 0208 in two levels. */
+/* Half-width katakana are one byte; the kanji of JIS X 0208 have two frequency levels. */
 static double rate_sjis(unsigned first, unsigned second)
 {
     if (in(first, 0xa1, 0xdf))
@@ -150,9 +151,9 @@ static const struct wide_model wide_models[] = {
 /* --- models of encodings with one byte a character -------------------------------------------------------------------------- */
 
 struct narrow_model {
-    const char *name, *lower, *upper, *rare; /* letters, the commonest first; letters that are rare */
+    const char *name, *lower, *upper, *rare; /* letters, the most frequent first; rare letters */
     double prior;
-    bool latin; /* its letters stand among ASCII letters */
+    bool latin; /* its letters are mixed with ASCII letters */
 };
 
 static const char signs[] = "°³²µ«»–—·±№§“”„…’™®½×Ø";
@@ -180,7 +181,7 @@ static const struct narrow_model narrow_models[] = {
 enum byte_kind { ASCII_OTHER, ASCII_LOWER, ASCII_UPPER, HIGH_LOWER, HIGH_UPPER, HIGH_SIGN, HIGH_NONE };
 
 struct narrow_table {
-    double rate[256]; /* the logarithm of the probability of a byte; ASCII: 0 */
+    double rate[256]; /* logarithm of the probability of a byte; 0 for ASCII */
     enum byte_kind kind[256];
 };
 
@@ -234,7 +235,7 @@ static bool is_letter(enum byte_kind kind)
     return kind != ASCII_OTHER && kind != HIGH_SIGN && kind != HIGH_NONE;
 }
 
-/* Returns the score that the bytes before and after a high byte add. */
+/* Returns the score that the bytes before and after a high byte contribute. */
 static double rate_around(const struct narrow_table *table, bool latin, const unsigned char *at, const unsigned char *from,
                           const unsigned char *to)
 {
@@ -295,7 +296,7 @@ static void add_frequent(void *data, const unsigned char *bytes, size_t count, i
     }
 }
 
-/* Two-byte characters seldom stand next to small ASCII letters: there each byte probably is a letter of a one-byte encoding. */
+/* Penalises two-byte characters next to small ASCII letters: there each byte probably is a letter of a one-byte encoding. */
 static double rate_beside(unsigned before, unsigned after)
 {
     return (islower(before) ? -2.5 : 0) + (islower(after) ? -2.5 : 0);
@@ -305,7 +306,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
 {
     enum { DAMAGED = -18 };
     const unsigned char *to = at + count;
-    unsigned before = 0; /* the ASCII byte in front, or 0 */
+    unsigned before = 0; /* the preceding ASCII byte, or 0 */
     struct frequent *set = mem_new(sizeof(*set));
     double score = model->prior;
     each_encoded(model->frequent, model->name, add_frequent, set);
@@ -321,9 +322,9 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
         if (length == 2 && set->pairs[pair / 64] >> pair % 64 & 1)
             rate = frequent;
         if (length == 2 && second < 0x80)
-            rate += 3; /* models of one byte a character do not count it */
+            rate += 3; /* one-byte models do not count this byte */
         if (length == 1 && rate >= 0 && model->rate == rate_gb && in(second, 0x30, 0x39) && at + 3 < to && in(at[3], 0x30, 0x39)) {
-            length = 4; /* a character of GB 18030 beyond GBK */
+            length = 4; /* a four-byte character of GB 18030 that GBK lacks */
             rate = -14;
         }
         score += rate < 0 ? rate + rate_beside(before, at + length < to ? at[length] : 0) : DAMAGED;
@@ -350,7 +351,7 @@ static size_t take_sample(const char *bytes, size_t count, char sample[SAMPLE_BY
             continue;
         length = end - first < MOST_LINE - 2 ? end - first : MOST_LINE - 2;
         if (first > at) {
-            first--; /* the letter before */
+            first--; /* include the letter before */
             length++;
         }
         memcpy(sample + taken, bytes + first, length);
@@ -360,7 +361,7 @@ static size_t take_sample(const char *bytes, size_t count, char sample[SAMPLE_BY
     return taken;
 }
 
-/* The encoding that uchardet proposes, in our words; "" if none or another one. */
+/* Returns the encoding that uchardet proposes, by our name; "" if it proposes none that we know. */
 static void ask_uchardet(const char *sample, size_t count, char name[CHARSET_NAME_BYTES])
 {
     uchardet_t detector = uchardet_new();

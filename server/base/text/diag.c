@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Findings with their places, printed in the order of the text. */
+/* Prints findings in the order of their positions in the files. */
 #include "base/text/diag.h"
 
 #include <stdarg.h>
@@ -40,12 +40,13 @@ static int by_place(const void *pa, const void *pb)
     if (order == 0)
         order = (a->column > b->column) - (a->column < b->column);
     if (order == 0)
-        order = (a > b) - (a < b); /* as found */
+        order = (a > b) - (a < b); /* keep the order of insertion */
     return order;
 }
 
 enum { PLACES_BYTES = 100 };
-/* So many that are alike have a line each; of more errors the first as many have, of more warnings the first. */
+/* Number of similar findings that are printed one a line. Of more errors, the first 20 are printed; of more warnings, one line lists all
+   positions. */
 static const size_t most_alike[] = { [DIAG_ERROR] = 20, [DIAG_WARNING] = 3 };
 
 static bool is_alike(const struct diag_item *a, const struct diag_item *b)
@@ -53,7 +54,7 @@ static bool is_alike(const struct diag_item *a, const struct diag_item *b)
     return a->severity == b->severity && a->form == b->form && !strcmp(a->file, b->file);
 }
 
-/* Lines of all after this one that are like it: "4-66, 70". */
+/* Prints the lines of the findings that follow `shown` and are similar to it: "4-66, 70". */
 static void print_places(const struct diag_item *const *sorted, size_t shown, size_t count, FILE *out)
 {
     size_t length = 0;
@@ -86,7 +87,7 @@ static void print_item(const struct diag_item *item, FILE *out)
     fprintf(out, ": %s: %s", item->severity == DIAG_ERROR ? "error" : "warning", item->text);
 }
 
-struct finding_group { /* findings that are alike */
+struct finding_group { /* similar findings */
     size_t first, count, shown;
 };
 

@@ -9,9 +9,9 @@ enum diag_severity { DIAG_ERROR, DIAG_WARNING };
 struct diag_item {
     enum diag_severity severity;
     char *file;
-    int line, column; /* from 1; 0 = not at one place */
+    int line, column; /* position, from 1; 0: none */
     char *text;
-    const char *form; /* the format string, by which those of one kind are grouped */
+    const char *form; /* format string, by which similar diagnostics are grouped */
 };
 
 struct diag { /* zero-initialise */
@@ -27,8 +27,8 @@ void diag_add(struct diag *diag, enum diag_severity severity, const char *file, 
 void diag_copy(struct diag *diag, const struct diag_item *item);
 #define diag_error(diag, file, line, column, ...) diag_add(diag, DIAG_ERROR, file, line, column, __VA_ARGS__)
 #define diag_warning(diag, file, line, column, ...) diag_add(diag, DIAG_WARNING, file, line, column, __VA_ARGS__)
-/* Prints all as `file:line:column: error: text`, ordered by file and place. Many warnings of one kind in one file are one line that lists
-   the places; of many errors of one kind the first have a line each. */
+/* Prints all diagnostics as `file:line:column: error: text`, ordered by file and position. Many similar warnings in one file become one
+   line that lists the positions; of many similar errors the first are printed one a line. */
 void diag_print(const struct diag *diag, FILE *out);
 void diag_finish(struct diag *diag);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A growing string, and reading whole files. */
+/* A growing string, and reading of whole files. */
 #include "base/text/text.h"
 
 #include <errno.h>
@@ -55,7 +55,7 @@ void text_add_quoted(struct text *text, const char *cell)
     text_add(text, "\"");
 }
 
-/* A sign alone, as of something without a unit, is none. */
+/* A single character is no formula: a lone sign may be the unit of a dimensionless quantity. */
 bool text_is_formula(const char *cell)
 {
     return *cell && strchr("=+-@\t\r", *cell) && cell[1];

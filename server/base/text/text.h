@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A growing string, cells of CSV files, and reading whole files. Thread: one per text. */
+/* A growing string, cells of CSV files, and reading of whole files. Thread: one per text. */
 #ifndef BASE_TEXT_TEXT_H
 #define BASE_TEXT_TEXT_H
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 
-struct text { /* zero-initialise; .at is NULL until the first byte, then always ends in 0 */
+struct text { /* zero-initialise; .at is NULL until the first byte is added, then always ends in 0 */
     char *at;
     size_t length, capacity;
 };
@@ -14,16 +14,17 @@ struct text { /* zero-initialise; .at is NULL until the first byte, then always 
 void text_add(struct text *text, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 void text_add_v(struct text *text, const char *fmt, va_list ap) __attribute__((format(printf, 2, 0)));
 void text_add_bytes(struct text *text, const void *bytes, size_t count);
-void text_add_quoted(struct text *text, const char *cell); /* appends it in quotes, as in CSV: inner quotes doubled */
-/* Appends a cell of a CSV file, quoted if it contains one of the characters `special`. Puts a ' before text that a spreadsheet would take
-   for a formula (text_is_formula()); text_cell_read() returns such a cell without it. */
+void text_add_quoted(struct text *text, const char *cell); /* Appends a cell in quotes, as in CSV: inner quotes are doubled. */
+/* Appends a cell of a CSV file, quoted if it contains one of the characters `special`. Puts a ' before text that a spreadsheet would
+   treat as a formula (text_is_formula()); text_cell_read() removes it. */
 void text_add_cell(struct text *text, const char *cell, const char *special);
 bool text_is_formula(const char *cell);
 const char *text_cell_read(const char *cell);
-void text_add_escaped(struct text *text, const char *part); /* as a part of an address: what is not unreserved in RFC 3986, as %XX */
-void text_finish(struct text *text); /* frees; leaves it empty */
+/* Appends text escaped as part of a URL: characters other than the unreserved ones of RFC 3986 become %XX. */
+void text_add_escaped(struct text *text, const char *part);
+void text_finish(struct text *text); /* Frees the text; leaves it empty. */
 
-/* Returns the last part of a path, within it. */
+/* Returns a pointer to the last component of a path. */
 const char *text_base_name(const char *path);
 /* Reads a whole file of at most max_bytes and returns its content, followed by a 0 byte; free with mem_free(). Returns NULL on failure,
    with errno (EFBIG: too large). */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes instants, whatever the locale and, but for local times, the time zone of this computer. */
+/* Parses and prints timestamps independent of the locale and, except for local times, of this computer's time zone. */
 #include "base/text/timestamp.h"
 
 #include <stdio.h>
@@ -9,7 +9,7 @@
 
 #define US_PER_S INT64_C(1000000)
 
-/* Digits only: 1 to `most` of them. */
+/* Reads between `least` and `most` digits. Returns false if there are fewer. */
 static bool digits(const char **text, int least, int most, int *out)
 {
     int count = 0;
@@ -24,7 +24,7 @@ static bool sign(const char **text, char wanted)
     return *(*text)++ == wanted;
 }
 
-/* `.5` in microseconds; finer digits are passed over. */
+/* Reads a fraction such as `.5` as microseconds; finer digits are ignored. */
 static int64_t fraction(const char **text)
 {
     int64_t us = 0, unit = US_PER_S / 10;
@@ -59,7 +59,8 @@ static int days_of(int year, int month)
     return days[month - 1] + (month == 2 && leap);
 }
 
-/* What the clocks of the program's zone showed. At most twice: in summer time and not. */
+/* Converts a local time of the process's zone. A time that the clocks show twice in autumn gives the earlier instant that is after
+   after_us. Returns false if the clocks skip that time. */
 static bool from_local(const struct tm *shown, int64_t after_us, int64_t us, int64_t *t_us)
 {
     int64_t found_us[2];

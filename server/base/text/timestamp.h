@@ -5,16 +5,16 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Parses `2026-11-20T10:00:00.5Z`, the same with an offset (+01:00), seconds since 1970 (1793491200.25), or times back from now (-90s,
-   -30m, -8h, -7d, now), to microseconds since 1970. Refuses a date and time without a zone, which is ambiguous in autumn. Returns whether
-   it is a timestamp. */
+/* Parses a timestamp to microseconds since 1970: `2026-11-20T10:00:00.5Z`, the same with an offset (+01:00), seconds since 1970
+   (1793491200.25), or a time before now (-90s, -30m, -8h, -7d, now). Refuses a date and time without a zone, which is ambiguous in
+   autumn. Returns whether the text is a timestamp. */
 bool timestamp_parse(const char *text, int64_t now_us, int64_t *t_us);
-/* Parses a date and time with a zone, or without: then in the zone of timestamp_use_zone(). Of a time that the clocks showed twice, takes
-   the earlier one that is later than after_us. Returns false if it is no time, or one that the clocks skipped. */
+/* Parses a date and time with a zone, or without one in the zone set by timestamp_use_zone(). For a time that the clocks show twice it
+   returns the earlier instant that is later than after_us. Returns false if the text is no time, or a time that the clocks skip. */
 bool timestamp_parse_local(const char *text, int64_t after_us, int64_t *t_us);
-void timestamp_use_zone(const char *iana_name); /* sets the zone of the program (TZ); only while it has one thread */
+void timestamp_use_zone(const char *iana_name); /* Sets the zone of the process (TZ); call it only while the process has one thread. */
 #define TIMESTAMP_FORMS "an instant such as 2026-11-20T10:00:00Z (or with an offset, +01:00), seconds since 1970, or -8h"
 enum { TIMESTAMP_BYTES = 32 };
-void timestamp_print(int64_t t_us, char text[TIMESTAMP_BYTES]); /* 2026-11-20T10:00:00.500Z; microseconds where there are any */
+void timestamp_print(int64_t t_us, char text[TIMESTAMP_BYTES]); /* Prints 2026-11-20T10:00:00.500Z, with microseconds if they are not 0. */
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The first byte says how many follow and what the second may be. */
+/* Decodes UTF-8: the first byte tells how many bytes follow and which values the second may have. */
 #include "base/text/utf8.h"
 
 size_t utf8_length(const char *text, size_t left)

@@ -4,7 +4,7 @@
 #define BASE_TEXT_UTF8_H
 #include <stddef.h>
 
-/* Returns the bytes of the character that `text` begins with, of `left` bytes (at least 1), or 0: it is not UTF-8, or the byte 0. */
+/* Returns the length in bytes of the first character of `text`, which has `left` bytes (at least 1); 0: invalid UTF-8, or the byte 0. */
 size_t utf8_length(const char *text, size_t left);
 
 #endif
