@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of a folder, by name; those on their way are hidden. */
+/* Files of the exports folder, by name; uploads in progress are hidden files. */
 #include "importing/export_folder.h"
 
 #include <dirent.h>
@@ -133,7 +133,7 @@ struct export_upload *export_upload_begin(const char *folder, const char *name, 
     upload->fd = mkostemp(upload->hidden, O_CLOEXEC);
     *error = upload->fd < 0 ? -errno : 0;
     if (upload->fd < 0) {
-        mem_free(upload->hidden); /* there is none to be removed */
+        mem_free(upload->hidden); /* no hidden file to be removed */
         upload->hidden = NULL;
         export_upload_abandon(&upload);
     }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From the plant, and to programs. */
+/* Reads the source from a plant, and passes it to programs. */
 #include "importing/import_source.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const orders[] = { "", "ABCD", "CDAB", "BADC", "DCBA" }; /* as enum byte_order */
+static const char *const orders[] = { "", "ABCD", "CDAB", "BADC", "DCBA" }; /* indexed by enum byte_order */
 
 static bool is_number(const char *text, int least, int most)
 {

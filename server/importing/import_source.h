@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the values of a plant come from that is brought in: one device that speaks Modbus TCP. Pure. Thread: any. */
+/* The data source of an imported plant: one device that speaks Modbus TCP. Pure. Thread: any. */
 #ifndef IMPORTING_IMPORT_SOURCE_H
 #define IMPORTING_IMPORT_SOURCE_H
 #include <jansson.h>
 
 #include "plant/plant.h"
 
-struct import_source { /* as `plantcast match` takes it; "": not said */
-    char host[254], port[6], unit[4], order[5], base[2]; /* host "": there is none */
+struct import_source {                                   /* texts as `plantcast match` takes them; "": not stated */
+    char host[254], port[6], unit[4], order[5], base[2]; /* host "": no source */
 };
 
-/* Returns whether a program can be given it: a name or a numeric IPv4 address, numbers within their limits, an order of bytes. */
+/* Returns whether the texts are safe as program arguments: a host name or numeric IPv4 address, numbers within their limits, a byte
+   order. */
 bool import_source_good(const struct import_source *source);
-/* Returns the one that a plant has, without a host if it has none, several, or another kind. */
+/* Returns the source of a plant; without a host if the plant has none, several, or one of another kind. */
 struct import_source import_source_of_plant(const struct plant *plant);
-/* Returns it as an object of texts, { host, port, unit, order, base }; the caller owns it. NULL: it has no host. */
+/* Returns the source as an object of texts, { host, port, unit, order, base }; the caller owns it. NULL: the source has no host. */
 json_t *import_source_json(const struct import_source *source);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The order under way, and what is said of it. */
+/* State and messages of the current import order. */
 #include "importing/plant_import.h"
 
 #include <errno.h>
@@ -19,19 +19,19 @@
 enum { MOST_SAID_BYTES = 64 * 1024 };
 
 struct plant_import {
-    char *exports, *matches, *report, *choice; /* choice: a file with units and axis, for the next start */
+    char *exports, *matches, *report, *choice; /* choice: path of the file that stores units and axis for the next start */
     pthread_mutex_t lock;
-    /* --- below: under lock */
-    struct import_order order; /* the one under way, else the last */
-    struct import_order read;  /* the last that was put in force with models; of it units and axis */
+    /* --- below: under `lock` */
+    struct import_order order; /* the order in progress, else the last one */
+    struct import_order read;  /* the last successful order that read models; only units, axis and encoding are used */
     bool ordered, busy, cancelled;
     enum import_phase phase;
-    unsigned number; /* of orders so far */
+    unsigned number; /* number of orders so far */
     struct text said;
-    char *why; /* the last one failed; NULL: it did not */
+    char *why; /* why the last order failed; NULL: it succeeded */
 };
 
-/* The file is "UNITS/UP/ENCODING/MESH_UNITS"; parts at its end may be missing. */
+/* Reads the file "UNITS/UP/ENCODING/MESH_UNITS"; parts at the end may be missing. */
 static void read_choice(struct plant_import *import)
 {
     struct import_order order = { 0 };
@@ -133,7 +133,7 @@ bool plant_import_order(struct plant_import *import, const struct import_order *
     bool taken = !import->busy;
     if (taken) {
         import->order = *order;
-        if (order->decides || *order->source.host) /* they say nothing of the encoding: the list stays as it was read */
+        if (order->decides || *order->source.host) /* such orders state no encoding: keep the one with which the list was read */
             strcpy(import->order.encoding, import->read.encoding);
         import->ordered = import->busy = true;
         import->cancelled = false;
@@ -190,7 +190,7 @@ char *plant_import_text(struct plant_import *import, const struct import_source 
 
 /* --- for the reload thread ---------------------------------------------------------------------------------------------- */
 
-/* What programs print may have names of files and tags in it, which may be any bytes. */
+/* Appends the output of a program, which may contain arbitrary bytes in names of files and tags. */
 static void add_printable(struct text *out, const char *text)
 {
     for (size_t left = strlen(text), bytes; left > 0; text += bytes, left -= bytes) {
@@ -251,6 +251,7 @@ void plant_import_end(struct plant_import *import, bool in_force, const char *wh
     mem_free(import->why);
     import->why = line.at;
     pthread_mutex_unlock(&import->lock);
-    atomic_file_put(import->choice, choice, strlen(choice)); /* without it the next start takes what the models say */
+    /* if it cannot be written, the next start uses the units that the models state */
+    atomic_file_put(import->choice, choice, strlen(choice));
     mem_free(choice);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Acknowledge, reset, shelve: a client's message, and what becomes of it. */
+/* Parses the message `alarm` (acknowledge, reset, shelve) and carries it out. */
 #include "message/alarm_message.h"
 
 #include <stdio.h>
@@ -18,7 +18,7 @@ static const struct name names_action[] = { { "acknowledge", ALARM_ACKNOWLEDGE }
                                             { "in_service", ALARM_PUT_BACK },
                                             { NULL, 0 } };
 
-/* By the name of a tag, or of a device. -1: there is none. */
+/* Returns the index of the tag, or for ALARM_LINK of the device, with that name; -1: none. */
 static int find_named(const struct plant *plant, const char *name, enum alarm_kind kind)
 {
     if (kind != ALARM_LINK)

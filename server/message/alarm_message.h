@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The message `alarm`: acknowledging, shelving and the like. Thread: the loop. */
+/* The message `alarm`: acknowledging, shelving and other actions on alarms. Thread: the loop. */
 #ifndef MESSAGE_ALARM_MESSAGE_H
 #define MESSAGE_ALARM_MESSAGE_H
 #include "alarm/alarm_service.h"
@@ -7,8 +7,8 @@
 
 /* Parses the message into out->alarm. Returns false with *error saying what is wrong. */
 bool alarm_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
-/* Carries the request out, for each alarm whose state allows it. who: the user's name, for the journal. Returns the answer, `alarmed`,
-   which says how many are in force and why others were refused; mem_free. Rights are the caller's to check. */
+/* Carries the request out for each alarm whose state allows it. who: the user's name, for the journal. Returns the answer, `alarmed`,
+   with the number of alarms changed and the reasons for refusing others; free with mem_free(). The caller must check the user's rights. */
 char *alarm_do(struct alarm_service *alarm_service, const struct plant *plant, const struct message *message, const char *who);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarms in words: JSON and CSV. */
+/* Writes alarms as JSON and CSV. */
 #include "message/alarm_text.h"
 
 #include <jansson.h>
@@ -158,12 +158,12 @@ struct listing {
     struct text csv;
 };
 
-static const char SPECIAL[] = ",\"\n\r"; /* what makes a cell of CSV a quoted one */
+static const char SPECIAL[] = ",\"\n\r"; /* characters that require quotes around a CSV cell */
 
 static void add_csv_number(struct text *out, double value)
 {
     if (isfinite(value))
-        text_add(out, "%.9g", value + 0.0); /* of -0.0 it makes 0.0 */
+        text_add(out, "%.9g", value + 0.0); /* adding 0.0 turns -0.0 into 0.0 */
 }
 
 static void add_csv_alarm(struct listing *listing, const struct alarm *alarm)
@@ -245,7 +245,7 @@ char *alarms_api_text(struct alarm_service *alarm_service, const struct plant *p
 
 struct paging {
     json_t *rows;
-    struct text *csv; /* NULL: JSON */
+    struct text *csv; /* NULL: the output is JSON */
     int64_t last_id;
     int count;
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cameras by what is to be seen. */
+/* Cameras that frame an asset, a tag or the whole plant. */
 #include "message/fit_message.h"
 
 #include <math.h>
@@ -36,7 +36,7 @@ void fit_apply(const struct scene *scene, const struct fit_message *fit, const s
     framing_look(scene, &fit->framing, (double)half.width_px / half.height_px, camera);
 }
 
-/* The plant's own camera, as a client would ask for it. */
+/* Returns the plant's initial camera in the form of a client's message. */
 static json_t *camera_json(const struct camera *camera)
 {
     return json_pack("{s:o,s:o,s:o,s:f}", "eye", vector(camera->eye_m), "target", vector(camera->target_m), "up", vector(camera->up), "fov",
@@ -59,7 +59,7 @@ static json_t *given_json(const json_t *list, struct message_error *error)
     return camera;
 }
 
-/* lens: its projection too. */
+/* Sets the camera of a view from the members of a query. lens: applies `projection` and `height_m` too. */
 static bool parse_given(const json_t *o, bool lens, struct view *view, struct message_error *error)
 {
     const json_t *list = json_object_get(o, "camera"), *height = json_object_get(o, "height_m");
@@ -77,13 +77,13 @@ static bool parse_given(const json_t *o, bool lens, struct view *view, struct me
     return good;
 }
 
-/* Says where to look from. */
+/* Returns whether a query states a camera. */
 static bool has_camera(const json_t *o)
 {
     return json_object_get(o, "camera") || json_object_get(o, "projection") || json_object_get(o, "height_m");
 }
 
-/* The plant's own view, in either half. */
+/* Adjusts the plant's initial camera so that each half of a split view shows as much as the whole view. */
 static void keep_whole(const struct scene *scene, bool bare, struct view *view)
 {
     struct camera_window window = { 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checked fields of a JSON object. */
+/* Checked members of a JSON object. */
 #include "message/json_fields.h"
 
 #include <math.h>
@@ -128,7 +128,7 @@ bool has_controls(const char *text)
 {
     static const char *const overrides[] = { "\u202a", "\u202b", "\u202c", "\u202d", "\u202e", "\u2066", "\u2067", "\u2068", "\u2069" };
     for (const unsigned char *c = (const unsigned char *)text; *c; c++)
-        if (*c < 32 || *c == 127 || (*c == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0)) /* the last: those of ISO 6429 */
+        if (*c < 32 || *c == 127 || (*c == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0)) /* C0 and C1 controls */
             return true;
     for (size_t i = 0; i < sizeof(overrides) / sizeof(overrides[0]); i++)
         if (strstr(text, overrides[i]))

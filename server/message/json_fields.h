@@ -1,28 +1,28 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checked members of a JSON object. Each reader returns false, with *error saying what was expected, where it does not find that.
-   Pure; any thread. */
+/* Checked members of a JSON object. Each reader returns false, with *error saying what was expected, if the member is wrong. Pure; any
+   thread. */
 #ifndef MESSAGE_JSON_FIELDS_H
 #define MESSAGE_JSON_FIELDS_H
 #include "message/message.h"
 #include "message/names.h"
 
-/* need_...: a member that is missing is an error. may_...: it leaves *out alone and returns true; *given, where it is not NULL, says
-   whether the member was there. */
+/* need_...: a missing member is an error. may_...: a missing member leaves *out unchanged and returns true; *given, if not NULL,
+   receives whether the member was present. */
 bool need_number(const json_t *o, const char *name, double low, double high, double *out, struct message_error *error);
 bool may_number(const json_t *o, const char *name, double low, double high, double *out, bool *given, struct message_error *error);
 /* Reads "seq", an integer of 1..2^32-1. */
 bool need_seq(const json_t *o, uint32_t *out, struct message_error *error);
 bool need_vector(const json_t *o, const char *name, double out[3], struct message_error *error);
 bool may_vector(const json_t *o, const char *name, double out[3], bool *given, struct message_error *error);
-/* Reads one of the names, as its value. */
+/* Reads a member that is one of the names, as the name's value. */
 bool may_name(const json_t *o, const char *name, const struct name *names, int *out, bool *given, struct message_error *error);
 /* Reads a text of 1 to size - 1 printable ASCII characters. */
 bool may_text(const json_t *o, const char *name, char *out, size_t size, bool *given, struct message_error *error);
-/* Reads free text of less than size bytes without control characters (has_controls). needed: it must hold more than blanks. */
+/* Reads free text of less than `size` bytes without control characters (has_controls()). needed: the text must hold more than blanks. */
 bool need_words(const json_t *o, const char *name, bool needed, char *out, size_t size, struct message_error *error);
-/* Returns whether the text has characters that would disturb a line it is shown in: controls, and overrides of the writing direction. */
+/* Returns whether the text has characters that would garble a line of text: control characters, and overrides of the writing direction. */
 bool has_controls(const char *text);
-/* Writes a client's text into out, cut, with control characters replaced: fit for a log line or an answer. Returns out. */
+/* Copies a client's text into `out`, truncated and with control characters replaced, for a log line or an answer. Returns `out`. */
 const char *quoted(const char *text, char out[48]);
 
 #endif

@@ -4,13 +4,13 @@
 #define MESSAGE_JSON_VALUES_H
 #include <jansson.h>
 
-/* Returns a number, never -0.0; null where the value is not finite. */
+/* Returns a number, never -0.0; null if the value is not finite. */
 json_t *number(double value);
-/* Returns a string; null for NULL; "(not UTF-8)" for a text that is not. */
+/* Returns a string; null for NULL; "(not UTF-8)" for a text that is not UTF-8. */
 json_t *string(const char *text);
 /* Returns an array of three numbers. */
 json_t *vector(const double v[3]);
-/* Returns an array of numbers; null where there are none. */
+/* Returns an array of numbers; null if count is 0. */
 json_t *number_list(const double *values, int count);
 
 #endif

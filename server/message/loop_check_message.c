@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A tag is judged by what arrives here, not by what somebody says. */
+/* Loop checks: a tag is judged by the reading that arrives here, not by a value that a user enters. */
 #include "message/loop_check_message.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Markers as JSON. */
+/* Writes markers as JSON. */
 #include "message/marker_text.h"
 
 #include <jansson.h>
@@ -53,7 +53,7 @@ static bool same_places(const struct frame *frame, const struct known_markers *k
     return true;
 }
 
-/* The next label from *at on, of isolines or of arrows. NULL: there is none. */
+/* Returns the next label of an isoline, or of an arrow, from *at on; NULL: none. */
 static const struct frame_label *next_label(const struct frame_label *labels, size_t count, size_t *at, bool arrow)
 {
     while (*at < count && labels[*at].arrow != arrow)
@@ -88,7 +88,7 @@ static json_t *all_markers(const struct frame *frame)
     return list;
 }
 
-/* Those whose places are as said. */
+/* Lists the values of the markers whose values changed, for a client that knows their positions. */
 static json_t *changed_values(const struct frame *frame, const struct known_markers *known)
 {
     json_t *list = json_array();
@@ -164,7 +164,7 @@ static void add_list(struct text *text, const char *name, const char *list)
     text_add_bytes(text, list, strlen(list));
 }
 
-/* What is new of the markers: all, or values only. */
+/* Appends the changes of the markers: all markers, or only values if the client knows their positions. */
 static void add_markers(struct text *text, struct frame *frame, const struct known_markers *known, struct marker_text_cache *lists)
 {
     if (!same_places(frame, known)) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What several messages check alike. */
+/* Checks that several messages share. */
 #include "message/message.h"
 
 #include <math.h>

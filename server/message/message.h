@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A client's message: JSON text to a checked struct. The only place where the input of clients is read and checked. Pure; any thread. */
+/* A client's message: JSON text parsed into a checked struct. The only place where clients' input is read and checked. Pure; any thread. */
 #ifndef MESSAGE_MESSAGE_H
 #define MESSAGE_MESSAGE_H
 #include <jansson.h>
@@ -51,11 +51,11 @@ enum message_type {
     MESSAGE_SIGN
 };
 
-enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL }; /* which frames of a session come signed */
+enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL }; /* which frames of a session are signed */
 
-enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 /* with a view in it */ };
+enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 /* longer when it contains a view */ };
 
-enum params_given { /* which members a params message had */
+enum params_given { /* bit mask of the members in a params message */
                     GIVEN_GROUP = 1 << 0,
                     GIVEN_INTERPOLATION = 1 << 1,
                     GIVEN_DISTANCE = 1 << 2,
@@ -92,14 +92,14 @@ enum baseline_change { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_N
 
 struct params_change {
     uint32_t seq;
-    unsigned given;            /* enum params_given */
-    struct field_params field; /* only members that were given are set, here and below */
+    unsigned given;            /* bit mask of enum params_given */
+    struct field_params field; /* only the members that were given are set, here and below */
     int colormap;
     double ramp_interval;
     struct color_scale color_scale;
-    double isoline_step; /* isolines as a step; 0: color_scale has the lines */
+    double isoline_step; /* distance between isolines; 0: color_scale has a list of isolines */
     bool breaks_of_group, breaks_of_limits;
-    bool range_of_group; /* range: null */
+    bool range_of_group; /* the message had `range: null`: use the group's range */
     double range_min, range_max;
     enum look look;
     bool dark, strip;
@@ -108,9 +108,9 @@ struct params_change {
     double light_dir[3];
     int environment;
     int selected_asset;
-    /* field.overrides, if GIVEN_SENSORS: those named; a strength or decay left out is FIELD_AS_CONFIGURED, and so is either where
-       the sensor's is to go */
-    bool only_these_sensors; /* sensors: null; all others go */
+    /* field.overrides, with GIVEN_SENSORS: the named sensors. An omitted strength or decay is FIELD_AS_CONFIGURED; both are, to remove a
+       sensor's override */
+    bool only_these_sensors; /* the message had `sensors: null`: all other overrides are removed */
     enum baseline_change baseline;
     char baseline_name[BASELINE_NAME_BYTES];
     struct visibility visibility;
@@ -128,7 +128,7 @@ struct split_change {
 
 struct pick_request {
     double x_px, y_px;
-    bool has_camera; /* else the newest camera */
+    bool has_camera; /* `camera` is set; otherwise the newest camera is used */
     struct camera camera;
 };
 
@@ -136,20 +136,20 @@ enum { ALARM_REQUEST_MOST = 256 };
 struct alarm_request {
     int action;                          /* enum alarm_event */
     int tags[ALARM_REQUEST_MOST], count; /* ALARM_LINK: index of a device (alarm/devices.h) */
-    uint8_t kinds[ALARM_REQUEST_MOST];   /* enum alarm_kind */
+    uint8_t kinds[ALARM_REQUEST_MOST];   /* indices of tags; for ALARM_LINK of devices (alarm/devices.h) */
     double for_s;
     char reason[ALARM_REASON_BYTES], name[ALARM_NAME_BYTES - 24];
 };
 
 #define TIME_MOST_SPEED 3600
 struct time_request {
-    bool has_at;   /* else from the instant that is shown */
-    int64_t at_us; /* 0: now */
-    double speed;  /* of play: seconds of the past in each second; negative: backwards; 0: stands */
+    bool has_at;   /* at_us is set; otherwise play starts from the instant shown */
+    int64_t at_us; /* microseconds UTC; 0: the present */
+    double speed;  /* seconds of history per second of play; negative: backwards; 0: paused */
 };
 
 enum { CODEC_LIST_MOST = 4 };
-struct codec_list { /* what a client decodes, in order of preference */
+struct codec_list { /* codecs that a client decodes, in order of preference */
     enum wire_codec at[CODEC_LIST_MOST];
     int count;
     bool choose; /* the server may choose among them, and change its choice */
@@ -161,23 +161,23 @@ struct place_request {
 };
 
 struct coverage_request {
-    int group;    /* -1: the group that is shown */
-    double far_m; /* 0: the default */
+    int group;    /* index of the group; -1: the group that is shown */
+    double far_m; /* metres beyond which a surface counts as uncovered; 0: the default */
 };
 
 struct loop_check_request {
     int tag;
     double expected, tolerance;
-    bool fail; /* failed, whatever the value is */
+    bool fail; /* record as failed, whatever the value is */
     char remark[LOOP_CHECK_REMARK_BYTES];
 };
 
 struct note_request {
     char id[NOTE_ID_BYTES], text[NOTE_TEXT_BYTES], name[ALARM_NAME_BYTES - 24];
-    int tag, asset; /* -1: it is not at one */
+    int tag, asset; /* where the note is attached; -1: to no tag, no asset */
     bool has_position;
     double position_m[3];
-    int64_t until_us; /* 0: until it is removed */
+    int64_t until_us; /* end of the note, microseconds UTC; 0: until it is removed */
 };
 
 struct wall_request {
@@ -188,72 +188,72 @@ struct wall_request {
 };
 
 struct pair_request {
-    char digits[7], device[64]; /* pair: that a display shows; unpair: which one */
+    char digits[7], device[64]; /* pair: digits that the display shows; unpair: name of the device */
 };
 
 struct message {
     enum message_type type;
-    int width_px, height_px;                                   /* hello, resize; 0: as what is resumed */
-    struct codec_list codecs;                                  /* hello, codecs; none: as what is resumed */
-    double pixel_ratio;                                        /* hello, resize: device pixels to one of the page's; 0: not said */
+    int width_px, height_px;                                        /* hello, resize: size of the view; 0: as in the resumed session */
+    struct codec_list codecs;                                       /* hello, codecs; empty: as in the resumed session */
+    double pixel_ratio;                                             /* hello, resize: device pixels per page pixel; 0: not stated */
     char token[TOKEN_MAX_CHARS + 1], resume[RESUME_MOST_CHARS + 1]; /* hello; "": none */
-    double idle_ms;                                            /* hello: since somebody was at the page; negative: not said */
-    bool tokens;                                               /* hello: the view is to be told as a token whenever it changed */
-    bool anew;                                                 /* hello: of what is resumed only its number, and who follows it */
-    char named[NAMED_VIEW_ID_BYTES];                           /* hello, look: a view of the plant file; hello: "": none */
-    bool has_camera, has_params;                               /* hello */
-    struct camera camera;                                      /* camera, hello */
-    uint32_t seq;                                              /* camera (hello: the camera's), ack, fit, pick, look */
-    struct params_change params;                               /* params, hello */
-    struct split_change split;                                 /* likewise; applied after params */
+    double idle_ms;                  /* hello: milliseconds since the user was last active; negative: not stated */
+    bool tokens;                     /* hello: the server sends the view as a token whenever it changes */
+    bool anew;                       /* hello: resume only the session's number and its followers, not its view */
+    char named[NAMED_VIEW_ID_BYTES]; /* hello, look: id of a view in the plant file; hello: "": none */
+    bool has_camera, has_params;     /* hello */
+    struct camera camera;            /* camera, hello */
+    uint32_t seq;                    /* camera (hello: of the camera), ack, fit, pick, look */
+    struct params_change params;     /* params, hello */
+    struct split_change split;       /* params, hello; applied after `params` */
     struct fit_message fit;
     struct pick_request pick;
     bool visible;
-    double decode_ms; /* ack; negative: not said */
+    double decode_ms; /* ack: milliseconds for decoding; negative: not stated */
     double t;         /* ping */
-    bool active;      /* ping: somebody was at the page since the last one */
-    uint64_t follow;  /* follow, lead: a session; 0: none */
+    bool active;      /* ping: the user was active since the last ping */
+    uint64_t follow;  /* follow, lead: number of a session; 0: none */
     struct alarm_request alarm;
     struct time_request time; /* time, hello */
     struct place_request place;
     struct coverage_request coverage;
-    char confirm[17]; /* save_tags, accept_places, restore_tags: hash of the list that was seen; "": none yet */
+    char confirm[17];             /* save_tags, accept_places, restore_tags: hash of the list that the user saw; "": none yet */
     struct assumed_filter accept; /* accept_places */
-    char kept[65];                /* restore_tags: name of the version */
+    char kept[65];                /* restore_tags: name of the stored version */
     struct loop_check_request loop_check;
-    struct named_view_edit view_edit; /* save_view; remove_view: its id; send_to_wall: view and title */
+    struct named_view_edit view_edit; /* save_view; remove_view: id only; send_to_wall: view and title */
     struct note_request note;         /* note, remove_note */
     struct wall_request wall;         /* display, send_to_wall, point */
     struct pair_request pair;         /* pair, unpair */
-    struct wall_place tile;           /* hello: a tile of one picture over many displays; display 0: none */
+    struct wall_place tile;           /* hello: the tile of one picture across many displays; display 0: none */
     enum signed_frames signed_frames; /* hello, sign */
 };
 
-/* Reads an instant (timestamp.h) of the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other
+/* Reads a timestamp (timestamp.h) from the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other
    text. */
 bool message_take_time(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error);
 
-/* Reads the members of a params message from an object that may have others. Returns false with *error naming the member that is wrong. */
+/* Reads the members of a params message from an object that may have other members. Returns false with *error naming the wrong member. */
 bool params_parse(const struct plant *plant, const json_t *object, struct params_change *out, struct message_error *error);
 struct params_context {
     const struct scene *scene;
-    struct baselines *baselines;     /* NULL: there are none */
-    const struct snapshot *snapshot; /* readings that can be kept as a baseline; NULL: none */
+    struct baselines *baselines;     /* NULL: no baselines here */
+    const struct snapshot *snapshot; /* readings that can be stored as a baseline; NULL: none */
     int64_t now_us;                  /* UTC; for queries */
     bool bare;                       /* for queries: the picture has no legend and no clock */
 };
-/* Applies a change to a view: all of it, or nothing, with *error and false. A new group first brings its own settings. */
+/* Applies a change to a view completely, or not at all: then returns false with *error. A new group first brings its own settings. */
 bool params_apply(const struct params_context *context, const struct params_change *change, struct view *view, struct message_error *error);
-/* Parts of the two above: `show`, `sensor`, `baseline` and `sensors` (params_show.c). */
+/* Parts of params_parse() and params_apply(): `show`, `sensor`, `baseline` and `sensors` (params_show.c). */
 bool params_parse_show(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_show(const struct params_context *context, const struct params_change *change, const struct view *before,
                        struct view *view, struct message_error *error);
-/* Keeps or forgets the baseline of a change; its last step, once nothing can be refused any more. */
+/* Stores or removes the baseline of a change; the last step, after all checks. */
 void params_apply_baseline(const struct params_context *context, const struct params_change *change, struct view *view);
-/* Parts of the two above: `scale`, `breaks` and `isolines` (params_paint.c). */
+/* Parts of params_parse() and params_apply(): `scale`, `breaks` and `isolines` (params_paint.c). */
 bool params_parse_paint(const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_paint(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error);
-/* Likewise for `split`, the right half of a split view (params_split.c). */
+/* Parse and apply `split`, the right half of a split view (params_split.c). */
 bool split_parse(const struct plant *plant, const json_t *o, struct split_change *out, struct message_error *error);
 bool split_apply(const struct params_context *context, const struct split_change *change, struct view *view, struct message_error *error);
 /* Returns whether a view may have that size. */

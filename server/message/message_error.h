@@ -5,21 +5,21 @@
 #include "base/refusal.h"
 
 struct message_error {
-    const char *code; /* kind of the error, of PROTOCOL.md, static */
+    const char *code; /* error code of PROTOCOL.md, static */
     char text[REFUSAL_TEXT_BYTES];
-    struct refusal refusal; /* REFUSAL_NONE: a mistake of the client's program, in English only */
-    char about[24];         /* type of the message that is refused; "": unknown */
-    int retry_after_s;      /* when to try again; 0: not said */
+    struct refusal refusal; /* REFUSAL_NONE: an error of the client program, described in English only */
+    char about[24];         /* type of the refused message; "": unknown */
+    int retry_after_s;      /* seconds until the client should retry; 0: not stated */
 };
 
-/* Fills the error with a code (static) and a formatted English text, which is cut to fit. Leaves `about` as it is. */
+/* Fills the error with a code (static) and a formatted English text, truncated to fit. Leaves `about` unchanged. */
 void message_fail(struct message_error *error, const char *code, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
-/* Fills the error with a refusal that has no arguments. field: name of the member that is refused, or NULL. */
+/* Fills the error with a refusal that has no arguments. field: name of the refused member, or NULL. */
 void message_refuse(struct message_error *error, const char *code, const char *field, enum refusal_code refusal);
-/* Fills the error with a refusal; args as of refusal_set(). */
+/* Fills the error with a refusal; `args` as for refusal_set(). */
 void message_refuse_with(struct message_error *error, const char *code, const char *field, enum refusal_code refusal, const char *args, ...)
     __attribute__((format(printf, 5, 6)));
-/* Puts "field: " before the text. */
+/* Prefixes the text with "field: ". */
 void message_error_within(struct message_error *error, const char *field);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* JSON text of a client to a checked struct. */
+/* Parses a client's JSON text into a checked struct. */
 #include "message/message_parse.h"
 
 #include <math.h>
@@ -54,7 +54,7 @@ static void add_codec(struct codec_list *list, int codec)
         list->at[list->count++] = (enum wire_codec)codec;
 }
 
-/* Names that we do not know may be of a later version. */
+/* Ignores unknown names, which may be from a later version. */
 static bool parse_codecs(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     (void)plant;
@@ -82,7 +82,7 @@ static bool parse_key_frame(const struct plant *plant, const json_t *o, struct m
     return true;
 }
 
-/* The microseconds of any instant fit a double. */
+/* A double represents the microseconds of any valid instant exactly. */
 static bool parse_time(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     const json_t *at = json_object_get(o, "at_us");

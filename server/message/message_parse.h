@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The way from a client's text to a message: one table of all types. Pure; any thread. */
+/* Parses a client's text into a message, by one table of all types. Pure; any thread. */
 #ifndef MESSAGE_MESSAGE_PARSE_H
 #define MESSAGE_MESSAGE_PARSE_H
 #include "message/message.h"
 
-/* Parses and checks a message of `count` bytes. Returns false with *error holding the refusal. */
+/* Parses and checks a message of `count` bytes. Returns false with the refusal in *error. */
 bool message_parse(const struct plant *plant, const char *text, size_t count, struct message *out, struct message_error *error);
 
 #endif

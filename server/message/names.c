@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How the choices of a view are called in messages. */
+/* Tables of the names that messages use for the options of a view. */
 #include "message/names.h"
 
 #include <stdbool.h>

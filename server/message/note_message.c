@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A note is at one thing: a tag, an asset, or a position. */
+/* Notes: each is attached to one thing, a tag, an asset or a position. */
 #include "message/note_message.h"
 
 #include "base/mem.h"
 #include "base/text/json_text.h"
 #include "message/json_fields.h"
 
-/* Takes the index of what the member names. -1: it is not there. */
+/* Looks up the tag or asset that the member names; *out is -1 if the member is absent. Returns false with *error if the name is unknown. */
 static bool find_named(const json_t *o, const struct plant *plant, const char *member,
                        int (*find)(const struct plant *plant, const char *name), enum refusal_code missing, int *out,
                        struct message_error *error)

@@ -7,7 +7,7 @@
 /* Parse the messages into out->note. Return false with *error saying what is wrong. */
 bool note_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool remove_note_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
-/* Makes or ends the note. who: the user's name; now_us: UTC. Returns the answer; mem_free. */
+/* Creates or ends the note. who: the user's name; now_us: UTC. Returns the answer; free with mem_free(). */
 char *note_do(struct notes *notes, const struct plant *plant, const struct message *message, const char *who, int64_t now_us);
 
 #endif

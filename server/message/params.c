@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parameters that a client may choose: read, and put into a view. */
+/* The parameters that a client may choose: parses them and applies them to a view. */
 #include <math.h>
 #include <string.h>
 
@@ -192,7 +192,7 @@ bool params_parse(const struct plant *plant, const json_t *o, struct params_chan
            params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
 }
 
-/* An operator looks on at limits. */
+/* Sets the defaults of a group; an operator keeps seeing values relative to limits. */
 static void take_group(const struct scene *scene, int group, bool is_operator, struct view *view)
 {
     field_params_default(scene->plant, group, &view->field);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a client may say of bands, isolines and logarithmic scales. */
+/* Parameters for bands, isolines and logarithmic scales. */
 #include <math.h>
 #include <string.h>
 
@@ -20,7 +20,7 @@ static bool parse_scale(const json_t *o, struct params_change *out, struct messa
     return true;
 }
 
-/* A list of ascending numbers. */
+/* Reads a list of ascending numbers. */
 static bool take_list(const json_t *list, double *numbers, int most, int *count)
 {
     *count = 0;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a client may say of what is shown: values, the distance from a sensor, the difference from a baseline; and single sensors. */
+/* Parameters that select the quantity shown (values, distance from a sensor, difference from a baseline), and overrides of single
+   sensors. */
 #include <string.h>
 
 #include "field/colormap.h"
@@ -10,7 +11,7 @@ static const char *const NOW = "now";
 
 /* --- reading --------------------------------------------------------------------------------------------------------------- */
 
-/* -1: *error. */
+/* Returns -1 with *error on failure. */
 static int find_tag(const struct plant *plant, const char *field, const char *tag, struct message_error *error)
 {
     char name[48];
@@ -144,7 +145,8 @@ static bool apply_sensors(const struct params_change *change, struct field_param
     return true;
 }
 
-/* What it is called now; a new one gets its number when all else is good. */
+/* Finds the id of the baseline that the change names; a baseline yet to be stored gets a placeholder, replaced in
+   params_apply_baseline(). */
 static bool find_baseline(const struct params_context *context, const struct params_change *change, struct field_params *field,
                           struct message_error *error)
 {
@@ -172,7 +174,7 @@ static bool find_baseline(const struct params_context *context, const struct par
     return true;
 }
 
-/* Another quantity brings its own range and colours. */
+/* If the change selects another quantity, sets that quantity's range and colours. */
 static void take_quantity(const struct params_context *context, const struct field_params *before, struct view *view)
 {
     const struct field_params *now = &view->field;
@@ -185,7 +187,7 @@ static void take_quantity(const struct params_context *context, const struct fie
         view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find("diverging") : 0;
 }
 
-/* Where triangles were left whole for single sensors, only what is constant is drawn truly. */
+/* Returns whether the view can be drawn correctly: with undivided triangles (single sensors) only a constant field can. */
 static bool may_show(const struct plant *plant, const struct field_params *field, struct message_error *error)
 {
     char group[48], asset[48];

@@ -4,7 +4,7 @@
 
 #include "message/json_fields.h"
 
-/* What both halves have in common is said outside. */
+/* parameters that both halves share; not allowed inside `split` */
 static const char *const common[] = { "light",    "environment", "backdrop", "strip", "language", "arrows",
                                       "selected", "hidden",      "isolate",  "ghost", "clip",     "split" };
 
@@ -45,7 +45,7 @@ bool split_apply(const struct params_context *context, const struct split_change
         message_refuse(error, "bad_field", "split", REFUSAL_NARROW);
         return false;
     }
-    view_half(view, 1, &right); /* where it was not split, the right half begins as the left one is */
+    view_half(view, 1, &right); /* if the view was not split before, the right half starts as a copy of the left */
     if (!params_apply(context, &change->right, &right, error))
         return false;
     view_split(view, &right);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Messages about places of sensors. */
+/* Messages about positions of sensors. */
 #include "message/place_message.h"
 
 #include <limits.h>
@@ -14,7 +14,7 @@
 #include "plant/tags/tag_edit.h"
 #include "scene/far_sensors.h"
 
-/* Returns the path of the tag list's file, through symlinks: saving replaces that file and keeps versions beside it. */
+/* Returns the path of the tag list's file with symlinks resolved: saving replaces that file and stores earlier versions next to it. */
 static const char *list_path(const struct plant *plant, char real[PATH_MAX])
 {
     const char *path = plant->tags_path ? realpath(plant->tags_path, real) : NULL;
@@ -73,7 +73,7 @@ bool save_tags_parse(const struct plant *plant, const json_t *o, struct message 
     return need_seq(o, &out->seq, error) && may_text(o, "confirm", out->confirm, sizeof(out->confirm), NULL, error);
 }
 
-/* Returns whether a glob is cheap: each star multiplies the time that matching a long name may take. */
+/* Returns whether matching a glob is cheap: each star multiplies the time that a long name may take. */
 static bool is_simple(const char *pattern)
 {
     int stars = 0;
@@ -141,7 +141,7 @@ static void add_far(json_t *list, const struct plant *plant, int tag, int asset,
         json_array_append_new(list, json_pack("[s,s,f,f]", plant->tags[tag].name, plant->assets[asset].id, distance_m, limit_m));
 }
 
-/* Of the group, as prepared or as tried out. */
+/* Lists surfaces far from any sensor of the group, from the prepared layout or the trial layout. */
 static json_t *far_list(const struct scene *scene, const struct place_set *set, int group)
 {
     const struct placed *placed = NULL;
@@ -202,7 +202,7 @@ static json_t *lines_of(const char *before, const char *after, size_t *more)
     return list;
 }
 
-/* The list with the moves in it. NULL: *why. */
+/* Returns the tag list with the moves applied; NULL with the reason in *why. */
 static char *edited(const struct plant *plant, const char *before, const struct place_set *set, struct refusal *why)
 {
     struct tag_edit edits[PLACING_MOVES];
@@ -239,7 +239,7 @@ static char *conflict_text(const struct plant *plant, const struct message *mess
                      9);
 }
 
-/* Returns a request to put `after` in force if the message confirms its hash, else NULL. Takes ownership of `after`. */
+/* Returns a request to save `after` if the message confirms its hash, else NULL. Takes ownership of `after`. */
 static struct tag_save *order_of(const struct plant *plant, const char *before, char *after, const struct message *message, const char *who)
 {
     char hash[17], real[PATH_MAX];

@@ -9,7 +9,7 @@ const struct name names_role[] = {
     { "viewer", ROLE_VIEWER }, { "operator", ROLE_OPERATOR }, { "engineer", ROLE_ENGINEER }, { NULL, 0 },
 };
 
-/* How the field is computed: each set of these costs the server a field of its own, and takes somebody who knows. */
+/* Parameters of the field computation: each set of them costs the server another field, and using them needs expertise. */
 static const unsigned ENGINEERS = GIVEN_FILL | GIVEN_STRENGTH | GIVEN_DECAY | GIVEN_POWER | GIVEN_RADIUS | GIVEN_REACH | GIVEN_SENSORS;
 
 static bool params_allowed(enum role role, const struct params_change *change, struct message_error *error)

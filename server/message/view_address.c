@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The page's names and forms (clients/web/core/address.js) are turned into those of a query. */
+/* Translates the names and forms of the page's URL (clients/web/core/address.js) into those of a query. */
 #include "message/view_address.h"
 
 #include <stdio.h>
@@ -11,7 +11,7 @@
 enum { CAMERA_NUMBERS = 11 }; /* eye, target, up, angle, and the height of a parallel projection */
 
 static const struct {
-    const char *name, *of_query; /* NULL: it is left out */
+    const char *name, *of_query; /* name in a query; NULL: the field is dropped */
 } names[] = {
     { "group", "group" },
     { "interpolation", "interpolation" },
@@ -58,7 +58,7 @@ static int hex_of(char c)
     return !at ? -1 : at - digits < 16 ? (int)(at - digits) : (int)(at - digits) - 6;
 }
 
-/* In place. */
+/* Decodes in place. */
 static void decode(char *text)
 {
     char *to = text;
@@ -70,7 +70,7 @@ static void decode(char *text)
     *to = 0;
 }
 
-/* Returns how many numbers there are, with commas between them; 0: none, or more than `most`, or something else. */
+/* Reads comma-separated numbers. Returns their number; 0: none, more than `most`, or other text. */
 static int read_numbers(const char *text, double *out, int most)
 {
     for (int count = 0; count < most;) {
@@ -111,7 +111,7 @@ static bool add_clip(struct view_address *out, const char *value)
     return view_address_add(out, !strchr(value, ';') && commas == 5 ? "clip_box" : "clip", value);
 }
 
-/* `same`: both halves show the same; in a query that is a half for which nothing is said. */
+/* Adds the right half of a split view. `same` (both halves show the same) becomes an empty argument. */
 static bool add_split(struct view_address *out, char *value)
 {
     for (char *at = value, *colon; (colon = strchr(at, ':')); at = colon + strcspn(colon, ";"))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the address of the page has after `#`: its fields, and these as arguments of view_query_parse. Pure. */
+/* The fragment of the page's URL after `#`: splits it into fields, and translates them into arguments of view_query_parse(). Pure. */
 #ifndef MESSAGE_VIEW_ADDRESS_H
 #define MESSAGE_VIEW_ADDRESS_H
 #include <stdbool.h>
@@ -7,22 +7,22 @@
 
 #include "message/message_error.h"
 
-/* Takes a field: decoded, "" where there is no value. Returns false to stop. */
+/* Callback for one field, decoded; value "" if the field has none. Returns false to stop. */
 typedef bool view_address_field(void *arg, const char *name, char *value);
-/* Hands over the fields of an address, one after the other. Returns false where `take` did. */
+/* Calls `take` for each field of an address. Returns false if `take` did. */
 bool view_address_each(const char *address, view_address_field *take, void *arg);
 
 enum { VIEW_ADDRESS_ARGS = 40 };
 
 struct view_address {
-    char *args[VIEW_ADDRESS_ARGS]; /* NAME=VALUE, decoded */
+    char *args[VIEW_ADDRESS_ARGS]; /* decoded texts NAME=VALUE */
     size_t count;
 };
 
-/* Reads an address. Returns false with *error saying what a picture cannot show. The selected tag, and how the camera is tilted, are left
-   out. In any case view_address_finish is to be called. */
+/* Reads an address. Returns false with *error if a picture cannot show it. The selected tag and the tilt of the camera are dropped. Call
+   view_address_finish() in any case. */
 bool view_address_read(struct view_address *out, const char *address, struct message_error *error);
-/* Adds an argument. Returns false where there is no room. */
+/* Adds an argument. Returns false if the array is full. */
 bool view_address_add(struct view_address *address, const char *name, const char *value);
 void view_address_finish(struct view_address *address);
 

@@ -7,9 +7,9 @@
 #include "message/view_address.h"
 #include "message/view_query.h"
 
-/* Whether an address is right depends neither on the size of the picture nor on the time, as long as that is after its instant. */
+/* Size and time for checking an address, whose validity depends neither on the picture's size nor on a time after the address's instant. */
 enum { CHECKED_WIDTH_PX = 1280, CHECKED_HEIGHT_PX = 720 };
-static const int64_t CHECKED_US = INT64_C(4000000000000000); /* in 2096 */
+static const int64_t CHECKED_US = INT64_C(4000000000000000); /* a time in 2096 */
 
 bool view_named_read(const struct params_context *context, const char *address, int width_px, int height_px, struct view *view,
                      struct message_error *error)

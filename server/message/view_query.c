@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The query of /snapshot.png, turned into the JSON of a message and then judged as one. */
+/* Converts the query of /snapshot.png to the JSON of a message, which is then checked like a message. */
 #include "message/view_query.h"
 
 #include <stdlib.h>
@@ -63,7 +63,7 @@ static const struct {
     { "at", STRING },
 };
 
-/* NULL: not a finite number. */
+/* Reads a number. Returns NULL if the text does not begin with one. */
 static json_t *number(const char *text, const char **end)
 {
     char *stop;
@@ -88,7 +88,7 @@ static json_t *numbers(const char *text)
     return NULL;
 }
 
-/* `2`, `2:0.5` or `:0.5` */
+/* Reads `2`, `2:0.5` or `:0.5`. */
 static json_t *sensor(const char *text)
 {
     json_t *object = json_object();
@@ -107,7 +107,7 @@ static json_t *sensor(const char *text)
     return NULL;
 }
 
-/* TAG=STRENGTH[:DECAY],... */
+/* Reads TAG=STRENGTH[:DECAY],... */
 static json_t *sensors(const char *text)
 {
     json_t *all = json_object();
@@ -127,7 +127,7 @@ static json_t *sensors(const char *text)
     return NULL;
 }
 
-/* A name, or numbers. */
+/* Reads a name, or numbers. */
 static json_t *breaks(const char *text)
 {
     if (!strcmp(text, "none"))
@@ -135,7 +135,7 @@ static json_t *breaks(const char *text)
     return !strcmp(text, "group") || !strcmp(text, "limits") ? json_string(text) : numbers(text);
 }
 
-/* Numbers, or `every:STEP`. */
+/* Reads numbers, or `every:STEP`. */
 static json_t *lines(const char *text)
 {
     const char *end = "";
@@ -152,7 +152,7 @@ static json_t *lines(const char *text)
 
 static bool add(json_t *o, const char *arg, struct message_error *error);
 
-/* NAME=VALUE;... */
+/* Reads NAME=VALUE;... */
 static json_t *split(const char *text, struct message_error *error)
 {
     json_t *all = json_object();
@@ -167,7 +167,7 @@ static json_t *split(const char *text, struct message_error *error)
     return NULL;
 }
 
-/* Texts with commas between them. */
+/* Reads texts separated by commas. */
 static json_t *strings(const char *text)
 {
     json_t *array = json_array();
@@ -178,7 +178,7 @@ static json_t *strings(const char *text)
     return array;
 }
 
-/* Four numbers each, with semicolons between them. */
+/* Reads planes of four numbers each, separated by semicolons. */
 static json_t *planes(const char *text)
 {
     json_t *array = json_array();

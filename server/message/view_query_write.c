@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Everything is said, also what is as the plant has it: what that is may change. */
+/* Writes a view as a query. Defaults of the plant are written out too, since they may change later. */
 #include "message/view_query_write.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "field/colormap.h"
 #include "message/names.h"
 
-static const double ROUNDING = 1e-12; /* of unit vectors, which are made so again when they are read */
+static const double ROUNDING = 1e-12; /* tolerance for unit vectors, which are normalised again when read */
 
 /* --- lists of arguments ------------------------------------------------------------------------------------------------------- */
 
@@ -50,7 +50,7 @@ static bool put_numbers(struct view_address *out, const char *name, const double
     return good;
 }
 
-/* `none` where the list is empty. */
+/* Adds a list of numbers, or `none` if it is empty. */
 static bool put_list(struct view_address *out, const char *name, const double *values, int count)
 {
     return count > 0 ? put_numbers(out, name, values, (size_t)count) : view_address_add(out, name, "none");
@@ -113,7 +113,7 @@ static bool put_half(struct view_address *out, const struct params_context *cont
            view_address_add(out, "look", name_of(names_look, (int)half->look));
 }
 
-/* NAME=VALUE;... of the right half. */
+/* Adds the right half of a split view as NAME=VALUE;... */
 static bool put_split(struct view_address *out, const struct params_context *context, const struct view *view, struct message_error *error)
 {
     struct view_address right = { .count = 0 };
@@ -131,7 +131,7 @@ static bool put_split(struct view_address *out, const struct params_context *con
     return good;
 }
 
-/* --- what both have in common --------------------------------------------------------------------------------------------------- */
+/* --- parameters of both halves --------------------------------------------------------------------------------------------------- */
 
 static bool put_camera(struct view_address *out, const struct camera *camera)
 {

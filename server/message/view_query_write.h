@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A view as the query of /snapshot.png that asks for it: the reverse of view_query.h. Pure. */
+/* Writes a view as the query of /snapshot.png that produces it: the reverse of view_query.h. Pure. */
 #ifndef MESSAGE_VIEW_QUERY_WRITE_H
 #define MESSAGE_VIEW_QUERY_WRITE_H
 #include "message/view_address.h"
 #include "message/view_query.h"
 
-/* Writes all that the view shows, but its instant and its tier, which no query has. In any case view_address_finish is to be called.
-   Returns false with *error if a query cannot say it: sensors that are tried out, a baseline without a name, a name with a comma; the
-   query is parsed again, and has to be that view. */
+/* Writes everything the view shows, except its instant and its quality (preview or refined), which queries lack. Call
+   view_address_finish() in any case. Returns false with *error if a query cannot express the view: sensors moved on trial, a baseline
+   without a name, a name with a comma. To check, the query is parsed again and must give an equal view. */
 bool view_query_write(const struct params_context *context, const struct view *view, struct view_address *out, struct message_error *error);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Views that people save, and what the displays of a control room show. */
+/* Saved views, and the content of control-room displays. */
 #include "message/views_message.h"
 
 #include <string.h>
@@ -51,7 +51,7 @@ char *view_edit_do(struct named_views *views, const struct message *message, con
     return json_text(answer, 0);
 }
 
-/* A tour is told as views that are shown in turn, each for a while of its own. */
+/* Describes a pane. A tour is sent as a sequence of views, each with its own duration. */
 static json_t *pane_of(const struct plant *plant, const struct wall_pane *pane)
 {
     const struct tour *tour = pane->kind == PANE_TOUR ? tour_find(plant, pane->items[0]) : NULL;
@@ -137,7 +137,7 @@ static json_t *display_of(const struct plant *plant, const struct walls_reader *
     return json_pack("{s:o,s:o}", "grid", rows, "panes", panes);
 }
 
-/* Of another display no more is told than that it is there, so that each keeps its number. */
+/* Lists the displays of a wall. A display that the reader may not see is listed without content, so that each display keeps its number. */
 static json_t *displays_of(const struct plant *plant, const struct walls_reader *reader, const struct wall *wall)
 {
     json_t *displays = json_array();

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What of the plant is shown: from JSON and back. */
+/* Which parts of the plant are shown: converts between JSON and struct visibility. */
 #include "message/visibility.h"
 
 #include <math.h>

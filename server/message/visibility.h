@@ -4,9 +4,9 @@
 #define MESSAGE_VISIBILITY_H
 #include "message/message.h"
 
-/* Reads `hidden`, `isolate`, `ghost` and `clip` into the change. Returns false with *error naming the member that is wrong. */
+/* Reads `hidden`, `isolate`, `ghost` and `clip` into the change. Returns false with *error naming the wrong member. */
 bool visibility_parse(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
-/* Applies what the change gives to a view's visibility. */
+/* Applies the change to a view's visibility. */
 void visibility_apply(const struct params_change *change, struct visibility *visibility);
 /* Adds the four members to an object. */
 void visibility_print(const struct plant *plant, const struct visibility *visibility, json_t *into);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A pane is named by wall, display and area, as the plant file has them. */
+/* Wall messages name a pane by wall, display and area, as in the plant file. */
 #include "message/wall_message.h"
 
 #include <string.h>

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The messages of displays of a control room, of desks that send views to them, and of engineers who let them in. Thread: the loop. */
+/* Messages of control-room displays, of desks that send views to them, and of engineers who pair them. Thread: the loop. */
 #ifndef MESSAGE_WALL_MESSAGE_H
 #define MESSAGE_WALL_MESSAGE_H
 #include "message/message.h"
 
-/* Parse the messages into out->wall (of `send_to_wall` also view and title into out->view_edit) or out->pair. Return
-   false with *error saying what is wrong. */
-/* Reads the member `tile` of hello, if there is one. */
+/* Parse the messages into out->wall or out->pair; `send_to_wall` also writes view and title into out->view_edit. Return false with
+   *error saying what is wrong. */
+/* Reads the optional member `tile` of hello. */
 bool tile_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool display_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool send_to_wall_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool point_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool pair_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool unpair_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
-/* Does what `send_to_wall` says. who: the user's name; now_us: UTC. Returns the answer; mem_free. */
+/* Carries out `send_to_wall`. who: the user's name; now_us: UTC. Returns the answer; free with mem_free(). */
 char *send_to_wall_do(struct wall_remote *remote, const struct message *message, const char *who, int64_t now_us);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes of what a statement names. */
+/* Hashes of the data that a statement refers to. */
 #include "provenance/picture_statement.h"
 
 #include <openssl/evp.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the writer and the verifier of signed pictures share. Private to provenance/. */
+/* Shared by the writer and the verifier of signed pictures. Private to provenance/. */
 #ifndef PROVENANCE_PICTURE_STATEMENT_H
 #define PROVENANCE_PICTURE_STATEMENT_H
 #include <jansson.h>
@@ -10,15 +10,15 @@
 #define PICTURE_SIGNATURE_KEYWORD "Plantcast signature"
 #define PICTURE_JSON (JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(17))
 enum {
-    PICTURE_STATEMENT_VERSION = 2, /* 1: without `overlay` and `tier`, which are `full` (or `bare`) and `refined` */
+    PICTURE_STATEMENT_VERSION = 2,          /* version 1 lacks `overlay` and `tier`, which were then `full` (or `bare`) and `refined` */
     PICTURE_STATEMENT_MAX_BYTES = 64 << 20, /* three sets of readings of 100,000 tags */
     PICTURE_SIGNATURE_BYTES = 128,
     PICTURE_HASH_BYTES = 65
 };
 
-/* Writes the SHA-256 of the bytes as hexadecimal digits; "" if the library cannot. */
+/* Writes the SHA-256 of the bytes as hexadecimal digits; "" if the library fails. */
 void picture_hash(const void *bytes, size_t count, char out[PICTURE_HASH_BYTES]);
-/* Writes that of a value as it is printed with PICTURE_JSON. */
+/* Writes the SHA-256 of a JSON value as printed with PICTURE_JSON. */
 void picture_hash_json(const json_t *value, char out[PICTURE_HASH_BYTES]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A chunk: length, type, data, CRC-32 of type and data; all numbers big-endian. */
+/* PNG chunks: length, type, data, CRC-32 of type and data; all numbers big-endian. */
 #include "provenance/png_text.h"
 
 #include <stdio.h>
@@ -22,14 +22,14 @@ static uint32_t get_u32(const uint8_t *at)
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
 }
 
-/* Returns the bytes written; 0: it cannot be compressed. */
+/* Writes a compressed text chunk. Returns the bytes written; 0: compression failed. */
 static size_t write_chunk(uint8_t *at, size_t room, const struct png_text *text)
 {
     size_t keyword = strlen(text->keyword), begin = 8 + keyword + 2;
     uLongf length = room - begin - 4;
     memcpy(at + 4, "zTXt", 4);
     memcpy(at + 8, text->keyword, keyword + 1);
-    at[8 + keyword + 1] = 0; /* deflate */
+    at[8 + keyword + 1] = 0; /* compression method 0: deflate */
     if (compress2(at + begin, &length, (const Bytef *)text->text, text->length, FAST) != Z_OK)
         return 0;
     size_t data = keyword + 2 + length;
@@ -66,7 +66,7 @@ uint8_t *png_text_add(const uint8_t *png, size_t count, const struct png_text *t
     return out;
 }
 
-/* Of what follows keyword and method. */
+/* Decompresses the text, which follows keyword and method. */
 static char *inflate_text(const uint8_t *at, size_t count, size_t max_bytes, size_t *out_length)
 {
     char *text = mem_try_array(max_bytes + 1, 1);
@@ -87,13 +87,13 @@ static bool has_keyword(const uint8_t *data, size_t length, const char *keyword)
     return length > n + 2 && memcmp(data, keyword, n + 1) == 0 && data[n + 1] == 0;
 }
 
-/* A chunk of a PNG file, or the end. */
+/* a chunk of a PNG file, or its end */
 struct png_chunk {
     const uint8_t *type, *data;
     size_t length;
 };
 
-/* Moves *at to the next chunk. Returns false if there is none, or it is damaged. */
+/* Moves *at to the next chunk. Returns false at the end of the file or if the chunk is damaged. */
 static bool next_chunk(const uint8_t *png, size_t count, size_t *at, struct png_chunk *out)
 {
     if (count - *at < AROUND)
@@ -113,7 +113,8 @@ struct plain_chunk {
     size_t length;
 };
 
-/* sRGB with perceptual intent, and what gAMA and cHRM say beside it (PNG, third edition, 11.3.2.5). Our writer emits sRGB alone. */
+/* sRGB with perceptual intent, and the values of gAMA and cHRM that match it (PNG, third edition, 11.3.2.5). Our writer emits sRGB
+   alone. */
 static const struct plain_chunk plain[] = {
     { "sRGB", true, false, "\0", 1 },
     { "gAMA", false, false, "\0\0\xb1\x8f", 4 },
@@ -126,7 +127,7 @@ enum { PLAIN_CHUNKS = sizeof(plain) / sizeof(*plain) };
 
 #define FAIL(...) (snprintf(why, PNG_PLAIN_WHY_BYTES, __VA_ARGS__), false)
 
-/* Eight bits of red, green and blue, not interlaced: nothing else is shown as its bytes are. */
+/* Returns whether the header is 8-bit RGB, not interlaced: viewers show other formats differently from their bytes. */
 static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WHY_BYTES])
 {
     static const uint8_t format[] = { 8, 2, 0, 0, 0 };
@@ -137,7 +138,7 @@ static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WH
            FAIL("its chunk IHDR says another format than 8 bits of red, green and blue");
 }
 
-/* Returns the row of `plain` that the chunk is of; PLAIN_CHUNKS: of none. */
+/* Returns the chunk's index in `plain`; PLAIN_CHUNKS: not in it. */
 static int plain_row(const struct png_chunk *chunk)
 {
     int row = 0;

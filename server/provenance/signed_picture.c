@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the statement, and signs its very bytes: nobody has to print it again the same way. */
+/* Writes the statement of a picture and signs its exact bytes, so that a verifier need not reproduce the formatting. */
 #include "provenance/signed_picture.h"
 
 #include <inttypes.h>
@@ -88,7 +88,7 @@ static json_t *statement_of(const struct picture_origin *origin, const struct pa
     return statement;
 }
 
-/* `ed25519 KEY-ID SIGNATURE`, the latter in base64. */
+/* Writes `ed25519 KEY-ID SIGNATURE`, with the signature in base64. */
 static bool sign(const struct signing_key *key, const char *statement, size_t length, char out[PICTURE_SIGNATURE_BYTES])
 {
     uint8_t signature[SIGNATURE_BYTES];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Verifies first what was signed, and only then reads it. */
+/* Verifies the signature first, and only then parses the statement. */
 #include <openssl/evp.h>
 #include <stdio.h>
 #include <string.h>
@@ -119,7 +119,7 @@ json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png,
 
 /* --- what it tells ------------------------------------------------------------------------------------------------------------- */
 
-/* Of all tags of the plant, once each. unproven: by tag; NULL: nobody asks. */
+/* Reads the readings of all tags of the plant, each exactly once. unproven: receives a flag by tag; NULL: not wanted. */
 static bool read_readings(const json_t *told, const struct plant *plant, struct snapshot *out, bool *unproven,
                           char why[SIGNED_PICTURE_WHY_BYTES])
 {

@@ -13,7 +13,7 @@
 #include "base/text/hex.h"
 
 struct signing_key {
-    EVP_PKEY *pair; /* or the public half alone */
+    EVP_PKEY *pair; /* key pair, or the public key alone */
     char id[SIGNING_KEY_ID_BYTES];
 };
 
@@ -27,7 +27,7 @@ static bool find_id(struct signing_key *key)
     return true;
 }
 
-/* Nobody is asked for a passphrase: a daemon has nobody to ask. */
+/* Passphrase callback: fails, because nobody is there to type a passphrase. */
 static int no_passphrase(char *out, int bytes, int writes, void *arg)
 {
     (void)out, (void)bytes, (void)writes, (void)arg;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finding the strip by its two finders, as a QR code's are found; reading its cells; and telling colours apart. */
+/* Finds the legend strip by two finder patterns like those of a QR code, reads its cells, and matches colours to values. */
 #include "provenance/strip_reader.h"
 
 #include <math.h>
@@ -10,9 +10,9 @@
 #include "field/lab.h"
 
 enum { RUNS = 5, FINDER_CELLS = 7, GREY = 128 };
-static const double SLACK = 0.6;           /* of a cell: how far a run of the finder may be off */
-static const double STRANGE = 7;           /* further than this from all colours of the legend is none of them */
-static const double INDISTINCT = 1.2;      /* colours this near are taken for each other, and more where there is noise */
+static const double SLACK = 0.6;      /* tolerance of a finder's runs, as a fraction of a cell */
+static const double STRANGE = 7;      /* CIELAB distance beyond which a colour is none of the legend's */
+static const double INDISTINCT = 1.2; /* CIELAB distance within which two colours cannot be told apart; noise adds to it */
 static const double NOISES = 1.5;
 
 /* --- finding ------------------------------------------------------------------------------------------------------------------ */
@@ -31,7 +31,7 @@ struct finder {
     double middle_px, cell_px;
 };
 
-/* Runs of dark, light, dark, light, dark as 1 : 1 : 3 : 1 : 1. */
+/* Returns whether five runs of dark, light, dark, light, dark have the lengths 1 : 1 : 3 : 1 : 1. */
 static bool is_finder(const int runs[RUNS], double *cell_px)
 {
     static const int expected[RUNS] = { 1, 1, 3, 1, 1 };
@@ -45,7 +45,7 @@ static bool is_finder(const int runs[RUNS], double *cell_px)
     return good;
 }
 
-/* All finders of a row. Returns how many, `most` at most. */
+/* Finds all finder patterns of a row. Returns their number, at most `most`. */
 static int find_in_row(const struct strip_picture *picture, int y, struct finder *out, int most)
 {
     int runs[RUNS] = { 0 }, count = 0, length = 0;
@@ -68,10 +68,10 @@ static int find_in_row(const struct strip_picture *picture, int y, struct finder
 }
 
 struct strip_row {
-    double left_px, cell_px; /* 0: no strip here */
+    double left_px, cell_px; /* cell_px 0: no strip in this row */
 };
 
-/* Two finders as far apart as their own cells say. */
+/* Finds two finder patterns whose distance agrees with their own cell sizes. */
 static struct strip_row strip_in_row(const struct strip_picture *picture, int y)
 {
     enum { MOST = 64 };
@@ -87,7 +87,7 @@ static struct strip_row strip_in_row(const struct strip_picture *picture, int y)
     return (struct strip_row){ 0, 0 };
 }
 
-/* The longest run of rows that agree; a row or two between may be spoilt. */
+/* Finds the longest run of rows that agree on the strip's position; up to two unreadable rows in between are tolerated. */
 static bool find_place(const struct strip_picture *picture, struct strip_found *found)
 {
     double best = 0, left_px = 0, cell_px = 0, first = 0, rows = 0;
@@ -118,11 +118,11 @@ static bool find_place(const struct strip_picture *picture, struct strip_found *
 /* --- cells -------------------------------------------------------------------------------------------------------------------- */
 
 struct color_patch {
-    double rgb[3]; /* mean */
+    double rgb[3]; /* mean of the pixels */
     int count;
 };
 
-/* The mean of a rectangle, in cells of the strip, of its inner part. */
+/* Returns the mean colour of the inner part of a rectangle, given in cells of the strip. */
 static struct color_patch patch_at(const struct strip_picture *picture, const struct strip_found *found, double column, double row,
                                    double rows)
 {
@@ -163,7 +163,8 @@ static bool read_code(const struct strip_picture *picture, struct strip_found *f
     return strip_decode(code, &found->strip, &found->mended);
 }
 
-/* The colours as they are in this picture; the noise is what single pixels differ from the mean of their column by. */
+/* Reads the legend's colours as they appear in this picture. `noise` is the RMS difference of single pixels from the mean of their
+   column. */
 static void read_ramp(const struct strip_picture *picture, struct strip_found *found)
 {
     double square = 0;
@@ -218,7 +219,7 @@ static double to_segment(const double p[3], const double a[3], const double b[3]
     return sqrt(square);
 }
 
-/* Light moves a colour along the line through its three shades. */
+/* Returns the distance of a colour from a legend column. Lighting moves a colour along the line through its three shades. */
 static double off_of(const struct strip_found *found, int column, const double lab[3])
 {
     return fmin(to_segment(lab, found->ramp[0][column], found->ramp[1][column]),
@@ -263,7 +264,8 @@ bool strip_read(const struct strip_picture *picture, const struct strip_found *f
     else if (best >= STRIP_BEYOND + STRIP_RAMP)
         out->state = STRIP_ABOVE;
     else {
-        double place = abs(high - low) > STRIP_RAMP / 4 ? best - STRIP_BEYOND + 0.5 : sum / total; /* two far colours have no mean */
+        /* if the two ends are far apart, their mean would be meaningless */
+        double place = abs(high - low) > STRIP_RAMP / 4 ? best - STRIP_BEYOND + 0.5 : sum / total;
         out->value = value_of(&found->strip, place / STRIP_RAMP);
         out->low = value_of(&found->strip, (double)(low - STRIP_BEYOND - 1) / STRIP_RAMP);
         out->high = value_of(&found->strip, (double)(high - STRIP_BEYOND + 2) / STRIP_RAMP);

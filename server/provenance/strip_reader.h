@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Values read from the pixels of a picture that has a legend strip (protocol/strip_format.h), whatever became of it since: scaled,
-   compressed, part of a screenshot. Only the strip and the pixels are looked at. Pure. */
+/* Reads values from the pixels of a picture with a legend strip (protocol/strip_format.h), even after scaling, compression, or as part
+   of a screenshot. Uses only the strip and the pixels. Pure. */
 #ifndef PROVENANCE_STRIP_READER_H
 #define PROVENANCE_STRIP_READER_H
 #include <stdbool.h>
@@ -15,22 +15,23 @@ struct strip_picture {
 
 struct strip_found {
     struct strip strip;
-    double left_px, top_px, cell_px, row_px; /* of the strip; width and height of its cells */
-    int mended;                              /* bytes of its code that were wrong */
-    double ramp[STRIP_SHADES][STRIP_INNER][3]; /* CIELAB of its colours as they are in this picture, MIN to MAX between those beyond */
-    double noise;                            /* how far pixels of one colour lie from it, in CIELAB: what compression does */
+    double left_px, top_px, cell_px, row_px; /* position of the strip, and width and height of its cells */
+    int mended;                              /* number of wrong bytes in its code that were corrected */
+    /* CIELAB of its colours as they appear in this picture, MIN to MAX between the out-of-range colours */
+    double ramp[STRIP_SHADES][STRIP_INNER][3];
+    double noise; /* CIELAB deviation of pixels that should have one colour, caused by compression */
 };
 
 enum strip_state { STRIP_VALUE, STRIP_BELOW, STRIP_ABOVE, STRIP_NO_COLOR };
 struct strip_value {
-    enum strip_state state;     /* NO_COLOR: nothing that the legend has: background, a label, no data */
-    double value, low, high;    /* VALUE: what the pixel shows, and within which bounds its colour cannot be told apart */
-    double off;                 /* how far its colour is from the legend's nearest, in CIELAB */
+    enum strip_state state;  /* NO_COLOR: not a colour of the legend: background, a label, no data */
+    double value, low, high; /* with VALUE: the pixel's value, and the bounds within which its colour is indistinguishable */
+    double off;              /* CIELAB distance from the nearest colour of the legend */
 };
 
-/* Finds the strip. Returns false, with the reason in *why (static text), if there is none that can be read. */
+/* Finds the strip. Returns false, with the reason in *why (static text), if the picture has no readable strip. */
 bool strip_find(const struct strip_picture *picture, struct strip_found *found, const char **why);
-/* Reads the pixel. Returns false if it lies outside the picture, or on the strip. */
+/* Reads the value at a pixel. Returns false if the pixel is outside the picture, or on the strip. */
 bool strip_read(const struct strip_picture *picture, const struct strip_found *found, int x_px, int y_px, struct strip_value *out);
 
 #endif

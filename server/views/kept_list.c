@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One file for each list, written anew with each change: they are short. */
+/* Stores each list in one file, which every change rewrites: the lists are short. */
 #include "views/kept_list.h"
 
 #include <errno.h>
@@ -57,7 +57,7 @@ enum refusal_code kept_list_put(struct kept_list *kept, json_t *list)
     json_t *file = json_pack("{s:i,s:O}", "version", 1, kept->kind->key, list);
     char *text = json_dumps(file, JSON_INDENT(1));
     if (kept->folder)
-        mkdir(kept->folder, 0777); /* where it cannot be made, writing says why */
+        mkdir(kept->folder, 0777); /* if the folder cannot be created, writing the file reports the reason */
     int error = !text ? -ENOMEM : kept->path ? atomic_file_keep(kept->path, text, strlen(text)) : 0;
     free(text);
     json_decref(file);
@@ -78,7 +78,7 @@ bool kept_list_mirror(struct kept_list *kept, json_t *list)
         return false;
     if (json_equal(kept->list, list))
         return true;
-    if (kept->path && !kept->unreadable) /* of a core that stands by: it is its own, once it leads */
+    if (kept->path && !kept->unreadable) /* a standby core stores the list, since it may become the leader */
         return kept_list_put(kept, json_incref(list)) == REFUSAL_NONE;
     json_decref(kept->list);
     kept->list = json_incref(list);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A list of what people made, kept as JSON in a file of the history's folder. Each of its entries has an `id`. Thread: the loop. */
+/* A list of entries made by users, stored as JSON in a file of the history's folder. Each entry has an `id`. Thread: the loop. */
 #ifndef VIEWS_KEPT_LIST_H
 #define VIEWS_KEPT_LIST_H
 #include <jansson.h>
@@ -10,34 +10,36 @@
 #include "base/refusal.h"
 
 struct kept_list_kind {
-    const char *file, *key;           /* the file's name, and the member that is the list */
-    const char *members;              /* of each entry, for the log */
-    bool (*good)(const json_t *list); /* whether a list from a file can be used */
+    const char *file, *key;           /* file name, and the name of the member that holds the list */
+    const char *members;              /* members of an entry, for the log */
+    bool (*good)(const json_t *list); /* returns whether a list from a file is valid */
 };
 
-/* Only functions below change it; `list` is read by its owner. */
+/* Only the functions below change it; its owner may read `list`. */
 struct kept_list {
     struct log *log;
     const struct kept_list_kind *kind;
     const char *folder;
-    char *path; /* NULL: nothing is kept on disk */
+    char *path; /* path of the file; NULL: nothing is stored on disk */
     json_t *list;
-    uint64_t number; /* increases with each change */
+    uint64_t number; /* change counter */
     bool unreadable;
 };
 
-/* Reads the list. folder: of the history, which need not exist; NULL: there is none. A file that cannot be read counts as empty (logged)
-   and is not written over. folder and kind must outlive it. */
+/* Reads the list. folder: the history's folder, which need not exist; NULL: none. An unreadable file counts as empty (logged) and is not
+   overwritten. `folder` and `kind` must outlive the list. */
 void kept_list_open(struct kept_list *kept, struct log *log, const char *folder, const struct kept_list_kind *kind);
 void kept_list_close(struct kept_list *kept);
-/* Returns the index of the entry with that id; the length of the list: there is none. */
+/* Returns the index of the entry with that id; the length of the list if none has it. */
 size_t kept_list_find(const json_t *list, const char *id);
-/* Returns why nothing can be changed (static), or NULL. */
+/* Returns why the list cannot be changed, or REFUSAL_NONE. */
 enum refusal_code kept_list_refusal(const struct kept_list *kept);
-/* Takes a list in place of the one there is, once it is on disk (without a folder, at once). Returns NULL, or why it could not (static). */
+/* Replaces the list, once the new one is on disk (at once, if there is no folder). Takes ownership of `list`. Returns REFUSAL_NONE, or
+   why it failed. */
 enum refusal_code kept_list_put(struct kept_list *kept, json_t *list);
 
-/* Takes a list as another daemon keeps it, and writes nothing. Returns false if it is none of that kind; then nothing changed. */
+/* Replaces the list by that of another daemon; only a standby core writes it to disk. Returns false, with nothing changed, if the list
+   is invalid. */
 bool kept_list_mirror(struct kept_list *kept, json_t *list);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The views are kept as the JSON that their file has. */
+/* Named views, stored in the JSON form of their file. */
 #include "views/named_views.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@
 
 struct named_views {
     const struct plant *plant;
-    struct kept_list kept; /* those that people saved: { id, title, view, by, time_us, before: [{ title, view, by, time_us }, ...] } */
+    struct kept_list kept; /* saved views: { id, title, view, by, time_us, before: [{ title, view, by, time_us }, ...] } */
 };
 
 static const struct named_view *find_fixed(const struct plant *plant, const char *id)
@@ -75,7 +75,7 @@ static enum refusal_code refusal(const struct named_views *views, const char *id
     return why ? why : find_fixed(views->plant, id) ? REFUSAL_FIXED : REFUSAL_NONE;
 }
 
-/* The versions of a view once it is another: those of before, and itself first. */
+/* Returns the earlier versions of a view that is about to change: its current version, then the older ones. */
 static json_t *versions(const json_t *view)
 {
     json_t *all = json_copy(json_object_get(view, "before"));
@@ -100,7 +100,7 @@ enum refusal_code named_views_save(struct named_views *views, const struct named
     json_t *old = json_array_get(views->kept.list, at), *list, *view;
     if (why || (!old && count >= NAMED_VIEWS))
         return why ? why : REFUSAL_VIEWS;
-    if (old && same(old, edit)) /* only its place */
+    if (old && same(old, edit)) /* only its position changes */
         view = json_incref(old);
     else
         view = json_pack("{s:s,s:s,s:s,s:s,s:I,s:o}", "id", edit->id, "title", edit->title, "view", edit->address, "by", who, "time_us",

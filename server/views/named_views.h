@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Views with names, in an order that all share: those of the plant file, which only that file changes, then those that people saved, in
-   views.json in the folder of the history, with earlier versions of each. Thread: the loop. */
+/* Named views in an order that all clients share: first those of the plant file, which only that file changes, then those saved by
+   users, in views.json in the history's folder, with earlier versions of each. Thread: the loop. */
 #ifndef VIEWS_NAMED_VIEWS_H
 #define VIEWS_NAMED_VIEWS_H
 #include <jansson.h>
@@ -12,30 +12,30 @@
 #include "plant/plant.h"
 #include "plant/walls/wall.h"
 
-enum { NAMED_VIEW_VERSIONS = 10 /* earlier ones kept */ };
+enum { NAMED_VIEW_VERSIONS = 10 /* number of earlier versions stored per view */ };
 #define NAMED_VIEWS_FILE "views.json"
 
 struct named_view_edit {
     char id[NAMED_VIEW_ID_BYTES], title[NAMED_VIEW_TITLE_BYTES], address[NAMED_VIEW_ADDRESS_BYTES];
-    int at; /* its place among those that people saved, from 0; -1: where it is, a new one last */
+    int at; /* new position among the saved views, from 0; -1: unchanged, or last for a new view */
 };
 
 struct named_views;
-/* Reads the views of a plant. folder: of the history, which need not exist; NULL: none can be saved. A file that cannot be read counts as
-   empty (logged) and is not written over. Never returns NULL. plant and folder must outlive them. */
+/* Reads the views of a plant. folder: the history's folder, which need not exist; NULL: saving is refused. An unreadable file counts as
+   empty (logged) and is not overwritten. Never returns NULL. `plant` and `folder` must outlive the views. */
 struct named_views *named_views_open(struct log *log, const struct plant *plant, const char *folder);
-void named_views_close(struct named_views **views); /* &NULL is fine; leaves NULL */
-/* Saves a view, new or changed, and writes the file. who: the person; time_us: UTC. Returns NULL, or why it could not (static). */
+void named_views_close(struct named_views **views); /* Frees the views. &NULL is fine; leaves NULL. */
+/* Saves a new or changed view, and writes the file. who: the user; time_us: UTC. Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us);
-/* Removes a saved view, with its earlier versions, and writes the file. Returns NULL, or why it could not (static). */
+/* Removes a saved view with its earlier versions, and writes the file. Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code named_views_remove(struct named_views *views, const char *id);
-/* Returns a number that increases with each change; 0: there has been no view. */
+/* Returns the change counter; 0: there has been no view. */
 uint64_t named_views_number(const struct named_views *views);
-/* Returns the message `views` with all of them, without earlier versions, or with those of the view `id` as `before` (NULL: of none),
-   which belongs to the caller. */
+/* Returns the message `views` with all views; the view `id` has its earlier versions as `before` (NULL: no view has). The caller owns
+   it. */
 json_t *named_views_message(const struct named_views *views, const char *id);
-/* For a core and its renderers: return the list of views that people saved, which belongs to them; and take it from the other one (false:
-   it is none, and nothing changed). */
+/* For a core and its renderers: return the list of saved views, owned by `views`; replace it by that of the other daemon (false:
+   invalid, nothing changed). */
 json_t *named_views_list(const struct named_views *views);
 bool named_views_mirror(struct named_views *views, json_t *list);
 

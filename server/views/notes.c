@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Notes in the order in which they were made. */
+/* Stores notes in the order in which they were made. */
 #include "views/notes.h"
 
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include "views/kept_list.h"
 
 struct notes {
-    struct kept_list kept; /* { id, text, tag or asset or position, by, time_us, until_us, ended_us, ended_by }; times that are not: 0 */
+    struct kept_list kept; /* { id, text, tag or asset or position, by, time_us, until_us, ended_us, ended_by }; absent times are 0 */
 };
 
 static int64_t time_of(const json_t *note, const char *name)
@@ -18,7 +18,7 @@ static int64_t time_of(const json_t *note, const char *name)
     return json_integer_value(json_object_get(note, name));
 }
 
-/* 0: it does not end by itself, and nobody has ended it. */
+/* Returns when a note ends or ended; 0: it has no end and nobody has ended it. */
 static int64_t end_of(const json_t *note)
 {
     int64_t until_us = time_of(note, "until_us"), ended_us = time_of(note, "ended_us");
@@ -94,7 +94,7 @@ static void forget_oldest(json_t *list, int64_t now_us)
         }
 }
 
-/* By its time; of two at once, and where the clock was set back, the next that is free. */
+/* Makes an id from the time; the next free one if that exists, since two notes may be simultaneous or the clock may be set back. */
 static void make_id(const json_t *list, int64_t now_us, char id[NOTE_ID_BYTES])
 {
     do

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What people note at a place, an asset or a tag, until when; in notes.json in the folder of the history. Those that have ended, by their
-   time or by hand, are kept for whoever takes over. Thread: the loop. */
+/* Notes of users on a position, an asset or a tag, with an optional end; stored in notes.json in the history's folder. Notes that have
+   expired or been removed are stored for the next shift. Thread: the loop. */
 #ifndef VIEWS_NOTES_H
 #define VIEWS_NOTES_H
 #include <jansson.h>
@@ -10,35 +10,35 @@
 #include "base/log/log.h"
 #include "base/refusal.h"
 
-enum { NOTES = 100, NOTES_ENDED = 400 /* of these the newest are kept */, NOTE_TEXT_BYTES = 401, NOTE_ID_BYTES = 24 };
+enum { NOTES = 100, NOTES_ENDED = 400 /* number of the newest ended notes that are stored */, NOTE_TEXT_BYTES = 401, NOTE_ID_BYTES = 24 };
 #define NOTES_FILE "notes.json"
 
 struct note {
     const char *text;
-    const char *tag, *asset;   /* where it is: one of them, or the position */
+    const char *tag, *asset; /* where it is attached: one of the two, or position_m */
     const double *position_m;
-    int64_t until_us;          /* UTC; 0: until it is removed */
+    int64_t until_us; /* UTC; 0: until it is removed */
 };
 
 struct notes;
-/* Reads the notes. folder: of the history; NULL: none can be made. A file that cannot be read counts as empty (logged) and is not written
-   over. Never returns NULL. folder must outlive them. */
+/* Reads the notes. folder: the history's folder; NULL: no notes can be made. An unreadable file counts as empty (logged) and is not
+   overwritten. Never returns NULL. `folder` must outlive the notes. */
 struct notes *notes_open(struct log *log, const char *folder);
-void notes_close(struct notes **notes); /* &NULL is fine; leaves NULL */
-/* Adds a note of a person and writes the file. Returns NULL and its id, or why it could not (static). */
+void notes_close(struct notes **notes); /* Frees the notes. &NULL is fine; leaves NULL. */
+/* Adds a user's note and writes the file. Returns REFUSAL_NONE with the note's id, or why it failed. */
 enum refusal_code notes_add(struct notes *notes, const struct note *note, const char *who, int64_t now_us, char id[NOTE_ID_BYTES]);
-/* Ends a note and writes the file. Returns NULL, or why it could not (static). */
+/* Ends a note and writes the file. Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us);
-/* Returns a number that increases with each change; 0: there has been no note. */
+/* Returns the change counter; 0: there has been no note. */
 uint64_t notes_number(const struct notes *notes);
-/* Return the message `notes` with the notes in force at an instant, or with all that were in force in a span of time, with how they ended.
-   Free with mem_free. */
+/* Return the message `notes` with the notes valid at an instant, or with all notes valid at some time in a span and how they ended. Free
+   with mem_free(). */
 char *notes_text(const struct notes *notes, int64_t now_us);
 char *notes_text_between(const struct notes *notes, int64_t from_us, int64_t to_us);
-/* Returns whether other notes are in force at one instant than at another. */
+/* Returns whether the sets of notes valid at two instants differ. */
 bool notes_differ(const struct notes *notes, int64_t one_us, int64_t other_us);
-/* For a core and its renderers: return the list of notes, which belongs to them; and take it from the other one (false: it
-   is none, and nothing changed). */
+/* For a core and its renderers: return the list of notes, owned by `notes`; replace it by that of the other daemon (false: invalid,
+   nothing changed). */
 json_t *notes_list(const struct notes *notes);
 bool notes_mirror(struct notes *notes, json_t *list);
 

@@ -7,7 +7,7 @@
 
 #include "base/text/utf8.h"
 
-enum { SIGNATURE_BYTES = 8, CHUNK_BYTES = 12 /* length, type, checksum */, HEAD_BYTES = 13 };
+enum { SIGNATURE_BYTES = 8, CHUNK_BYTES = 12 /* CHUNK_BYTES: length, type, checksum */, HEAD_BYTES = 13 };
 
 static const char *value_of(const char *header, const char *name)
 {
@@ -21,7 +21,7 @@ static int hex(char c)
     return at ? (int)(at - digits) : -1;
 }
 
-/* Up to the next comma or blank; "" unless it is text of UTF-8 without control characters that fits. */
+/* Reads a name up to the next comma or blank; "" unless it is UTF-8 without control characters and fits. */
 static void read_name(const char *at, char out[OTHER_NAME_BYTES])
 {
     size_t count = 0;

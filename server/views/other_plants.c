@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that asks. A picture counts from when it was asked for: what the server took to make it is part of its age. */
+/* The thread that requests pictures. A picture's age counts from the time of the request, which includes the time the server took to
+   draw it. */
 #include "views/other_plants.h"
 
 #include <jansson.h>
@@ -20,7 +21,7 @@
 enum { CONNECT_S = 5, TIMEOUT_S = 10, PICTURE_BYTES = 8 << 20, HEADER_BYTES = 1024, LEAST_PAUSE_S = 5, MOST_PAUSE_S = 60, REST_MS = 60000 };
 static const int64_t WANTED_NS = 30 * NS_PER_S;
 
-/* Why there is no picture, as clients are told; the log says more. */
+/* reasons for a missing picture, as sent to clients; the log has details */
 enum why { WHY_NONE, WHY_WAITING, WHY_UNREACHABLE, WHY_TLS, WHY_TOKEN, WHY_REFUSED, WHY_BUSY, WHY_SLOW, WHY_LARGE, WHY_NO_PICTURE };
 static const char *const why_names[] = { [WHY_NONE] = "",     [WHY_WAITING] = "waiting", [WHY_UNREACHABLE] = "unreachable",
                                          [WHY_TLS] = "tls",   [WHY_TOKEN] = "token",     [WHY_REFUSED] = "refused",
@@ -29,18 +30,18 @@ static const char *const why_names[] = { [WHY_NONE] = "",     [WHY_WAITING] = "w
 
 struct other {
     const struct other_plant *plant;
-    struct http_request request; /* its answer: the picture */
-    char header[HEADER_BYTES];   /* Plantcast-Frame of the answer */
+    struct http_request request;        /* its `answer` receives the picture */
+    char header[HEADER_BYTES];          /* header Plantcast-Frame of the answer */
     int64_t due_ns, begun_ns, begun_us; /* begun_us: the plant's time */
     bool running, failing;
-    /* --- below: under lock */
-    int64_t wanted_ns;     /* when somebody asked for it last; 0: nobody did */
+    /* --- below: under `lock` */
+    int64_t wanted_ns; /* monotonic time of a client's last request for it; 0: none */
     struct other_picture about;
-    char *png;             /* NULL: none */
+    char *png; /* picture; NULL: none */
     size_t bytes;
-    int64_t asked_ns, asked_us; /* of the picture that came last; asked_us is its number too; 0: none came */
-    int64_t since_us;      /* since when there is none */
-    enum why why;          /* WHY_NONE: it came */
+    int64_t asked_ns, asked_us; /* request time of the last picture; asked_us is also its number; 0: none has come */
+    int64_t since_us;           /* plant's time since which there is no picture */
+    enum why why;               /* WHY_NONE: there is a picture */
 };
 
 struct other_plants {
@@ -86,7 +87,7 @@ static bool make_request(struct other *other)
     return true;
 }
 
-/* Reads the token anew. Returns NULL, or why it cannot (mem_free). */
+/* Reads the token file and sets the token. Returns NULL, or the reason of a failure (mem_free). */
 static char *set_token(struct other *other)
 {
     char *why = NULL, *token = other->plant->token_file ? secret_read(other->plant->token_file, &why) : NULL;
@@ -100,7 +101,7 @@ static enum why why_of(CURLcode code)
     switch (code) {
     case CURLE_OK: return WHY_NONE;
     case CURLE_OPERATION_TIMEDOUT: return WHY_SLOW;
-    case CURLE_WRITE_ERROR: /* longer than may be */
+    case CURLE_WRITE_ERROR: /* the answer is too long */
     case CURLE_FILESIZE_EXCEEDED: return WHY_LARGE;
     case CURLE_PEER_FAILED_VERIFICATION:
     case CURLE_SSL_CACERT_BADFILE:
@@ -117,7 +118,7 @@ static enum why why_of_status(long status)
                                             : WHY_NO_PICTURE;
 }
 
-/* Of an answer that came whole: what is wrong with it, with a word for the log. */
+/* Checks a complete answer. Returns what is wrong with it, with a description for the log. */
 static enum why judge(struct other *other, struct other_picture *about, char said[160])
 {
     const struct other_plant *plant = other->plant;
@@ -138,7 +139,7 @@ static enum why judge(struct other *other, struct other_picture *about, char sai
     return why;
 }
 
-/* A server that is busy, or was slow once, is not gone: its last picture is shown until that is too old. */
+/* Records a failed request. A server that is busy or slow is not gone: its last picture is shown until it is too old. */
 static void note_failure(struct other_plants *others, struct other *other, enum why why, const char *said)
 {
     pthread_mutex_lock(&others->lock);
@@ -170,7 +171,7 @@ static void note_picture(struct other_plants *others, struct other *other, const
     other->failing = false;
 }
 
-/* From one beginning to the next, but a server that says when to come again is left alone until then. */
+/* Sets the time of the next request: one interval after the last one began, or later if the server states Retry-After. */
 static void rest(struct other *other, bool good)
 {
     curl_off_t pause_s = 1;
@@ -225,7 +226,7 @@ static void begin(struct other_plants *others, struct other *other)
 
 /* --- the thread ------------------------------------------------------------------------------------------------------------- */
 
-/* Begins what is due. Returns in how many milliseconds something else is. */
+/* Begins all requests that are due. Returns the number of milliseconds until the next one is due. */
 static int begin_due(struct other_plants *others)
 {
     int64_t now_ns = clock_mono_ns(), next_ns = now_ns + REST_MS * NS_PER_MS;
@@ -233,7 +234,7 @@ static int begin_due(struct other_plants *others)
         struct other *other = &others->at[i];
         pthread_mutex_lock(&others->lock);
         bool wanted = other->wanted_ns && now_ns - other->wanted_ns < WANTED_NS;
-        if (!wanted && other->wanted_ns && !other->running) { /* nobody looks: what it was is not kept */
+        if (!wanted && other->wanted_ns && !other->running) { /* no display shows it any more: drop the picture */
             mem_free(other->png);
             other->png = NULL;
             other->wanted_ns = other->asked_us = 0;
@@ -296,7 +297,7 @@ char *other_plants_text(struct other_plants *others, const int *which, size_t co
     pthread_mutex_lock(&others->lock);
     for (size_t i = 0; i < count; i++) {
         struct other *other = &others->at[which[i]];
-        if (!other->wanted_ns) { /* begun anew */
+        if (!other->wanted_ns) { /* the first request of a display */
             other->why = WHY_WAITING;
             other->since_us = clock_plant_ns() / 1000;
             wakes = true;

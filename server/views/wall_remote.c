@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A pane has one order at most: the newest. */
+/* Each pane has at most one order: the newest. */
 #include "views/wall_remote.h"
 
 #include <stdio.h>
@@ -9,7 +9,7 @@
 #include "base/text/json_text.h"
 #include "views/kept_list.h"
 
-enum { SEEN = 256 }; /* displays; the plant file has no more */
+enum { SEEN = 256 }; /* maximum number of displays in the plant file */
 
 struct pointer {
     struct wall_place place;
@@ -127,7 +127,7 @@ static bool same_place(const struct wall_place *a, const struct wall_place *b)
 
 static void set_pointer(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *by)
 {
-    struct pointer *pointer = &remote->pointers[0]; /* the pane's own, or the one that was moved longest ago */
+    struct pointer *pointer = &remote->pointers[0]; /* the pane's own pointer, else the one moved least recently */
     for (int i = 0; i < WALL_POINTERS; i++) {
         if (same_place(&remote->pointers[i].place, place)) {
             pointer = &remote->pointers[i];
@@ -209,7 +209,8 @@ uint64_t wall_remote_pointer_number(const struct wall_remote *remote)
     return remote->pointed;
 }
 
-/* What was sent to a pane that is no more is not told, and kept: the plant file may have it again. */
+/* Returns whether the pane of an order exists. An order for a missing pane is stored but not sent: a later plant file may have the pane
+   again. */
 static bool is_there(const struct wall_remote *remote, const json_t *order)
 {
     struct wall_place place = { .display = (int)json_integer_value(json_object_get(order, "display")) };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What desks do to the panes of walls: a view sent there, a pane held, a place pointed at; and which displays are there. What was sent is
-   in walls.json in the folder of the history, where there is one, until the pane is given back. Thread: the loop. */
+/* Remote control of wall panes from desks: a view sent to a pane, a pane held, a position pointed at; and which displays are connected.
+   Orders are stored in walls.json in the history's folder, if any, until the pane is released. Thread: the loop. */
 #ifndef VIEWS_WALL_REMOTE_H
 #define VIEWS_WALL_REMOTE_H
 #include <jansson.h>
@@ -15,40 +15,40 @@ enum { WALL_DESK_BYTES = 121, WALL_AREA_BYTES = 61, WALL_POINTERS = 8 };
 
 struct wall_place {
     char wall[NAMED_VIEW_ID_BYTES], area[WALL_AREA_BYTES]; /* area "": the whole display */
-    int display;                                           /* from 1; 0: none */
+    int display;                                           /* number from 1; 0: none */
 };
 
 struct wall_order {
     struct wall_place place;
-    const char *view, *title; /* as of a view with a name; view "": the pane's own */
-    bool held;                /* what is shown stays. Neither view nor held: the pane is given back */
+    const char *view, *title; /* as in a named view; view "": the pane's own */
+    bool held;                /* the pane stops changing. Neither `view` nor `held`: the pane is released */
     const char *desk;
 };
 
 struct wall_remote;
-/* Reads what was sent. folder: of the history; NULL: it is forgotten with the daemon. A file that cannot be read counts as empty (logged)
-   and is not written over. Never returns NULL. plant and folder must outlive it. */
+/* Reads the orders. folder: the history's folder; NULL: orders are lost when the daemon ends. An unreadable file counts as empty
+   (logged) and is not overwritten. Never returns NULL. `plant` and `folder` must outlive the result. */
 struct wall_remote *wall_remote_open(struct log *log, const struct plant *plant, const char *folder);
-void wall_remote_close(struct wall_remote **remote); /* &NULL is fine; leaves NULL */
-/* Returns what of a place is not in the plant file (static), or NULL. */
+void wall_remote_close(struct wall_remote **remote); /* Frees the orders. &NULL is fine; leaves NULL. */
+/* Returns why a place cannot be controlled: it is missing in the plant file, or its pane has no views (static). NULL: it can. */
 const char *wall_place_wrong(const struct plant *plant, const struct wall_place *place);
-/* Does it, and writes the file. The place must be in the plant file. Returns NULL, or why it could not (static). */
+/* Carries out an order and writes the file. The place must exist in the plant file. Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code wall_remote_order(struct wall_remote *remote, const struct wall_order *order, const char *who, int64_t now_us);
-/* Has a pane show where somebody points. position_m: NULL: nowhere any more. */
+/* Shows in a pane the position at which a user points. position_m NULL: removes the pointer. */
 void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who,
                        const char *desk);
-/* Takes `pointed` as wall_remote_pointers_text() of another daemon says it. Returns false if it is none. */
+/* Replaces the pointers by `pointed`, the wall_remote_pointers_text() of another daemon. Returns false if it is invalid. */
 bool wall_remote_mirror_pointers(struct wall_remote *remote, const json_t *pointed);
-/* Notes whether a display is connected. */
+/* Records whether a display is connected. */
 void wall_remote_see(struct wall_remote *remote, const char *wall, int display, bool there);
-/* Return numbers that increase with each change of what the next two say. */
+/* Return the change counters of the two texts below. */
 uint64_t wall_remote_number(const struct wall_remote *remote);
 uint64_t wall_remote_pointer_number(const struct wall_remote *remote);
-/* Return the message `walls`; and `pointed` with what changed after that number. Free with mem_free. */
+/* Return the message `walls`, and the message `pointed` with the changes after that number. Free with mem_free(). */
 char *wall_remote_text(const struct wall_remote *remote);
 char *wall_remote_pointers_text(const struct wall_remote *remote, uint64_t after);
-/* For a core and its renderers: return the list of what was sent to panes, which belongs to them; and take it from the other one (false: it
-   is none, and nothing changed). */
+/* For a core and its renderers: return the list of orders, owned by `remote`; replace it by that of the other daemon (false: invalid,
+   nothing changed). */
 json_t *wall_remote_list(const struct wall_remote *remote);
 bool wall_remote_mirror(struct wall_remote *remote, json_t *list);
 
