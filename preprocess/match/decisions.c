@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows of matches.csv. */
+/* Reads and writes the rows of matches.csv. */
 #include "preprocess/match/decisions.h"
 
 #include <errno.h>
@@ -28,7 +28,7 @@ static void add_cell(struct text *out, const char *cell)
         text_add(out, "%s", cell);
 }
 
-/* The status as written, and a hash of it with the asset. */
+/* Computes the check cell of a row: first letter of the status, then a hash of tag, status and asset. */
 static void find_check(const char *tag, const char *status, const char *asset, char check[16])
 {
     char *all = mem_printf("%s\n%s\n%s", tag, status, asset);
@@ -92,7 +92,8 @@ static bool find_columns(const struct table_row *header, int columns[COLUMNS], c
     return true;
 }
 
-/* Which of the two a person changed is told by the first sign of the check, the status as it was written. */
+/* Reads a row and compares it with its check cell. If the row was edited and the status still has the check's first letter, the person
+ * changed the asset. */
 static bool read_row(struct decision *out, const struct table_row *row, const int columns[COLUMNS], char why[MATCH_WHY_BYTES])
 {
     const char *status = table_cell(row, columns[STATUS]), *asset = table_cell(row, columns[ASSET]),

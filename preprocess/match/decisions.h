@@ -1,35 +1,38 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* matches.csv: what each tag was matched to, and why; what people change in it is kept and obeyed. Thread: one. */
+/* Reads and writes matches.csv: the equipment that each tag was matched to, and why. Rows that people edited are kept and override the
+ * matcher. Thread: one. */
 #ifndef PREPROCESS_MATCH_DECISIONS_H
 #define PREPROCESS_MATCH_DECISIONS_H
 #include "base/text/text.h"
 #include "preprocess/match/matcher.h"
 
-struct decision { /* a row, as it was */
+struct decision { /* one row of the file */
     char *tag, *asset;
-    enum match_status status; /* of a row by hand what it means now */
-    bool by_hand, edited;     /* edited: since it was written */
-    char *row;                /* all of it, with its line end */
+    enum match_status status; /* status in the file; for a row edited by hand, the status that the edit implies */
+    bool by_hand, edited;     /* by_hand: a person decided it; edited: a person changed it since the last run wrote it */
+    char *row;                /* text of the whole row with its line end */
 };
 
 struct decisions {       /* zero-initialise */
-    struct decision *at; /* in the order of the file */
-    int *by_tag;         /* the first of each tag, sorted; upper and lower case taken as one */
+    struct decision *at; /* in file order */
+    int *by_tag;         /* index of each tag's first decision, sorted by tag, case-insensitive */
     size_t count, capacity, tags;
 };
 
-/* Reads a file that decisions_add_row() wrote, perhaps changed since, or one that has Tag, Status and Asset alone. A file that is not there
- * has none. What was read before goes before what the file has of the same tag. Returns false with the reason. */
+/* Reads a file written by decisions_add_row(), possibly edited since, or one with only the columns Tag, Status and Asset. A missing file
+ * counts as empty. Decisions already in `decisions` take precedence over the file's for the same tag. Returns false with the reason in
+ * why. */
 bool decisions_read(struct decisions *decisions, const char *path, char why[MATCH_WHY_BYTES]);
-/* Returns the decision about a tag, or NULL. */
+/* Returns the decision about a tag, or NULL if there is none. */
 const struct decision *decisions_of(const struct decisions *decisions, const char *tag);
 void decisions_finish(struct decisions *decisions);
 
-/* Returns the file's text without the rows of these tags (mem_free), so that they are matched anew; NULL if it cannot be read. */
+/* Returns the file's text without the rows of these tags, so that the next run matches them again. The caller frees it (mem_free). Returns
+ * NULL if the text cannot be parsed. */
 char *decisions_without(const char *text, const char *const *tags, size_t count);
 
-/* Appends the header, and a row, with bars between the assets that a tag may be on. A row that people changed is told by its last cell,
- * which depends on what was written. */
+/* Append the header line, or one row. Several assets that a tag may belong to are separated by bars. The row's last cell is a check of the
+ * written status and asset, by which a later run detects edits. */
 void decisions_add_header(struct text *out);
 void decisions_add_row(struct text *out, const struct plant *plant, const char *tag, const struct match *match, const char *asset,
                        const char *place, bool by_hand);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The fields that an exported tag list has of a tag. */
+/* The fields of a tag in an exported tag list. */
 #ifndef PREPROCESS_MATCH_EXPORT_FIELD_H
 #define PREPROCESS_MATCH_EXPORT_FIELD_H
 
-enum export_field { /* of a tag, as text; numbers have a decimal point */
+enum export_field { /* all fields are text; numbers use a decimal point */
                     EXPORT_NAME,
                     EXPORT_ADDRESS,
                     EXPORT_TYPE,

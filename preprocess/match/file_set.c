@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Temporary files of all of them first, then the renamings. */
+/* Writes temporary files, then renames all of them. */
 #include "preprocess/match/file_set.h"
 
 #include <dirent.h>
@@ -15,7 +15,9 @@
 
 #include "base/mem.h"
 
-enum { LEFT_S = 60 }; /* a program of another container or machine has no number here, and is done sooner */
+/* age in seconds from which an orphaned file is removed; processes of other containers or machines are not visible here, but finish
+ * sooner */
+enum { LEFT_S = 60 };
 
 static bool is_old(int folder, const char *name)
 {
@@ -23,7 +25,7 @@ static bool is_old(int folder, const char *name)
     return fstatat(folder, name, &st, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(st.st_mode) && st.st_mtime + LEFT_S < time(NULL);
 }
 
-/* NAME.PID.new of a list or the plant file, or .trial.PID.yaml, of a program that is not there any more. */
+/* Returns whether a file is a temporary file (NAME.PID.new or .trial.PID.yaml) of a process that no longer exists. */
 static bool is_left(int folder, const char *name)
 {
     static const char *const begins[] = { "plant.yaml.", "tags.csv.", "matches.csv.", ".trial." };
@@ -53,7 +55,7 @@ int file_set_lock(const struct plant_folder_params *params, char **why)
     return fd;
 }
 
-/* Whoever may read and write the file that is there may do so with the new one. */
+/* Gives the new file the mode and owner of the existing one. */
 static int take_rights(int fd, const char *path)
 {
     struct stat st;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of a plant's folder that one run replaces: all of them are on disk beside the old ones before the first takes its place, and they
- * take their places in the order in which they were added. Functions that return int return 0 or -errno. Thread: one. */
+/* Replaces several files of a plant's folder in one run. All new files are written to disk before the first old one is replaced;
+ * replacement follows the order in which they were added. Functions that return int return 0 or -errno. Thread: one. */
 #ifndef PREPROCESS_MATCH_FILE_SET_H
 #define PREPROCESS_MATCH_FILE_SET_H
 #include <stdbool.h>
@@ -15,12 +15,14 @@ struct file_set { /* zero-initialise */
     int count;
 };
 
-/* Takes the folder as plant_folder_lock() does, and also removes what killed runs left in it. */
+/* Locks the folder as plant_folder_lock() does, and removes temporary files left by killed runs. */
 int file_set_lock(const struct plant_folder_params *params, char **why);
-/* Writes what will be at `path` beside it, with the owner and rights of the file that is there; where that is a link, beside its target. */
+/* Writes the new content of `path` to a temporary file in the same folder, with the owner and mode of the existing file. If `path` is a
+ * symlink, its target will be replaced. */
 int file_set_add(struct file_set *set, const char *path, const char *text);
-/* Puts all of them in their places. On failure those before stay replaced, and the rest is removed. */
+/* Renames all temporary files to their final names. On failure, files renamed so far stay replaced, and the other temporary files are
+ * removed. */
 int file_set_commit(struct file_set *set);
-void file_set_abandon(struct file_set *set); /* removes what is not in its place; none is fine */
+void file_set_abandon(struct file_set *set); /* removes the temporary files that were not committed; an empty set is fine */
 
 #endif

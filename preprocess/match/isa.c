@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* ANSI/ISA-5.1-2009, table 4.1: identification letters. */
+/* Identification letters of ANSI/ISA-5.1-2009, table 4.1. */
 #include "preprocess/match/isa.h"
 
 #include <string.h>
@@ -28,7 +28,8 @@ const char *isa_quantity(char variable)
     return NULL;
 }
 
-/* A variable, perhaps a modifier (D, F, J, K, M, Q, S, X, Y, Z), then functions; H, L and O only behind a function. */
+/* Valid letters: a variable, optionally a modifier (D, F, J, K, M, Q, S, X, Y, Z), then functions. H, L and O are valid only after a
+ * function. */
 bool isa_are_letters(const char *letters)
 {
     static const char functions[] = "ACEGIKQRSTUVWYZ";
@@ -40,7 +41,7 @@ bool isa_are_letters(const char *letters)
     return strchr(functions, letters[at]) && letters[at] && strspn(letters + at, "ACEGIKQRSTUVWYZHLOM") == length - at;
 }
 
-/* What control systems call a point's parameters. */
+/* Attribute words that control systems append to names, and their roles. */
 static const struct {
     const char *word;
     enum isa_role role;
@@ -55,7 +56,7 @@ static const struct {
     { "HIHI", ISA_STATE },      { "LOLO", ISA_STATE },     { "ACK", ISA_STATE },
 };
 
-/* Drops attributes behind a sign: the last decides. */
+/* Removes attributes that follow a separator. The last one determines the role. */
 static void drop_attributes(struct isa_name *name)
 {
     bool first = true;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A hash table with chains. */
+/* Hash table with chained entries. */
 #include "preprocess/match/key_map.h"
 
 #include <string.h>
@@ -18,7 +18,7 @@ static void grow(struct key_map *map)
     mem_free(map->slots);
     map->slots = mem_array(map->slot_count, sizeof(*map->slots));
     memset(map->slots, 0xff, map->slot_count * sizeof(*map->slots));
-    for (size_t i = map->count; i-- > 0;) { /* the first of each slot comes first */
+    for (size_t i = map->count; i-- > 0;) { /* insert in reverse, so that the oldest entry heads each chain */
         int *slot = &map->slots[slot_of(map, map->things[i].key)];
         map->things[i].next = *slot;
         *slot = (int)i;

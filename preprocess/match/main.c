@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-match`: tags of a control system to equipment of a model. `plantcast match` runs it. */
+/* `plantcast-match`: matches tags of a control system to equipment of a model. `plantcast match` runs this program. */
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,7 +37,7 @@ static void print_usage(FILE *out)
 
 enum { EQUIPMENT_MOST = 100 };
 
-/* Takes the argument of an option. Returns false, already said, if it is no number between these. */
+/* Parses the numeric argument of an option. Returns false after printing an error if it is not a number between least and most. */
 static bool take_number(const char *option, const char *range, long least, long most, long *number)
 {
     char *end;

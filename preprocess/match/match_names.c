@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ways by name: a node of the tag's name, the site's rules, equipment named within the tag's name, the same with slips of spelling. */
+/* Matching by name: a node with the tag's name, the site's rules, equipment named within the tag's name, and equipment named with a
+ * spelling slip. */
 #include <stdio.h>
 #include <string.h>
 
@@ -64,7 +65,7 @@ static const char *node_name(const struct matcher *matcher, const struct match_c
     return matcher->site->models[asset->model].nodes[list->nodes[0]].name;
 }
 
-bool way_own_node(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
+bool method_own_node(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     const struct name_tokens *tokens = &subject->name.tokens;
     char key[NAME_KEY_BYTES];
@@ -93,7 +94,7 @@ static void put_groups(struct text *out, const char *equipment, const char *name
         }
 }
 
-bool way_rules(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
+bool method_rules(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     const char *name = subject->tag->fields[EXPORT_NAME];
     for (size_t i = 0; i < matcher->rule_count; i++) {
@@ -116,18 +117,18 @@ bool way_rules(const struct matcher *matcher, const struct match_subject *subjec
     return false;
 }
 
-/* --- equipment named within the name ---------------------------------------------------------------------------------------- */
+/* --- equipment named in the tag --------------------------------------------------------------------------------------------- */
 
 static bool is_apart(const struct name_tokens *tokens, int from, int to)
 {
     bool before = tokens->at[from].apart, behind = to == tokens->count || tokens->at[to].apart;
-    /* A single letter behind tells two pieces of equipment apart: E-101-A is not E-101. */
+    /* A single letter after the number distinguishes equipment: E-101-A is not E-101. */
     bool letter = to < tokens->count && !tokens->at[to].digits && strlen(tokens->at[to].text) == 1 && tokens->at[to].text[0] <= 'F' &&
                   tokens->at[to - 1].digits;
     return before && behind && !letter;
 }
 
-/* The longest range of tokens that names something; before it has to be a sign, and behind. */
+/* Finds the longest range of tokens that names equipment. Separators must enclose the range. */
 static bool find_within(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     for (int length = tokens->count; length >= 1; length--)
@@ -144,7 +145,7 @@ static bool find_within(const struct matcher *matcher, const struct name_tokens 
     return false;
 }
 
-bool way_name_within(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
+bool method_name_within(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     bool in_name = find_within(matcher, &subject->name.tokens, out);
     if (!in_name && !find_within(matcher, &subject->area, out))
@@ -157,7 +158,7 @@ bool way_name_within(const struct matcher *matcher, const struct match_subject *
 
 /* --- slips of spelling ------------------------------------------------------------------------------------------------------ */
 
-/* O for 0, I or L for 1. */
+/* Finds equipment whose name differs only by O for 0, or I or L for 1. */
 static bool find_folded(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     for (int length = tokens->count; length >= 1; length--)
@@ -175,7 +176,7 @@ static bool find_folded(const struct matcher *matcher, const struct name_tokens 
     return false;
 }
 
-/* The same digits, and letters with one slip. Of equipment with the same digits only one may be near. */
+/* Finds equipment with the same digits and letters that differ by one slip. Proposes nothing if several assets are that close. */
 static bool find_slip(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     const struct key_map *map = &matcher->site->digits;
@@ -204,7 +205,7 @@ static bool find_slip(const struct matcher *matcher, const struct name_tokens *t
     return false;
 }
 
-/* The end of a name alone, after a sign: 1105-BA of ART1105BA. */
+/* Finds equipment whose name ends with the tokens, after a separator: ART1105BA for 1105-BA. */
 static bool find_ending(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     for (int length = tokens->count; length >= 2; length--)
@@ -214,7 +215,7 @@ static bool find_ending(const struct matcher *matcher, const struct name_tokens 
             if (!is_apart(tokens, from, from + length) || !candidates_find(&out->candidates, &matcher->site->endings, key))
                 continue;
             const struct name_tokens *of = &matcher->site->assets[out->candidates.assets[0]].tokens;
-            int dropped = of->count - length - 1; /* the token before, in the asset's name */
+            int dropped = of->count - length - 1; /* index of the asset's token before the shared ending */
             const struct name_token *before = from > 0 ? &tokens->at[from - 1] : NULL;
             bool contradicts = before && dropped >= 0 && before->digits == of->at[dropped].digits &&
                                strcmp(before->text, of->at[dropped].text) != 0 && !isa_are_letters(before->text);
@@ -225,7 +226,7 @@ static bool find_ending(const struct matcher *matcher, const struct name_tokens 
     return false;
 }
 
-bool way_spelling(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
+bool method_spelling(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     const struct name_tokens *tokens = &subject->name.tokens;
     return find_folded(matcher, tokens, out) || find_slip(matcher, tokens, out) || find_ending(matcher, tokens, out);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The way by number: loops have the number of their equipment, perhaps with a digit or two behind (ISA-5.1, 4.2; ISA-5.1-2009 annex A). */
+/* Matching by number: a loop has the number of its equipment, perhaps with one or two more digits (ISA-5.1, 4.2; ISA-5.1-2009 annex A). */
 #include <stdio.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@ static bool has_token(const struct name_tokens *tokens, const struct name_token 
     return false;
 }
 
-/* How what stands before the letters fits: 2 it is in the asset's name or area, 1 it says nothing, 0 it is another area. */
+/* Rates the tag's prefix: 2 if it occurs in the asset's name or area, 1 if it says nothing, 0 if it is another area. */
 static int rate_prefix(const struct matcher *matcher, const struct match_subject *subject, int asset)
 {
     const struct isa_name *name = &subject->name;
@@ -32,7 +32,7 @@ static int rate_prefix(const struct matcher *matcher, const struct match_subject
     return name->letters <= 0 || leads || (*matcher->common_prefix && !strcmp(key, matcher->common_prefix));
 }
 
-/* The letter behind the equipment's number that tells A from B, or "". */
+/* Returns the letter after the equipment's number that distinguishes A from B, or "". */
 static const char *suffix_of(const struct indexed_asset *asset)
 {
     int at = asset->number + 1;
@@ -40,7 +40,7 @@ static const char *suffix_of(const struct indexed_asset *asset)
     return *text >= 'A' && *text <= 'F' && !text[1] ? text : "";
 }
 
-/* What descriptions call equipment, and letters that its names have. */
+/* Words for equipment in descriptions, and letters in names of such equipment. */
 static const struct {
     const char *word, *letters;
 } classes[] = {
@@ -82,7 +82,7 @@ static bool has_word(const char *list, const char *word)
     return false;
 }
 
-/* Whether the description has a word for the asset's letters. */
+/* Returns whether the description has a word that fits the letters of the asset's name. */
 static bool fits_class(const struct matcher *matcher, const struct match_subject *subject, int asset)
 {
     const struct indexed_asset *of = &matcher->site->assets[asset];
@@ -97,7 +97,7 @@ static bool fits_class(const struct matcher *matcher, const struct match_subject
 
 enum number_filter { PREFIX_FITS, SAME_SUFFIX, NO_SUFFIX, FITS_CLASS };
 
-/* Keeps those that pass, if there are any. */
+/* Keeps the candidates that pass the filter, or all if none passes. */
 static void keep(const struct matcher *matcher, const struct match_subject *subject, struct match_candidates *list,
                  enum number_filter filter)
 {
@@ -115,7 +115,7 @@ static void keep(const struct matcher *matcher, const struct match_subject *subj
         *list = kept;
 }
 
-/* Drops equipment with another letter behind its number. */
+/* Removes candidates with a suffix letter that differs from the tag's. */
 static void drop_other_suffix(const struct matcher *matcher, const struct match_subject *subject, struct match_candidates *list)
 {
     struct match_candidates kept = { .more = list->more };
@@ -127,13 +127,14 @@ static void drop_other_suffix(const struct matcher *matcher, const struct match_
     *list = kept;
 }
 
-bool way_number(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
+bool method_number(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     const struct isa_name *name = &subject->name;
     if (name->letters < 0)
         return false;
     const struct name_token *number = &name->tokens.at[name->number];
-    bool digits = false, letters = false; /* before the instrument's own: then equipment is named, and its number is that */
+    /* seen in the prefix; if both are, the prefix names equipment, and the equipment's number is used */
+    bool digits = false, letters = false;
     for (int i = 0; i < name->letters; i++) {
         digits |= name->tokens.at[i].digits && name->tokens.at[i].raw_length >= 3;
         letters |= !name->tokens.at[i].digits;
@@ -168,13 +169,14 @@ bool way_number(const struct matcher *matcher, const struct match_subject *subje
     return true;
 }
 
-/* --- parts of a name ---------------------------------------------------------------------------------------------------------- */
+/* --- parts of names ----------------------------------------------------------------------------------------------------------- */
 
-/* Whether the tokens, without those of the instrument, stand in the asset's name in this order. */
+/* Returns whether the tag's tokens, without its instrument letters and loop number, occur in the asset's name in the same order, including
+ * some letters. */
 static bool is_part(const struct isa_name *name, const struct name_tokens *of)
 {
     int at = 0;
-    bool letters = false; /* of the asset's name */
+    bool letters = false; /* letters of the asset's name were found */
     for (int i = 0; i < name->tokens.count; i++) {
         const struct name_token *token = &name->tokens.at[i];
         int next = at;
@@ -191,8 +193,8 @@ static bool is_part(const struct isa_name *name, const struct name_tokens *of)
     return letters;
 }
 
-/* The equipment's number with some of its name, but not all: RADIATOR-583216, 0001-F2. */
-bool way_parts(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
+/* Matches tags with the equipment's number and some other part of its name: RADIATOR-583216, 0001-F2. */
+bool method_parts(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     const struct isa_name *name = &subject->name;
     const struct key_map *map = &matcher->site->numbers;

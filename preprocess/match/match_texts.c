@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ways by text: attributes of nodes, equipment named in the description, words, aliases. */
+/* Matching by text: attributes of nodes, equipment named in the description, words, aliases. */
 #include <stdio.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "preprocess/match/matcher_impl.h"
 
-bool way_attributes(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
+bool method_attributes(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     const struct name_tokens *tokens = &subject->name.tokens;
     char key[NAME_KEY_BYTES];
@@ -19,7 +19,7 @@ bool way_attributes(const struct matcher *matcher, const struct match_subject *s
     return true;
 }
 
-/* Equipment numbers with a word of the equipment's name beside them. */
+/* Finds equipment by its number, if a word of its name is next to the number in the text. */
 static void find_numbers(const struct matcher *matcher, const struct name_tokens *tokens, struct match_candidates *out)
 {
     const struct key_map *map = &matcher->site->numbers;
@@ -38,8 +38,8 @@ static void find_numbers(const struct matcher *matcher, const struct name_tokens
     }
 }
 
-/* All equipment that the description names, by the longest ranges of tokens. */
-bool way_description(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
+/* Proposes all equipment named in the description; of overlapping names the longest counts. */
+bool method_description(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     const struct name_tokens *tokens = &subject->description;
     for (int from = 0; from < tokens->count; from++)
@@ -74,7 +74,7 @@ struct word_count {
         size_t letters;
     } at[256];
     int count;
-    const char *seen[NAME_MAX_TOKENS * 2]; /* words that were counted, each once */
+    const char *seen[NAME_MAX_TOKENS * 2]; /* distinct words counted so far */
     int seen_count;
 };
 
@@ -111,7 +111,7 @@ static void count_own(const char *word, void *data)
     ++*(int *)data;
 }
 
-/* Words of the asset's description, or of its name where that has no number: those that are asked for. */
+/* Returns the number of words an asset can be recognised by: those of its description, or of its name if that has no number. */
 static int own_words(const struct model_index *site, int asset)
 {
     int description = 0, name = 0;
@@ -121,7 +121,7 @@ static int own_words(const struct model_index *site, int asset)
     return name > 0 && (name < description || description == 0) ? name : description;
 }
 
-bool way_words(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
+bool method_words(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     struct word_count count = { .matcher = matcher };
     int most = 0;
@@ -155,7 +155,7 @@ static bool is_within(const struct name_tokens *part, const struct name_tokens *
     return false;
 }
 
-bool way_alias(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
+bool method_alias(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     int longest = 0;
     for (size_t i = 0; i < matcher->alias_count; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The ways in their order, and what becomes of it where they do not agree. */
+/* Runs the matching methods in order and weighs proposals that disagree. */
 #include "preprocess/match/matcher.h"
 
 #include <errno.h>
@@ -18,13 +18,13 @@ const char *const match_status_names[3] = { "none", "likely", "sure" };
 static const double sure = 0.85, strong = 0.96;
 static const size_t max_table_bytes = (size_t)16 << 20;
 
-typedef bool (*way)(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
-static const way ways[] = { way_own_node, way_rules,      way_name_within, way_parts, way_spelling,
-                            way_number,   way_attributes, way_description, way_words, way_alias };
-enum { FEW_PREFIXES = 20 }; /* of fewer nothing is common */
-enum { WAYS = sizeof(ways) / sizeof(*ways) };
+typedef bool (*match_method)(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
+static const match_method methods[] = { method_own_node, method_rules,      method_name_within, method_parts, method_spelling,
+                                        method_number,   method_attributes, method_description, method_words, method_alias };
+enum { MIN_PREFIXES = 20 }; /* minimum number of names with a prefix; among fewer, none counts as common */
+enum { METHODS = sizeof(methods) / sizeof(*methods) };
 
-/* Whether two names differ in one or two signs only, so that one may be meant for the other. */
+/* Returns whether two names differ in only one or two characters, so that one may be a typing error for the other. */
 static bool are_near(const char *a, const char *b)
 {
     size_t differ = 0;
@@ -40,8 +40,8 @@ static const char *id_of(const struct matcher *matcher, int asset)
     return matcher->site->plant->assets[asset].id;
 }
 
-/* Whether another way's proposal speaks against an asset. A whole name counts for more than what a description mentions, unless that is
- * nearly the same name. */
+/* Returns whether another method's proposal contradicts the chosen one. A full name outweighs equipment mentioned in a description, unless
+ * the two names are nearly equal. */
 static bool contradicts(const struct matcher *matcher, const struct proposal *chosen, const struct proposal *other)
 {
     int asset = chosen->candidates.assets[0];
@@ -62,18 +62,18 @@ static void add_candidates(const struct match_candidates *list, struct match *ou
     }
 }
 
-static void decide(const struct matcher *matcher, const struct proposal proposals[WAYS], struct match *out)
+static void decide(const struct matcher *matcher, const struct proposal proposals[METHODS], struct match *out)
 {
     struct text reason = { 0 };
     char names[200];
-    int chosen = -1, open = -1;                        /* open: proposed several, before */
-    for (int pass = 0; pass < 2 && chosen < 0; pass++) /* the first that is sure, else the first */
-        for (int i = 0; i < WAYS && chosen < 0; i++) {
+    int chosen = -1, open = -1;                        /* open: an earlier method that proposed several assets */
+    for (int pass = 0; pass < 2 && chosen < 0; pass++) /* first pass: only sure proposals; second pass: any */
+        for (int i = 0; i < METHODS && chosen < 0; i++) {
             const struct proposal *proposal = &proposals[i];
             if (proposal->candidates.count == 1 && !proposal->candidates.more && (pass == 1 || proposal->confidence >= sure))
                 chosen = i;
         }
-    for (int i = 0; i < (chosen < 0 ? WAYS : chosen) && open < 0; i++)
+    for (int i = 0; i < (chosen < 0 ? METHODS : chosen) && open < 0; i++)
         if (proposals[i].candidates.count > 1 && (chosen < 0 || proposals[i].confidence >= sure))
             open = i;
     if (chosen < 0) {
@@ -96,7 +96,7 @@ static void decide(const struct matcher *matcher, const struct proposal proposal
             text_add(&reason, ", but %s: %s", proposals[open].reason, names);
             out->confidence = 0.5;
         }
-        for (int i = chosen + 1; i < WAYS && out->confidence > 0.5; i++)
+        for (int i = chosen + 1; i < METHODS && out->confidence > 0.5; i++)
             if (proposals[i].candidates.count > 0 && contradicts(matcher, of, &proposals[i])) {
                 text_add(&reason, ", but %s (%s)", proposals[i].reason, id_of(matcher, proposals[i].candidates.assets[0]));
                 out->confidence = 0.5;
@@ -108,7 +108,7 @@ static void decide(const struct matcher *matcher, const struct proposal proposal
         out->status = out->confidence >= sure ? MATCH_SURE : MATCH_LIKELY;
         add_candidates(&of->candidates, out);
     }
-    for (int i = 0; i < WAYS; i++)
+    for (int i = 0; i < METHODS; i++)
         add_candidates(&proposals[i].candidates, out);
     if (out->status == MATCH_SURE)
         out->candidate_count = 0;
@@ -119,18 +119,18 @@ static void decide(const struct matcher *matcher, const struct proposal proposal
 static void match_one(const struct matcher *matcher, const struct export_tag *tag, struct match *out)
 {
     struct match_subject subject = { .tag = tag };
-    struct proposal proposals[WAYS];
+    struct proposal proposals[METHODS];
     memset(proposals, 0, sizeof(proposals));
     *out = (struct match){ .asset = -1, .node = -1 };
     isa_read(&subject.name, tag->fields[EXPORT_NAME]);
     name_tokens_read(&subject.area, tag->fields[EXPORT_AREA]);
     name_tokens_read(&subject.description, tag->fields[EXPORT_DESCRIPTION]);
-    for (int i = 0; i < WAYS; i++)
-        ways[i](matcher, &subject, &proposals[i]);
+    for (int i = 0; i < METHODS; i++)
+        methods[i](matcher, &subject, &proposals[i]);
     decide(matcher, proposals, out);
 }
 
-/* --- what most names begin with --------------------------------------------------------------------------------------------- */
+/* --- common prefix of names ------------------------------------------------------------------------------------------------- */
 
 static int by_text(const void *a, const void *b)
 {
@@ -154,7 +154,7 @@ static void find_common_prefix(struct matcher *matcher, const struct tag_export 
     for (size_t i = 0, end; i < count; i = end) {
         for (end = i + 1; end < count && !strcmp(prefixes[i], prefixes[end]); end++)
             ;
-        if (count >= FEW_PREFIXES && (end - i) * 10 >= count * 6)
+        if (count >= MIN_PREFIXES && (end - i) * 10 >= count * 6)
             snprintf(matcher->common_prefix, sizeof(matcher->common_prefix), "%s", prefixes[i]);
     }
     for (size_t i = 0; i < count; i++)

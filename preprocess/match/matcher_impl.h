@@ -1,49 +1,49 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The ways to match a tag. Each proposes one asset, or several that it cannot tell apart, or nothing. For matcher.c and match_*.c only.
+/* The methods of matching a tag. Each proposes one asset, several that it cannot tell apart, or nothing. Only for matcher.c and match_*.c.
  * Thread: any. */
 #ifndef PREPROCESS_MATCH_MATCHER_IMPL_H
 #define PREPROCESS_MATCH_MATCHER_IMPL_H
 #include "preprocess/match/isa.h"
 #include "preprocess/match/matcher.h"
 
-enum { CANDIDATES = 8, WAY_REASON_BYTES = 240 };
+enum { CANDIDATES = 8, METHOD_REASON_BYTES = 240 };
 
-struct match_candidates { /* assets, each once */
+struct match_candidates { /* distinct assets */
     int assets[CANDIDATES];
-    int nodes[CANDIDATES]; /* of the first thing that was found of the asset; -1: the asset itself, or several nodes */
+    int nodes[CANDIDATES]; /* node of each asset that was found first; -1: the asset itself, or several nodes */
     int count;
-    bool more; /* than are listed */
+    bool more; /* there are more candidates than listed */
 };
 
 struct proposal {
-    struct match_candidates candidates; /* one: proposed; several: one of these */
+    struct match_candidates candidates; /* one candidate: the proposal; several: one of these */
     double confidence;
-    char reason[WAY_REASON_BYTES];
+    char reason[METHOD_REASON_BYTES];
 };
 
-struct match_subject { /* a tag, taken apart */
+struct match_subject { /* a tag with its texts split into tokens */
     const struct export_tag *tag;
     struct isa_name name;
     struct name_tokens area, description;
 };
 
 void candidates_add(struct match_candidates *list, int asset, int node);
-/* Adds all things of the map that have the key. Returns whether there are any. */
+/* Adds all entries of the map with this key. Returns whether there are any. */
 bool candidates_find(struct match_candidates *list, const struct key_map *map, const char *key);
 bool candidates_have(const struct match_candidates *list, int asset);
-/* Writes "E-101, P-101 or V-101". */
+/* Writes the candidates' names as text, such as "E-101, P-101 or V-101". */
 void candidates_name(const struct match_candidates *list, const struct model_index *site, char *text, size_t bytes);
 
-/* Each returns whether it has a proposal. */
-bool way_own_node(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
-bool way_rules(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
-bool way_name_within(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
-bool way_number(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
-bool way_parts(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
-bool way_spelling(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
-bool way_attributes(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
-bool way_description(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
-bool way_words(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
-bool way_alias(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
+/* Matching methods. Each returns whether it has a proposal. */
+bool method_own_node(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
+bool method_rules(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
+bool method_name_within(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
+bool method_number(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
+bool method_parts(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
+bool method_spelling(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
+bool method_attributes(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
+bool method_description(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
+bool method_words(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
+bool method_alias(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
 
 #endif

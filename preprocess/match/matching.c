@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads, matches, composes the files, and writes them if the plant that they make can be loaded. */
+/* Reads and matches a tag list, composes the new files, and writes them if the resulting plant can be loaded. */
 #include "preprocess/match/matching.h"
 
 #include <errno.h>
@@ -37,10 +37,10 @@ struct matching_run {
     struct place_proposal *places;
     struct tag_rows rows;
     struct tag_source source;
-    char *result;                /* lines for people */
-    char *plant_text, *new_text; /* the plant file as it is, and as it will be */
-    char *plant_before, *tags_before, *matches_before; /* as they were read; NULL: they were not there */
-    struct text tags_text, matches_text, left_names; /* the first of those that are no longer in the list */
+    char *result;                                      /* output lines for people */
+    char *plant_text, *new_text;                       /* plant file: current text and new text */
+    char *plant_before, *tags_before, *matches_before; /* texts at the start of the run; NULL: the file does not exist */
+    struct text tags_text, matches_text, left_names;   /* left_names: the first tags that are no longer in the tag list */
     size_t left, by_hand, left_out, written, assumed, own_nodes;
 };
 
@@ -92,7 +92,8 @@ static void print_list(const struct matching_run *run)
                *list->encoding.name ? list->encoding.name : "text");
 }
 
-/* Assets are chosen anew, unless the tag list names some: what people placed would lose its equipment. */
+/* Replaces the plant's assets by the selected equipment. Refuses if the tag list refers to assets, because those tags would lose their
+ * equipment. */
 static bool choose_equipment(struct matching_run *run)
 {
     char why[MODEL_INDEX_WHY_BYTES];
@@ -120,7 +121,7 @@ static bool choose_equipment(struct matching_run *run)
     return model_index_read(&run->site, run->plant, why) || fail_at(run->params->plant, why);
 }
 
-/* The file that is stated, or the one in the plant's folder if it is there. Returns false if it cannot be read. */
+/* Reads the file `name` of the plant's folder if it exists. Returns false if it cannot be read. */
 static bool read_optional(struct matching_run *run, const char *name,
                           bool (*read)(struct matcher *matcher, const char *path, char why[MATCH_WHY_BYTES]))
 {
@@ -130,7 +131,7 @@ static bool read_optional(struct matching_run *run, const char *name,
     return good;
 }
 
-/* The plant itself: files that the daemon reads, too. */
+/* Reads the plant, outside the confined child: files that the daemon reads too are trusted. */
 static bool read_plant(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
@@ -154,7 +155,7 @@ static bool read_plant(struct matching_run *run)
     return true;
 }
 
-/* In the child. */
+/* Reads the export and the lists beside it, in the confined child. */
 static bool read_lists(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
@@ -174,7 +175,7 @@ static bool read_lists(struct matching_run *run)
 
 /* --- deciding --------------------------------------------------------------------------------------------------------------- */
 
-/* What people decided counts for more than what was found. */
+/* Applies decisions of people, which override the matcher. */
 static bool obey(struct matching_run *run)
 {
     char *path = beside(run, "matches.csv"), why[200];
@@ -196,14 +197,14 @@ static bool obey(struct matching_run *run)
                                  .confidence = match->asset == asset ? match->confidence : 1,
                                  .reason = mem_strdup("by hand") };
         if (match->node < 0 && match->confidence > 0.98)
-            match->confidence = 0.95; /* a place is still assumed */
+            match->confidence = 0.95; /* the place is still an assumption */
         run->by_hand++;
     }
     mem_free(path);
     return good;
 }
 
-/* The source of these tags: the one that is stated, made or the only one. */
+/* Determines the source of the tags: the stated one, the one to be added, or the plant's only one. */
 static bool find_source(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
@@ -244,7 +245,7 @@ static void put_rows(struct matching_run *run)
         const char *found = match->asset < 0 ? "" : run->plant->assets[match->asset].id;
         bool kept = asset && (!before || !before->edited) && match->status == MATCH_SURE && strcmp(asset, found) != 0;
         struct match shown = *match;
-        if (kept) { /* the tag list was changed by hand: it goes before */
+        if (kept) { /* a person edited the asset in the tag list, which takes precedence */
             shown.status = *asset ? MATCH_SURE : MATCH_NONE;
             found = asset;
         }
@@ -262,7 +263,7 @@ static void put_rows(struct matching_run *run)
     }
 }
 
-/* --- tags that are no longer in the list -------------------------------------------------------------------------------------- */
+/* --- tags missing from the list ----------------------------------------------------------------------------------------------- */
 
 enum { LEFT_NAMED = 20 };
 
@@ -271,7 +272,7 @@ static int by_folded_name(const void *a, const void *b)
     return strcasecmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Whether a tag of before may be one of this list's system, as far as the plant says where it is read. */
+/* Returns whether a tag of an earlier run belongs to the system of this list, judging by its source in the plant file. */
 static bool is_of_source(const struct matching_run *run, const char *tag)
 {
     for (size_t i = 0; i < run->plant->tag_count; i++)
@@ -280,7 +281,7 @@ static bool is_of_source(const struct matching_run *run, const char *tag)
     return run->plant->source_count <= 1;
 }
 
-/* What was decided about them stays: they may be another system's, or come back. */
+/* Keeps decisions about tags that are missing from this list: they may belong to another system, or return. */
 static void keep_left(struct matching_run *run)
 {
     const char **names = mem_array(run->list.count + 1, sizeof(*names));
@@ -303,7 +304,7 @@ static void keep_left(struct matching_run *run)
 
 /* --- the plant file --------------------------------------------------------------------------------------------------------- */
 
-/* A range of a legend: as the scaled limits have it. */
+/* Appends a group; its legend range comes from the scaled limits of its tags. */
 static void add_group(const struct quantity *quantity, struct text *lines)
 {
     bool known = quantity->low < quantity->high;
@@ -347,7 +348,7 @@ static char *source_line(const struct matching_run *run)
     return line.at;
 }
 
-/* The source has another line, if it still is one that source_line() wrote. */
+/* Updates the source's line in the plant file, if a person has not edited it since source_line() wrote it. */
 static bool change_source(struct matching_run *run)
 {
     regex_t regex;
@@ -395,7 +396,8 @@ static bool compose_plant(struct matching_run *run, bool placeholder)
 
 /* --- writing ---------------------------------------------------------------------------------------------------------------- */
 
-/* Looked at last: reading and matching may take minutes, in which others save. */
+/* Returns whether a file still has the text that was read. Checked last: reading and matching may take minutes, while other people save the
+ * file. */
 static bool is_as_read(const char *path, const char *before)
 {
     size_t length = 0;
@@ -416,8 +418,9 @@ static void say_written(const char *path, const char *before, const char *text)
     printf("%s: %s\n", path, before && !strcmp(before, text) ? "stays as it is" : "written");
 }
 
-/* The plant file first: with the old tag list it is a plant, too, since it only gains groups and a source. matches.csv last: what the tag
- * list has and it has not is not taken for a person's change. A run that was killed in between is finished by the next one. */
+/* Writes the files. The plant file comes first, since it only gains groups and a source and is valid with the old tag list. matches.csv
+ * comes last: until then, the tag list's new rows are not mistaken for edits by people. The next run completes a run that was killed in
+ * between. */
 static bool write_files(struct matching_run *run, const char *matches_path)
 {
     const char *plant = run->params->plant, *tags = run->plant->tags_path;
@@ -498,7 +501,7 @@ static void finish(struct matching_run *run)
     mem_free(run->matches_before);
 }
 
-/* Returns a descriptor, or a negative number, already told. */
+/* Locks the plant's folder. Returns a descriptor, or a negative number after printing the error. */
 static int lock_folder(const struct matching_params *params)
 {
     char *folder = plant_folder_of(params->plant), *why = NULL;
@@ -514,7 +517,7 @@ static int lock_folder(const struct matching_params *params)
 
 struct matching_answer {
     struct matching_run *run;
-    int file; /* in memory, shared with the child: for each text its length, 8 bytes, and its bytes */
+    int file; /* memory file shared with the child: for each text an 8-byte length, then its bytes */
 };
 
 static bool put_text(int file, const char *text)
@@ -528,7 +531,7 @@ static bool put_text(int file, const char *text)
     return good;
 }
 
-/* Returns NULL if the child, which may be in a stranger's hands, left anything else. */
+/* Reads a text from the child's answer. Returns NULL if the answer is malformed: the child may be compromised. */
 static char *get_text(int file)
 {
     uint64_t length;
@@ -546,7 +549,7 @@ static char *get_text(int file)
     return text;
 }
 
-/* Reads and matches the stranger's list, and composes all files. Returns its exit status. */
+/* Reads and matches the untrusted list and composes all files, in the child. Returns the child's exit status. */
 static int match_in_child(void *arg)
 {
     const struct matching_answer *answer = arg;
@@ -611,7 +614,7 @@ static void add_paths(const struct matching_run *run, struct child_paths *paths)
     }
 }
 
-/* The child can write nothing but its answer. */
+/* Runs the matching in a confined child, which can write nothing but its answer. */
 static bool match(struct matching_run *run)
 {
     char why[CHILD_WHY_BYTES], folder[PATH_MAX];
@@ -628,7 +631,7 @@ static bool match(struct matching_run *run)
     bool good = child_run(&(struct child_params){ .call = match_in_child,
                                                   .arg = &answer,
                                                   .name = "the tag list reader",
-                                                  .folder = folder, /* relative paths stay true */
+                                                  .folder = folder, /* so that relative paths still work */
                                                   .timeout_s = run->params->timeout_s,
                                                   .memory_bytes = run->params->memory_bytes,
                                                   .timeout_option = "--timeout; plantcastd: --limit import-seconds",

@@ -1,29 +1,30 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One run of `plantcast match`: a plant's folder and an export of tags become plant.yaml, tags.csv and matches.csv. Thread: one. */
+/* Runs `plantcast match` once: reads a plant's folder and an export of tags, and writes plant.yaml, tags.csv and matches.csv. Thread:
+ * one. */
 #ifndef PREPROCESS_MATCH_MATCHING_H
 #define PREPROCESS_MATCH_MATCHING_H
 #include <stdbool.h>
 #include <stddef.h>
 
 struct matching_params {
-    const char *plant;            /* the plant file */
-    const char *tags;             /* the export */
-    const char *encoding;         /* of the export; NULL: it is found */
-    const char *decisions;        /* what people decided, beside matches.csv, and before it; NULL: nothing */
-    const char *const *equipment; /* what becomes an asset (equipment.h); none: the plant file's assets stay */
+    const char *plant;            /* path of the plant file */
+    const char *tags;             /* path of the exported tag list */
+    const char *encoding;         /* encoding of the export; NULL: detect it */
+    const char *decisions;        /* path of a file of people's decisions, which override matches.csv; NULL: none */
+    const char *const *equipment; /* selections of the nodes that become assets (equipment.h); none: keep the plant file's assets */
     int equipment_count;
-    const char *source;     /* id; NULL: the only one, or `plc` where --modbus makes it */
-    const char *modbus;     /* HOST or HOST:PORT of a source that is to be made, or that was made so and is elsewhere now; NULL: none */
-    int unit;               /* of that source: unit identifier; -1: none is stated */
-    const char *byte_order; /* of that source; NULL: none */
-    int address_base;       /* likewise */
-    int lent;               /* plant_folder.h */
-    int timeout_s;          /* of reading and matching, in a confined process */
-    size_t memory_bytes;    /* of the same */
-    bool dry_run;           /* says what it found, and writes nothing */
+    const char *source;     /* id of the source; NULL: the plant's only source, or `plc` with --modbus */
+    const char *modbus;     /* HOST or HOST:PORT of a Modbus source to add, or new address of one that a former run added; NULL: none */
+    int unit;               /* Modbus unit identifier of that source; -1: not stated */
+    const char *byte_order; /* byte order of that source; NULL: not stated */
+    int address_base;       /* address base of that source */
+    int lent;               /* descriptor of a folder lock held by the parent process (plant_folder.h); 0: none */
+    int timeout_s;          /* seconds that the confined child may take for reading and matching */
+    size_t memory_bytes;    /* bytes of memory that the confined child may use */
+    bool dry_run;           /* print the results, write nothing */
 };
 
-/* Returns the exit status: 0, or 1 with one line on standard error for each thing that is wrong; then nothing was written. */
+/* Returns the exit status: 0, or 1 after printing one line per error on standard error; then nothing was written. */
 int matching_run(const struct matching_params *params);
 
 #endif

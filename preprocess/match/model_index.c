@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Indexes of names. */
+/* Builds the indexes of names. */
 #include "preprocess/match/model_index.h"
 
 #include <stdio.h>
@@ -30,7 +30,7 @@ void model_index_each_word(const char *text, void (*each)(const char *word, void
 
 /* --- names ------------------------------------------------------------------------------------------------------------------ */
 
-/* The longest run of digits, at least two; of those as long the last. */
+/* Returns the index of the longest run of digits, at least two; of equally long ones the last. */
 static int find_number(const struct name_tokens *tokens)
 {
     int best = -1;
@@ -125,7 +125,7 @@ static void add_node_names(struct model_index *site, int model, int node)
     }
 }
 
-/* Sets which of the model's nodes are the asset's. */
+/* Determines which nodes of the model belong to the asset. */
 static bool take_nodes(struct model_index *site, int asset, char why[MODEL_INDEX_WHY_BYTES])
 {
     const struct plant_asset *of = &site->plant->assets[asset];
@@ -140,7 +140,7 @@ static bool take_nodes(struct model_index *site, int asset, char why[MODEL_INDEX
             from = i;
             to = tree->nodes[i].end;
         }
-    if (of->nodes && named != 1) { /* a pattern, a number, or several */
+    if (of->nodes && named != 1) { /* the patterns are not a single plain name */
         bool *taken = mem_array(tree->count, sizeof(*taken));
         bool good = nodes_take(of->nodes, tree->nodes, tree->count, taken, reason, sizeof(reason));
         for (size_t i = 0; i < tree->count && good; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The JSON of a glTF file, walked from the scene's roots. Only what is asked for is checked: plantcast-prep reads the rest. */
+/* Walks the JSON of a glTF file from the scene's roots. Checks only what it uses: plantcast-prep validates the rest. */
 #include "preprocess/match/model_tree.h"
 
 #include <errno.h>
@@ -28,7 +28,7 @@ static const char *text_of(json_t *object, const char *name)
     return text ? text : "";
 }
 
-/* Returns the item, or NULL where the index is missing or beyond the list. */
+/* Returns the list item at an index, or NULL if the index is missing or out of range. */
 static json_t *item_of(json_t *root, const char *list, json_t *index)
 {
     return json_is_integer(index) && json_integer_value(index) >= 0
@@ -134,7 +134,7 @@ static bool add_node(struct model_tree *tree, json_t *index, int parent, const d
     return good;
 }
 
-/* Finds the JSON, and the buffer that a GLB file has with it. */
+/* Finds the JSON and, in a GLB file, the binary chunk. */
 static bool find_chunks(struct model_tree *tree, size_t length, const char **json, size_t *json_bytes)
 {
     *json = tree->bytes;
@@ -202,7 +202,7 @@ struct positions {
     size_t count, stride;
 };
 
-/* Returns false for what is not a plain list of floats in the file's own buffer. */
+/* Finds the positions of a primitive. Returns false unless they are an uncompressed list of floats in the file's own buffer. */
 static bool find_positions(const struct model_tree *tree, json_t *primitive, struct positions *out)
 {
     enum { FLOAT = 5126, BYTES = 12 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The nodes of a glTF model with names, attributes (extras) and boxes; and, where they are stored plainly, vertices. Thread: any. */
+/* The nodes of a glTF model with names, attributes (extras) and boxes, and with vertices if they are stored uncompressed. Thread: any. */
 #ifndef PREPROCESS_MATCH_MODEL_TREE_H
 #define PREPROCESS_MATCH_MODEL_TREE_H
 #include <jansson.h>
@@ -11,31 +11,31 @@ struct tree_attribute {
 };
 
 struct tree_node {
-    double low[3], high[3]; /* of the node and all below, in the scene's frame and the model's units; low > high: shows nothing */
-    double from_node[16];   /* column-major, into the scene's frame */
+    double low[3], high[3]; /* box of the node and its subtree, in the scene's frame and the model's units; low > high: no geometry */
+    double from_node[16];   /* column-major transform from the node's frame to the scene's */
     struct tree_attribute *attributes;
     size_t attribute_count;
-    int mesh; /* -1: none */
+    int mesh; /* mesh index; -1: none */
 };
 
 struct model_tree { /* zero-initialise */
     char *path;
     struct model_node *nodes; /* depth first (plant/models/nodes.h) */
-    struct tree_node *more;   /* likewise */
+    struct tree_node *more;   /* further data of each node, in the same order */
     size_t count, capacity, more_capacity;
     json_t *json;
-    char *bytes;        /* the whole file */
-    const char *binary; /* the GLB's own buffer, in bytes, or NULL */
+    char *bytes;        /* content of the whole file */
+    const char *binary; /* GLB's binary chunk, within `bytes`; NULL: none */
     size_t binary_bytes;
 };
 
 enum { TREE_WHY_BYTES = 200 };
 
-/* Reads a .glb or .gltf file. Returns false with the reason in `why`. */
+/* Reads a .glb or .gltf file. Returns false with the reason in why. */
 bool model_tree_read(struct model_tree *tree, const char *path, char why[TREE_WHY_BYTES]);
 void model_tree_finish(struct model_tree *tree);
-/* Finds the vertex nearest to a point, among those of a node and all below it. Returns false if none can be read: compressed, or
- * in another file. */
+/* Finds the vertex nearest to a point, among those of a node and its subtree. Returns false if no vertices can be read because they are
+ * compressed or in another file. */
 bool model_tree_nearest_vertex(const struct model_tree *tree, int node, const double point[3], double out[3]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Words of ends and nozzles, and points along the equipment. */
+/* Finds places by words for ends and nozzles, or by spreading points along the equipment. */
 #include "preprocess/match/places.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "plant/models/transform.h"
 #include "preprocess/match/name_tokens.h"
 
-/* Words that mean one end, in descriptions and in names of nodes. */
+/* Words for an end of equipment, in descriptions and node names. */
 static const struct {
     const char *word;
     int end;
@@ -48,7 +48,7 @@ static bool shows(const struct model_tree *tree, int node)
     return tree->more[node].low[0] <= tree->more[node].high[0];
 }
 
-/* The node of the asset whose ends are those that the text names, if there is one that has the most of them. */
+/* Returns the asset's node whose name has the most of the wanted ends, if exactly one node does; else -1. */
 static int find_end(const struct model_index *site, int asset, unsigned wanted)
 {
     const struct indexed_asset *of = &site->assets[asset];
@@ -67,7 +67,7 @@ static int find_end(const struct model_index *site, int asset, unsigned wanted)
     return alike == 1 ? best : -1;
 }
 
-/* From the model's frame into that of the tag list. */
+/* Transforms a point from the model's frame to that of the tag list. */
 static void into_list(const struct model_index *site, int asset, const double model[3], double out[3])
 {
     const struct plant_asset *of = &site->plant->assets[asset];
@@ -97,7 +97,7 @@ static void put(const struct model_index *site, int asset, int node, const doubl
     out->has_position = true;
 }
 
-/* The number-th of count points along the longest side of the equipment, or at its top or bottom, on the nearest vertex. */
+/* Places the number-th of `count` tags along the longest side of the equipment, or at its top or bottom, on the nearest vertex. */
 static void spread(const struct model_index *site, int asset, unsigned wanted, size_t number, size_t count, struct place_proposal *out)
 {
     const struct indexed_asset *of = &site->assets[asset];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lines of a YAML file. */
+/* Edits the lines of a YAML file. */
 #include "preprocess/match/plant_edit.h"
 
 #include <stdbool.h>
@@ -23,7 +23,7 @@ static const char *next_line(const char *line)
     return line + (*line == '\n');
 }
 
-/* Finds the line `list:`, with nothing behind it but a comment. Sets *flow where something is. */
+/* Finds the line `list:` that has at most a comment after the colon. Sets *flow if it has something else. */
 static const char *find_key(const char *text, const char *list, bool *flow)
 {
     size_t length = strlen(list);
@@ -37,7 +37,7 @@ static const char *find_key(const char *text, const char *list, bool *flow)
     return NULL;
 }
 
-/* The items of a list: from the line behind its key to behind its last line that is not blank or a comment of what comes after. */
+/* Finds the items of a list: from the line after its key to its last line that is neither blank nor a comment belonging to the next key. */
 static void find_items(const char *key, const char **begin, const char **end)
 {
     *begin = *end = next_line(key);
@@ -61,7 +61,7 @@ static char *spliced(const char *text, const char *begin, const char *end, const
     return out.at;
 }
 
-/* With the indentation that the list's items have. */
+/* Returns the lines with the indentation of the list's items. */
 static char *indented(const char *begin, const char *end, const char *lines)
 {
     struct text out = { 0 };

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Changes a plant file as a person would: appends lines to its lists, and leaves the rest as it is to the byte. Pure. Thread: any. */
+/* Edits a plant file as text: appends lines to its lists and leaves all other bytes unchanged. Pure. Thread: any. */
 #ifndef PREPROCESS_MATCH_PLANT_EDIT_H
 #define PREPROCESS_MATCH_PLANT_EDIT_H
 #include "base/text/text.h"
 
-/* The group that `plantcast import` begins a plant file with, so that it is one. */
+/* The placeholder group of a plant file written by `plantcast import`, without which the file would be invalid. */
 extern const char plant_edit_placeholder[];
 
-/* Appends lines, each of which ends in a line feed, to a list at the top of the file, such as "groups"; makes the list, before "tags:" or
- * at the end, where there is none. Returns the new text (mem_free), or NULL if the list is not in block style, one item a line. */
+/* Appends lines, each ending in a line feed, to a top-level list such as "groups". Creates a missing list before "tags:" or at the end.
+ * Returns the new text, which the caller frees (mem_free), or NULL if the list is not in block style, one item a line. */
 char *plant_edit_append(const char *text, const char *list, const char *comment, const char *lines);
-/* Replaces all items of a list. Likewise. */
+/* Replaces all items of a top-level list by lines. Returns the new text (mem_free), or NULL if the list is not in block style. */
 char *plant_edit_replace(const char *text, const char *list, const char *lines);
-/* Removes a line that is exactly this. Returns the new text. */
+/* Removes the line that equals `line`. Returns the new text (mem_free). */
 char *plant_edit_remove_line(const char *text, const char *line);
-/* Appends text in the quotes of YAML. */
+/* Appends text as a quoted YAML scalar. */
 void plant_edit_add_quoted(struct text *out, const char *text);
 
 #endif

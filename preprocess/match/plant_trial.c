@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Paths in a plant file are relative to its folder: the texts have to be there. */
+/* Writes trial files in the plant's folder, because paths in a plant file are relative to it. */
 #include "preprocess/match/plant_trial.h"
 
 #include <stdio.h>
@@ -9,7 +9,7 @@
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
 
-/* The plant file with another tag list. */
+/* Returns the plant file's text with another tag list. */
 static char *with_list(const char *text, const char *list)
 {
     const char *key = strstr(text, "\ntags:"), *end = key ? key + 1 + strcspn(key + 1, "\n") : NULL;
@@ -28,7 +28,7 @@ struct plant *plant_trial_load(const struct plant *plant, const char *text, cons
     if (status != 0)
         fprintf(stderr, "%s: %s: %s\n", program, path, strerror(-status));
     else
-        loaded = plant_load_without_models(path); /* one may be about to come */
+        loaded = plant_load_without_models(path); /* models may not have been imported yet */
     if (status == 0 && !loaded)
         fprintf(stderr, "%s: the plant that this makes is not valid; nothing was written\n", program);
     unlink(path);

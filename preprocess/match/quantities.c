@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What tags measure. */
+/* Determines what tags measure. */
 #include "preprocess/match/quantities.h"
 
 #include <ctype.h>
@@ -24,7 +24,7 @@ static bool has_any(const char *text, const char *const *words, size_t count)
     return false;
 }
 
-/* Bits and texts paint nothing. */
+/* Returns whether values of a data type can be shown as a field: not booleans, texts or times. */
 static bool is_number(const char *type)
 {
     static const char *const others[] = { "Boolean",  "Bool", "Bit",      "String",  "Text", "Char",
@@ -32,14 +32,14 @@ static bool is_number(const char *type)
     return !has_any(type, others, sizeof(others) / sizeof(*others));
 }
 
-/* Quantities whose values are in units of a kind, the first of which the unit alone says; none: the unit says nothing of the quantity. */
+/* For each kind of unit, the quantities that use such units; the first is the default. None: the unit does not identify a quantity. */
 static const struct {
     const char *kind;
-    bool alone; /* the unit decides by itself */
+    bool alone; /* the unit alone decides the quantity */
     const char *quantities;
 } kinds[] = {
     { "temperature", true, "|Temperature|" },
-    { "pressure", true, "|Pressure|Differential pressure|" }, /* of any reference */
+    { "pressure", true, "|Pressure|Differential pressure|" }, /* gauge, absolute or any other reference */
     { "flow", true, "|Flow|" },
     { "density", true, "|Density|" },
     { "conductivity", true, "|Conductivity|" },
@@ -59,7 +59,7 @@ static const struct {
     { "resistance", false, "|Resistance|Conductivity|Temperature|" },
 };
 
-/* Returns the entry of a unit's kind, or -1. */
+/* Returns the entry of a unit's kind; -1: unknown. */
 static int kind_of(const char *unit)
 {
     const char *kind = *unit ? unit_kind(unit) : NULL;
@@ -78,7 +78,8 @@ static bool is_possible(int kind, const char *quantity)
     return possible;
 }
 
-/* A tuning parameter, TI in seconds; with a unit or a description of something else these are letters: a temperature indicator. */
+/* Returns whether the tag is a tuning parameter. TI is one (integral time) if its unit is seconds; with another unit or a telling
+ * description it is a temperature indicator. */
 static bool is_tuning(const struct export_tag *tag, const struct isa_name *isa, int kind, const char *described)
 {
     if (strcmp(isa->attribute, "TI") != 0)
@@ -87,8 +88,8 @@ static bool is_tuning(const struct export_tag *tag, const struct isa_name *isa, 
     return (unit && !strcmp(unit, "time")) || (kind < 0 && !described);
 }
 
-/* Names the quantity that a tag measures; "" for states and settings, and where nothing tells. The unit decides, then the description,
-   then words of the tag's name, then its letters. None of them contradicts the unit. */
+/* Writes the quantity that a tag measures, or "" for states, settings and unknown ones. The unit decides, then the description, then words
+ * of the tag's name, then its letters; none of these may contradict the unit. */
 static void name_of(const struct export_tag *tag, char name[NAME_BYTES])
 {
     struct isa_name isa;
@@ -152,7 +153,7 @@ static struct quantity *add(struct quantities *quantities, const char *id, const
     return quantity;
 }
 
-/* One whose name and unit fit; of the plant's own also one whose unit alone fits, if no other does. */
+/* Returns the group with this name and unit. Accepts an existing group of the plant by unit alone if it is the only one that fits. */
 static int find(const struct quantities *quantities, const char *name, const char *unit)
 {
     int by_unit = -1, fitting = 0;
@@ -184,7 +185,7 @@ static void take_range(struct quantity *quantity, const struct export_tag *tag)
     quantity->high = fmax(quantity->high, unit_change_value(&change, high));
 }
 
-/* As people write it in a legend. */
+/* Returns a unit as people write it in a legend. */
 static const char *written(const char *unit)
 {
     static const char *const usual[] = { "°C", "°F" };
@@ -222,7 +223,7 @@ void quantities_find(struct quantities *quantities, const struct plant *plant, c
     for (size_t g = 0; g < plant->group_count; g++)
         if (!unused || strcmp(unused, plant->groups[g].id) != 0)
             add(quantities, plant->groups[g].id, plant->groups[g].quantity, plant->groups[g].unit, false);
-    /* Those without a unit come last: then it is known what the others have. */
+    /* Tags without a unit come last, when the groups of the others are known. */
     for (int blank = 0; blank < 2; blank++)
         for (size_t i = 0; i < list->count; i++) {
             if (blank == 0)

@@ -1,25 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups for tags: by unit and, where that does not say it, by the letters of ISA-5.1; ranges from scaled limits. Thread: one. */
+/* Assigns tags to groups by unit and, if the unit is ambiguous, by their ISA-5.1 letters; derives value ranges from scaled limits. Thread:
+ * one. */
 #ifndef PREPROCESS_MATCH_QUANTITIES_H
 #define PREPROCESS_MATCH_QUANTITIES_H
 #include "plant/plant.h"
 #include "preprocess/match/matcher.h"
 
-struct quantity { /* a group, as it is or as it will be */
+struct quantity { /* an existing group or one to be added */
     char *id, *name, *unit;
-    bool is_new;        /* else the plant file has it */
-    double low, high;   /* of the scaled limits of its tags, in its unit; low > high: none has any */
-    size_t tags, blank; /* that are in it; those of them without a unit */
+    bool is_new;        /* false: the plant file already has the group */
+    double low, high;   /* range of the scaled limits of its tags, in the group's unit; low > high: no tag has limits */
+    size_t tags, blank; /* tags: number of tags in the group; blank: those without a unit */
 };
 
 struct quantities { /* zero-initialise */
     struct quantity *at;
     size_t count, capacity;
-    int *of_tag; /* by tag: index, or -1 */
+    int *of_tag; /* index of the group of each tag; -1: none */
 };
 
-/* Puts each matched tag that measures something into a group: one of the plant's whose unit fits, or a new one. The placeholder that
- * `plantcast import` writes (unused is its id, or NULL) does not count. */
+/* Assigns each matched tag that measures something to a group: an existing one with a compatible unit, or a new one. unused: id of the
+ * placeholder group of `plantcast import`, which is ignored; NULL: none. */
 void quantities_find(struct quantities *quantities, const struct plant *plant, const char *unused, const struct tag_export *list,
                      const struct match *matches);
 void quantities_finish(struct quantities *quantities);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Words of quantities in English, German, French, Spanish, Portuguese, Italian, Russian, Korean, Chinese and Japanese. */
+/* Words for quantities in English, German, French, Spanish, Portuguese, Italian, Russian, Korean, Chinese and Japanese. */
 #include "preprocess/match/quantity_words.h"
 
 #include <ctype.h>
@@ -10,9 +10,9 @@
 #include "base/mem.h"
 #include "preprocess/match/fold.h"
 
-/* In small letters without accents, each between bars. Short words, those of several words and those that end in "=" have to be whole ones;
-   those that end in "~" may end a word, as in "Saugdruck"; others may be any part, as in "Lagertemperatur". A word that holds another one
-   stands further up. */
+/* Lower case, without accents, separated by bars. Short words, phrases and words ending in "=" must match whole words. Words ending in "~"
+ * may also match the end of a word, as in "Saugdruck". Other words match any part, as in "Lagertemperatur". A word that contains another
+ * one must come earlier in the table. */
 static const struct {
     const char *quantity, *words;
 } quantities[] = {
@@ -64,7 +64,7 @@ static const struct {
 };
 enum { QUANTITIES = sizeof(quantities) / sizeof(*quantities) };
 
-/* Letters and digits as words, with one blank around each. */
+/* Returns the letters and digits of a text as words with one blank around each. */
 static char *words_of(const char *text)
 {
     char *folded = fold_text(text), *out = mem_array(strlen(folded) * 4 + 3, 1);
@@ -87,14 +87,14 @@ static char *words_of(const char *text)
     return out;
 }
 
-/* Chinese, Japanese and Korean do not part words. */
+/* Returns whether a word must match a whole word. Chinese, Japanese and Korean do not separate words, so theirs never must. */
 static bool is_whole(const char *word, char mark)
 {
     bool cyrillic = (unsigned char)*word == 0xd0 || (unsigned char)*word == 0xd1, ascii = !((unsigned char)*word & 0x80);
     return mark == '=' || strchr(word, ' ') || (ascii && strlen(word) <= 5) || (cyrillic && strlen(word) <= 10);
 }
 
-/* Finds a word, and blanks it out: "pressure" is not looked for in "differential pressure" again. */
+/* Finds a word and blanks it out, so that "pressure" is not found again in "differential pressure". */
 static bool take_word(char *text, const char *word, char mark)
 {
     bool found = false, whole = mark != '~' && is_whole(word, mark);

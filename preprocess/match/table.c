@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows and cells, and CSV. */
+/* Manages rows and cells, and reads CSV. */
 #include "preprocess/match/table.h"
 
 #include <stdio.h>
@@ -65,14 +65,14 @@ void table_finish(struct cell_table *table)
     *table = (struct cell_table){ 0 };
 }
 
-/* Counts a separator in each line, outside quotes. Returns for how many lines the commonest count above 0 holds, times that count where
- * several separators hold for as many. */
+/* Rates a separator: counts it in each line outside quotes, and finds the count above 0 that most lines share. Returns the number of those
+ * lines times 1000, plus the count as a tie-breaker. */
 static size_t rate(const char *text, char separator)
 {
     size_t counts[SAMPLE_LINES] = { 0 }, lines = 0, best = 0;
     bool quoted = false, any = false;
     for (; *text && lines < SAMPLE_LINES; text++) {
-        if (!any && !quoted && (*text == ';' || *text == '#')) { /* a comment, which may hold any sign */
+        if (!any && !quoted && (*text == ';' || *text == '#')) { /* skip a comment line, which may contain any character */
             text += strcspn(text, "\n");
             counts[lines] = 0;
             if (!*text)
@@ -113,7 +113,7 @@ char table_separator(const char *text)
     return best;
 }
 
-/* Reads one cell, from `at` on. Returns where it ends, or NULL if its quote does not end. */
+/* Reads one cell that begins at `at`. Returns its end, or NULL if its quote is not terminated. */
 static const char *read_cell(struct cell_table *table, struct table_row *row, const char *at, char separator, int *line)
 {
     struct text cell = { 0 };

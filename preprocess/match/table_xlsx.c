@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Spreadsheets: a ZIP archive (minizip) of XML (expat), ISO/IEC 29500-1, 18.3 and 18.4. Only text and numbers as they are stored. */
+/* Reads spreadsheets: a ZIP archive (minizip) of XML (expat), ISO/IEC 29500-1, 18.3 and 18.4. Only texts and numbers as stored, without
+ * number formats. */
 #include "preprocess/match/table.h"
 
 #include <expat.h>
@@ -11,23 +12,23 @@
 #include "base/mem.h"
 #include "base/text/text.h"
 
-enum { MAX_SHEETS = 1024, MAX_BYTES = 1 << 28 /* size of all cells; a shared string counts in each */ };
+enum { MAX_SHEETS = 1024, MAX_BYTES = 1 << 28 /* size of all cells; shared strings count for each use */ };
 static const size_t max_part_bytes = (size_t)512 << 20;
 
 struct xlsx_sheet {
     struct cell_table *table;
-    char **strings; /* the workbook's shared strings */
+    char **strings; /* shared strings of the workbook */
     size_t string_count, string_room;
     struct table_row row;
-    struct text text; /* of the cell, or of the string */
+    struct text text; /* text of the current cell or string */
     int column, last_row;
-    char type; /* of the cell: 's' shared, 'i' inline, 0 as it stands */
-    size_t bytes; /* of all cells so far */
+    char type;    /* type of the current cell: 's' shared string, 'i' inline string, 0 stored directly */
+    size_t bytes; /* total size of all cells so far */
     bool in_value, in_phonetic, too_large;
     XML_Parser parser;
 };
 
-/* A name without its namespace's prefix, which some programs write before every element. */
+/* Returns an element name without its namespace prefix, which some programs write. */
 static const char *local(const char *name)
 {
     const char *colon = strchr(name, ':');
@@ -151,14 +152,14 @@ static void refuse_entity(void *data, const char *name, int parameter, const cha
 
 static unsigned long current_line(XML_Parser parser)
 {
-#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9 /* deprecates the other */
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9 /* newer versions deprecate XML_GetCurrentLineNumber */
     return (unsigned long)XML_GetCurrentLineNumber64(parser);
 #else
     return (unsigned long)XML_GetCurrentLineNumber(parser);
 #endif
 }
 
-/* Returns 1: read, 0: there is no such part, -1: broken, with the reason. */
+/* Parses one part of the archive. Returns 1 if it was read, 0 if there is no such part, -1 if it is broken, with the reason in why. */
 static int read_part(struct xlsx_sheet *sheet, unzFile zip, const char *part, XML_StartElementHandler begins, XML_EndElementHandler ends,
                      char *why, size_t why_bytes)
 {
@@ -202,7 +203,7 @@ struct book_sheet {
 };
 
 struct book {
-    struct xlsx_sheet sheet; /* first: handlers of any part are given it */
+    struct xlsx_sheet sheet; /* must be the first member: handlers of all parts receive a pointer to it */
     struct book_sheet sheets[MAX_SHEETS];
     int count;
     bool too_many;
@@ -238,7 +239,7 @@ static void nothing_ends(void *data, const char *name)
     (void)data, (void)name;
 }
 
-/* Sheets by the workbook; without one, by their usual names. Returns false with the reason. */
+/* Finds the sheets through the workbook, or by their usual names without one. Returns false with the reason in why. */
 static bool find_sheets(struct book *book, unzFile zip, char *why, size_t why_bytes)
 {
     if (read_part(&book->sheet, zip, "xl/workbook.xml", sheet_begins, nothing_ends, why, why_bytes) < 0 ||

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which format a file has, and which column is what. */
+/* Detects the format of a file and maps its columns to fields. */
 #include "preprocess/match/tag_export.h"
 
 #include <errno.h>
@@ -58,7 +58,7 @@ static bool is_number_field(enum export_field field)
     return (field >= EXPORT_RAW_LOW && field <= EXPORT_SCALED_HIGH) || field >= EXPORT_LL;
 }
 
-/* "1.234,5" and "12,5" are numbers too. What is none is left out. */
+/* Sets a numeric field. Accepts "1.234,5" and "12,5" too; ignores text that is not a number. */
 static void set_number(struct export_tag *tag, enum export_field field, const char *text)
 {
     char copy[64];
@@ -76,7 +76,7 @@ static void set_number(struct export_tag *tag, enum export_field field, const ch
         export_tag_set(tag, field, copy);
 }
 
-/* A range by its low end and its length, as PI has it. */
+/* Sets the scaled limits from a range given by its low end and length, as PI exports it. */
 static void set_span(struct export_tag *tag, const char *text)
 {
     struct export_tag of_text = { 0 };
@@ -115,9 +115,9 @@ static void read_row(struct tag_export *list, const struct tag_header *header, c
         export_tag_set(tag, EXPORT_TYPE, header->data_type);
 }
 
-/* --- Studio 5000: rows of several kinds ------------------------------------------------------------------------------------- */
+/* --- Studio 5000: several kinds of rows ------------------------------------------------------------------------------------- */
 
-/* Descriptions have $N for a new line, $Q and $' for quotes and $$ for a dollar. */
+/* Returns a description without the escapes $N (new line), $Q and $' (quotes) and $$ (dollar). */
 static char *without_escapes(const char *text)
 {
     static const char signs[] = "NnLlRrTtPp'Qq$", meant[] = "          '\"\"$";
@@ -140,7 +140,7 @@ static bool is_of_kind(const struct table_row *row, const struct tag_header *hea
     return !strcasecmp(table_cell(row, header->kind), kind);
 }
 
-/* A comment is about an element of a tag: it describes the tags that are that element, such as aliases. */
+/* Applies a comment about an element of a tag: it becomes the description of all tags that refer to that element, such as aliases. */
 static void describe(struct tag_export *list, const char *element, const char *text)
 {
     for (size_t i = 0; i < list->count; i++) {
@@ -180,7 +180,7 @@ static void read_studio(struct tag_export *list, const struct cell_table *table,
 
 /* --- lists with a header -------------------------------------------------------------------------------------------------------- */
 
-/* Finds the row that most columns are known in. Returns how many, 0: none names tags. */
+/* Finds the row with the most recognised columns. Returns their number, or 0 if no row has a column of tag names. */
 static int find_header(const struct cell_table *table, struct tag_header *header, size_t *row)
 {
     bool one_column = table->count > 0;
@@ -199,7 +199,7 @@ static int find_header(const struct cell_table *table, struct tag_header *header
     return most;
 }
 
-/* A second row of a header says what the columns of a range are: "from", "to". Returns whether there is one. */
+/* Reads a second header row, which labels the columns of a range: "from", "to". Returns whether there is one. */
 static bool read_second(const struct table_row *row, struct tag_header *header)
 {
     struct tag_header second;
@@ -246,7 +246,7 @@ static bool read_rows(struct tag_export *list, const struct cell_table *table, c
     return true;
 }
 
-/* --- AVEVA's dumps: each section has a header that begins with a colon ------------------------------------------------------- */
+/* --- AVEVA dumps: section headers begin with a colon ------------------------------------------------------------------------- */
 
 static bool is_dump(const struct cell_table *table)
 {
@@ -259,7 +259,7 @@ static bool is_dump(const struct cell_table *table)
     return false;
 }
 
-/* Returns whether tags stand below: not in sections of access names, alarm groups or trends. */
+/* Reads a section header. Returns whether its rows are tags, and not access names, alarm groups or trends. */
 static bool begin_section(struct tag_export *list, const struct table_row *row, struct tag_header *header)
 {
     static const struct {
@@ -278,7 +278,7 @@ static bool begin_section(struct tag_export *list, const struct table_row *row, 
     for (size_t i = 0; i < sizeof(kinds) / sizeof(*kinds); i++)
         if (!strcasecmp(cell, kinds[i].section)) {
             header->data_type = kinds[i].type;
-            header->columns[EXPORT_NAME] = 0; /* ItemName is the address here */
+            header->columns[EXPORT_NAME] = 0; /* in these sections ItemName is the address */
             for (size_t c = 0; c < row->count; c++)
                 if (!strcasecmp(row->cells[c], "ItemName"))
                     header->columns[EXPORT_ADDRESS] = (int)c;
@@ -334,8 +334,8 @@ static bool read_text(struct tag_export *list, const char *bytes, size_t count, 
 }
 
 struct workbook {
-    struct cell_table best; /* the sheet whose header has most known columns; of equal ones the one with most rows */
-    struct text others; /* names of other sheets with a header */
+    struct cell_table best; /* sheet whose header has the most recognised columns; among equals the one with the most rows */
+    struct text others;     /* names of the other sheets with a header */
     char *name;
     int known;
     size_t sheets;
@@ -368,7 +368,7 @@ static void take_sheet(void *data, struct cell_table *sheet, const char *name)
     table_finish(sheet);
 }
 
-/* Cover sheets, notes and hidden sheets may stand before the list. */
+/* Reads the sheet with the tag list; cover sheets, notes and hidden sheets may precede it. */
 static bool read_workbook(struct tag_export *list, const char *path, char *why, size_t why_bytes)
 {
     struct workbook book = { .known = -1 };

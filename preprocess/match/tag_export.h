@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the tag list that a control system or an OPC server exports, whatever its columns are called: Kepware CSV, Ignition JSON and CSV,
- * InTouch DBDump and Galaxy dump (AVEVA), lists as DeltaV and Experion give them, plain CSV, spreadsheets. Thread: any. */
+/* Reads the tag list exported by a control system or OPC server, whatever its columns are called: Kepware CSV, Ignition JSON and CSV, AVEVA
+ * InTouch DBDump and Galaxy dump, lists in the style of DeltaV and Experion, plain CSV, spreadsheets. Thread: any. */
 #ifndef PREPROCESS_MATCH_TAG_EXPORT_H
 #define PREPROCESS_MATCH_TAG_EXPORT_H
 #include <stdbool.h>
@@ -11,36 +11,36 @@
 #include "preprocess/match/export_field.h"
 
 struct export_tag {
-    char *fields[EXPORT_FIELDS]; /* UTF-8; "": none */
-    int line;                    /* of the file; 0: JSON, which has none */
+    char *fields[EXPORT_FIELDS]; /* UTF-8; "": the field is empty; NULL only while a reader fills the tag */
+    int line;                    /* line number in the file; 0 for JSON */
 };
 
 struct tag_export {                /* zero-initialise */
-    const char *format;            /* static */
-    struct charset_choice encoding; /* name "": a spreadsheet */
-    char separator;                /* 0: none */
-    struct export_tag *tags;       /* by name unique, upper and lower case taken as one; in the order of the file */
+    const char *format;            /* name of the detected format (static) */
+    struct charset_choice encoding; /* encoding of the file; name "": a spreadsheet */
+    char separator;                 /* column separator; 0: none */
+    struct export_tag *tags;        /* in file order; names are unique, case-insensitive */
     size_t count, capacity;
-    size_t rows;                       /* tags before repeated ones were joined */
-    size_t same, differing;            /* repeated rows that say the same as the first of their name, and that do not: left out */
-    char *differing_lines;             /* the first of those: "TT-101 (lines 5 and 80), ..."; NULL: none */
-    size_t nameless, control, damaged; /* rows without a name, left out; control characters; characters that could not be decoded */
-    struct text remarks;               /* other things that a person should know, a line each */
-    size_t renamed;                    /* tags with one name in several folders, which now have their path in front */
+    size_t rows;                       /* number of tags before duplicates were merged */
+    size_t same, differing;            /* duplicate rows left out: equal to the first row of the name, and different from it */
+    char *differing_lines;             /* the first different duplicates, "TT-101 (lines 5 and 80), ..."; NULL: none */
+    size_t nameless, control, damaged; /* rows without a name (left out); control characters; undecodable characters */
+    struct text remarks;               /* further remarks for people, one a line */
+    size_t renamed;                    /* tags that share their name with tags of other folders and got their path as a prefix */
 };
 
-/* Reads a file, of an encoding that charset_resolve() knows; NULL: charset_find() decides. Returns false with the reason in `why`; then the
-   list is empty. */
+/* Reads a file. encoding: a name that charset_resolve() knows; NULL: detect it with charset_find(). Returns false with the reason in why
+ * and an empty list. */
 bool tag_export_read(struct tag_export *list, const char *path, const char *encoding, char *why, size_t why_bytes);
 void tag_export_finish(struct tag_export *list);
 
-/* For the readers of formats. Appends an empty tag and returns it; valid until the next. */
+/* For readers of formats: appends an empty tag. Returns a pointer valid until the next call. */
 struct export_tag *tag_export_add(struct tag_export *list, int line);
-/* Sets a field to a copy of text, unless it has one already or text is blank. */
+/* Sets a field to a copy of text. Does nothing if the field has a value already or text is blank. */
 void export_tag_set(struct export_tag *tag, enum export_field field, const char *text);
-/* Reads an Ignition export (JSON). Returns false with the reason. */
+/* Reads an Ignition export (JSON). Returns false with the reason in why. */
 bool tag_export_read_json(struct tag_export *list, const char *text, size_t length, char *why, size_t why_bytes);
-/* Leaves one tag of each name. */
+/* Merges duplicates, so that names are unique. */
 void tag_export_join(struct tag_export *list);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Repeated names: the same tag twice, or two tags of one name in different folders. */
+/* Handles repeated names: the same tag twice, or different tags of one name in several folders. */
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -24,7 +24,7 @@ static bool same_text(const char *a, const char *b)
     return !strcmp(a ? a : "", b ? b : "");
 }
 
-/* Returns an array of indices that ends in tags->count; the caller frees it. */
+/* Returns the indices of the tags sorted by name, followed by tags->count as a sentinel. The caller frees the array. */
 static size_t *sort_names(struct tag_export *list)
 {
     size_t *order = mem_array(list->count + 1, sizeof(*order));
@@ -39,7 +39,7 @@ static bool same_name(const struct tag_export *list, size_t a, size_t b)
     return !strcasecmp(list->tags[a].fields[EXPORT_NAME], list->tags[b].fields[EXPORT_NAME]);
 }
 
-/* Tags of one name in different folders, of which each says which. */
+/* Puts the folder path in front of the names of tags that share a name but are in different folders. */
 static void rename_by_folder(struct tag_export *list)
 {
     size_t *order = sort_names(list);
@@ -84,7 +84,7 @@ static int by_key(const void *pa, const void *pb)
     return order ? order : (a->tag > b->tag) - (a->tag < b->tag);
 }
 
-/* Names that look the same to a person: they differ in kinds of dashes, widths of letters or blanks. */
+/* Adds a remark about names that look alike: they differ only in dashes, letter widths or blanks. */
 static void say_alike(struct tag_export *list)
 {
     struct folded *all = mem_array(list->count + 1, sizeof(*all));

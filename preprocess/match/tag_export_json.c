@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ignition's export: folders and UDT instances hold tags, tags hold properties. An instance has the members of its type,
-   of that type's parent and so on; each level may replace single properties. */
+/* Reads Ignition's export: folders and UDT instances contain tags, tags have properties. An instance has the members of its type, of that
+ * type's parent and so on; each level may override single properties. */
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include "preprocess/match/tag_export.h"
 #include "preprocess/match/table.h"
 
-enum { MAX_DEPTH = 64, MAX_LAYERS = 32, NAMED = 5, MOST_REFERENCES = 1000 };
+enum { MAX_DEPTH = 64, MAX_LAYERS = 32, NAMED = 5, MAX_REFERENCES = 1000 };
 
 static const struct property {
     const char *name;
@@ -31,7 +31,7 @@ static const struct property {
     { "opcServer", EXPORT_DEVICE },
 };
 
-/* A remark about many tags: their number, and the paths of the first. */
+/* A problem that concerns many tags: their number, and the paths of the first. */
 struct complaint {
     size_t count;
     struct text paths;
@@ -39,29 +39,29 @@ struct complaint {
 
 struct tag_json_reader {
     struct tag_export *list;
-    json_t *types; /* by path below the folder of types; borrowed nodes */
+    json_t *types; /* type nodes by path within the folder of types; borrowed */
     struct complaint unknown, circular, unresolved;
     bool too_deep, too_many;
-    int references; /* of one property, so far: parameters may refer to parameters that refer to them */
+    int references; /* references followed for the current property; limits parameters that refer to each other in a cycle */
 };
 
-/* A node as its levels have it: the instance's own first, then types. */
+/* A node as a stack of definitions: the instance's own first, then its types. */
 struct layered_node {
     json_t *layers[MAX_LAYERS];
     int count;
 };
 
-struct instance_frame { /* a UDT instance around a tag */
+struct instance_frame { /* a UDT instance that encloses a tag */
     const struct instance_frame *outer;
     const struct layered_node *node;
-    int own; /* layers that are the instance's, not its type's: their parameters refer to those of the frame outside */
+    int own; /* number of layers that belong to the instance and not to its type; their parameters refer to the outer frame */
     const char *name;
 };
 
-struct scope { /* where a reference to a parameter stands */
+struct scope { /* where a parameter reference occurs */
     struct tag_json_reader *reader;
     const struct instance_frame *frame;
-    const char *folder, *name; /* path around the tag, and the tag's name */
+    const char *folder, *name; /* path of the tag's folder; name of the tag */
 };
 
 static const char *text_of(json_t *object, const char *key)
@@ -95,7 +95,7 @@ static void complain(struct complaint *complaint, const char *folder, const char
 
 static const char types_folder[] = "_types_";
 
-/* Finds types wherever they are. `path` is below the folder of types. */
+/* Indexes all type definitions. `path` is relative to the folder of types. */
 static void index_types(struct tag_json_reader *reader, json_t *node, const char *path, int depth)
 {
     json_t *inner = json_is_array(node) ? node : json_object_get(node, "tags"), *item;
@@ -110,7 +110,7 @@ static void index_types(struct tag_json_reader *reader, json_t *node, const char
     mem_free(below);
 }
 
-/* By path; else the only type of that name, wherever it is. */
+/* Finds a type by path, or else by name if only one type has that name. */
 static json_t *find_type(const struct tag_json_reader *reader, const char *id)
 {
     const char *wanted = !strncmp(id, "_types_/", 8) ? id + 8 : id, *slash = strrchr(wanted, '/'), *name = slash ? slash + 1 : wanted, *key;
@@ -138,7 +138,7 @@ static bool is_around(const struct instance_frame *frame, const json_t *type)
     return false;
 }
 
-/* Appends the layers of a type and of its parents to an instance. */
+/* Appends the layers of an instance's type and of the type's parents. */
 static void add_types(struct tag_json_reader *reader, struct layered_node *node, const struct instance_frame *outer, const char *folder,
                       const char *name)
 {
@@ -183,7 +183,7 @@ static json_t *value_of(json_t *parameter)
     return json_is_object(parameter) && json_object_get(parameter, "value") ? json_object_get(parameter, "value") : parameter;
 }
 
-/* Appends the text of a value: a number, a text, or a binding to parameters. Returns false where it cannot be told. */
+/* Appends the text of a value: a number, a text, or a binding to parameters. Returns false if it cannot be resolved. */
 static bool add_value(const struct scope *scope, json_t *value, struct text *out, int depth)
 {
     if (json_is_object(value)) {
@@ -201,11 +201,11 @@ static bool add_value(const struct scope *scope, json_t *value, struct text *out
     return json_is_number(value) || json_is_boolean(value);
 }
 
-/* Appends a parameter's value. Those that a nested instance is given may refer to parameters of the instance around it. */
+/* Appends the value of a parameter. Parameters passed to a nested instance may refer to parameters of the enclosing instance. */
 static bool add_parameter(const struct scope *scope, const char *name, struct text *out, int depth)
 {
     size_t before = out->length;
-    if (scope->reader->references++ > MOST_REFERENCES)
+    if (scope->reader->references++ > MAX_REFERENCES)
         return false;
     for (const struct instance_frame *frame = scope->frame; frame; frame = frame->outer)
         for (int i = 0; i < frame->node->count; i++) {
@@ -227,7 +227,7 @@ static bool add_parameter(const struct scope *scope, const char *name, struct te
     return text != NULL;
 }
 
-/* "{Base+10}" and "{Number|000}": an offset, and a number of digits. */
+/* Appends a reference with an offset or a number format: "{Base+10}" and "{Number|000}". */
 static bool add_formatted(const struct scope *scope, const char *reference, struct text *out, int depth)
 {
     char name[200], *end;
@@ -260,7 +260,7 @@ static bool add_formatted(const struct scope *scope, const char *reference, stru
     return good;
 }
 
-/* Appends a text with its references replaced. Returns false if one of them could not be: it stays as it is. */
+/* Appends a text with its references replaced. Returns false if any could not be resolved; those stay unchanged. */
 static bool expand(const struct scope *scope, const char *text, struct text *out, int depth)
 {
     bool good = true;
@@ -285,7 +285,7 @@ static bool expand(const struct scope *scope, const char *text, struct text *out
 
 /* --- tags --------------------------------------------------------------------------------------------------------------------- */
 
-/* Trimmed, without control characters. */
+/* Sets a field to a text, trimmed and without control characters. */
 static void set_text(struct tag_export *list, struct export_tag *tag, enum export_field field, char *text)
 {
     for (char *c = text; *c; c++)
@@ -313,7 +313,7 @@ static void set_field(const struct scope *scope, struct export_tag *tag, enum ex
     text_finish(&out);
 }
 
-/* Members of instances are called by their whole path: a member's own name says nothing of which instance it is in. */
+/* Adds a tag. A member of an instance is named by its whole path, since its own name does not identify the instance. */
 static void add_tag(const struct scope *scope, const struct layered_node *node)
 {
     struct tag_export *list = scope->reader->list;
@@ -328,12 +328,12 @@ static void add_tag(const struct scope *scope, const struct layered_node *node)
     mem_free(name);
     for (size_t i = 0; i < sizeof(properties) / sizeof(*properties); i++)
         set_field(scope, tag, properties[i].field, property_of(node, properties[i].name));
-    if (tag->fields[EXPORT_SCALED_HIGH]) /* an export leaves out what Ignition takes by default: 0 to 100 */
+    if (tag->fields[EXPORT_SCALED_HIGH]) /* an export omits Ignition's defaults, 0 and 100 */
         export_tag_set(tag, EXPORT_SCALED_LOW, "0");
     if (tag->fields[EXPORT_SCALED_LOW])
         export_tag_set(tag, EXPORT_SCALED_HIGH, "100");
     export_tag_set(tag, EXPORT_AREA, scope->folder);
-    if (!tag->fields[EXPORT_NAME]) /* blanks only */
+    if (!tag->fields[EXPORT_NAME]) /* the name had only blanks */
         export_tag_set(tag, EXPORT_NAME, "unnamed");
     scope->reader->too_many |= list->count > TABLE_MAX_ROWS;
 }
@@ -349,7 +349,7 @@ static json_t *child_of(json_t *layer, const char *name)
     return NULL;
 }
 
-/* Adds what a folder or an instance holds: each child once, as all layers together have it. */
+/* Adds the children of a folder or instance, each once, merged over all layers. */
 static void add_children(struct tag_json_reader *reader, const struct layered_node *node, const struct instance_frame *frame,
                          const char *folder, int depth)
 {

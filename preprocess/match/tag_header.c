@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Column names of exported tag lists in English, German, French, Spanish, Portuguese, Italian, Korean, Chinese, Japanese and Russian. */
+/* Recognises column names of exported tag lists in English, German, French, Spanish, Portuguese, Italian, Korean, Chinese, Japanese and
+ * Russian. */
 #include "preprocess/match/tag_header.h"
 
 #include <string.h>
@@ -7,7 +8,7 @@
 #include "base/mem.h"
 #include "preprocess/match/fold.h"
 
-/* As fold_key() leaves them; of two in one file the one further up counts. */
+/* Names as returned by fold_key(). If two columns of a file fit, the name listed earlier wins. */
 static const struct {
     enum export_field field;
     const char *words;
@@ -91,7 +92,7 @@ static const struct {
 };
 enum { FIELDS = sizeof(fields) / sizeof(*fields) };
 
-/* Returns the rank of a word in a list that has blanks around each word, or -1. */
+/* Returns the position of a word in a list with blanks around each word, or -1. */
 static int rank_of(const char *words, const char *key)
 {
     char *wanted = mem_printf(" %s ", key);
@@ -100,8 +101,8 @@ static int rank_of(const char *words, const char *key)
     return at ? (int)(at - words) : -1;
 }
 
-/* Calls `each` for the keys of a cell, until one is taken: all of it, then what stands on each side of "/", "(" and the like, then what
-   is ASCII of it and what is not, as in headers in two languages. */
+/* Calls `each` for the keys of a cell until it returns true: the whole cell, then the parts around "/", "(" and similar, then the ASCII
+ * part and the rest, for bilingual headers. */
 static bool each_key(const char *cell, bool (*each)(const char *key, void *data), void *data)
 {
     static const char separators[] = "/|()[]:;\n";
@@ -170,7 +171,7 @@ int tag_header_read(const struct table_row *row, struct tag_header *header)
         reading.column = (int)c;
         each_key(row->cells[c], take_key, &reading);
     }
-    if (header->columns[EXPORT_ADDRESS] == header->columns[EXPORT_NAME]) /* "Instrument Tag" is one of the two */
+    if (header->columns[EXPORT_ADDRESS] == header->columns[EXPORT_NAME]) /* "Instrument Tag" may be either, so use it once */
         header->columns[EXPORT_ADDRESS] = -1;
     for (int f = 0; f < EXPORT_FIELDS; f++)
         known += header->columns[f] >= 0;

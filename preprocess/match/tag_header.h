@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The header of a tag list: which column is what. Thread: any. */
+/* Recognises the columns of a tag list from its header. Thread: any. */
 #ifndef PREPROCESS_MATCH_TAG_HEADER_H
 #define PREPROCESS_MATCH_TAG_HEADER_H
 #include "preprocess/match/export_field.h"
 #include "preprocess/match/table.h"
 
 struct tag_header {
-    int columns[EXPORT_FIELDS]; /* -1: none */
-    int tag_type;               /* Ignition's, which tells folders */
-    int span;                   /* of a range that begins at the scaled low end */
-    int kind, specifier;        /* Studio 5000's: what a row is, and the element that a comment is about */
-    const char *data_type;      /* of all rows below, or NULL */
+    int columns[EXPORT_FIELDS]; /* column of each field; -1: none */
+    int tag_type;               /* column of Ignition's tag type, which marks folders; -1: none */
+    int span;                   /* column with the length of a range that begins at the scaled low limit; -1: none */
+    int kind, specifier;        /* columns of Studio 5000: kind of the row, and element that a comment describes; -1: none */
+    const char *data_type;      /* data type of all following rows; NULL: unknown */
 };
 
-/* Reads a row as a header. Returns the number of columns that are known. */
+/* Reads a row as a header. Returns the number of recognised columns. */
 int tag_header_read(const struct table_row *row, struct tag_header *header);
-/* Returns whether a cell is that word, as fold_key() leaves it. */
+/* Returns whether a cell of the row equals the word after fold_key(). */
 bool tag_header_has(const struct table_row *row, const char *word);
 
 #endif

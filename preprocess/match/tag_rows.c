@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows of tags.csv. */
+/* Edits rows of tags.csv. */
 #include "preprocess/match/tag_rows.h"
 
 #include <errno.h>
@@ -94,7 +94,7 @@ static bool read_file(struct tag_rows *rows, const char *path, char why[MATCH_WH
     charset_decode(bytes, count, NULL, &text);
     rows->separator = table_separator(text.utf8);
     bool good = table_read_csv(&table, text.utf8, rows->separator, why, MATCH_WHY_BYTES);
-    if (good && table.count > 1) { /* more than a header */
+    if (good && table.count > 1) { /* the list has rows besides the header */
         rows->at = table.rows;
         rows->count = table.count;
         rows->capacity = table.capacity;
@@ -175,7 +175,7 @@ static bool is_text(const char *type)
     return !strcasecmp(type, "String") || !strcasecmp(type, "Text") || !strcasecmp(type, "Char") || !strcasecmp(type, "DateTime");
 }
 
-/* It has no number, or no address that its source can have. */
+/* Returns whether a tag is left out: it is not numeric, or has no address valid for its source. */
 static bool is_left_out(const struct export_tag *tag, const struct tag_source *source)
 {
     struct modbus_address address;
@@ -184,7 +184,8 @@ static bool is_left_out(const struct export_tag *tag, const struct tag_source *s
            (source->modbus && !address_parse(tag->fields[EXPORT_ADDRESS], source->address_base, &address, why));
 }
 
-/* Kepware's names; those of Ignition, IEC 61131-3 and PI are turned into them. What is not known is left to the address. */
+/* Returns a data type by Kepware's name. Names of Ignition, IEC 61131-3 and PI are converted; unknown ones give "", so that the address
+ * decides. */
 static const char *type_of(const char *type)
 {
     static const char *const others[][2] = { { "Float4", "Float" }, { "Float8", "Double" },   { "Int1", "Short" },   { "Int2", "Short" },
@@ -233,7 +234,7 @@ static void put_scaling(struct tag_rows *rows, struct table_row *row, const stru
             put(rows, row, columns[i], cells[i]);
 }
 
-/* Limits that do not ascend are not those of an alarm system: all are left to the group. */
+/* Writes alarm limits. Limits that do not ascend are not from an alarm system: then all are left to the group. */
 static void put_limits(struct tag_rows *rows, struct table_row *row, const struct export_tag *tag)
 {
     const char *before = NULL;
@@ -272,7 +273,7 @@ static void put_equipment(struct tag_rows *rows, struct table_row *row, const st
     }
 }
 
-/* Whether the equipment of a row that is there is to be written: a row that people changed stays. */
+/* Returns whether the equipment of an existing row may be written: not if a person changed the row. */
 static bool may_put(const struct tag_row_input *input, const char *asset)
 {
     const struct decision *before = input->before;
@@ -323,7 +324,7 @@ void tag_rows_write(const struct tag_rows *rows, struct text *out)
     size_t width = rows->at[0].count;
     bool *used = mem_array(width + 1, sizeof(*used));
     for (size_t c = 0; c < width; c++) {
-        used[c] = rows->known > 1; /* columns that were there stay */
+        used[c] = rows->known > 1; /* keep columns that the file already had */
         for (size_t i = 1; i < rows->count && !used[c]; i++)
             used[c] = *table_cell(&rows->at[i], (int)c);
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tag list (tags.csv) as rows: tags of an export are added to it, and those that are there are given their equipment. Thread: one. */
+/* Edits the rows of the tag list (tags.csv): adds the tags of an export and sets the equipment of existing ones. Thread: one. */
 #ifndef PREPROCESS_MATCH_TAG_ROWS_H
 #define PREPROCESS_MATCH_TAG_ROWS_H
 #include "preprocess/match/decisions.h"
@@ -7,20 +7,20 @@
 #include "preprocess/match/table.h"
 
 struct tag_rows {         /* zero-initialise */
-    struct table_row *at; /* the first is the header */
+    struct table_row *at; /* all rows; the first is the header */
     size_t count, capacity;
-    int *by_name; /* rows that the file had, sorted */
-    size_t known; /* how many those are, with the header */
+    int *by_name; /* rows that the file had, sorted by name */
+    size_t known; /* number of rows that the file had, including the header */
     char separator;
 };
 
-struct tag_source { /* where tags of an export are read */
-    const char *id; /* NULL: nothing is said of it, and no address is written */
-    bool modbus;    /* tags without an address that it can have are left out */
+struct tag_source { /* the source that reads the exported tags */
+    const char *id; /* NULL: neither the source nor addresses are written */
+    bool modbus;    /* leave out tags whose address is not valid for Modbus */
     int address_base;
 };
 
-/* Reads the tag list; one that is not there, or has a header alone, is begun anew. Returns false with the reason. */
+/* Reads the tag list. A missing list, or one with only a header, starts with the default header. Returns false with the reason in why. */
 bool tag_rows_read(struct tag_rows *rows, const char *path, char why[MATCH_WHY_BYTES]);
 void tag_rows_finish(struct tag_rows *rows);
 
@@ -28,15 +28,15 @@ struct tag_row_input {
     const struct model_index *site;
     const struct export_tag *tag;
     const struct match *match;
-    const struct decision *before; /* of the last run, or NULL */
+    const struct decision *before; /* decision of the previous run; NULL: none */
     const struct place_proposal *place;
-    const char *group; /* id; "": none */
+    const char *group; /* group id; "": none */
     const struct tag_source *source;
 };
-/* Adds a tag, or brings its row up to date, except where people changed it. Returns the id of the asset that the row has then, "" for none,
- * valid until the next call; NULL: it was left out. */
+/* Adds a tag, or updates its row except for cells that people changed. Returns the id of the row's asset ("": none), valid until the next
+ * call, or NULL if the tag was left out. */
 const char *tag_rows_put(struct tag_rows *rows, const struct tag_row_input *input);
-/* Appends the list as text, without columns of our own that are blank in all rows. */
+/* Appends the list as text. Omits columns added by this program that are blank in all rows. */
 void tag_rows_write(const struct tag_rows *rows, struct text *out);
 
 #endif
