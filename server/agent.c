@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A line for each who asks. Nothing is read: there is nothing to attack. */
+/* Answers each connection with one line. Nothing is read from clients, so there is nothing to attack. */
 #include "agent.h"
 
 #include <errno.h>
@@ -19,15 +19,16 @@ struct agent {
     struct log *log;
     int fd, stop_fd;
     struct thread thread;
-    /* --- below: under thread.lock */
+    /* --- below: protected by thread.lock */
     struct agent_state state;
-    int64_t told_ns; /* monotonic */
+    int64_t told_ns; /* monotonic: when agent_tell() was last called */
 };
 
 enum { PAUSE_MS = 100 };
 static const int64_t TOLD_NS = 5 * NS_PER_S;
 
-/* Weight 1 of 100 where readings are missing: another node is better, but if all have lost the core, people still see that. */
+/* Without readings the line says weight 1 of 100: other nodes are better, but if all have lost the core, users are still served and see
+   that. */
 static int print_line(const struct agent_state *state, char *line, size_t size)
 {
     int free_percent = state->busy_percent < 99 ? 100 - state->busy_percent : 1;
@@ -40,17 +41,17 @@ static void answer(struct agent *agent)
 {
     char line[64];
     int fd = accept4(agent->fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (fd < 0) { /* out of descriptors, say: whoever asks waits, and so do we */
+    if (fd < 0) { /* for example out of descriptors: the client waits, and so does this thread */
         poll(&(struct pollfd){ .fd = agent->stop_fd, .events = POLLIN }, 1, PAUSE_MS);
         return;
     }
     pthread_mutex_lock(&agent->thread.lock);
     struct agent_state state = agent->state;
-    if (clock_mono_ns() - agent->told_ns > TOLD_NS) /* the loop hangs */
+    if (clock_mono_ns() - agent->told_ns > TOLD_NS) /* the event loop hangs */
         state.has_core = false;
     pthread_mutex_unlock(&agent->thread.lock);
     int count = print_line(&state, line, sizeof(line));
-    (void)!send(fd, line, (size_t)count, MSG_NOSIGNAL); /* it fits a new socket's buffer */
+    (void)!send(fd, line, (size_t)count, MSG_NOSIGNAL); /* always fits into the buffer of a new socket */
     close(fd);
 }
 

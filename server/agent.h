@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tells a load balancer how much this daemon can still draw: whoever connects to the port is sent one line of HAProxy's agent check, and
-   the connection is closed. One thread. */
+/* Tells a load balancer how much capacity this daemon has left: each connection to the port is sent one line of HAProxy's agent check
+   and then closed. Uses a thread of its own. */
 #ifndef AGENT_H
 #define AGENT_H
 #include <stdbool.h>
@@ -8,16 +8,16 @@
 #include "base/log/log.h"
 
 struct agent_state {
-    int busy_percent; /* of the render thread's time */
-    bool has_core;    /* readings come */
-    bool drains;      /* sessions are being sent elsewhere */
+    int busy_percent; /* percentage of the render thread's time that is used */
+    bool has_core;    /* readings arrive */
+    bool drains;      /* sessions are being sent to other daemons */
 };
 
 struct agent;
-/* Returns NULL if the port cannot be had, or there is no thread (logged). address: numeric. */
+/* Starts the thread. Returns NULL if the port cannot be bound or the thread cannot start (logged). address: numeric. */
 struct agent *agent_start(struct log *log, const char *address, int port);
-void agent_stop(struct agent **agent); /* &NULL is fine; leaves NULL */
-/* Says how it is from now on. Any thread. */
+void agent_stop(struct agent **agent); /* &NULL is allowed; sets *agent to NULL */
+/* Sets the state to report from now on. Any thread. */
 void agent_tell(struct agent *agent, const struct agent_state *state);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The programs of an import, one after the other, as somebody would run them by hand. */
+/* Runs the programs of an import one after the other, as a user would run them by hand. */
 #include "import_job.h"
 
 #include <inttypes.h>
@@ -16,25 +16,25 @@
 #include "plant/plant_folder.h"
 #include "sibling.h"
 
-enum { FILES = 3, MOST_ARGUMENTS = 300, OWN_MB = 512 /* memory of plantcast-import itself, without its readers */ };
+enum { FILES = 3, MOST_ARGUMENTS = 300, OWN_MB = 512 /* memory in MB of plantcast-import itself, without its readers */ };
 static const size_t max_bytes = (size_t)256 << 20;
 
 struct texts {
-    char *at[FILES]; /* NULL: there is no file */
+    char *at[FILES]; /* content of each file; NULL: the file does not exist */
 };
 
 struct import_job {
     struct import_job_params params;
     char *folder, *paths[FILES];
-    struct texts first, read, last; /* at the beginning, after models were read, and after tags were matched */
-    ino_t revision;                 /* of the last revision before; 0: there was none */
-    bool prepares;                  /* preparing was begun */
-    bool undoes;                    /* nothing stops the program */
+    struct texts first, read, last; /* the files' contents at the beginning, after the models were read, and after the tags were matched */
+    ino_t revision;                 /* inode of the newest revision before the import; 0: there was none */
+    bool prepares;                  /* preparing the models was begun */
+    bool undoes;                    /* an undo is running, which nothing may stop */
 };
 
 struct arguments {
-    const char *at[MOST_ARGUMENTS + 1]; /* ends in NULL */
-    char *own[MOST_ARGUMENTS];          /* those that are to be freed */
+    const char *at[MOST_ARGUMENTS + 1]; /* ends with NULL */
+    char *own[MOST_ARGUMENTS];          /* texts to be freed */
     size_t count, owned;
 };
 
@@ -53,8 +53,8 @@ static void forget(struct texts *texts)
         mem_free(texts->at[i]);
 }
 
-/* Returns which folder it is that plantcast import keeps the files of before in; 0: there is none. Of two that are there one after the
-   other, the second was made beside the first, and is another one. */
+/* Returns the inode of the folder in which plantcast import keeps the previous files; 0: there is none. A new revision is created next
+   to the old one, so its inode differs. */
 static ino_t find_revision(const struct import_job *job, const char *name)
 {
     struct stat st;
@@ -98,7 +98,7 @@ static void add(struct arguments *list, const char *argument)
         list->at[list->count++] = argument;
 }
 
-/* A file of the exports. What is a link to a file is that file: what it needs lies beside that one. */
+/* Adds an exported file to the arguments. A symlink is resolved, because files that the model needs are in the folder of the real file. */
 static void add_export(struct arguments *list, const struct import_job *job, const char *name)
 {
     char real[PATH_MAX], *path = mem_printf("%s/%s", plant_import_exports(job->params.import), name);
@@ -120,7 +120,7 @@ static bool stop(void *arg)
     return !job->undoes && job->params.stop(job->params.arg);
 }
 
-/* The report of preparing is for who adjusts it. */
+/* Discards the output of preparing, which is meant for manual tuning. */
 static void say_nothing(void *arg, const char *text)
 {
     (void)arg;
@@ -156,14 +156,14 @@ static void add_limit(struct arguments *list, const char *option, int64_t limit)
     add(list, list->own[list->owned++]);
 }
 
-/* Limits of each process that reads a file; run() limits all of them together. */
+/* Adds the limits of each process that reads a file; run() limits all of them together. */
 static void add_limits(struct arguments *list, const struct import_job *job)
 {
     add_limit(list, "--timeout", job->params.quotas->at[QUOTA_IMPORT_S]);
     add_limit(list, "--memory", job->params.quotas->at[QUOTA_IMPORT_MB]);
 }
 
-/* By which a program that changes the folder has it, as this one does. */
+/* Adds the option by which a program knows that this daemon has locked the plant's folder for it. */
 static void add_lent(struct arguments *list)
 {
     list->own[list->owned] = mem_printf("%d", SIBLING_LENT);
@@ -179,7 +179,8 @@ static void add_option(struct arguments *list, const char *option, const char *v
     }
 }
 
-/* *remark receives which models could not be read, if only some could (mem_free). */
+/* Reads the models. Returns NULL, or what went wrong (mem_free). *remark: the models that could not be read, if only some could
+   (mem_free). */
 static char *read_models(struct import_job *job, const struct import_order *order, const struct export_list *exports, char **remark)
 {
     struct arguments list = { 0 };
@@ -213,7 +214,7 @@ static void add_source(struct arguments *list, const struct import_source *sourc
     add_option(list, "--address-base", source->base);
 }
 
-/* NULL: there is none. */
+/* Returns the file name of the exported tag list; NULL: there is none. */
 static const char *find_tags(const struct export_list *exports)
 {
     const char *tags = NULL;
@@ -262,7 +263,7 @@ char *import_job_run(struct import_job *job, const struct import_order *order, c
     struct export_list exports = { 0 };
     export_folder_list(plant_import_exports(job->params.import), &exports);
     char *why = NULL, *unread = NULL;
-    if (order->anew && *order->source.host && !find_tags(&exports)) /* only matching writes a source into a new plant file */
+    if (order->anew && *order->source.host && !find_tags(&exports)) /* only matching tags writes the source into a new plant file */
         why = mem_printf("the plant's source %s would be lost: there is no tag list among the exports; add it first", order->source.host);
     else if (order->models)
         why = read_models(job, order, &exports, &unread);
@@ -291,7 +292,7 @@ static bool same(const char *a, const char *b)
     return a && b ? !strcmp(a, b) : a == b;
 }
 
-/* Of files that are as the programs left them. */
+/* Puts earlier contents back into files that are as the programs left them. */
 static void put_texts(const struct import_job *job, const struct texts *texts)
 {
     struct texts now = { 0 };
@@ -306,7 +307,8 @@ static void put_texts(const struct import_job *job, const struct texts *texts)
     forget(&now);
 }
 
-/* A program that was killed while it replaced files has begun a revision, which the next one ends. */
+/* Returns whether there is a newer revision than at the beginning. This includes one that was begun by a program killed while it
+   replaced files; the next program completes it. */
 static bool has_revised(const struct import_job *job)
 {
     ino_t now = find_revision(job, ".revision");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcastd: reads a plant, renders it and serves it. Here: the command line. */
+/* plantcastd: reads a plant, renders it and serves it. This file: the command line. */
 #include <arpa/inet.h>
 #include <getopt.h>
 #include <stdio.h>
@@ -270,7 +270,7 @@ static bool add_origin(struct access_params *access, const char *url)
     return true;
 }
 
-/* -1: go on; else the exit code. */
+/* Handles an option on access. Returns -1 to go on, otherwise the exit code. */
 static int take_access_option(int option, struct access_params *access)
 {
     switch (option) {
@@ -287,11 +287,11 @@ static int take_access_option(int option, struct access_params *access)
     case OPTION_HOST: return add_host(access, optarg) ? -1 : usage_error("--host: not a name without port, or one too many:", optarg);
     case OPTION_ORIGIN: return add_origin(access, optarg) ? -1 : usage_error("--origin: not SCHEME://HOST[:PORT], or too many:", optarg);
     case OPTION_LIMIT: return quotas_parse(&access->quotas, optarg) ? -1 : usage_error("--limit: no such limit, or out of range:", optarg);
-    default: /* getopt has said what is wrong */ print_usage(stderr); return USAGE;
+    default: /* getopt has printed the error */ print_usage(stderr); return USAGE;
     }
 }
 
-/* -1: go on; else the exit code. */
+/* Handles an option on the audit trail. Returns -1 to go on, otherwise the exit code. */
 static int take_audit_option(int option, struct server_params *params)
 {
     struct audit_params *audit = &params->audit;
@@ -330,7 +330,7 @@ static bool add_core(struct server_params *params, const char *url)
     return true;
 }
 
-/* -1: go on; else the exit code. */
+/* Handles an option on the daemon's role. Returns -1 to go on, otherwise the exit code. */
 static int take_role_option(int option, struct server_params *params)
 {
     switch (option) {
@@ -345,7 +345,7 @@ static int take_role_option(int option, struct server_params *params)
     }
 }
 
-/* NULL: they go together. */
+/* Checks that the options on the role fit together. Returns NULL, or what is wrong. */
 static const char *role_wrong(const struct server_params *params)
 {
     bool render = params->role == SERVER_RENDER;
@@ -360,7 +360,7 @@ static const char *role_wrong(const struct server_params *params)
     return NULL;
 }
 
-/* -1: go on; else the exit code. */
+/* Handles any option. Returns -1 to go on, otherwise the exit code. */
 static int take_option(int option, struct server_params *params, int (**task)(const struct server_params *params))
 {
     int megabytes;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What depends on the plant: made, started, handed over, ended. */
+/* The parts of the daemon that depend on the plant: creates, starts, hands over and ends them. */
 #include "plant_runtime.h"
 
 #include <string.h>
@@ -12,7 +12,7 @@
 #include "scene/scene_create.h"
 #include "version.h"
 
-/* --- what lies on disk ------------------------------------------------------------------------------------------------ */
+/* --- files of the plant --------------------------------------------------------------------------------------------------- */
 
 char *plant_runtime_prepared_folder(const struct server_params *params, const struct plant *plant)
 {
@@ -68,9 +68,9 @@ struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *con
     return runtime;
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------- */
+/* --- life cycle ----------------------------------------------------------------------------------------------------------- */
 
-/* Others own the alarms, and poll. */
+/* Returns whether another daemon owns the alarms and polls the devices. */
 static bool follows(const struct plant_runtime *runtime)
 {
     return runtime->context->params->role == SERVER_RENDER || *runtime->context->follows;
@@ -136,7 +136,7 @@ static bool start_other_plants(struct plant_runtime *runtime)
            (runtime->other_plants = other_plants_start(runtime->context->log, runtime->plant));
 }
 
-/* Made from what is loaded; works only once somebody asks. */
+/* Creates the service that places sensors, from data loaded already; it does no work until a session uses it. */
 static void start_placing(struct plant_runtime *runtime)
 {
     const struct plant_runtime_context *context = runtime->context;
@@ -169,7 +169,7 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
 {
     if (before)
         store_adopt(runtime->store, before->store);
-    if (!before) /* else in the loop, as it is handed over: who is there keeps changing the files until then */
+    if (!before) /* after a reload the event loop opens the lists when it switches, because sessions change these files until then */
         plant_runtime_open_lists(runtime);
     if (runtime->history)
         runtime->loop_checks = loop_checks_open(runtime->context->log, runtime->plant, runtime->history);

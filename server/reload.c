@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that loads the plant anew: reads, compares, hands over. */
+/* The thread that reloads the plant: reads it, compares it with the old one, and switches. */
 #include "reload.h"
 
 #include <jansson.h>
@@ -19,28 +19,28 @@
 #include "plant/plant_folder.h"
 #include "sibling.h"
 
-enum { FIRST = 16 }; /* views that the new plant is drawn from before it takes over */
-enum { WAIT_MS = 3000 }; /* for another program that changes the plant's folder */
+enum { FIRST = 16 }; /* maximum number of views that are drawn with the new plant before the switch */
+enum { WAIT_MS = 3000 }; /* maximum wait in milliseconds for another program that changes the plant's folder */
 
 struct reload {
     const struct plant_runtime_context *context;
     struct plant_runtime **runtime;
     struct net *net;
     struct supervision *supervision;
-    struct plant_import *import; /* NULL: plants are not brought in here */
-    int64_t begun_ns;            /* of the reload that is under way */
-    char by[TOKEN_NAME_BYTES];     /* who asked for the one that is under way */
-    const struct tag_save *saving; /* for whom this is done; NULL: for nobody's list */
-    const char *kept;              /* the list before it */
-    struct refusal refusal;        /* why the list was not written; REFUSAL_NONE: it was */
-    pthread_mutex_t put_lock; /* held while the runtime is replaced, or begins to lead: one after the other */
-    struct thread leader;     /* does not wait until a plant is read, matched or prepared. Under its lock: */
+    struct plant_import *import; /* NULL: import is off */
+    int64_t begun_ns;            /* monotonic start of the running reload */
+    char by[TOKEN_NAME_BYTES];     /* user who asked for the running reload */
+    const struct tag_save *saving; /* tag list that the running reload puts in force; NULL: none */
+    const char *kept;              /* content of the tag list before it was replaced */
+    struct refusal refusal;        /* why the tag list was not written; REFUSAL_NONE: it was */
+    pthread_mutex_t put_lock; /* held while the runtime is replaced or takes the lead, so that these do not overlap */
+    struct thread leader;     /* thread that takes the lead without waiting for a running reload. Protected by its lock: */
     bool leads;
     struct thread thread;
-    /* --- below: under thread.lock */
+    /* --- below: protected by thread.lock */
     bool asked, imports;
-    char who[TOKEN_NAME_BYTES]; /* asked last */
-    struct tag_save *save; /* NULL: none is asked for */
+    char who[TOKEN_NAME_BYTES]; /* user who asked last */
+    struct tag_save *save; /* tag list to be saved; NULL: none */
 };
 
 void reload_count(struct counters *counters, const char *hash, bool in_force)
@@ -50,14 +50,14 @@ void reload_count(struct counters *counters, const char *hash, bool in_force)
     mem_free(name);
 }
 
-/* --- what becomes of it ----------------------------------------------------------------------------------------------- */
+/* --- reporting the result --------------------------------------------------------------------------------------------- */
 
 struct verdict {
     struct net *net;
     bool good;
     char *text;
-    uint64_t client; /* who saved; its text */
-    char *saved;     /* NULL: nobody */
+    uint64_t client; /* id of the client that saved a tag list */
+    char *saved;     /* text for that client; NULL: no tag list was saved */
 };
 
 static void say(void *arg)
@@ -68,7 +68,7 @@ static void say(void *arg)
         net_report_save(verdict->net, verdict->client, verdict->saved);
 }
 
-/* The same for who saved a list. */
+/* Returns the text for the client that saved a tag list. */
 static char *saved_text(const struct reload *reload, bool good, const json_t *object)
 {
     json_t *said = json_pack("{s:s,s:I,s:b}", "type", "tags_saved", "seq", (json_int_t)reload->saving->seq, "saved", good);
@@ -96,7 +96,7 @@ static void record(const struct reload *reload, bool good, const json_t *object)
     mem_free(what);
 }
 
-/* Takes the object. */
+/* Reports the result to all who asked; takes ownership of the object. */
 static void answer(struct reload *reload, bool good, json_t *object)
 {
     struct verdict verdict = { reload->net, good, NULL, 0, NULL };
@@ -141,7 +141,7 @@ static void refuse(struct reload *reload, const struct diag *diag, const char *w
            json_pack("{s:b,s:s,s:o}", "reloaded", false, "configuration", (*reload->runtime)->plant->hash, "errors", errors));
 }
 
-/* --- the swap --------------------------------------------------------------------------------------------------------- */
+/* --- the switch ------------------------------------------------------------------------------------------------------- */
 
 struct swap {
     struct net *net;
@@ -150,7 +150,7 @@ struct swap {
     size_t first_count;
 };
 
-/* In the loop. */
+/* Runs in the event loop. */
 static void look_at_views(void *arg)
 {
     struct swap *swap = arg;
@@ -158,7 +158,7 @@ static void look_at_views(void *arg)
     swap->first_count = net_views(swap->net, &plant, swap->first, FIRST);
 }
 
-/* Beside the old plant's render service, which goes on meanwhile, so that the new one is as quick from its first frame on. */
+/* Starts the new plant's render service while the old one still draws, so that the new one is quick from its first frame. */
 static bool start_render_service(struct reload *reload, struct plant_runtime *after)
 {
     struct swap swap = { .net = reload->net, .after = after };
@@ -166,13 +166,13 @@ static bool start_render_service(struct reload *reload, struct plant_runtime *af
     return net_call(reload->net, look_at_views, &swap) && plant_runtime_start_render_service(after, swap.first, swap.first_count);
 }
 
-/* In the loop. */
+/* Runs in the event loop. */
 static void release_recording(void *arg)
 {
     net_release_recording(arg);
 }
 
-/* In the loop. */
+/* Runs in the event loop. */
 static void swap(void *arg)
 {
     struct swap *swap = arg;
@@ -197,7 +197,8 @@ static void say_difference(struct reload *reload, const struct plant_diff *diff,
                      changes));
 }
 
-/* Sources end: from here on there is a new plant, or, if no thread can be had any more, no daemon. begun_ns: when it was asked for. */
+/* Switches to the new plant. The old sources end here, so from here on there is the new plant or, if a thread cannot be created, no
+   daemon. begun_ns: when the reload was asked for. */
 static void put_in_force(struct reload *reload, struct plant_runtime *after, const struct plant_diff *diff, int64_t begun_ns)
 {
     struct plant_runtime *before = *reload->runtime;
@@ -228,7 +229,7 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
 
 /* --- the plant's folder ------------------------------------------------------------------------------------------------- */
 
-/* Returns a descriptor, or a negative number with the reason in *why (mem_free). */
+/* Locks the plant's folder. Returns a descriptor, or a negative number with the reason in *why (mem_free). */
 static int lock_folder(const struct reload *reload, char **why)
 {
     char *folder = plant_folder_of(reload->context->params->plant_path), *cause = NULL;
@@ -240,7 +241,7 @@ static int lock_folder(const struct reload *reload, char **why)
     return lock;
 }
 
-/* Nothing has changed, if false comes: said already. */
+/* Reloads the plant. Returns false if nothing has changed because of an error; the error was reported. */
 static bool reload_now(struct reload *reload)
 {
     struct diag diag = { 0 };
@@ -263,7 +264,7 @@ static bool reload_now(struct reload *reload)
     return good;
 }
 
-/* Files are read when no other program is replacing them. */
+/* Reloads the plant once no other program is replacing its files. */
 static void reload_settled(struct reload *reload)
 {
     struct diag none = { 0 };
@@ -279,7 +280,7 @@ static void reload_settled(struct reload *reload)
     mem_free(folder);
 }
 
-/* --- another tag list ------------------------------------------------------------------------------------------------- */
+/* --- saving a tag list ----------------------------------------------------------------------------------------------------- */
 
 static bool is_stopping(void *arg)
 {
@@ -307,7 +308,7 @@ static void put_back(struct reload *reload, const struct tag_save *save, const c
     if (!tag_file_put_back(save, kept, &why))
         log_err(reload->context->log, "tag list: %s", why);
     else
-        prepare(reload); /* what was prepared before is still there: next to nothing to do */
+        prepare(reload); /* the earlier prepared files still exist, so this is quick */
     mem_free(why);
 }
 
@@ -343,7 +344,7 @@ static void save_now(struct reload *reload, const struct tag_save *save)
     mem_free(why);
 }
 
-/* --- another plant, brought in ---------------------------------------------------------------------------------------- */
+/* --- importing a plant -------------------------------------------------------------------------------------------------- */
 
 static bool is_cancelled(void *arg)
 {
@@ -351,12 +352,12 @@ static bool is_cancelled(void *arg)
     return plant_import_cancelled(reload->import) || is_stopping(reload);
 }
 
-/* Takes the reason, and returns it with what goes wrong now. */
+/* Undoes a failed import. Takes ownership of the reason and returns it, extended by errors of the undo. */
 static char *undo_import(struct reload *reload, struct import_job *job, char *why)
 {
     char *worse = import_job_undo(job), *both = worse ? mem_printf("%s; and it cannot be undone: %s", why, worse) : NULL;
     if (!worse && import_job_prepares(job))
-        prepare(reload); /* what was prepared before is still there: next to nothing to do */
+        prepare(reload); /* the earlier prepared files still exist, so this is quick */
     if (both)
         mem_free(why);
     mem_free(worse);
@@ -377,7 +378,7 @@ static void record_import(const struct reload *reload, const struct import_order
                                                              .why = why });
 }
 
-/* The folder is this daemon's from the first program to the last. */
+/* Runs an import while the plant's folder is locked by this daemon, from the first program to the last. */
 static void import_locked(struct reload *reload, struct import_order *order, int lock)
 {
     const struct plant_runtime_context *context = reload->context;
@@ -391,7 +392,7 @@ static void import_locked(struct reload *reload, struct import_order *order, int
                                               .stop = is_cancelled,
                                               .arg = reload };
     struct import_job *job = import_job_begin(&params);
-    if (order->anew) /* the plant file's source goes on */
+    if (order->anew) /* the new plant file keeps the old one's source */
         order->source = import_source_of_plant((*reload->runtime)->plant);
     char *remark, *why = import_job_run(job, order, &remark);
     if (!why) {
@@ -423,9 +424,9 @@ static void import_now(struct reload *reload, struct import_order *order)
     mem_free(why);
 }
 
-/* --- in the place of another core ------------------------------------------------------------------------------------- */
+/* --- taking the lead from another core --------------------------------------------------------------------------------- */
 
-/* In the loop. */
+/* Runs in the event loop. */
 static void lead_in_loop(void *arg)
 {
     struct reload *reload = arg;
@@ -463,7 +464,7 @@ static void *run_leader(void *arg)
     return NULL;
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------- */
+/* --- life cycle -------------------------------------------------------------------------------------------------------- */
 
 static void *run(void *arg)
 {
@@ -548,7 +549,7 @@ void reload_lead(struct reload *reload)
 void reload_save(struct reload *reload, struct tag_save *save)
 {
     pthread_mutex_lock(&reload->thread.lock);
-    tag_save_free(reload->save); /* there is none: the loop lets one through at a time */
+    tag_save_free(reload->save); /* always NULL here: the event loop admits one save at a time */
     reload->save = save;
     pthread_cond_signal(&reload->thread.wake);
     pthread_mutex_unlock(&reload->thread.lock);

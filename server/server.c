@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The daemon as a whole. */
+/* Builds the daemon from its parts, runs it, and takes it down. */
 #include "server.h"
 
 #include <errno.h>
@@ -35,7 +35,7 @@
 #include "value/series_check.h"
 #include "version.h"
 
-enum { SETTLE_MS = 3000 }; /* for an import that replaces files just now */
+enum { SETTLE_MS = 3000 }; /* maximum wait in milliseconds for an import that is replacing files */
 
 struct server {
     struct server_params params;
@@ -45,25 +45,25 @@ struct server {
     struct plant_runtime_context context;
     struct plant_runtime *runtime;
     struct reload *reload;
-    struct seat seat;            /* of one of two cores */
-    struct lease_keeper *keeper; /* NULL: no other core may lead */
-    bool follows, lost;          /* another core polls; this one's lease is lost */
-    bool divided;                /* programs that read files get cgroups of their own */
+    struct seat seat;            /* place of this core in a pair of cores */
+    struct lease_keeper *keeper; /* leadership lease; NULL: no other core may lead */
+    bool follows, lost;          /* follows: another core polls; lost: this core's lease was lost */
+    bool divided;                /* child processes that read files get cgroups of their own */
     struct supervision *supervision;
-    struct agent *agent;         /* NULL: no load balancer asks */
+    struct agent *agent;         /* answers load balancers; NULL: off */
     struct signing_key *signing_key; /* NULL: pictures are not signed */
     struct audit *audit;         /* NULL: nothing is recorded */
-    struct plant_import *import; /* NULL: plants are not brought in here */
-    pthread_mutex_t wake_lock;   /* holds net alive while the render thread wakes it */
+    struct plant_import *import; /* NULL: import is off */
+    pthread_mutex_t wake_lock;   /* keeps `net` alive while the render thread wakes it */
     struct net *net;
-    char *web;        /* folder; NULL: none */
-    int64_t begun_ns; /* monotonic */
+    char *web;        /* folder of the web client's files; NULL: none */
+    int64_t begun_ns; /* monotonic: when the daemon began to start */
 };
 
 static struct net *_Atomic to_stop;
 static _Atomic bool preparing, told_to_end;
 
-/* Until the loop runs. As the first process of a container it would not be ended by a signal that it does not handle. */
+/* Handles signals until the event loop runs. As process 1 of a container, the daemon would otherwise ignore signals without a handler. */
 static void on_early_signal(int number)
 {
     atomic_store(&told_to_end, true);
@@ -95,7 +95,7 @@ static void on_drain(int number)
     errno = cause;
 }
 
-/* The plant is loaded anew; the files of tokens and certificate are looked at once a second in any case. */
+/* Reloads the plant. The files of tokens and certificate are checked once a second in any case. */
 static void on_hangup(int number)
 {
     (void)number;
@@ -115,7 +115,7 @@ static void on_pictures(void *arg)
     pthread_mutex_unlock(&server->wake_lock);
 }
 
-/* --- what lies on disk ----------------------------------------------------------------------------------------------------- */
+/* --- files of the plant -------------------------------------------------------------------------------------------------------- */
 
 static struct plant *load_plant(const char *path)
 {
@@ -128,7 +128,7 @@ static struct plant *load_plant(const char *path)
     return plant;
 }
 
-/* The client's files lie beside an installed program, or in the tree that it was built in. */
+/* Finds the web client's files: next to an installed program, or in the source tree. */
 static char *find_web(const char *given)
 {
     static const char *const places[] = { "../share/plantcast/web", "../clients/web", "../../../clients/web" };
@@ -152,9 +152,9 @@ static char *find_web(const char *given)
     return NULL;
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------------ */
+/* --- life cycle ---------------------------------------------------------------------------------------------------------------- */
 
-/* H.264 is offered where it works; JPEG always is. */
+/* Returns the codecs that work here: JPEG and PNG always, H.264 if its encoder works. */
 static unsigned find_codecs(const struct server *server)
 {
     const char *library = plant_runtime_h264_library(&server->params);
@@ -166,7 +166,7 @@ static unsigned find_codecs(const struct server *server)
     return codecs;
 }
 
-/* In the loop, which begins once there is a reload. */
+/* Called in the event loop, which starts after server->reload was created. */
 static void ask_reload(void *arg, const char *who)
 {
     reload_ask(((struct server *)arg)->reload, who);
@@ -242,14 +242,15 @@ static bool start_import(struct server *server)
     return server->import != NULL;
 }
 
-/* Clocks in pictures show the plant's time. The environment may be changed only while there is one thread. */
+/* Sets the time zone of the clocks in pictures to the plant's. Call it while there is only one thread, because it changes the
+   environment. */
 static void set_time_zone(const struct plant *plant)
 {
     setenv("TZ", plant->time_zone, 1);
     tzset();
 }
 
-/* One entry for each line that would be printed. */
+/* Logs each line of the findings as one entry. */
 static void log_findings(struct log *log, const struct diag *diag)
 {
     char *lines = NULL;
@@ -271,8 +272,8 @@ static bool is_told_to_end(void *arg)
     return atomic_load(&told_to_end);
 }
 
-/* What was prepared is of another plant file or of other models: somebody has imported, and not prepared since. Where nothing was prepared
-   ever, the folder may be another one than was meant. */
+/* Prepares the plant if the prepared files belong to another plant file or other models: the plant was imported and not prepared since.
+   If nothing was ever prepared, does nothing, because the folder may be the wrong one. */
 static bool prepare(struct server *server)
 {
     struct diag diag = { 0 };
@@ -299,7 +300,7 @@ static bool prepare(struct server *server)
     return good;
 }
 
-/* The plant file, models and tag list of one revision, never of two. */
+/* Waits until the plant file, models and tag list belong to one revision. */
 static bool settle_folder(struct server *server)
 {
     const char *finished = NULL;
@@ -316,7 +317,7 @@ static bool settle_folder(struct server *server)
     return settled;
 }
 
-/* Findings are printed, errors and warnings. */
+/* Reads the plant; prints findings, errors and warnings. */
 static bool read_plant(struct server *server)
 {
     struct diag diag = { 0 };
@@ -373,7 +374,7 @@ static bool load_signing_key(struct server *server)
     return true;
 }
 
-/* By the thread of the lease, until it is destroyed. */
+/* Called by the lease keeper's thread when this core becomes the leader. */
 static void on_won(void *arg)
 {
     struct server *server = arg;
@@ -383,7 +384,7 @@ static void on_won(void *arg)
     pthread_mutex_unlock(&server->wake_lock);
 }
 
-/* The kernel ends the process where this is not enough. */
+/* Called when the lease is lost. The kernel ends the process if stopping takes too long. */
 static void on_lost(void *arg)
 {
     struct server *server = arg;
@@ -407,7 +408,7 @@ static bool take_seat(struct server *server, char name[LEASE_NODE_BYTES])
     return good;
 }
 
-/* Each of two cores begins as one that follows. */
+/* Creates the lease keeper. Each of two cores starts as a follower. */
 static bool make_keeper(struct server *server)
 {
     const struct plant *plant = server->runtime->plant;
@@ -470,7 +471,7 @@ static bool server_start(struct server *server)
            start_net(server) && (!server->keeper || lease_keeper_start(server->keeper));
 }
 
-/* Against the flow of data: first who takes, last who gives. */
+/* Destroys the parts against the flow of data: consumers first, producers last. */
 static void server_finish(struct server *server)
 {
     pthread_mutex_lock(&server->wake_lock);
@@ -485,7 +486,7 @@ static void server_finish(struct server *server)
     audit_stop(&server->audit);
     plant_import_destroy(&server->import);
     plant_runtime_destroy(&server->runtime);
-    lease_keeper_destroy(&server->keeper); /* it gives the lease back: nothing polls any more */
+    lease_keeper_destroy(&server->keeper); /* releases the lease, as nothing polls devices any more */
     seat_leave(&server->seat);
     workers_destroy(&server->workers);
     supervision_destroy(&server->supervision);
@@ -539,7 +540,7 @@ int server_run(const struct server_params *params)
     server.divided = cgroup_divide();
     confine_hide_memory();
     signal(SIGPIPE, SIG_IGN);
-    signal(SIGXFSZ, SIG_IGN); /* a file that may not grow is an error of writing, as a full disk is */
+    signal(SIGXFSZ, SIG_IGN); /* a file that reached its size limit gives a write error, like a full disk */
     handle_early_signals();
     bool good = server_start(&server);
     if (good) {
@@ -574,7 +575,7 @@ static int check_prepared(const struct server_params *params, const struct plant
     struct scene *scene = plant_runtime_open_scene(log, params, plant);
     int status = scene ? 0 : 1;
     for (size_t i = 0; scene && i < scene->asset_count; i++)
-        status |= scene->assets[i].missing != NULL; /* logged */
+        status |= scene->assets[i].missing != NULL; /* the reason was logged */
     if (scene) {
         size_t count;
         struct far_sensor *far = far_sensors_find(scene, &count);
@@ -591,7 +592,7 @@ static int check_prepared(const struct server_params *params, const struct plant
     return status;
 }
 
-/* A plant without sensors may be meant so, as long as they are placed on the page. */
+/* Counts the tags that are sensors. A plant without sensors is only a warning: they may be placed on the page. */
 static size_t count_sensors(const struct plant *plant, struct diag *diag)
 {
     size_t count = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the command line of the daemon says. */
+/* Parameters from the daemon's command line. */
 #ifndef SERVER_SERVER_PARAMS_H
 #define SERVER_SERVER_PARAMS_H
 #include <stdbool.h>
@@ -11,36 +11,37 @@
 #include "corelink/core_link.h"
 #include "gpu/gl.h"
 
-/* Who reads field devices, and who draws for operators. */
-enum server_role { SERVER_ALL, SERVER_CORE /* renderers may connect, too */, SERVER_RENDER };
+/* Whether the daemon reads field devices, draws for users, or both. */
+enum server_role { SERVER_ALL, SERVER_CORE /* as SERVER_ALL, and renderers may connect */, SERVER_RENDER };
 
 struct server_params {
     const char *plant_path;
-    const char *address; /* to listen on; numeric */
-    int port;            /* 0: any that is free */
-    int socket_fd;       /* of the service manager, which listens there already; -1: none */
+    const char *address; /* numeric address to listen on */
+    int port;            /* port to listen on; 0: any free one */
+    int socket_fd;       /* socket that the service manager opened and that listens already; -1: none */
     enum gl_kind gl;
     struct gl_device gl_device;
     bool has_gl_device;
-    const char *prepared; /* NULL: beside the plant file */
-    const char *history;  /* NULL: as the plant file says */
-    const char *web;      /* NULL: found from where the program is */
+    const char *prepared; /* folder of prepared assets; NULL: next to the plant file */
+    const char *history;  /* folder of the history; NULL: as the plant file says */
+    const char *web;      /* folder of the web client's files; NULL: found relative to the program */
     enum log_level log_level;
     enum log_format log_format;
-    const char *h264;    /* an encoder of libavcodec, or "off"; NULL: the usual one */
-    size_t memory_bytes; /* 0: what suits the machine */
-    int threads;         /* workers; 0: one per core */
+    const char *h264;    /* name of a libavcodec encoder, or "off"; NULL: the default one */
+    size_t memory_bytes; /* limit on memory; 0: chosen for the machine */
+    int threads;         /* number of worker threads; 0: one per core */
     struct access_params access;
-    const char *signing_key;   /* PEM file of the key that signs pictures; NULL: none is signed */
-    struct audit_params audit; /* path NULL: nothing is recorded */
-    bool imports, imports_now; /* engineers may bring plants in; what was exported is brought in at once */
+    const char *signing_key;   /* PEM file of the key that signs pictures; NULL: pictures are not signed */
+    struct audit_params audit; /* audit trail; path NULL: nothing is recorded */
+    bool imports, imports_now; /* imports: engineers may import plants; imports_now: import the exported files at start */
     enum server_role role;
-    const char *cores[CORE_URLS]; /* SERVER_RENDER: URLs where the core may be; one at a time is */
+    const char *cores[CORE_URLS]; /* for SERVER_RENDER: URLs at which the core may be; it is at one of them at a time */
     int core_count;
-    const char *core_token, *core_ca; /* file of the token; of certificates that are trusted. NULL: none; the system's */
-    int agent_port;                   /* where load balancers ask; 0: nowhere */
-    const char *node;                 /* this daemon's name among others; without --node the machine's */
-    bool per_fragment; /* the field anew at each fragment; for comparison */
+    /* core_token: file of the token for the core, NULL: none; core_ca: file of trusted certificates, NULL: the system's */
+    const char *core_token, *core_ca;
+    int agent_port;                   /* port for load balancers' agent checks; 0: none */
+    const char *node;                 /* this daemon's name among others; without --node the host name */
+    bool per_fragment; /* compute the field for each fragment; for comparison */
 };
 
 #endif

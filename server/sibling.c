@@ -28,11 +28,11 @@ static const int64_t KILL_AFTER_NS = 30 * NS_PER_S;
 struct sibling {
     const struct sibling_params *params;
     pid_t child;
-    int ends[PIPES][2];  /* -1: closed */
-    struct text written; /* to stderr */
-    char *cgroup;        /* NULL: none */
+    int ends[PIPES][2];  /* descriptors of the pipes; -1: closed */
+    struct text written; /* output of the program on stderr */
+    char *cgroup;        /* path of the program's cgroup; NULL: none */
     int64_t until_ns, kill_ns;
-    bool told, timed_out; /* the program was told to end: by the caller, by the time limit */
+    bool told, timed_out; /* the program was told to end: told: by the caller; timed_out: by the time limit */
 };
 
 static void close_end(int *fd)
@@ -42,7 +42,7 @@ static void close_end(int *fd)
     *fd = -1;
 }
 
-/* Within a millisecond of the start: before the program has read anything. */
+/* Applies the limits, within a millisecond of the start: before the program has read anything. */
 static void limit(struct sibling *sibling)
 {
     size_t bytes = sibling->params->memory_bytes;
@@ -121,14 +121,15 @@ static void end_in_time(struct sibling *sibling)
     }
 }
 
-/* Waits for what it prints, and looks up now and then. Returns once it has ended; its pipes may be held open by others. */
+/* Reads the program's output and checks its limits now and then. Returns its exit status once it has ended; its pipes may still be held
+   open by other processes. */
 static int attend(struct sibling *sibling)
 {
     int status = 0;
     sibling->until_ns = clock_mono_ns() + sibling->params->timeout_s * NS_PER_S;
     for (bool ended = false; !ended;) {
         struct pollfd polled[PIPES] = { { sibling->ends[STDOUT][0], POLLIN, 0 }, { sibling->ends[STDERR][0], POLLIN, 0 } };
-        ended = waitpid(sibling->child, &status, WNOHANG) != 0; /* what it wrote before is read below */
+        ended = waitpid(sibling->child, &status, WNOHANG) != 0; /* output written before the end is still read below */
         int ready = poll(polled, PIPES, ended ? 0 : LOOK_MS);
         for (int i = 0; i < PIPES && ready > 0; i++)
             if (polled[i].revents)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of the daemon for the service manager, metrics and `plantcast reload`. */
+/* Reports the daemon's state to the service manager, to metrics and to `plantcast reload`. */
 #include "supervision.h"
 
 #include <inttypes.h>
@@ -14,8 +14,9 @@
 #include "commit.h"
 #include "version.h"
 
-static const int64_t LOOK_NS = 2 * NS_PER_S; /* at the render thread, and so often the watchdog is fed at most */
-enum { START_LIMIT_S = 600 }; /* that a step of the start may last */
+/* interval between checks of the render thread, and minimum time between two watchdog messages */
+static const int64_t LOOK_NS = 2 * NS_PER_S;
+enum { START_LIMIT_S = 600 }; /* maximum duration of one step of the start */
 
 struct supervision {
     struct log *log;
@@ -23,11 +24,11 @@ struct supervision {
     struct {
         counter *reload_good, *reloaded_s;
     } counters;
-    struct service_patience *patience; /* until the daemon is ready */
-    char *runtime;                     /* folder; NULL: there is none */
-    int64_t watchdog_ns;               /* 0: nobody waits for a sign of life */
-    _Atomic bool refused, reloaded;    /* the last reload was; there was one whose result was not told yet */
-    /* --- below: of the loop */
+    struct service_patience *patience; /* keeps the service manager waiting until the daemon is ready */
+    char *runtime;                     /* runtime folder of the service; NULL: there is none */
+    int64_t watchdog_ns;               /* interval of the service manager's watchdog; 0: off */
+    _Atomic bool refused, reloaded;    /* refused: the last reload failed; reloaded: there was a reload whose result was not reported yet */
+    /* --- below: used only by the event loop */
     int64_t looked_ns;
     bool ready, stuck, said_refused;
     size_t said_sessions;
@@ -92,7 +93,8 @@ static void say_status(struct supervision *supervision, size_t sessions, bool la
                    lacks_standby ? "; no standby follows this core: the log says why" : "");
 }
 
-/* The loop feeds it, and only while the render thread is alive too: whichever hangs, the manager starts the daemon again. */
+/* Feeds the watchdog from the event loop, and only while the render thread is alive too: if either hangs, the service manager restarts
+   the daemon. */
 static void look(struct supervision *supervision, struct render_service *render_service, int64_t now_ns)
 {
     bool stuck = render_service_is_stuck(render_service, now_ns);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who may do what. */
+/* Rules of access: addresses, host names, origins and header lists. */
 #include "access/access.h"
 
 #include <arpa/inet.h>
@@ -37,7 +37,7 @@ bool access_allowed_at(const struct access_params *params, bool loopback, const 
     return false;
 }
 
-/* --- names and pages -------------------------------------------------------------------------------------------------------- */
+/* --- host names and pages ------------------------------------------------------------------------------------------------------ */
 
 bool access_host_name(const char *host, char *out, size_t size)
 {
@@ -54,7 +54,7 @@ bool access_host_name(const char *host, char *out, size_t size)
         out[i] = (char)tolower(c);
     }
     out[n] = 0;
-    if (n > 1 && out[n - 1] == '.') /* a name may end in the root's dot */
+    if (n > 1 && out[n - 1] == '.') /* a host name may end with the dot of the DNS root */
         out[n - 1] = 0;
     return true;
 }
@@ -111,7 +111,7 @@ char *access_content_policy(const struct access_params *params)
 
 /* --- lists in headers ---------------------------------------------------------------------------------------------------------- */
 
-/* The next word of a list with commas: *n bytes from what is returned. NULL: there is none. */
+/* Returns the next word of a comma-separated list, with its length in *n, and advances *at. NULL: no more words. */
 static const char *next_word(const char **at, size_t *n)
 {
     *at += strspn(*at, " ,\t");
@@ -153,7 +153,7 @@ bool access_forwarded(const char *list, char *out, size_t size)
             continue;
         memcpy(word, at, n);
         word[n] = 0;
-        /* An address of version 6 has colons, with or without brackets; one of version 4 may have a port. */
+        /* An IPv6 address has colons, with or without brackets; an IPv4 address may have a port. */
         bool bare = access_name_is_address(word) && n < size;
         if (bare)
             strcpy(out, word);

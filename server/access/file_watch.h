@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <sys/stat.h>
 
-struct file_stamp { /* all 0: no file */
+struct file_stamp { /* all 0: the file does not exist */
     int64_t seconds, nanoseconds, bytes;
     uint64_t inode;
     unsigned mode, owner;
@@ -16,10 +16,10 @@ struct file_watch { /* zero-initialise */
     struct file_stamp seen, read;
 };
 
-/* Notes the state of the file that has just been read; st NULL: there is no file. */
+/* Notes the state of the file that was just read; st NULL: the file does not exist. */
 void file_watch_read(struct file_watch *watch, const struct stat *st);
-/* Returns true if the file differs from what was read and has stayed the same since the last call: while it is being written it may be
-   half a file. */
+/* Returns true if the file differs from the one read and has not changed since the last call: a file that is still being written may be
+   incomplete. */
 bool file_watch_changed(struct file_watch *watch, const char *path);
 
 #endif

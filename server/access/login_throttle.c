@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Login throttle. */
+/* Slows addresses that send wrong tokens. */
 #include "access/login_throttle.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@
 static const int64_t WINDOW_NS = 60 * NS_PER_S, WAIT_NS = LOGIN_WAIT_S * NS_PER_S, NEWS_NS = 600 * NS_PER_S;
 enum { KNOWN = 8 };
 
-struct known_token { /* a token that signed in from that address */
+struct known_token { /* a token accepted from that address before */
     uint8_t hash[TOKEN_HASH_BYTES];
     int64_t said_ns;
 };
@@ -18,10 +18,10 @@ struct known_token { /* a token that signed in from that address */
 struct throttle_entry {
     uint8_t address[16];
     int64_t heard_ns;
-    int64_t failed_ns[LOGIN_FAILURES]; /* a ring */
-    int64_t failures;                  /* ever: the ring's place */
+    int64_t failed_ns[LOGIN_FAILURES]; /* ring buffer of the times of the last failures */
+    int64_t failures;                  /* number of all failures; also the position in the ring */
     int64_t slowed_until_ns, next_try_ns;
-    struct known_token known[KNOWN]; /* the last ones, a ring too */
+    struct known_token known[KNOWN]; /* ring buffer of the last accepted tokens */
     int known_count;
 };
 
@@ -114,7 +114,7 @@ static enum login fail(struct throttle_entry *entry, int64_t now_ns)
     return was_slowed ? LOGIN_WRONG : LOGIN_WRONG_SLOWS;
 }
 
-/* Whether this try is one too many. */
+/* Returns whether this attempt comes too soon at a slowed address. */
 static bool holds(struct throttle_entry *entry, int64_t now_ns)
 {
     bool slowed = now_ns < entry->slowed_until_ns, too_soon = now_ns < entry->next_try_ns;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Those that wait are in memory only: a device whose digits are forgotten is given others. */
+/* Pairing of wall displays. Devices that wait are kept in memory only: after a restart a device gets new digits. */
 #include "access/pairings.h"
 
 #include <openssl/crypto.h>
@@ -24,11 +24,11 @@ struct pending_pairing {
 };
 
 struct pairings {
-    struct kept_list kept; /* { id, hash, wall, display, from, by, time_us } */
+    struct kept_list kept; /* list in devices.json: { id, hash, wall, display, from, by, time_us } */
     struct pending_pairing waiting[PAIRINGS];
     size_t count;
-    uint64_t number;  /* of changes of those that wait */
-    int64_t wrong_ns; /* when the first of the wrong digits of this minute came */
+    uint64_t number;  /* number of the last change of the waiting devices */
+    int64_t wrong_ns; /* monotonic: when the first wrong digits of this minute came */
     int wrong;
 };
 
@@ -82,9 +82,9 @@ enum refusal_code pairings_refusal(const struct pairings *pairings)
     return kept_list_refusal(&pairings->kept);
 }
 
-/* --- devices that are paired ------------------------------------------------------------------------------------------------ */
+/* --- paired devices ------------------------------------------------------------------------------------------------------------- */
 
-/* Takes as long for every hash. */
+/* Finds a paired device by hash; takes the same time for every hash. */
 static const json_t *find_device(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES])
 {
     char text[HASH_CHARS + 1];
@@ -132,7 +132,7 @@ char *pairings_text(const struct pairings *pairings)
     return json_text(json_pack("{s:o}", "list", list), 0);
 }
 
-/* --- those that wait -------------------------------------------------------------------------------------------------------- */
+/* --- waiting devices ------------------------------------------------------------------------------------------------------------ */
 
 static void forget(struct pairings *pairings, size_t i)
 {
@@ -156,7 +156,7 @@ static struct pending_pairing *find_digits(struct pairings *pairings, const char
     return NULL;
 }
 
-/* Of that secret, for that display; its number, or pairings->count. */
+/* Returns the index of the waiting device with that secret's hash and display, or pairings->count. */
 static size_t find_waiting(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
 {
     size_t i = 0;
@@ -169,7 +169,7 @@ static size_t find_waiting(const struct pairings *pairings, const uint8_t hash[T
     return i;
 }
 
-/* False: the system has no randomness. */
+/* Draws unused digits. Returns false if the system has no randomness. */
 static bool draw_digits(struct pairings *pairings, char digits[PAIRING_DIGITS + 1])
 {
     do {
@@ -189,8 +189,8 @@ static size_t count_from(const struct pairings *pairings, const uint8_t address[
     return from;
 }
 
-/* Frees a place when all are taken: the newest one of the address that has most, if that address has at least two more than the asking one
-   (which has `from`). So a few addresses cannot keep others out. Returns false if no address has that many. */
+/* Frees a place when all are taken: drops the newest waiting device of the address that has most of them, if that address has at least
+   two more than the asking one (which has `from`). So a few addresses cannot keep others out. Returns false if no address has that many. */
 static bool make_room(struct pairings *pairings, size_t from)
 {
     size_t most = from + 1, victim = pairings->count;
@@ -210,7 +210,7 @@ static bool make_room(struct pairings *pairings, size_t from)
     return true;
 }
 
-/* NULL: too many wait. */
+/* Adds a waiting device. Returns NULL if too many wait. */
 static struct pending_pairing *begin(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
                              int64_t now_ns)
 {
@@ -229,7 +229,8 @@ static struct pending_pairing *begin(struct pairings *pairings, const uint8_t ha
     return &pairings->waiting[pairings->count++];
 }
 
-/* Paired as what is asked for, or as another display; else PAIRING_WAITS. */
+/* Returns PAIRING_DONE or PAIRING_OTHER for a paired device: paired with the requested display, or with another one; otherwise
+   PAIRING_WAITS. */
 static enum pairing find_paired(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
 {
     struct token_holder paired;
@@ -244,7 +245,7 @@ static void tell_digits(const struct pending_pairing *waiting, int64_t now_ns, c
     *left_s = (int)((waiting->begun_ns + PAIRING_S * NS_PER_S - now_ns) / NS_PER_S);
 }
 
-/* The secret of the request is not looked at. */
+/* Answers a request; the secret in the request is not used, only its hash. */
 static enum pairing ask(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
                         int64_t now_ns, char digits[PAIRING_DIGITS + 1], int *left_s)
 {
@@ -283,7 +284,7 @@ static enum refusal_code keep(struct pairings *pairings, const struct pending_pa
     return kept_list_put(&pairings->kept, list);
 }
 
-/* Whoever guesses has ten tries a minute for a million digits. */
+/* Returns whether digits may be tried: ten wrong attempts a minute, against a million possibilities. */
 static bool may_try(struct pairings *pairings, int64_t now_ns)
 {
     if (now_ns - pairings->wrong_ns >= WRONG_NS)
@@ -318,7 +319,7 @@ enum refusal_code pairings_approve(struct pairings *pairings, const char *digits
     return why;
 }
 
-/* --- of a renderer ---------------------------------------------------------------------------------------------------------- */
+/* --- for renderers and standby cores -------------------------------------------------------------------------------------------- */
 
 static bool read_bytes(const json_t *text, uint8_t *bytes, size_t count)
 {
@@ -351,7 +352,7 @@ json_t *pairings_told(const struct pairings *pairings, int64_t now_ns)
         int left_s;
         hex_print(one->hash, TOKEN_HASH_BYTES, hash);
         tell_digits(one, now_ns, digits, &left_s);
-        if (left_s <= 0) /* it is forgotten when the next one asks */
+        if (left_s <= 0) /* expired; it is removed at the next request */
             continue;
         json_array_append_new(waiting, json_pack("{s:s,s:s,s:s,s:i,s:i}", "hash", hash, "digits", digits, "wall", one->place.wall,
                                                  "display", one->place.display, "left_s", left_s));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Quotas: limits on what clients and programs that read models may use (--limit NAME=N of the command line). Pure; any thread. */
+/* Quotas: limits on clients' resources and on programs that read models (option --limit NAME=N). Pure; any thread. */
 #ifndef ACCESS_QUOTA_H
 #define ACCESS_QUOTA_H
 #include <stdbool.h>
@@ -35,14 +35,14 @@ enum quota {
 
 struct quotas {
     int64_t at[QUOTA_COUNT];
-    bool given[QUOTA_COUNT]; /* on the command line; limits by address then hold for this machine's own addresses too */
+    bool given[QUOTA_COUNT]; /* set on the command line; limits per address then also apply to addresses of this machine */
 };
 
-/* Returns the limits that hold without --limit. */
+/* Returns the default limits. */
 struct quotas quotas_default(void);
-/* Sets one limit from "NAME=N". Returns false if there is no such limit, or N is out of its range. */
+/* Sets one limit from "NAME=N". Returns false if there is no such limit, or N is out of range. */
 bool quotas_parse(struct quotas *quotas, const char *text);
-/* Prints names, defaults and meaning of all limits, for --help. */
+/* Prints names, defaults and descriptions of all limits, for --help. */
 void quotas_print(FILE *out);
 
 #endif

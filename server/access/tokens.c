@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The file of tokens. */
+/* Reads and writes the file of tokens. */
 #include "access/tokens.h"
 
 #include <ctype.h>
@@ -26,11 +26,11 @@ enum { MAX_FILE_BYTES = 1024 * 1024, RANDOM_BYTES = 32 };
 
 struct tokens {
     struct log *log;
-    char *path, *plant; /* plant: its name; NULL: not known */
+    char *path, *plant; /* plant: name of this plant; NULL: not known */
     struct token_holder *holders;
     size_t count, capacity;
     struct file_watch watch;
-    tokens_find_device *find_device; /* NULL: there are none */
+    tokens_find_device *find_device; /* finds paired devices; NULL: there are none */
     const void *pairings;
 };
 
@@ -42,7 +42,7 @@ void tokens_hash(const char *token, uint8_t hash[TOKEN_HASH_BYTES])
         memset(hash, 0, TOKEN_HASH_BYTES);
 }
 
-/* The prefix tells a token from its hash, for people and for programs that look for secrets. */
+/* The prefix distinguishes a token from its hash, for people and for tools that search for secrets. */
 bool tokens_make(char token[TOKEN_MAX_CHARS + 1])
 {
     uint8_t bytes[RANDOM_BYTES];
@@ -99,7 +99,7 @@ bool tokens_may_see(const struct token_holder *holder, const char *view)
     size_t length = strlen(view);
     for (const char *at = holder->views; *at; at += at[strcspn(at, ",")] ? strcspn(at, ",") + 1 : strlen(at))
         if (!strncmp(at, view, length) && (at[length] == ',' || !at[length]))
-            return named_view_id_valid(view); /* and not two of them */
+            return named_view_id_valid(view); /* the view is a single id, not a list with commas */
     return !holder->views[0];
 }
 
@@ -112,10 +112,10 @@ bool tokens_parse_day(const char *text, int64_t *until_utc_ns)
         return false;
     int64_t begin_s = timegm(&day);
     *until_utc_ns = (begin_s + 24 * 3600) * NS_PER_S;
-    return day.tm_mday == said; /* there is no 30 February */
+    return day.tm_mday == said; /* strptime accepts dates such as 30 February; the day then differs */
 }
 
-/* The last part of a line, which may have blanks. Cuts it off. */
+/* Cuts the last part, `plant NAME`, off a line; the name may contain blanks. Returns false if the name is invalid. */
 static bool take_plant(char *line, char plant[TOKEN_PLANT_BYTES])
 {
     static const char key[] = " plant ";
@@ -124,7 +124,8 @@ static bool take_plant(char *line, char plant[TOKEN_PLANT_BYTES])
     while (n > 0 && strchr(" \t", line[n - 1]))
         line[--n] = 0;
     for (char *next = line; (next = strstr(next, key)); next++)
-        at = next > line + 2 * TOKEN_HASH_BYTES && !at ? next : at; /* behind the hash: somebody may be called so */
+        /* searched after the hash only, because a holder's name may contain the word */
+        at = next > line + 2 * TOKEN_HASH_BYTES && !at ? next : at;
     if (!at)
         return true;
     *at = 0;
@@ -216,7 +217,7 @@ void tokens_print_line(struct text *out, const struct token_holder *holder)
 
 /* --- the file --------------------------------------------------------------------------------------------------------------------- */
 
-/* NULL: it may be used. */
+/* Returns why the file may not be used; NULL: it may. */
 static const char *fault_of(const struct stat *st)
 {
     if (!S_ISREG(st->st_mode))
@@ -248,7 +249,7 @@ static void take_lines(struct tokens *tokens, char *text)
         take_line(tokens, line, ++number);
 }
 
-/* What is checked is what is read. False: logged. */
+/* Reads the file; checks the same descriptor from which it reads. Returns false on failure, logged. */
 static bool read_file(struct tokens *tokens)
 {
     struct stat st = { 0 };
@@ -331,7 +332,7 @@ static bool is_for_us(const struct tokens *tokens, const struct token_holder *ho
     return !holder->plant[0] || !tokens->plant || !strcmp(holder->plant, tokens->plant);
 }
 
-/* Whose it is, also where its time is over, if nobody else has it. Takes as long for every hash. */
+/* Finds the holder of a hash, preferring a token that has not expired. Takes the same time for every hash. */
 static const struct token_holder *find(const struct tokens *tokens, const uint8_t hash[TOKEN_HASH_BYTES], int64_t now_utc_ns)
 {
     const struct token_holder *found = NULL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread of alarms. */
+/* The thread that evaluates alarms. */
 #include "alarm/alarm_service.h"
 
 #include <errno.h>
@@ -12,8 +12,8 @@
 #include "base/mem.h"
 #include "base/thread.h"
 
-enum { ROWS = 2048 /* changes that are remembered for a standby */ };
-enum { QUEUE_MAX = 1000000 /* samples that a tenth of a second may bring */, RATE_SLOTS = 60 };
+enum { ROWS = 2048 /* journal rows remembered for a standby */ };
+enum { QUEUE_MAX = 1000000 /* maximum number of samples within a tenth of a second */, RATE_SLOTS = 60 };
 static const int64_t TICK_NS = NS_PER_S / 10, RATE_NS = 600 * NS_PER_S;
 
 struct alarm_event_queue {
@@ -28,27 +28,27 @@ struct alarm_service {
         counter *statuses[ALARM_STATUSES], *priorities[ALARM_PRIORITIES], *active, *standing, *chattering, *held, *rate, *raised, *lost;
     } counters;
     _Atomic uint64_t number;
-    /* --- below: of the thread */
+    /* --- below: used only by the thread */
     struct alarm_event_queue taken;
     struct snapshot *snapshot;
     int64_t counted_ns;
-    int raised[RATE_SLOTS]; /* a ring of stretches of RATE_NS / RATE_SLOTS */
+    int raised[RATE_SLOTS]; /* alarms raised per slot; ring of slots of RATE_NS / RATE_SLOTS */
     int64_t slot;
-    pthread_mutex_t queue_lock; /* taken under the store's */
-    /* --- below: under queue_lock */
+    pthread_mutex_t queue_lock; /* may be taken while the store's lock is held */
+    /* --- below: protected by queue_lock */
     struct alarm_event_queue queue;
-    struct thread thread; /* the store's lock is taken under its lock */
-    /* --- below: under thread.lock */
+    struct thread thread; /* its lock may be held while the store's lock is taken */
+    /* --- below: protected by thread.lock */
     struct alarms *alarms;
     int raised_now;
-    struct journal_entry *rows; /* a ring; NULL: there is no journal */
-    uint64_t row_count;         /* all that ever were */
-    bool ending, lost;          /* the journal is being ended; it ended with rows that are not on disk */
-    void (*changed)(void *arg); /* NULL: nobody listens */
+    struct journal_entry *rows; /* ring buffer of the last rows; NULL: there is no journal */
+    uint64_t row_count;         /* number of all rows so far */
+    bool ending, lost;          /* ending: the journal is being closed; lost: it was closed with rows that are not on disk */
+    void (*changed)(void *arg); /* called after changes; NULL: no listener */
     void *changed_arg;
 };
 
-/* --- from and to the store -------------------------------------------------------------------------------------------------- */
+/* --- exchange with the store ----------------------------------------------------------------------------------------------------- */
 
 static void on_sample(void *arg, const struct sample_event *event)
 {
@@ -95,7 +95,7 @@ static void take_events(struct alarm_service *service)
     }
 }
 
-/* Raised within the last ten minutes. */
+/* Counts alarms raised within the last ten minutes. */
 static int rate(struct alarm_service *service, int64_t now_ns, int raised)
 {
     int64_t slot = now_ns / (RATE_NS / RATE_SLOTS);
@@ -131,7 +131,7 @@ static void keep_all(struct alarm_service *service)
     }
 }
 
-/* Those that were mirrored: of a standby. */
+/* Writes the alarms that changed after change `number` to the journal; on a standby these are the mirrored ones. */
 static void keep_since(struct alarm_service *service, uint64_t number)
 {
     for (int i = service->journal ? alarms_newest(service->alarms) : -1; i >= 0; i = alarms_at(service->alarms, i)->older) {
@@ -142,7 +142,7 @@ static void keep_since(struct alarm_service *service, uint64_t number)
     }
 }
 
-/* Tells those who follow the alarms, if any changed. */
+/* Notifies the listeners if any alarm changed. */
 static void tell(struct alarm_service *service, uint64_t number)
 {
     if (atomic_exchange(&service->number, number) == number)
@@ -197,7 +197,7 @@ static void *run(void *arg)
     return NULL;
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------------- */
+/* --- life cycle ------------------------------------------------------------------------------------------------------------------ */
 
 static void add_counters(struct alarm_service *service)
 {
@@ -306,7 +306,7 @@ void alarm_service_listen(struct alarm_service *service, void (*changed)(void *a
     pthread_mutex_unlock(&service->thread.lock);
 }
 
-/* --- asking ----------------------------------------------------------------------------------------------------------------- */
+/* --- queries --------------------------------------------------------------------------------------------------------------------- */
 
 uint64_t alarm_service_number(const struct alarm_service *service)
 {
@@ -397,7 +397,7 @@ uint64_t alarm_service_rows(struct alarm_service *service, uint64_t since, int64
     pthread_mutex_lock(&service->thread.lock);
     uint64_t last = service->row_count, first = last > ROWS && since < last - ROWS ? last - ROWS : since;
     for (uint64_t i = first + 1; i <= last; i++)
-        if (service->rows[i % ROWS].utc_ns / 1000 > after_utc_ns / 1000) /* a journal has microseconds */
+        if (service->rows[i % ROWS].utc_ns / 1000 > after_utc_ns / 1000) /* the journal stores microseconds */
             each(arg, &service->rows[i % ROWS]);
     pthread_mutex_unlock(&service->thread.lock);
     return last;
@@ -409,7 +409,7 @@ void alarm_service_mirror_row(struct alarm_service *service, const struct journa
         return;
     journal_add_entry(service->journal, row);
     pthread_mutex_lock(&service->thread.lock);
-    service->rows[++service->row_count % ROWS] = *row; /* who led may lack it, when it comes back */
+    service->rows[++service->row_count % ROWS] = *row; /* the previous leader may lack this row when it returns */
     pthread_mutex_unlock(&service->thread.lock);
 }
 

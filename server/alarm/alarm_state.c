@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The states of one alarm. */
+/* State machine of one alarm. */
 #include "alarm/alarm_state.h"
 
 #include <string.h>
@@ -12,7 +12,7 @@ const char *alarm_event_name(enum alarm_event event)
     return event_names[event];
 }
 
-/* It is to be seen from now on. */
+/* Annunciates the alarm. */
 static void call(struct alarm_state *state, const struct alarm_rule *rule)
 {
     state->unacknowledged = rule->acknowledges;
@@ -51,7 +51,7 @@ static enum alarm_outcome acknowledge(struct alarm_state *state)
     return ALARM_CHANGED;
 }
 
-/* What is reset was seen: nothing that nobody acknowledged goes away. */
+/* Resets a latched alarm; refused while it is unacknowledged, so that no alarm disappears unseen. */
 static enum alarm_outcome reset(struct alarm_state *state)
 {
     if (!state->latched || state->active || state->unacknowledged || state->aside)
@@ -69,7 +69,7 @@ static enum alarm_outcome set_aside(struct alarm_state *state, int how)
     return ALARM_CHANGED;
 }
 
-/* An alarm that is there when it comes back is called as if it were new. */
+/* Ends a suppression, shelving or out-of-service state. An alarm that is active then is annunciated as if it were new. */
 static enum alarm_outcome bring_back(struct alarm_state *state, const struct alarm_rule *rule, int how)
 {
     if (!(state->aside & how))

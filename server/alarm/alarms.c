@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarms of a plant: which there are, what samples, time and people do to them. */
+/* The alarms of a plant, and how samples, time and operators change them. */
 #include "alarm/alarms_impl.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 enum { LONGEST_RETURN_S = 60 };
 static const int64_t LINK_DELAY_NS = INT64_C(10000000000);
 
-/* --- which there are -------------------------------------------------------------------------------------------------------- */
+/* --- creating the alarms -------------------------------------------------------------------------------------------------------- */
 
 static void add_feed(struct alarms *alarms, int tag, int alarm, enum feed_role role)
 {
@@ -94,8 +94,8 @@ static bool never_stale(const struct alarms *alarms, size_t tag)
     return alarms->plant->tags[tag].stale_s >= PLANT_NEVER_STALE_S;
 }
 
-/* Gives every device a LINK alarm. Its delay comes from the tags with BAD alarms, or from all tags if none has one. A replay ends like any
-   file: it gets the alarm only if one of its tags has a BAD alarm. */
+/* Gives every device a LINK alarm. Its delay comes from the tags with BAD alarms, or from all tags if none has one. A replayed file
+   simply ends: it gets the alarm only if one of its tags has a BAD alarm. */
 static void add_links(struct alarms *alarms)
 {
     const struct plant *plant = alarms->plant;
@@ -113,7 +113,8 @@ static void add_links(struct alarms *alarms)
         if (device && (device->alarm < 0 || device->alarm >= (int)with_bad) && !(kind && !strcmp(kind, "replay")))
             add_link(alarms, device, (int)i, LINK_DELAY_NS);
     }
-    for (size_t i = 0; i < tag_count; i++) { /* no Stale s bridges a short loss of the connection */
+    /* tags that never become stale need a longer delay, to bridge short losses of the connection */
+    for (size_t i = 0; i < tag_count; i++) {
         struct alarm *link = of_tag[i] < 0 || list[of_tag[i]].alarm < 0 ? NULL : &alarms->list[list[of_tag[i]].alarm];
         if (link && never_stale(alarms, i) && link->delays.on_ns < LINK_DELAY_NS)
             link->delays.on_ns = LINK_DELAY_NS;
@@ -141,7 +142,7 @@ static enum alarm_kind kind_of(const struct plant_mirror *mirror)
     return mirror->limit == LIMIT_COUNT ? ALARM_ON : (enum alarm_kind)(1 + mirror->limit);
 }
 
-/* All bits that mirror alarms of this tag, in their order. The bit itself can go bad. */
+/* Adds alarms for the bits that mirror alarms of this tag in another system, in their order. The bit's own quality can become bad. */
 static void add_mirrored(struct alarms *alarms, const int *mirrors, size_t count)
 {
     const struct plant *plant = alarms->plant;
@@ -203,7 +204,7 @@ static int by_tag_and_kind(const void *pa, const void *pb, void *list_ptr)
     return a->tag != b->tag ? a->tag - b->tag : (int)a->kind - (int)b->kind;
 }
 
-/* firsts[tag]..firsts[tag + 1]: what is of a tag. */
+/* Builds the indices by tag: the entries of tag t are at firsts[t]..firsts[t + 1]. */
 static void index_all(struct alarms *alarms)
 {
     size_t tags = alarms->plant->tag_count;
@@ -263,7 +264,7 @@ void alarms_destroy(struct alarms **pointer)
     *pointer = NULL;
 }
 
-/* --- what becomes of one ---------------------------------------------------------------------------------------------------- */
+/* --- changing one alarm --------------------------------------------------------------------------------------------------------- */
 
 static void unlink_alarm(struct alarms *alarms, int index)
 {
@@ -305,7 +306,7 @@ static void find_gravest(struct alarms *alarms, int tag)
         alarms->listener.of_tag(alarms->listener.arg, tag, (enum alarm_kind)now.kind, (enum alarm_status)now.status);
 }
 
-/* Who asks for changes gets it. */
+/* Gives the alarm a new change number and moves it to the front of the list of changes. */
 void alarms_touch(struct alarms *alarms, int index)
 {
     struct alarm *alarm = &alarms->list[index];
@@ -359,7 +360,8 @@ static enum alarm_outcome step(struct alarms *alarms, int index, const struct al
     return outcome;
 }
 
-/* As the other system's bit says: acknowledged while it is there, or there once more. */
+/* Copies the other alarm system's acknowledgement: acknowledged while its bit is set; unacknowledged again if the bit is cleared while
+   the alarm is active. */
 static void follow_acknowledgement(struct alarms *alarms, int index, struct instant at)
 {
     struct alarm *alarm = &alarms->list[index];
@@ -374,7 +376,7 @@ static void follow_acknowledgement(struct alarms *alarms, int index, struct inst
     step(alarms, index, &change, at.mono_ns);
 }
 
-/* Of a tag whose device is lost as a whole: that is said once, of the device. */
+/* Returns the device whose LINK alarm covers this alarm: the tag's device is lost as a whole, so one alarm reports it. NULL: none. */
 static const struct alarm_device *carrier_of(const struct alarms *alarms, const struct alarm *alarm)
 {
     int of = alarm->kind == ALARM_BAD ? alarms->devices->of_tag[alarm->tag] : -1;
@@ -397,7 +399,7 @@ static void turned(struct alarms *alarms, int index, double value, struct instan
     follow_acknowledgement(alarms, index, at);
 }
 
-/* Delays that are over by then, at the moments when they were. */
+/* Applies delays that have ended, with the times at which they ended. */
 static void advance(struct alarms *alarms, int index, struct instant now)
 {
     struct alarm *alarm = &alarms->list[index];
@@ -473,7 +475,7 @@ static void put_sample(struct alarms *alarms, const struct feed *feed, const str
 
 /* --- devices ---------------------------------------------------------------------------------------------------------------- */
 
-/* Bad measurements that nobody has acknowledged yet, which came before it was clear that all are gone. */
+/* Suppresses unacknowledged BAD alarms that were raised before the device was known to be lost as a whole. */
 static void carry_all(struct alarms *alarms, const struct alarm_device *device, struct instant now)
 {
     for (size_t i = 0; i < alarms->count; i++) {
@@ -499,7 +501,7 @@ static void look_at_devices(struct alarms *alarms, struct instant now)
     }
 }
 
-/* Its device gives readings again, and this tag none, for as long as would make it stale: that is its own. */
+/* Returns whether the tag's alarm is its own again: its device sends readings, but this tag has none for as long as would make it stale. */
 static bool calls_by_itself(const struct alarms *alarms, const struct alarm *alarm, int64_t mono_ns)
 {
     const struct alarm_device *device = &alarms->devices->list[alarms->devices->of_tag[alarm->tag]];
@@ -517,14 +519,14 @@ static void call_those_left(struct alarms *alarms, struct instant now)
     }
 }
 
-/* A tag that never gets stale keeps its last value while its device is lost. */
+/* A tag that never becomes stale keeps its last value while its device is lost. */
 static enum device_status status_of(const struct alarms *alarms, size_t tag, uint32_t quality)
 {
     bool lost = quality == QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE && never_stale(alarms, tag);
     return lost ? DEVICE_GONE : device_status_of(quality);
 }
 
-/* Devices are judged before their tags. */
+/* Devices are evaluated before their tags. */
 void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t count)
 {
     for (size_t i = 0; i < count; i++)
@@ -554,7 +556,7 @@ static bool is_waiting_too_long(struct alarms *alarms, int tag, int64_t mono_ns)
     return (double)(mono_ns - alarms->begun_ns) >= stale_s * 1e9;
 }
 
-/* Nobody hears it, or it is as it was. */
+/* Returns whether a tag's quality needs no event: no alarm depends on it, or it is unchanged. */
 static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32_t quality)
 {
     const struct last_sample *seen = &alarms->seen[tag];
@@ -567,7 +569,7 @@ static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32
     return seen->bad == bad && (!counts || alarms->devices->statuses[tag] == status_of(alarms, tag, quality));
 }
 
-/* Those that went stale since they were sampled, or never came. */
+/* Creates events for tags that became stale since their last sample, or never had one. */
 static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
 {
     size_t count = 0;
@@ -619,7 +621,7 @@ void alarms_tick(struct alarms *alarms, const struct snapshot *snapshot)
     call_those_left(alarms, now);
 }
 
-/* --- people ----------------------------------------------------------------------------------------------------------------- */
+/* --- operators' actions --------------------------------------------------------------------------------------------------------- */
 
 static enum refusal_code refusal_of(enum alarm_event event)
 {
@@ -661,7 +663,7 @@ enum refusal_code alarms_act(struct alarms *alarms, int index, const struct alar
     return outcome == ALARM_AS_IT_WAS ? REFUSAL_OTHERWISE : refusal_of(act->event);
 }
 
-/* --- what there is ---------------------------------------------------------------------------------------------------------- */
+/* --- queries -------------------------------------------------------------------------------------------------------------------- */
 
 size_t alarms_count(const struct alarms *alarms)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From rows of the journal to what readings say of alarms. */
+/* Derives the alarms of a historical snapshot from rows of the journal. */
 #include "alarm/alarms_at_instant.h"
 
 #include "alarm/journal.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarms at a time in the past: from the journal or, for times before it begins, from the limits. */
+/* Alarms at a past instant: from the journal or, for times before the journal begins, from the limits. */
 #ifndef ALARM_ALARMS_AT_INSTANT_H
 #define ALARM_ALARMS_AT_INSTANT_H
 #include "base/log/log.h"
@@ -7,8 +7,8 @@
 #include "plant/plant.h"
 #include "value/snapshot.h"
 
-/* Sets the alarms of a historical snapshot, as they were at snapshot->taken_utc_ns; none at a time when nothing was recorded. folder: of
-   the journal; reader: of the history in it. Returns 0 or -errno (logged). Thread: that of the reader. */
+/* Sets the alarms of a historical snapshot as they were at snapshot->taken_utc_ns; sets none for a time when nothing was recorded.
+   folder: of the journal; reader: of the history in that folder. Returns 0 or -errno (logged). Thread: that of the reader. */
 int alarms_at_instant(struct log *log, struct history_reader *reader, const char *folder, const struct plant *plant,
                       struct snapshot *snapshot);
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What alarms.c and alarms_kept.c share. Private to them. */
+/* Definitions that alarms.c and alarms_restore.c share. Private to them. */
 #ifndef ALARM_ALARMS_IMPL_H
 #define ALARM_ALARMS_IMPL_H
 #include "alarm/alarms.h"
 #include "alarm/devices.h"
 
 enum feed_role { FEED_VALUE, FEED_BIT, FEED_BADNESS, FEED_ACKNOWLEDGED, FEED_SUPPRESSES };
-struct feed { /* a tag whose samples an alarm depends on, and their meaning for it */
+struct feed { /* a tag whose samples an alarm depends on, and what they mean for the alarm */
     int tag, alarm;
     enum feed_role role;
 };
@@ -16,7 +16,7 @@ struct last_sample { /* the last sample of a tag */
     bool sampled, bad;
 };
 
-struct gravest { /* the alarm that is shown for a tag, and its state */
+struct gravest { /* kind and state of the alarm that a tag shows */
     uint8_t kind, status;
 };
 
@@ -25,23 +25,23 @@ struct alarms {
     struct alarms_listener listener;
     struct alarm *list;
     size_t count, capacity;
-    struct feed *feeds; /* by tag */
+    struct feed *feeds; /* sorted by tag */
     size_t feed_count, feed_capacity;
-    int *by_tag;        /* indices of alarms, by tag */
-    int *first_feed, *first_alarm; /* by tag, and one more: in feeds, by_tag */
+    int *by_tag;        /* indices of alarms, sorted by tag */
+    int *first_feed, *first_alarm; /* for each tag, and one entry more: index of its first entry in feeds, in by_tag */
     struct last_sample *seen;
     struct devices *devices;
-    struct sample_event *noticed; /* room for what alarms_tick finds out; by tag */
+    struct sample_event *noticed; /* scratch memory of alarms_tick(): events found, one per tag */
     struct gravest *gravest;
-    int *timed;         /* alarms with a running delay, and shelved ones */
+    int *timed;         /* indices of alarms with a running delay and of shelved ones */
     size_t timed_count, timed_capacity;
-    int carried;        /* how many alarms are suppressed by that of their device */
+    int carried;        /* number of alarms that are suppressed because the alarm of their device covers them */
     uint64_t number;
     int newest;
-    int64_t begun_ns;   /* monotonic, of the first tick */
+    int64_t begun_ns;   /* monotonic time of the first tick */
 };
 
 void alarms_touch(struct alarms *alarms, int index); /* gives the alarm the number of a new change */
-void alarms_watch(struct alarms *alarms, int index); /* adds the alarm to timed, if time can change it */
+void alarms_watch(struct alarms *alarms, int index); /* adds the alarm to `timed` if time can change it */
 
 #endif

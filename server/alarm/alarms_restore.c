@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarms from before: of an earlier run, or of the plant as it was before a reload. And what there is of them, in numbers. */
+/* Restores alarm states: of an earlier run, of the plant before a reload, or of another daemon. Also counts alarms by state. */
 #include <string.h>
 
 #include "alarm/alarms_impl.h"
 #include "base/mem.h"
 
-/* In a mode without acknowledgements nobody could end what is set aside by hand. */
+/* Adapts a restored state to the plant's alarm mode. Without acknowledgements no operator could end what was set aside by hand. */
 static void fit_to_rule(struct alarm *alarm, bool by_hand)
 {
     if (!alarm->rule.acknowledges)
@@ -43,9 +43,10 @@ static void take(struct alarms *alarms, int index, const struct alarm *from)
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now)
 {
     struct alarm from = *saved;
-    if (from.until.utc_ns) /* at once, where its time is over */
+    if (from.until.utc_ns) /* 1 ns if the shelving time is over, so that it ends at once */
         from.until.mono_ns = now.mono_ns + (from.until.utc_ns > now.utc_ns ? from.until.utc_ns - now.utc_ns : 1);
-    alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK; /* until its next sample */
+    /* held until its next sample */
+    alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK;
     alarms->list[index].raised_mono_ns = now.mono_ns - (from.raised_utc_ns ? now.utc_ns - from.raised_utc_ns : 0);
     take(alarms, index, &from);
 }
@@ -55,7 +56,7 @@ static bool same_limit(const struct alarm *a, const struct alarm *b)
     return !memcmp(&a->limit, &b->limit, sizeof(a->limit)) && !memcmp(&a->delays, &b->delays, sizeof(a->delays));
 }
 
-/* What was known of tags, and so of their devices. */
+/* Takes over the last samples of tags, and thereby the states of their devices. */
 static void adopt_seen(struct alarms *alarms, const struct alarms *before)
 {
     for (size_t i = 0; i < before->plant->tag_count; i++) {

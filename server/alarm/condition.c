@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Limits, deadbands and delays. */
+/* Evaluates limits, deadbands and delays. */
 #include "alarm/condition.h"
 
 enum condition_side condition_side(enum alarm_kind kind, double limit, double deadband, double value)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The condition of an alarm: a limit with a deadband and with on and off delays. When it becomes active and inactive depends on the samples
-   and their times alone, not on how often it is evaluated. Pure; times are monotonic. Thread: any. */
+/* The condition of an alarm: a limit with a deadband and with on and off delays. When it becomes active or inactive depends only on the
+   samples and their times, not on how often it is evaluated. Pure; times are monotonic. Thread: any. */
 #ifndef ALARM_CONDITION_H
 #define ALARM_CONDITION_H
 #include <stdbool.h>
@@ -10,8 +10,8 @@
 
 struct condition { /* zero-initialised: inactive */
     bool active;
-    enum { CONDITION_RESTS, CONDITION_COMES, CONDITION_GOES } pending; /* which delay is running */
-    int64_t since_ns; /* when the delay began */
+    enum { CONDITION_RESTS, CONDITION_COMES, CONDITION_GOES } pending; /* which delay is running: none, the on delay, the off delay */
+    int64_t since_ns; /* monotonic: when the delay began */
 };
 
 struct condition_delays {
@@ -22,10 +22,10 @@ enum condition_side { CONDITION_CLEAR, CONDITION_BETWEEN /* within the deadband 
 
 /* Returns on which side of its limit a value is. */
 enum condition_side condition_side(enum alarm_kind kind, double limit, double deadband, double value);
-/* Lets time pass. Returns true if a delay ended: the condition changed at *at_ns. */
+/* Advances the time. Returns true if a delay ended: the condition changed at *at_ns. */
 bool condition_advance(struct condition *condition, const struct condition_delays *delays, int64_t now_ns, int64_t *at_ns);
-/* Adds a sample, after condition_advance() to its time. Returns true if the condition changed with it. */
+/* Applies a sample; call condition_advance() to its time first. Returns true if the condition changed. */
 bool condition_put(struct condition *condition, const struct condition_delays *delays, enum condition_side side, int64_t now_ns);
-void condition_hold(struct condition *condition); /* suspends delays: nothing is known from now on */
+void condition_hold(struct condition *condition); /* stops delays, because the measurement is unknown from now on */
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The journal's thread, and asking it. */
+/* The thread that writes the alarm journal, and functions that read it. */
 #include "alarm/journal.h"
 
 #include <errno.h>
@@ -24,20 +24,20 @@ struct journal {
     struct log *log;
     char *folder;
     double keep_days;
-    int64_t newest_utc_ns; /* when it was opened */
+    int64_t newest_utc_ns; /* time of the newest row when the journal was opened */
     struct {
         counter *rows, *lost, *waiting, *good;
     } counters;
-    /* --- below: of the thread */
+    /* --- below: used only by the thread */
     struct journal_file *file;
     struct entries taken;
     bool failing;
     int64_t retry_ns, retry_after_ns, forgot_ns;
     struct thread thread;
-    /* --- below: under thread.lock */
+    /* --- below: protected by thread.lock */
     struct entries waiting;
     bool asks;
-    bool urgent; /* somebody asks whether rows are on disk */
+    bool urgent; /* a caller waits for rows to be on disk */
     struct settling settling;
 };
 
@@ -63,12 +63,12 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
         journal->forgot_ns = mono_ns;
         error = journal_file_forget(journal->file, clock_utc_ns() / 1000 - (int64_t)(journal->keep_days * (double)US_PER_DAY));
     }
-    if (error) /* opening finds out whether it is damaged */
+    if (error) /* reopening the file detects damage */
         journal_file_close(&journal->file);
     return error;
 }
 
-/* count: rows written by this try. */
+/* Notes the result of a write. count: rows written by this attempt. */
 static void count_written(struct journal *journal, size_t count, int error)
 {
     pthread_mutex_lock(&journal->thread.lock);
@@ -76,7 +76,7 @@ static void count_written(struct journal *journal, size_t count, int error)
     pthread_mutex_unlock(&journal->thread.lock);
 }
 
-/* now: tries even if the pause after a failure is not over. */
+/* Writes the taken rows. now: tries even if the retry delay after a failure is not over. */
 static void try_to_write(struct journal *journal, bool now)
 {
     int64_t mono_ns = clock_mono_ns();
@@ -99,7 +99,7 @@ static void try_to_write(struct journal *journal, bool now)
     count_written(journal, rows - journal->taken.count, error);
 }
 
-/* With those that are waiting behind those that could not be written. */
+/* Appends waiting rows to those that could not be written. The caller holds the lock. */
 static void take(struct journal *journal)
 {
     struct entries *taken = &journal->taken, *waiting = &journal->waiting;
@@ -116,8 +116,8 @@ static void take(struct journal *journal)
     waiting->count = 0;
 }
 
-/* Waits for rows, then GATHER_NS more so that one transaction takes them together. Rows that journal_end() asks for are not
-   delayed: then *urgent is set. */
+/* Waits for rows, then GATHER_NS more so that one transaction takes them together. Rows that journal_end() asks for are not delayed:
+   then *urgent is set. */
 static bool wait_for_work(struct journal *journal, bool *urgent)
 {
     int64_t until_ns = clock_mono_ns() + GATHER_NS;
@@ -147,7 +147,7 @@ static void *run(void *arg)
     return NULL;
 }
 
-/* --- from outside ----------------------------------------------------------------------------------------------------------- */
+/* --- called by other threads ----------------------------------------------------------------------------------------------------- */
 
 static void put(struct journal *journal, const struct journal_entry *entry)
 {
@@ -242,7 +242,7 @@ bool journal_asks(struct journal *journal)
     return asks;
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------------- */
+/* --- life cycle ------------------------------------------------------------------------------------------------------------------ */
 
 struct restoring {
     struct alarms *alarms;
@@ -262,7 +262,7 @@ static void note_newest(void *arg, const struct journal_row *row)
     ((struct journal *)arg)->newest_utc_ns = row->t_us * 1000;
 }
 
-/* What is damaged, the thread sets aside when it writes. */
+/* Restores the alarm states. A damaged file is left to the thread, which renames it before writing. */
 static void restore_all(struct journal *journal, struct alarms *alarms, struct instant now)
 {
     struct restoring restoring = { alarms, now };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The journal as a file. Functions that return int: 0 or -errno, already logged. Thread: one per file. */
+/* The journal's SQLite file. Functions that return int return 0 or -errno, already logged. Thread: one per file. */
 #ifndef ALARM_JOURNAL_FILE_H
 #define ALARM_JOURNAL_FILE_H
 #include "alarm/alarms.h"
@@ -9,8 +9,8 @@
 enum { JOURNAL_VERSION = 1 };
 
 struct journal_entry {
-    struct alarm alarm; /* as it was then */
-    bool changed;       /* else only how it is */
+    struct alarm alarm; /* the alarm at that time */
+    bool changed;       /* true: a change, with its event; false: only the present state */
     enum alarm_event event;
     enum alarm_status before, after;
     int64_t utc_ns;
@@ -20,27 +20,28 @@ struct journal_entry {
 
 struct journal_row {
     int64_t id, t_us;
-    const char *tag, *kind, *event, *before, *after, *who, *reason; /* valid until the next */
+    const char *tag, *kind, *event, *before, *after, *who, *reason; /* valid until the next row */
     int priority;
     double limit, value; /* NaN: none */
 };
 struct journal_query {
     int64_t from_us, to_us;
     int64_t before_id; /* only rows with a smaller id; INT64_MAX: all */
-    const char *tag;   /* NULL: all */
-    int limit;         /* at most this many, the newest first */
+    const char *tag;   /* NULL: all tags */
+    int limit;         /* maximum number of rows, newest first */
 };
 
 struct journal_file;
-/* To write. Makes folder and file; *renewed: one that was damaged is set aside, and this one is empty. NULL: *error. */
+/* Opens the file for writing; creates folder and file. *renewed: a damaged file was renamed, and this one is empty. Returns NULL with
+   *error. */
 struct journal_file *journal_file_open(struct log *log, const char *folder, bool *renewed, int *error);
-/* To read. NULL with *error 0: there is none. */
+/* Opens the file for reading. Returns NULL with *error; *error 0: the file does not exist. */
 struct journal_file *journal_file_read(struct log *log, const char *folder, int *error);
-void journal_file_close(struct journal_file **file); /* &NULL is fine; leaves NULL */
-/* All in one transaction. -EBADMSG: damaged. */
+void journal_file_close(struct journal_file **file); /* &NULL is allowed; sets *file to NULL */
+/* Writes all entries in one transaction. Returns -EBADMSG if the file is damaged. */
 int journal_file_write(struct journal_file *file, const struct journal_entry *entries, size_t count);
-int journal_file_forget(struct journal_file *file, int64_t before_us); /* rows that are older */
-/* How alarms were when the journal was last written. */
+int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes rows older than before_us */
+/* Calls each() for the state of every alarm when the journal was last written. */
 int journal_file_states(struct journal_file *file, void (*each)(void *arg, const char *tag, const struct alarm *alarm), void *arg);
 int journal_file_rows(struct journal_file *file, const struct journal_query *query, void (*each)(void *arg, const struct journal_row *row),
                       void *arg);

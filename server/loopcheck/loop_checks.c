@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A growing file of what was proven, and the last word on each tag. */
+/* Appends loop checks to a file, and keeps the latest result of each tag. */
 #include "loopcheck/loop_checks.h"
 
 #include <errno.h>
@@ -29,14 +29,15 @@ struct loop_checks {
     struct log *log;
     const struct plant *plant;
     char *folder, *path;
-    struct loop_check *at; /* by tag */
-    uint64_t *numbers;     /* likewise */
+    struct loop_check *at; /* latest check by tag */
+    uint64_t *numbers;     /* number of the latest check by tag */
     uint64_t number;
     bool begun;
-    atomic_bool *unproven; /* by tag */
+    atomic_bool *unproven; /* by tag: not checked, for threads that draw */
 };
 
-/* --- what a loop check is of ------------------------------------------------------------------------------------------------------- */
+/* --- fingerprint of a tag's configuration
+   ---------------------------------------------------------------------------------------------- */
 
 uint64_t loop_check_fingerprint(const struct plant *plant, int index)
 {
@@ -101,7 +102,7 @@ static double number_of(const struct csv *csv, int column)
     return *text && !*end ? number : NAN;
 }
 
-/* 0: no time. */
+/* Returns UTC microseconds; 0: the text is no time. */
 static int64_t time_of(const char *text)
 {
     struct tm utc = { 0 };
@@ -116,7 +117,7 @@ static void read_row(struct loop_checks *loop_checks, const struct csv *csv)
     const char *fingerprint = csv_text(csv, FINGERPRINT), *result = csv_text(csv, RESULT);
     bool passed = !strcmp(result, loop_check_state_names[LOOP_CHECK_PASSED]);
     if (strlen(fingerprint) != 16 ||
-        (!passed && strcmp(result, loop_check_state_names[LOOP_CHECK_FAILED]) != 0)) /* cut off as it was written */
+        (!passed && strcmp(result, loop_check_state_names[LOOP_CHECK_FAILED]) != 0)) /* an incomplete row, cut off while it was written */
         return;
     loop_checks->begun = true;
     if (tag < 0)
@@ -187,11 +188,11 @@ void loop_checks_close(struct loop_checks **pointer)
     *pointer = NULL;
 }
 
-/* A line that was cut off, by a power cut say, is ended first. The historian makes the folder too, on a thread of its own, and may not
- * have come to it yet. */
+/* Appends a row. If the last line is incomplete, for example after a power failure, it is ended first. The historian creates the folder
+   too, on a thread of its own, and may not have done so yet. */
 static bool append(struct log *log, const char *folder, const char *path, const struct text *row)
 {
-    mkdir(folder, 0777); /* where it cannot be made, opening says why */
+    mkdir(folder, 0777); /* if this fails, opening the file reports the reason */
     FILE *file = fopen(path, "a+b");
     if (!file)
         return false;
@@ -203,7 +204,8 @@ static bool append(struct log *log, const char *folder, const char *path, const 
         good = fseek(file, 0, SEEK_END) == 0 && fputc('\n', file) != EOF;
     good = good && fwrite(row->at, 1, row->length, file) == row->length && fflush(file) == 0 && fsync(fileno(file)) == 0;
     int error = errno;
-    if (!good && size >= 0 && ftruncate(fileno(file), size) != 0) /* a part of the row, or a whole one that is said not to be kept */
+    /* remove the row, or a part of it, because the caller reports it as not stored */
+    if (!good && size >= 0 && ftruncate(fileno(file), size) != 0)
         log_err(log, "%s: %s", path, strerror(errno));
     fclose(file);
     if (good && size == 0 && plant_folder_sync(folder) != 0)
@@ -230,7 +232,8 @@ enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, cons
     return REFUSAL_NONE;
 }
 
-/* --- what there is ---------------------------------------------------------------------------------------------------------------- */
+/* --- queries
+   ---------------------------------------------------------------------------------------------------------------------------- */
 
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag)
 {

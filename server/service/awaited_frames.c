@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A queue. */
+/* Queue of frames that the GPU is drawing. */
 #include "service/awaited_frames.h"
 
 #include <string.h>

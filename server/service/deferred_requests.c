@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A short list, oldest first. */
+/* A short list of deferred request groups, oldest first. */
 #include "service/deferred_requests.h"
 
 #include <string.h>

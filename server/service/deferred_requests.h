@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deferred requests: groups whose frame cannot be drawn yet, each waiting for its next turn. Pure. Thread: the render thread. */
+/* Deferred requests: groups of requests whose frame cannot be drawn yet, waiting for their next turn. Pure. Thread: the render thread. */
 #ifndef SERVICE_DEFERRED_REQUESTS_H
 #define SERVICE_DEFERRED_REQUESTS_H
 #include "service/request_group.h"
 
 enum { DEFERRED_MOST = 16 };
-struct deferred_requests {                      /* zero-initialise; deferred_requests_finish */
-    struct request_group groups[DEFERRED_MOST]; /* the oldest first; those from `count` on are empty, with memory to use again */
+struct deferred_requests {                      /* zero-initialise; free with deferred_requests_finish() */
+    struct request_group groups[DEFERRED_MOST]; /* oldest first; entries from `count` on are empty and keep their memory for reuse */
     size_t count;
-    bool due; /* the next turn is one of theirs */
+    bool due; /* the next turn belongs to a deferred group */
 };
 
-/* Moves the group's tickets to the end of the line and leaves it empty. Returns false, and changes nothing, when there is no room. */
+/* Moves the group's tickets to the end of the queue and leaves the group empty. Returns false, and changes nothing, if the queue is
+   full. */
 bool deferred_requests_push(struct deferred_requests *deferred, struct request_group *group);
-/* Replaces what is in group by the oldest one; there must be one. */
+/* Replaces the content of `group` by the oldest deferred group; there must be one. */
 void deferred_requests_pop(struct deferred_requests *deferred, struct request_group *group);
-/* Returns whether a deferred group has the next turn: every second one while there is other work, else every one. */
+/* Returns whether the next turn belongs to a deferred group: every second turn if there is other work, otherwise every turn. */
 bool deferred_requests_due(struct deferred_requests *deferred, bool others);
 /* Frees the memory. */
 void deferred_requests_finish(struct deferred_requests *deferred);

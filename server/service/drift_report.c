@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hourly means of each sensor; what they err by is the group's noise and what recording leaves out. */
+/* Judges sensor drift from hourly means; the expected error is the group's noise combined with the recording tolerance. */
 #include "service/drift_report.h"
 
 #include <jansson.h>
@@ -19,7 +19,7 @@ static int64_t begin_of(int64_t to_us)
     return to_us - to_us % HOUR_US - DRIFT_HOURS * HOUR_US;
 }
 
-/* By how much a reading errs, and how far the recorded line may be from it. */
+/* Returns the expected error of a recorded value: the sensor noise combined with the deviation that recording allows. */
 static double noise_of(const struct plant *plant, const struct history_tag *tag, int group)
 {
     const struct plant_group *of = &plant->groups[group];
@@ -98,7 +98,7 @@ void drift_text_begin(struct text *out, const struct plant *plant, int group, in
                              (json_int_t)(begin_of(to_us) + DRIFT_HOURS * HOUR_US), "group", string(plant->groups[group].id), "unit",
                              string(plant->groups[group].unit));
     char *text = json_text(head, EXACT);
-    text_add_bytes(out, text, strlen(text) - 1); /* it goes on */
+    text_add_bytes(out, text, strlen(text) - 1); /* without its closing brace: more members follow */
     text_add(out, ",\"sensors\":[");
     mem_free(text);
 }

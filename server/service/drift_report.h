@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which sensors of a group on an asset drifted in the week before an instant (field/drift.h), from recorded history, and that as text
-   (PROTOCOL.md, /api/v1/drift). Thread: one that reads history. */
+/* Which sensors of a group on an asset drifted in the week before an instant (field/drift.h), judged from recorded history, and the
+   result as text (PROTOCOL.md, /api/v1/drift). Thread: one that reads history. */
 #ifndef SERVICE_DRIFT_REPORT_H
 #define SERVICE_DRIFT_REPORT_H
 #include "base/text/text.h"
@@ -8,24 +8,25 @@
 #include "history/history.h"
 
 struct drift_report {
-    struct neighbours *neighbours;  /* NULL: there are no sensors whose places are known */
-    size_t count;                   /* of sensors */
-    struct drift *drifts;           /* by sensor */
-    double *values, *predicted;     /* [hour][sensor]; NaN: none */
-    int64_t from_us;                /* the first of DRIFT_HOURS hours begins */
+    struct neighbours *neighbours;  /* NULL: no sensor has a known position */
+    size_t count;                   /* number of sensors */
+    struct drift *drifts;           /* verdict of each sensor */
+    double *values, *predicted;     /* hourly means and their estimates, [hour][sensor]; NaN: none */
+    int64_t from_us;                /* start of the first of DRIFT_HOURS hours, UTC microseconds */
 };
 
-/* Reads and judges. reader: shows by the scene's plant. Returns false if history cannot be read, already logged. Finish it if true. */
+/* Reads the history and judges the sensors. reader: reads the history of the scene's plant. Returns false if history cannot be read,
+   already logged. If it returns true, the caller frees the report with drift_report_finish(). */
 bool drift_report_read(struct drift_report *report, struct history_reader *reader, const struct scene *scene, int asset, int group,
                        int64_t to_us);
 void drift_report_finish(struct drift_report *report);
 
-/* What comes before, for each report, and after. tag: of that one alone, with its hours; -1: of all. *any: something was
-   listed before. */
+/* Write the beginning of the text, one report, and the end. tag: list only that tag, with its hours; -1: all. *any: whether a sensor was
+   listed before; updated. */
 void drift_text_begin(struct text *out, const struct plant *plant, int group, int64_t to_us);
 void drift_text_add(struct text *out, const struct plant *plant, const struct drift_report *report, int tag, bool *any);
 void drift_text_end(struct text *out);
-/* Returns the verdict's word. */
+/* Returns the name of a verdict. */
 const char *drift_verdict_name(enum drift_verdict verdict);
 
 #endif

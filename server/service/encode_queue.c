@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames to packets on the workers: the jobs of one stream one after the other, those of different streams side by side. */
+/* Encodes frames on the worker threads: jobs of one stream run one after the other, those of different streams in parallel. */
 #include "service/encode_queue.h"
 
 #include <pthread.h>
@@ -22,21 +22,21 @@ struct encode_queue {
     counter *encodes[CODECS], *encode_us[CODECS], *bytes[CODECS], *failures, *chain_count;
     pthread_mutex_t lock;
     pthread_cond_t job_ended;
-    /* --- below: under lock */
+    /* --- below: protected by `lock` */
     struct idle_encoder *idle;
     struct encode_streams streams;
     int jobs;
-    int heavy; /* jobs on the workers that are of frames over HTTP, or signed: of many pixels, maybe, and losslessly */
+    int heavy; /* number of running jobs for HTTP or signed frames, which may be large and lossless */
     struct encode_job *heavy_waiting, **heavy_last;
-    struct request_group rest; /* of encode_queue_submit */
+    struct request_group rest; /* scratch memory of encode_queue_submit() */
     struct encode_plan plan;
 };
 
 struct encode_job {
     struct encode_queue *queue;
     struct encode_stream *stream;
-    struct frame *frame;        /* NULL: nothing to be encoded */
-    struct request_group group; /* all of one codec and quality */
+    struct frame *frame;        /* NULL: nothing needs encoding */
+    struct request_group group; /* requests of one codec and quality */
     struct encoder_params quality;
     bool again;
     uint64_t number, *from;
@@ -44,14 +44,14 @@ struct encode_job {
     bool heavy;
 };
 
-struct stream_work {                  /* work for one stream */
-    struct encode_job *first, **last; /* under lock; the first is running */
-    struct encoder *encoder;   /* of a codec that is a stream; and below: only the running job's */
-    struct frame *before;      /* what the clients of the stream show, in this quality */
+struct stream_work {                  /* state of the encoding of one stream */
+    struct encode_job *first, **last; /* queue of jobs, protected by the lock; the first job is running */
+    struct encoder *encoder;   /* for codecs with state between frames; this and the members below belong to the running job */
+    struct frame *before;      /* the frame that the stream's clients show, in this quality */
     struct encoder_params quality;
 };
 
-/* --- life ------------------------------------------------------------------------------------------------------------- */
+/* --- life cycle ------------------------------------------------------------------------------------------------------- */
 
 static void add_counters(struct encode_queue *queue)
 {
@@ -197,7 +197,7 @@ static bool same_quality(const struct encoder_params *a, const struct encoder_pa
     return a->quality == b->quality && a->full_chroma == b->full_chroma;
 }
 
-/* False: it failed. *out NULL: nothing has changed. */
+/* Encodes the job's frame. Returns false on failure. *out NULL: nothing has changed since the last frame. */
 static bool encode(struct encode_job *job, struct packet **out)
 {
     struct encode_queue *queue = job->queue;
@@ -221,7 +221,7 @@ static bool encode(struct encode_job *job, struct packet **out)
     return good;
 }
 
-/* Under lock: the lowest number that jobs after this one still have to give to someone. */
+/* Returns the lowest packet number that this and later jobs still have to deliver. The caller holds the lock. */
 static uint64_t still_needed(const struct encode_job *job)
 {
     uint64_t least = UINT64_MAX;
@@ -233,7 +233,7 @@ static uint64_t still_needed(const struct encode_job *job)
 
 struct packet_run {
     struct packet *packets[ENCODE_STREAM_KEPT];
-    int count; /* negative: gone */
+    int count; /* negative: the packets are no longer kept */
 };
 
 static void take_run(struct encode_job *job, size_t ticket, struct packet_run *run)
@@ -268,7 +268,7 @@ static void job_destroy(struct encode_job *job)
 
 static void run_job(void *arg);
 
-/* Frames over HTTP, and those that are signed, leave half of the workers to others. */
+/* Starts a job on a worker. Frames over HTTP and signed frames may use only half of the workers. */
 static void start(struct encode_queue *queue, struct encode_job *job)
 {
     int most = workers_count(queue->params.workers) / 2;
@@ -285,7 +285,7 @@ static void start(struct encode_queue *queue, struct encode_job *job)
         workers_submit(queue->params.workers, run_job, job);
 }
 
-/* One of them is done: the next takes its place. */
+/* Starts the next waiting job for an HTTP or signed frame, after one has ended. */
 static void start_heavy(struct encode_queue *queue)
 {
     pthread_mutex_lock(&queue->lock);
@@ -348,7 +348,7 @@ static bool same_coding(const struct request_ticket *ticket, void *arg)
            same_part(&a->part, &b->part);
 }
 
-/* Under lock. */
+/* Makes a job from the queue's plan. The caller holds the lock. */
 static struct encode_job *make_job(struct encode_queue *queue, struct frame *frame, struct request_group *tickets)
 {
     struct encode_plan *plan = &queue->plan;
@@ -367,7 +367,7 @@ static struct encode_job *make_job(struct encode_queue *queue, struct frame *fra
     return job;
 }
 
-/* Under lock. True: nothing of the stream is under way, so that this one may start. */
+/* Appends the job to its stream. Returns true if the stream was idle, so that the job can start. The caller holds the lock. */
 static bool append(struct encode_queue *queue, struct encode_job *job)
 {
     struct stream_work *work = job->stream->work;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chains of packets and the clients in them. */
+/* Decides which clients share which stream of packets, and which packets each client needs. */
 #include "service/encode_streams.h"
 
 #include <string.h>
@@ -7,11 +7,14 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S; /* between frames that stand alone only to let some in */
-enum { CATCH_UP = ENCODE_STREAM_KEPT / 2 };                               /* packets; as many may be planned for while they are needed */
-static const size_t KEPT_BYTES = 64 * 1024;                               /* at least; else as much as the last frame that stood alone */
+/* time between key frames that are made only so that clients can join; doubles for clients that often fall behind */
+static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S;
+/* number of packets that a client may lag behind and still catch up; frames are planned ahead by as many at most */
+enum { MAX_LAG_PACKETS = ENCODE_STREAM_KEPT / 2 };
+/* minimum size of the packets kept per stream in bytes; more if the last key frame was larger */
+static const size_t KEPT_BYTES = 64 * 1024;
 
-/* --- who is where ----------------------------------------------------------------------------------------------------- */
+/* --- members of streams ----------------------------------------------------------------------------------------------- */
 
 static size_t place_of(const struct encode_streams *streams, uint64_t client)
 {
@@ -54,7 +57,7 @@ void encode_streams_forget(struct encode_streams *streams, uint64_t client)
     memmove(link, link + 1, (size_t)(streams->links + --streams->link_count - link) * sizeof(*link));
 }
 
-/* --- what someone lacks ----------------------------------------------------------------------------------------------- */
+/* --- packets that a client lacks -------------------------------------------------------------------------------------- */
 
 static bool same_coding(const struct encode_stream *stream, const struct frame *frame, const struct frame_request *request)
 {
@@ -64,7 +67,7 @@ static bool same_coding(const struct encode_stream *stream, const struct frame *
            shown->view.width_px == frame->width_px && shown->view.height_px == frame->height_px;
 }
 
-/* The first number that the client needs. */
+/* Returns the number of the first packet that the client needs. */
 static uint64_t lacks(const struct encode_stream *stream, const struct encode_stream_member *link, const struct request_ticket *ticket)
 {
     uint64_t next = link && link->stream == stream && !ticket->request.alone ? link->position + 1 : 1;
@@ -74,12 +77,12 @@ static uint64_t lacks(const struct encode_stream *stream, const struct encode_st
 static bool reaches(const struct encode_stream *stream, const struct encode_stream_member *link, const struct request_ticket *ticket)
 {
     uint64_t first = lacks(stream, link, ticket);
-    return stream->key > 0 && first >= stream->oldest && stream->planned < first + CATCH_UP;
+    return stream->key > 0 && first >= stream->oldest && stream->planned < first + MAX_LAG_PACKETS;
 }
 
 /* --- planning --------------------------------------------------------------------------------------------------------- */
 
-/* The stream that most of them are in already and can go on with. */
+/* Returns the stream to which most of these clients already belong and in which they can continue. */
 static struct encode_stream *most_common(struct encode_streams *streams, const struct request_group *tickets)
 {
     struct encode_stream *best = NULL;
@@ -96,14 +99,14 @@ static struct encode_stream *most_common(struct encode_streams *streams, const s
     return best;
 }
 
-/* It shows this already, and all of it can still be had. */
+/* Returns whether the stream already shows this frame, and its packets are still kept. */
 static bool shows(const struct encode_stream *stream, const struct frame *frame, const struct frame_request *request)
 {
-    return !request->overlay && stream->key > 0 && stream->key >= stream->oldest && stream->planned < stream->key + CATCH_UP &&
+    return !request->overlay && stream->key > 0 && stream->key >= stream->oldest && stream->planned < stream->key + MAX_LAG_PACKETS &&
            stream->content == frame->content && same_coding(stream, frame, request);
 }
 
-/* One that shows this already; whole: by a frame that stands alone. */
+/* Returns a stream that already shows this frame; NULL: none. whole: only one whose newest packet is a key frame. */
 static struct encode_stream *showing(const struct encode_streams *streams, const struct frame *frame, const struct frame_request *request,
                                      bool whole)
 {
@@ -113,7 +116,7 @@ static struct encode_stream *showing(const struct encode_streams *streams, const
     return stream;
 }
 
-/* Most of those who have all of it look at something else. */
+/* Returns whether most of the up-to-date members of the stream look at another view. */
 static bool belongs_to_others(const struct encode_streams *streams, const struct encode_stream *stream, const struct frame *frame)
 {
     size_t all = 0;
@@ -133,7 +136,7 @@ static struct encode_stream *add_chain(struct encode_streams *streams)
     return stream;
 }
 
-/* A client that is alone in its stream, or in none, keeps what was made for it. */
+/* Returns the client's own stream if it is the only member, so that its encoder and packets are reused; otherwise NULL. */
 static struct encode_stream *own_chain(const struct encode_streams *streams, const struct request_group *tickets)
 {
     const struct encode_stream_member *link = find(streams, tickets->tickets[0].client);
@@ -166,7 +169,8 @@ static size_t count_outside(struct outsiders *outsiders, const struct request_gr
     return count;
 }
 
-/* Whether those outside may cost the others a frame that stands alone; else they go to rest. */
+/* Returns whether clients outside of the stream may join with a key frame, which costs the members bandwidth. If not, moves their
+   tickets to `rest`. */
 static bool let_in(struct encode_streams *streams, const struct encode_stream *stream, struct request_group *tickets, int64_t now_ns,
                    struct request_group *rest)
 {
@@ -196,7 +200,7 @@ static void join(struct encode_stream_member *link, struct encode_stream *stream
     link->join_after_ns = now_ns + link->patience_ns;
 }
 
-/* Hands out what each lacks; all of them are up to date after it. */
+/* Determines the packets that each client needs; after them all clients are up to date. */
 static void give(struct encode_streams *streams, const struct request_group *tickets, int64_t now_ns, struct encode_plan *plan)
 {
     struct encode_stream *stream = plan->stream;
@@ -219,7 +223,7 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
     if (stream && !shows(stream, frame, request))
         other = showing(streams, frame, request, true);
     if (other)
-        return other; /* made a moment ago for some who asked first: nobody needs another */
+        return other; /* that key frame was just made for clients that asked earlier: reuse it */
     if (!stream)
         stream = showing(streams, frame, request, false);
     else if (stream->content != frame->content && belongs_to_others(streams, stream, frame))
@@ -229,7 +233,7 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
     return stream ? stream : add_chain(streams);
 }
 
-/* Someone has the same already, and shall have it once more; alone, it is given what was kept. */
+/* Returns whether a client that already shows this content must get it again. A request with `alone` gets the kept packets instead. */
 static bool must_again(const struct request_group *tickets)
 {
     for (size_t i = 0; i < tickets->count; i++)
@@ -238,7 +242,8 @@ static bool must_again(const struct request_group *tickets)
     return false;
 }
 
-/* Where all has moved, JPEG and PNG come whole anyway: everyone may come in, at no cost for the others. */
+/* Returns whether the frame is complete anyway: after a camera move JPEG and PNG send the whole picture, so that clients can join
+   without cost. */
 static bool is_whole(const struct encode_stream *stream, const struct frame *frame, const struct frame_request *request)
 {
     return request->codec != WIRE_CODEC_H264 && !view_equal(&stream->shown.view, &frame->view);
@@ -290,7 +295,7 @@ void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uin
     while (stream->kept_count > 0 && stream->oldest < needed &&
            (key || stream->kept_count == ENCODE_STREAM_KEPT || stream->kept_bytes > most_bytes(stream)))
         drop_oldest(stream);
-    if (stream->kept_count == ENCODE_STREAM_KEPT) /* more than a client may have under way */
+    if (stream->kept_count == ENCODE_STREAM_KEPT) /* more packets than a client may have in flight */
         drop_oldest(stream);
     stream->kept[stream->kept_count++] = packet ? packet_ref(packet) : NULL;
     stream->kept_bytes += packet ? packet->count : 0;

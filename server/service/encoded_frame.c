@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encoded frames. */
+/* Frees and measures encoded frames. */
 #include "service/encoded_frame.h"
 
 #include "base/mem.h"

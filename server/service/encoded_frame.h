@@ -4,24 +4,24 @@
 #define SERVICE_ENCODED_FRAME_H
 #include "service/frame_request.h"
 
-struct encoded_frame { /* belongs to whoever collected it: encoded_frame_destroy */
+struct encoded_frame { /* owned by the code that collected it; free with encoded_frame_destroy() */
     uint64_t client;
-    uint64_t number;         /* counts the client's requests as they were begun: a larger one shows a newer state */
-    struct packet *packet;   /* NULL: the client shows the same already, or the frame could not be made */
-    struct packet **earlier; /* packets of a shared stream that the client missed, to be decoded before, oldest first */
+    uint64_t number;         /* number of the client's request, counted when drawing begins: a larger number shows a newer state */
+    struct packet *packet;   /* NULL: the client already shows this content, or the frame could not be made */
+    struct packet **earlier; /* packets of a shared stream that the client missed and must decode first, oldest first */
     int earlier_count;
     bool failed; /* the frame could not be made */
     struct frame_request request;
     int64_t wait_ns; /* from the input to the start of drawing */
-    int64_t made_ns; /* monotonic: when encoding was done */
+    int64_t made_ns; /* monotonic: when encoding ended */
     struct encoded_frame *next;
 };
 
-/* Frees the frame and drops its references to packets, which other frames may share. Any thread. &NULL is fine; leaves NULL. */
+/* Frees the frame and drops its references to packets, which other frames may share. Any thread. &NULL is allowed; sets *frame to NULL. */
 void encoded_frame_destroy(struct encoded_frame **frame);
 /* Returns the bytes of all its packets. */
 size_t encoded_frame_bytes(const struct encoded_frame *frame);
-/* Returns true if the client can decode it without any packet sent before. */
+/* Returns whether the client can decode the frame without any packet sent before. */
 bool encoded_frame_stands_alone(const struct encoded_frame *frame);
 
 #endif

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frame sharing: one frame for all clients who ask for the same, whenever they ask. */
+/* Frame sharing: one frame for all clients that request the same content, even at different times. */
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
 struct content_of {
     struct render_service *service;
     uint64_t content;
-    int64_t cost_ns; /* each one's part */
+    int64_t cost_ns; /* drawing time charged to each client */
 };
 
-/* Under lock: the client has this frame already. */
+/* Returns whether the client already shows this frame. The caller holds the lock. */
 static bool has_it(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
@@ -17,14 +17,15 @@ static bool has_it(const struct request_ticket *ticket, void *arg)
     return !ticket->request.always && client && client->has_content && client->content == now->content;
 }
 
-/* Under lock: who is there remembers what it gets. */
+/* Notes the frame's content for a client that is still connected, and charges the client. Returns false if the client has gone. The
+   caller holds the lock. */
 static bool remember(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
     struct render_client *client = render_service_find(now->service, ticket->client);
     if (!client)
         return false;
-    if (!client->has_content || ticket->number >= client->content_number) { /* what comes after a newer one is not shown */
+    if (!client->has_content || ticket->number >= client->content_number) { /* a frame that arrives after a newer one is not shown */
         client->has_content = true;
         client->content = now->content;
         client->content_number = ticket->number;
@@ -34,8 +35,8 @@ static bool remember(const struct request_ticket *ticket, void *arg)
     return true;
 }
 
-/* A client that was forgotten gets no packets: that is decided under the lock that render_service_forget takes. Clients that share a frame
-   share its cost. */
+/* Decides under the lock that render_service_forget() takes that clients who have gone get no packets. Clients that share a frame share
+   its cost. */
 void frame_sharing_submit(struct render_service *service, struct frame *frame, struct request_group *group, int64_t cost_ns)
 {
     struct content_of now = { .service = service, .content = frame->content, .cost_ns = cost_ns / (int64_t)group->count };
@@ -48,7 +49,7 @@ void frame_sharing_submit(struct render_service *service, struct frame *frame, s
     group->count = 0;
 }
 
-/* To those who have that frame already: nothing new. */
+/* Answers "nothing new" to the clients that already have this content. */
 static void answer_same(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
     struct render_service *service = thread->service;
@@ -60,7 +61,7 @@ static void answer_same(struct render_thread *thread, struct request_group *grou
     render_service_answer_without_frame(service, &thread->same, false);
 }
 
-/* Of a frame that was drawn for others nobody may have kept what it was drawn from. */
+/* Returns whether the frame can answer the group: a frame drawn for others may lack the record of its inputs. */
 static bool answers(const struct frame *frame, const struct request_group *group)
 {
     return frame && (frame->record || !request_group_wants_record(group));
@@ -73,7 +74,7 @@ static void answer_with(struct render_service *service, struct frame *frame, str
         frame_sharing_submit(service, frame, group, 0);
 }
 
-/* To those for whom it is drawn goes who asks for it meanwhile. */
+/* Adds the requests to the frame of the same content that is in flight, if there is one. */
 static void join_awaited(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
     struct awaited_frame *flight = awaited_frames_find(&thread->in_flight, content);

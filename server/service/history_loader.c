@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that reads instants. */
+/* The thread that loads the readings of past instants. */
 #include "service/history_loader.h"
 
 #include <errno.h>
@@ -13,8 +13,8 @@
 #include "corelink/core_history.h"
 #include "history/history.h"
 
-static const int64_t SPAN_NS = 60 * NS_PER_S; /* months come and go no more often than that */
-static const int64_t LOOK_NS = 2 * NS_PER_S;  /* while nothing is recorded */
+static const int64_t SPAN_NS = 60 * NS_PER_S; /* the span of recorded history is read again this often: old files are removed rarely */
+static const int64_t LOOK_NS = 2 * NS_PER_S;  /* interval between checks while nothing is recorded */
 
 struct wanted_instant {
     uint64_t client;
@@ -24,28 +24,28 @@ struct wanted_instant {
 struct history_loader {
     struct history_loader_params params;
     _Atomic bool stop;
-    struct history_reader *reader; /* of the thread; so below. NULL: the core is asked */
-    struct core_history *core;     /* NULL: history is here */
+    struct history_reader *reader; /* used only by the thread, like the members below; NULL: the core is asked */
+    struct core_history *core;     /* NULL: the history is on this machine */
     struct history_tag *tags;
     int64_t spanned_ns;
     struct thread thread;
-    /* --- below: under thread.lock */
-    struct wanted_instant *wanted; /* oldest first */
+    /* --- below: protected by thread.lock */
+    struct wanted_instant *wanted; /* instants that clients wait for, oldest request first */
     size_t count, capacity;
     struct history_loader_answer *answers, **last;
     int64_t first_us;
 };
 
-/* --- what is wanted, any thread --------------------------------------------------------------------------------------- */
+/* --- requests, from any thread ---------------------------------------------------------------------------------------- */
 
-/* Under lock. */
+/* The caller holds the lock. */
 static void remove_at(struct history_loader *loader, size_t i)
 {
     loader->count--;
     memmove(&loader->wanted[i], &loader->wanted[i + 1], (loader->count - i) * sizeof(*loader->wanted));
 }
 
-/* Under lock. */
+/* Returns the index of the client's request, or count if it has none. The caller holds the lock. */
 static size_t find(const struct history_loader *loader, uint64_t client)
 {
     size_t i = 0;
@@ -132,14 +132,14 @@ static void look_at_span(struct history_loader *loader)
                             : history_span(loader->reader, &first_us, &last_us);
     if (!any) {
         first_us = 0;
-        loader->spanned_ns = 0; /* nothing is there yet: look again soon, and with the next question */
+        loader->spanned_ns = 0; /* nothing is recorded yet: check again soon, and at the next request */
     }
     pthread_mutex_lock(&loader->thread.lock);
     loader->first_us = first_us;
     pthread_mutex_unlock(&loader->thread.lock);
 }
 
-/* False: nothing is, and it is time to look again for the beginning of what is recorded, or to stop. */
+/* Waits for a request. Returns false if there is none and it is time to look for the beginning of recorded history again, or to stop. */
 static bool next_wanted(struct history_loader *loader, struct wanted_instant *out, bool *stopping)
 {
     int64_t until_ns = clock_mono_ns() + LOOK_NS;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The threads that read history for those who ask. */
+/* The threads that read history for HTTP clients. */
 #include "service/history_queries.h"
 
 #include <pthread.h>
@@ -16,18 +16,18 @@
 #include "service/drift_report.h"
 #include "service/remote_history.h"
 
-enum { THREADS = 2 };                            /* one address takes one at a time: what it asks does not hold up another's question */
-static const size_t PIECE_BYTES = 256 * 1024;    /* a piece ends with the tag that makes it as long, */
-static const int64_t PIECE_NS = 100 * NS_PER_MS; /* or that took as long */
+enum { THREADS = 2 }; /* each address uses one thread at a time, so that its queries do not block another address */
+static const size_t PIECE_BYTES = 256 * 1024;    /* a piece ends with the tag that makes it this long, */
+static const int64_t PIECE_NS = 100 * NS_PER_MS; /* or that took this long */
 
 struct pending_query {
     struct history_query query;
-    int next_tag; /* to be read; of drifting sensors: asset */
-    bool buckets; /* as the last line of a CSV file that names columns says */
-    bool listed;  /* some drifting sensors are in it */
-    bool wanted;  /* its next piece is */
+    int next_tag; /* next tag to read; for drift queries, the next asset */
+    bool buckets; /* columns of the CSV output so far: buckets or single values */
+    bool listed;  /* a drifting sensor was listed already */
+    bool wanted;  /* the client wants the next piece */
     bool forgotten;
-    uint64_t served; /* when its newest piece was begun; 0: it has none */
+    uint64_t served; /* turn number at which its newest piece was begun; 0: none yet */
     struct pending_query *next;
 };
 
@@ -35,7 +35,7 @@ struct history_queries {
     struct log *log;
     const struct plant *plant;
     const struct scene *scene;
-    char *folder; /* NULL: the core is asked */
+    char *folder; /* folder of the history; NULL: the core is asked */
     struct core_link *core_link;
     _Atomic bool stop;
     void (*notify)(void *arg);
@@ -44,17 +44,17 @@ struct history_queries {
     int thread_count;
     pthread_mutex_t lock;
     pthread_cond_t wake;
-    /* --- below: under lock */
-    struct pending_query *questions; /* newest first; one that a thread is at is not among them */
-    uint64_t at_work[THREADS];  /* payers; 0: none */
+    /* --- below: protected by `lock` */
+    struct pending_query *questions; /* waiting queries, newest first; without those that a thread is working on */
+    uint64_t at_work[THREADS];  /* accounts whose queries the threads work on; 0: none */
     struct pending_query *working[THREADS];
-    uint64_t served; /* pieces begun */
-    int count;       /* of questions, those at work too */
+    uint64_t served; /* number of pieces begun so far */
+    int count;       /* number of queries, including those being worked on */
     struct history_answer *answers, **last;
     bool stopping;
 };
 
-/* --- a piece of an answer --------------------------------------------------------------------------------------------- */
+/* --- one piece of an answer ------------------------------------------------------------------------------------------- */
 
 static void print_csv(struct pending_query *question, const struct plant_tag *tag, const struct history_series *series, struct text *out)
 {
@@ -78,7 +78,7 @@ static void print_json(const struct pending_query *question, const struct plant_
         text_add(out, "]}\n");
 }
 
-/* The next tag of it, from the core, which writes it as it would be written here. */
+/* Appends the query's next tag as the core writes it, which is the same as this daemon would write. */
 static bool fetch_tag(const struct history_queries *queries, struct core_history *core, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;
@@ -89,13 +89,13 @@ static bool fetch_tag(const struct history_queries *queries, struct core_history
                       : remote_history_json(core, query, tag, first, last, out);
 }
 
-/* How many times the history is read for an answer that comes in pieces. */
+/* Returns how many times history is read for an answer in pieces. */
 static int steps_of(const struct history_queries *queries, const struct history_query *query)
 {
     return !query->drift ? query->tag_count : query->tag >= 0 ? 1 : (int)queries->scene->asset_count;
 }
 
-/* The next tag of it. False: history could not be read. */
+/* Appends the query's next tag. Returns false if history could not be read. */
 static bool read_tag(struct history_queries *queries, struct history_reader *reader, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;
@@ -111,7 +111,7 @@ static bool read_tag(struct history_queries *queries, struct history_reader *rea
     return good;
 }
 
-/* The sensors on the next asset. */
+/* Appends the drifting sensors of the query's next asset. */
 static bool read_asset(struct history_queries *queries, struct history_reader *reader, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;
@@ -171,7 +171,7 @@ static struct history_answer *read_piece(struct history_queries *queries, struct
                : query->drift ? read_asset(queries, reader, question, &text)
                               : read_tag(queries, reader, question, &text);
     piece->last = !good || !pieces || question->next_tag == steps_of(queries, query);
-    if (good && text.length > 0) { /* a text that grew has room to spare, and it may lie there for long */
+    if (good && text.length > 0) { /* copied without the spare capacity, because the text may wait long for a slow client */
         piece->text = mem_array(text.length + 1, 1);
         piece->length = text.length;
         memcpy(piece->text, text.at, text.length);
@@ -180,9 +180,9 @@ static struct history_answer *read_piece(struct history_queries *queries, struct
     return piece;
 }
 
-/* --- whose turn it is ------------------------------------------------------------------------------------------------- */
+/* --- scheduling ------------------------------------------------------------------------------------------------------- */
 
-/* Under lock. */
+/* Returns whether a thread works for that account. The caller holds the lock. */
 static bool is_at_work(const struct history_queries *queries, uint64_t account)
 {
     bool any = false;
@@ -191,7 +191,7 @@ static bool is_at_work(const struct history_queries *queries, uint64_t account)
     return any;
 }
 
-/* Under lock. When the newest piece for its address was begun. */
+/* Returns the turn number of the newest piece for the query's account. The caller holds the lock. */
 static uint64_t served_of(const struct history_queries *queries, const struct pending_query *question)
 {
     uint64_t served = question->served;
@@ -204,10 +204,11 @@ static uint64_t served_of(const struct history_queries *queries, const struct pe
 static bool goes_before(const struct history_queries *queries, const struct pending_query *a, const struct pending_query *b)
 {
     uint64_t a_served = served_of(queries, a), b_served = served_of(queries, b);
-    return a_served < b_served || (a_served == b_served && a->served <= b->served); /* the older one comes later in the list */
+    /* the list is newest first, so among equals the later entry is older and wins */
+    return a_served < b_served || (a_served == b_served && a->served <= b->served);
 }
 
-/* Under lock. Taken out of the list; NULL: there is nothing to do. */
+/* Removes the next query from the list and returns it; NULL: none is due. The caller holds the lock. */
 static struct pending_query *take_next(struct history_queries *queries)
 {
     struct pending_query **best = NULL;
@@ -220,7 +221,7 @@ static struct pending_query *take_next(struct history_queries *queries)
     return question;
 }
 
-/* Under lock. The piece is there. */
+/* Delivers a piece. The caller holds the lock. */
 static void give(struct history_queries *queries, struct pending_query *question, struct history_answer *piece)
 {
     bool last = piece->last;
@@ -271,7 +272,7 @@ static void *run(void *arg)
         queries->at_work[index] = 0;
         queries->working[index] = NULL;
         give(queries, question, piece);
-        pthread_cond_broadcast(&queries->wake); /* another of that address may be read by the other thread */
+        pthread_cond_broadcast(&queries->wake); /* the other thread may take another query of that address now */
         pthread_mutex_unlock(&queries->lock);
         queries->notify(queries->notify_arg);
         pthread_mutex_lock(&queries->lock);
@@ -282,7 +283,7 @@ static void *run(void *arg)
     return NULL;
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------- */
+/* --- life cycle ------------------------------------------------------------------------------------------------------- */
 
 struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const struct scene *scene, const char *folder,
                                                struct core_link *core_link, void (*notify)(void *arg), void *arg)
@@ -347,7 +348,7 @@ void history_queries_destroy(struct history_queries **pointer)
     *pointer = NULL;
 }
 
-/* --- for the loop ----------------------------------------------------------------------------------------------------- */
+/* --- for the event loop ----------------------------------------------------------------------------------------------- */
 
 bool history_queries_ask(struct history_queries *queries, const struct history_query *query)
 {

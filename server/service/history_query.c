@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is asked of history. */
+/* Parses the arguments of history queries. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two lists under one lock. */
+/* Queries and answers in two lists under one lock. */
 #include "service/pick_queue.h"
 
 #include <pthread.h>
@@ -9,7 +9,7 @@
 
 struct pick_queue {
     pthread_mutex_t lock;
-    /* --- below: under lock */
+    /* --- below: protected by `lock` */
     struct pick_query *queries; /* oldest first */
     size_t count, capacity;
     struct pick_answer *answers, **last;
@@ -38,7 +38,7 @@ void pick_queue_destroy(struct pick_queue **picks_ptr)
     *picks_ptr = NULL;
 }
 
-/* Under lock. */
+/* Returns the index of the client's query, or count if it has none. The caller holds the lock. */
 static size_t find(const struct pick_queue *queue, uint64_t client)
 {
     size_t i = 0;

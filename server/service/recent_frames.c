@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A few frames, by what they show. */
+/* A few recent frames, found by their content. */
 #include "service/recent_frames.h"
 
 #include "base/clock.h"
 
-static const int64_t KEPT_NS = 500 * NS_PER_MS; /* ages and times in a frame may be so old */
-#define KEPT_BYTES ((size_t)32 * 1024 * 1024)   /* or one frame */
+static const int64_t KEPT_NS = 500 * NS_PER_MS; /* maximum age of a kept frame: the ages and times that it shows are late by as much */
+#define KEPT_BYTES ((size_t)32 * 1024 * 1024)   /* maximum bytes of all kept frames; a single frame may be larger */
 
 static size_t bytes_of(const struct frame *frame)
 {

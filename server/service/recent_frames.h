@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The recent-frame cache: the last frames drawn, for clients who ask a moment later for the same view. So any number of clients of one
-   view cost one rendering, though they never ask at the same time. Thread: the render thread. */
+/* The recent-frame cache: the last frames drawn, for clients that request the same view a moment later. So any number of clients of one
+   view cost one rendering, although they never ask at the same time. Thread: the render thread. */
 #ifndef SERVICE_RECENT_FRAMES_H
 #define SERVICE_RECENT_FRAMES_H
 #include "render/frame.h"
 
 enum { RECENT_FRAMES = 4 };
-struct recent_frames { /* zero-initialise; recent_frames_finish */
+struct recent_frames { /* zero-initialise; free with recent_frames_finish() */
     struct {
-        struct frame *frame; /* a reference; NULL: none */
+        struct frame *frame; /* a reference; NULL: empty entry */
         int64_t drawn_ns;
-        int64_t read_ns; /* when its readings were taken */
+        int64_t read_ns; /* monotonic: when the frame's readings were taken */
     } kept[RECENT_FRAMES];
 };
 
-/* Adds a frame in place of the oldest. Takes its own reference. */
+/* Adds a frame in place of the oldest one. Takes its own reference. */
 void recent_frames_add(struct recent_frames *recent, struct frame *frame, int64_t read_ns, int64_t now_ns);
-/* Returns the frame of that content hash if it is still recent, borrowed; NULL: none. */
+/* Returns the frame with that content hash if it is recent enough, borrowed; NULL: none. */
 struct frame *recent_frames_find(struct recent_frames *recent, uint64_t content, int64_t now_ns);
 /* Returns a frame of that view whose readings were taken at read_ns or later, borrowed; NULL: none. */
 struct frame *recent_frames_find_view(struct recent_frames *recent, const struct view *view, int64_t read_ns, int64_t now_ns);

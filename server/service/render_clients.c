@@ -5,7 +5,7 @@
 #include "base/mem.h"
 #include "service/render_service_impl.h"
 
-/* Under lock. Where it is, or would be. */
+/* Returns the client's index in the sorted array, or where it would be inserted. The caller holds the lock. */
 static size_t place_of(const struct render_service *service, uint64_t id)
 {
     size_t low = 0, high = service->client_count;
@@ -25,7 +25,7 @@ struct render_client *render_service_find(struct render_service *service, uint64
     return place < service->client_count && service->clients[place]->id == id ? service->clients[place] : NULL;
 }
 
-/* Under lock. */
+/* The caller holds the lock. */
 struct render_client *render_service_add_client(struct render_service *service, uint64_t id, uint64_t account)
 {
     size_t place = place_of(service, id);

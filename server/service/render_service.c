@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Requests come in and frames go out; the render thread in between is render_thread.c. */
+/* Accepts requests and hands out frames; render_thread.c draws them. */
 #include "service/render_service.h"
 
 #include "base/clock.h"
 #include "base/mem.h"
 #include "service/render_service_impl.h"
 
-static const int64_t STUCK_NS = 12 * NS_PER_S, REBUILDING_NS = 120 * NS_PER_S; /* without a sign of life of the render thread */
+/* time without a sign of life after which the render thread counts as stuck; the second while it rebuilds a lost context */
+static const int64_t STUCK_NS = 12 * NS_PER_S, REBUILDING_NS = 120 * NS_PER_S;
 
 /* --- requests, from any thread ---------------------------------------------------------------------------------------- */
 
-/* The newer view stands; what made the older one urgent stays. */
+/* Replaces a request by a newer one: the newer view counts, and the urgency of the older one is kept. */
 static void replace(struct frame_request *old, const struct frame_request *request)
 {
     struct frame_request merged = *request;
@@ -23,7 +24,7 @@ static void replace(struct frame_request *old, const struct frame_request *reque
     *old = merged;
 }
 
-/* Under lock. */
+/* Queues a request. The caller holds the lock. */
 static enum request_outcome put(struct render_service *service, uint64_t id, const struct frame_request *request)
 {
     struct render_client *client = render_service_find(service, id);
@@ -92,7 +93,7 @@ void render_service_forget(struct render_service *service, uint64_t id)
     render_service_remove_client(service, id);
     encode_queue_forget(service->queue, id);
     if (service->client_count == 0)
-        pthread_cond_broadcast(&service->wake); /* it may rest soon */
+        pthread_cond_broadcast(&service->wake); /* without clients the render thread may release its caches soon */
     pthread_mutex_unlock(&service->lock);
     encode_queue_sweep(service->queue);
 }
@@ -137,7 +138,7 @@ void render_service_lose_context(struct render_service *service)
     pthread_mutex_unlock(&service->lock);
 }
 
-/* --- frames, to the loop --------------------------------------------------------------------------------------------------- */
+/* --- frames, to the event loop ---------------------------------------------------------------------------------------------- */
 
 static struct encoded_frame *encoded_frame_create(const struct request_ticket *ticket, bool failed)
 {
@@ -153,7 +154,7 @@ static struct encoded_frame *encoded_frame_create(const struct request_ticket *t
     return encoded;
 }
 
-/* Takes it; who gives several says so once, after the last: announce(). */
+/* Takes ownership of an encoded frame and queues it for collection. Call announce() once after the last frame. */
 static void give_back(struct render_service *service, struct encoded_frame *encoded)
 {
     pthread_mutex_lock(&service->lock);
@@ -162,7 +163,7 @@ static void give_back(struct render_service *service, struct encoded_frame *enco
     pthread_mutex_unlock(&service->lock);
 }
 
-/* Notifies if there is something to be collected that nobody was notified of. Any thread. */
+/* Calls params.notify if there is something to collect that was not announced yet. Any thread. */
 static void announce(void *arg)
 {
     struct render_service *service = arg;
@@ -181,7 +182,8 @@ void render_service_answer_without_frame(struct render_service *service, const s
     announce(service);
 }
 
-/* What could not be encoded was not shown: the client's next request is drawn, whatever it shows. */
+/* Notes that the client does not show the frame, because it could not be encoded: its next request is drawn even if the content is the
+   same. */
 static void forget_content(struct render_service *service, uint64_t id)
 {
     pthread_mutex_lock(&service->lock);
@@ -191,7 +193,7 @@ static void forget_content(struct render_service *service, uint64_t id)
     pthread_mutex_unlock(&service->lock);
 }
 
-/* Takes what the encode queue made of a ticket. Thread: a worker. */
+/* Takes the encode queue's result for a ticket. Thread: a worker. */
 static void on_encoded(void *arg, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed)
 {
     struct encoded_frame *encoded = encoded_frame_create(ticket, failed);
@@ -217,7 +219,7 @@ struct encoded_frame *render_service_collect(struct render_service *service)
     return done;
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------- */
+/* --- life cycle ------------------------------------------------------------------------------------------------------- */
 
 static bool thread_start(struct render_service *service)
 {

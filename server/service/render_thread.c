@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The render thread: takes the most urgent request, draws it and hands the frame to the encode queue. */
+/* The render thread: takes the most urgent request, draws it and passes the frame to the encode queue. */
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 #include "render/frame_record.h"
 #include "render/overlay/overlay.h"
 
-static const int64_t STEP_NS = 10 * NS_PER_MS; /* of a long job, before anyone else gets a turn */
-static const int64_t LIGHT_NS = 4 * NS_PER_MS; /* of each frame of a moving session, for a light that it chose */
-static const int64_t FIELD_NS = 6 * NS_PER_MS; /* of a field that takes long, likewise */
-static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* between attempts at a new context */
-static const int64_t PATIENCE_NS = 4 * NS_PER_S; /* that readings have at most with a view whose refined frame came */
-static const int64_t SAME_NS = 60 * NS_PER_S; /* a driver that restarts is waited for so long, before anything else will do */
+static const int64_t STEP_NS = 10 * NS_PER_MS; /* time for a step of a long job before other requests get a turn */
+static const int64_t LIGHT_NS = 4 * NS_PER_MS; /* time per frame of a moving session for baking a light that the session chose */
+static const int64_t FIELD_NS = 6 * NS_PER_MS; /* time per frame for computing a field that takes long */
+static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* delay between attempts to create a new context */
+static const int64_t MAX_READINGS_DELAY_NS = 4 * NS_PER_S; /* longest wait of changed readings for a refined frame in a view that had one */
+/* how long to wait for the same kind of GPU after a driver restart before another renderer is used */
+static const int64_t DRIVER_RESTART_TIMEOUT_NS = 60 * NS_PER_S;
 
-/* Under lock. It is wanted as before; true: a newer request of its client is there already, and stands for it. */
+/* Makes the ticket's request pending again. Returns true if that is not needed: the client has gone, or has a newer request. The caller
+   holds the lock. */
 static bool request_again(const struct request_ticket *ticket, void *arg)
 {
     struct render_client *client = render_service_find(arg, ticket->client);
@@ -23,7 +25,7 @@ static bool request_again(const struct request_ticket *ticket, void *arg)
     return false;
 }
 
-/* What the frame is not made for. If the context was lost it is drawn again in the next one. */
+/* Fails the group's requests. If the context was lost, the requests are drawn again with the next context. */
 static void fail(struct render_thread *thread, struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -40,7 +42,7 @@ static void fail(struct render_thread *thread, struct request_group *group)
     group->count = 0;
 }
 
-/* What was read back from a context that is gone is no frame. Takes the frame. */
+/* Returns whether the frame is valid: pixels read back after a context loss are not. Frees an invalid frame. */
 static bool is_good(struct render_thread *thread, struct frame *frame)
 {
     bool good = frame && !gl_lost(thread->gl);
@@ -68,7 +70,7 @@ static const struct loop_checks *loop_checks_now(struct render_service *service)
     return loop_checks;
 }
 
-/* Takes the frame. */
+/* Passes a finished frame to the encode queue; takes ownership of the frame. */
 static void deliver(struct render_thread *thread, struct frame *frame, const struct snapshot *snapshot, struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -90,9 +92,9 @@ static void deliver(struct render_thread *thread, struct frame *frame, const str
     frame_unref(&frame);
 }
 
-/* --- frames that a GPU draws while another one's pixels come ---------------------------------------------------------- */
+/* --- frames that the GPU draws while earlier pixels are read back ----------------------------------------------------- */
 
-/* The instant, if it is one, goes over to it. */
+/* Submits a frame to the GPU; takes over the reference *historical. */
 static void submit(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical,
                    const struct split_plan *plan)
 {
@@ -114,7 +116,7 @@ static void drop_oldest(struct render_thread *thread)
     awaited_frames_pop(&thread->in_flight);
 }
 
-/* The oldest: waits for it. */
+/* Waits for the oldest submitted frame and delivers it. */
 static void finish_oldest(struct render_thread *thread)
 {
     struct awaited_frame *encoded = &thread->in_flight.at[0];
@@ -126,7 +128,7 @@ static void finish_oldest(struct render_thread *thread)
     drop_oldest(thread);
 }
 
-/* Those that came, and where there is room for no other the oldest. */
+/* Delivers all complete frames; waits for the oldest if the list is full. */
 static void finish_complete(struct render_thread *thread)
 {
     struct awaited_frames *in_flight = &thread->in_flight;
@@ -134,9 +136,9 @@ static void finish_complete(struct render_thread *thread)
         finish_oldest(thread);
 }
 
-/* --- frames that take long -------------------------------------------------------------------------------------------- */
+/* --- frames that take long (long jobs) -------------------------------------------------------------------------------- */
 
-/* Whoever it is for left the one before it, not this one. */
+/* Clears `left` for the group's clients: they left the previous long job, not this one. */
 static void stay(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -148,7 +150,7 @@ static void stay(struct render_service *service, const struct request_group *gro
     pthread_mutex_unlock(&service->lock);
 }
 
-/* The instant, if it is one, goes over to it. */
+/* Exchanges the long job with the parked one. */
 static void long_job_swap(struct render_thread *thread)
 {
     struct long_job parked = thread->parked;
@@ -156,7 +158,7 @@ static void long_job_swap(struct render_thread *thread)
     thread->long_job = parked;
 }
 
-/* Makes the place free, if whoever is first in the group may have it at once. */
+/* Parks the running long job if the group's first client may overtake it. */
 static void long_job_park(struct render_thread *thread, const struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -208,7 +210,8 @@ static void long_job_begin(struct render_thread *thread, struct request_group *g
     thread->stale = true;
 }
 
-/* Its clients may have got newer readings meanwhile: the refined frame shows them too, and is the newest. NULL: it cannot. */
+/* Redraws the refined frame with newer readings, which its clients may have seen in previews meanwhile. Returns the new frame; NULL: not
+   possible. */
 static struct frame *long_job_with_new_readings(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -239,14 +242,14 @@ static const struct snapshot *long_job_readings(const struct render_thread *thre
     return thread->long_job.historical ? &thread->long_job.historical->snapshot : thread->long_job.snapshot;
 }
 
-/* Whoever has a refined frame gets readings sooner again. */
+/* Shortens the delay of readings again for clients that now have a refined frame. */
 static void calm(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
     for (size_t i = 0; i < group->count; i++) {
         struct render_client *client = render_service_find(service, group->tickets[i].client);
-        if (client && client->patience_ns > PATIENCE_NS)
-            client->patience_ns = PATIENCE_NS;
+        if (client && client->patience_ns > MAX_READINGS_DELAY_NS)
+            client->patience_ns = MAX_READINGS_DELAY_NS;
     }
     pthread_mutex_unlock(&service->lock);
 }
@@ -257,7 +260,7 @@ static void long_job_forget_instant(struct render_thread *thread)
         snapshot_cache_give(thread->service->params.snapshot_cache, &thread->long_job.historical);
 }
 
-/* True: it is done. */
+/* Draws one step of the long job. Returns true once it is done. */
 static bool long_job_step(struct render_thread *thread)
 {
     int64_t start_ns = clock_mono_ns();
@@ -286,14 +289,14 @@ static bool long_job_step(struct render_thread *thread)
     return true;
 }
 
-/* Under lock. */
+/* Returns whether the client no longer wants the long job's frame. The caller holds the lock. */
 static bool has_left(const struct request_ticket *ticket, void *arg)
 {
     const struct render_client *client = render_service_find(arg, ticket->client);
     return !client || client->left || (client->pending && client->request.urgency == URGENCY_INPUT);
 }
 
-/* Who moved on gets no more of it; when nobody is left it is given up. */
+/* Removes clients that moved on from the long job; abandons the job once it has no clients. */
 static void long_job_leave(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -310,7 +313,7 @@ static void long_job_leave(struct render_thread *thread)
     long_job_forget_instant(thread);
 }
 
-/* A refined frame was asked for if it were quick, and it is not: the other one that was asked for then. */
+/* Turns requests that preferred a refined frame if it were quick (or_moving) into previews, and other refined requests into long jobs. */
 static void choose_other(struct request_group *group)
 {
     for (size_t i = 0; i < group->count; i++) {
@@ -328,7 +331,7 @@ static void choose_other(struct request_group *group)
     }
 }
 
-/* Draws what is planned, or begins to; quick: at once. */
+/* Draws the planned frame at once if it is quick; otherwise begins a long job. */
 static void draw_plan(struct render_thread *thread, struct request_group *group, const struct snapshot *snapshot,
                       const struct historical_snapshot **historical, const struct split_plan *plan, bool quick)
 {
@@ -348,7 +351,7 @@ static void draw_plan(struct render_thread *thread, struct request_group *group,
         fail(thread, group);
 }
 
-/* False: held: the field is not there yet, or the place for slow frames is taken; again later. */
+/* Draws the group's frame. Returns false if the group must wait: its field is not computed yet, or another long job is running. */
 static bool draw_of(struct render_thread *thread, struct request_group *group, const struct snapshot *snapshot,
                     const struct historical_snapshot **historical)
 {
@@ -377,7 +380,7 @@ static bool draw_of(struct render_thread *thread, struct request_group *group, c
     return true;
 }
 
-/* As draw_of. */
+/* Draws the group's frame, or answers it from the cache; returns as draw_of(). */
 static bool draw(struct render_thread *thread, struct request_group *group)
 {
     const struct historical_snapshot *historical;
@@ -398,7 +401,8 @@ static bool draw(struct render_thread *thread, struct request_group *group)
 
 /* --- life of the render thread ---------------------------------------------------------------------------------------- */
 
-/* GL and what hangs on it. kind: GL_AUTO or that of a context that is gone; hardware: a processor will not do. */
+/* Creates GL and everything that depends on it. kind: GL_AUTO, or the kind of the lost context; hardware: a software renderer is not
+   accepted. */
 static bool gl_begin(struct render_thread *thread, enum gl_kind kind, bool hardware)
 {
     const struct render_service_params *params = &thread->service->params;
@@ -473,7 +477,7 @@ static void set_lost(struct render_service *service, bool lost)
     pthread_mutex_unlock(&service->lock);
 }
 
-/* False: the render service is to stop. */
+/* Waits. Returns false if the render service is stopping. */
 static bool pause_for(struct render_service *service, int64_t pause_ns)
 {
     int64_t until_ns = clock_mono_ns() + pause_ns;
@@ -487,8 +491,8 @@ static bool pause_for(struct render_service *service, int64_t pause_ns)
     return running;
 }
 
-/* A device that was reset needs a moment, a driver that restarts some seconds; until then nothing is drawn, and nothing else ends.
-   The long job that was under way is asked for again. */
+/* Rebuilds a lost GL context. A device that was reset needs a moment, a driver that restarts some seconds; until then nothing is drawn,
+   and the daemon otherwise goes on. The long job in progress is requested again. */
 static void rebuild(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -508,12 +512,12 @@ static void rebuild(struct render_thread *thread)
         if (!pause_for(service, pause_ns))
             return;
         pause_ns = pause_ns * 2 > REBUILD_MAX_NS ? REBUILD_MAX_NS : pause_ns * 2;
-        if (clock_mono_ns() - lost_ns >= SAME_NS) {
+        if (clock_mono_ns() - lost_ns >= DRIVER_RESTART_TIMEOUT_NS) {
             kind = service->params.gl;
             hardware = false;
         }
     }
-    renderer_bake_idle(thread->renderer, INT64_MAX); /* frames go on as they were */
+    renderer_bake_idle(thread->renderer, INT64_MAX); /* bake lights completely, so that frames look as before */
     set_lost(service, false);
     log_info(service->params.log, "gl: a new context draws after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
 }

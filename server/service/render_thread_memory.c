@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What drawing keeps in memory: counted, bounded, and given back when nobody is there. */
+/* Memory of the renderer's caches: measured, limited, and released while there are no clients. */
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/system/memory.h"
 #include "service/render_thread_impl.h"
 #include "render/frame.h"
 
-static const int64_t LOOK_NS = 1 * NS_PER_S;  /* between counts */
-static const int64_t REST_NS = 10 * NS_PER_S; /* nobody is there for so long */
-static const double FIELD_SHARE = 0.3;        /* of the bound: values and weights of all fields */
-/* Beside models and caches, at least: shaders, threads, the plant; and what is made while a frame, or a light, is under way. */
+static const int64_t MEASURE_INTERVAL_NS = 1 * NS_PER_S; /* interval between measurements */
+static const int64_t IDLE_TIMEOUT_NS = 10 * NS_PER_S;    /* time without clients after which caches are released */
+static const double FIELD_SHARE = 0.3;                   /* share of the limit for the values and weights of all fields */
+/* Minimum reserved besides models and caches: shaders, threads, the plant, and temporary memory of a frame or a light. */
 static const size_t OTHER_BYTES = (size_t)576 << 20;
-static const size_t FREE_BYTES = (size_t)64 << 20; /* free in the heap and still resident: worth returning */
-static const int64_t TRIM_NS = 5 * NS_PER_S;       /* between two times of it */
-static const size_t FADES = 64;                    /* a peak of other memory loses 1 / FADES of what it exceeds the present by, each time */
+static const size_t FREE_BYTES = (size_t)64 << 20; /* bytes free in the heap and still resident that make trimming worthwhile */
+static const int64_t TRIM_NS = 5 * NS_PER_S;       /* minimum time between two trims */
+static const size_t FADES = 64; /* decay: at each measurement the peak loses 1 / FADES of its excess over the present value */
 
 static counter *add(struct render_service *service, const char *of)
 {
@@ -33,8 +33,8 @@ void render_thread_memory_init(struct thread_memory *memory, struct render_servi
                                  "What all of these may hold together, but for what the picture that is drawn needs.");
 }
 
-/* Returns what the process needs beside `counted`, the bytes of models and caches: its recent peak. Near the limit `all`, what is free in
-   the heap is returned to the system first. */
+/* Returns the recent peak of memory that the process needs besides `counted`, the bytes of models and caches. Near the limit `all`, free
+   heap memory is returned to the system first. */
 static size_t other_bytes(struct thread_memory *memory, size_t all, size_t counted)
 {
     struct memory_use use;
@@ -50,12 +50,12 @@ static size_t other_bytes(struct thread_memory *memory, size_t all, size_t count
     size_t other = use.anonymous > counted ? use.anonymous - counted : 0;
     if (other < memory->other)
         memory->other -= (memory->other - other) / FADES;
-    else if (!loose) /* else some of it is what a cache has just given back, and the heap not yet */
+    else if (!loose) /* otherwise a cache may just have freed some of it, and the heap has not returned it yet */
         memory->other = other;
     return memory->other > OTHER_BYTES ? memory->other : OTHER_BYTES;
 }
 
-/* Returns what models and other memory leave of `all`; a quarter of it in any case. */
+/* Returns what models and other memory leave of `all`, but at least a quarter of it. */
 static size_t bound_of(size_t all, size_t models, size_t other)
 {
     return models + other < all - all / 4 ? all - models - other : all / 4;
@@ -71,7 +71,7 @@ void render_thread_bound_memory(struct render_thread *thread)
         counted += bytes[i];
     all = all ? all : memory_default_bytes();
     size_t bound = bound_of(all, bytes[STORE_MODELS], other_bytes(memory, all, counted));
-    size_t caches = bound > 2 * frames ? bound - frames : bound / 2; /* frames are as many as sessions need */
+    size_t caches = bound > 2 * frames ? bound - frames : bound / 2; /* frames are not limited: their number follows from the sessions */
     field_set_cache_limit(thread->field, (size_t)(FIELD_SHARE * (double)caches));
     renderer_bound_memory(thread->renderer, caches - (size_t)(FIELD_SHARE * (double)caches));
     renderer_measure_memory(thread->renderer, bytes);
@@ -92,7 +92,7 @@ void render_thread_check_memory(struct render_thread *thread)
 {
     int64_t now_ns = clock_mono_ns();
     render_thread_note_work(thread);
-    if (now_ns - thread->memory.looked_ns < LOOK_NS)
+    if (now_ns - thread->memory.looked_ns < MEASURE_INTERVAL_NS)
         return;
     thread->memory.looked_ns = now_ns;
     render_thread_bound_memory(thread);
@@ -110,7 +110,7 @@ bool render_thread_may_release_memory(struct render_thread *thread, int64_t *wai
         memory->alone_since_ns = now_ns;
     if (memory->released)
         return false;
-    int64_t due_ns = memory->alone_since_ns + REST_NS;
+    int64_t due_ns = memory->alone_since_ns + IDLE_TIMEOUT_NS;
     *wait_until_ns = due_ns < *wait_until_ns ? due_ns : *wait_until_ns;
     return now_ns >= due_ns;
 }

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the render thread does next. */
+/* Chooses what the render thread does next. */
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
-/* Changed readings wait so long for a refinement of the same client; longer after each that they had given up, so that one comes. */
+/* How long changed readings wait for a refined frame of the same client. Doubles each time that they give up on it, so that one gets
+   finished. */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S, OWN_DATA_MAX_NS = 16 * NS_PER_S;
-enum { OVERTAKE_SMALLER = 4 }; /* times, in pixels, than what it overtakes: one more of that size may be in memory, not two */
-static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS; /* the clock in the frame, and ages, are no older than this */
+/* a frame may overtake a long job that has this many times its pixels: memory suffices for one more of that size, not for two */
+enum { OVERTAKE_SMALLER = 4 };
+/* maximum age of a snapshot, which limits the error of the clock and of the ages in a frame */
+static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS;
 
 static bool long_job_is_for(const struct long_job *long_job, const struct render_client *client)
 {
@@ -16,7 +19,8 @@ static bool long_job_is_for(const struct long_job *long_job, const struct render
     return false;
 }
 
-/* Under lock. Its long job is under way and still good: what it wants besides can wait for it. */
+/* Returns whether the client's long job is running and still wanted, so that its other requests can wait for it. The caller holds the
+   lock. */
 static bool waits_for_long_job(const struct render_thread *thread, const struct render_client *client, int64_t now_ns)
 {
     bool moving = client->request.view.tier == TIER_PREVIEW || client->request.or_moving;
@@ -28,8 +32,8 @@ static bool waits_for_long_job(const struct render_thread *thread, const struct 
 }
 
 struct render_turn {
-    bool step;                    /* of the long job; else */
-    struct render_client *client; /* NULL: nobody before wait_until_ns */
+    bool step;                    /* true: draw a step of the long job; false: see `client` */
+    struct render_client *client; /* client to serve next; NULL: none before wait_until_ns */
     int64_t wait_until_ns;
 };
 
@@ -43,7 +47,8 @@ bool render_thread_overtakes(const struct render_thread *thread, const struct re
     return px * OVERTAKE_SMALLER <= long_job->px && client->account->spent_ns[kind] < long_job->account_spent_ns + long_job->spent_ns;
 }
 
-/* Under lock. Addresses first, then their clients. */
+/* Returns whether the client was charged less time than the other: compares addresses first, then clients of one address. The caller
+   holds the lock. */
 static bool has_had_less(const struct render_client *client, const struct render_client *other, int kind)
 {
     const int64_t *a = client->account->spent_ns, *b = other->account->spent_ns;
@@ -52,7 +57,7 @@ static bool has_had_less(const struct render_client *client, const struct render
     return scheduler_before(a[kind], client->request.asked_ns, b[kind], other->request.asked_ns);
 }
 
-/* Under lock. It can be drawn now, and before the other (NULL: nobody). */
+/* Returns whether the client's request can be drawn now and before that of `other` (NULL: none). The caller holds the lock. */
 static bool goes_before(const struct render_thread *thread, const struct render_client *client, const struct render_client *other,
                         int64_t now_ns)
 {
@@ -64,7 +69,7 @@ static bool goes_before(const struct render_thread *thread, const struct render_
     return !other || has_had_less(client, other, scheduler_share(urgency));
 }
 
-/* Under lock. */
+/* Chooses the next turn. The caller holds the lock. */
 static struct render_turn next_turn(const struct render_thread *thread, const struct scheduler *scheduler)
 {
     const struct render_service *service = thread->service;
@@ -89,7 +94,8 @@ static struct render_turn next_turn(const struct render_thread *thread, const st
     return turn;
 }
 
-/* Under lock. Whoever moves begins anew; what is given up for readings is waited for twice as long the next time. */
+/* Adjusts how long readings wait for a refined frame: an input resets the delay, and giving up a refined frame for readings doubles it.
+   The caller holds the lock. */
 static void change_patience(const struct render_thread *thread, struct render_client *client)
 {
     int64_t twice_ns = 2 * (client->patience_ns ? client->patience_ns : OWN_DATA_NS);
@@ -99,7 +105,8 @@ static void change_patience(const struct render_thread *thread, struct render_cl
         client->patience_ns = twice_ns < OWN_DATA_MAX_NS ? twice_ns : OWN_DATA_MAX_NS;
 }
 
-/* Under lock. What it had under way is not wanted any more, unless it will show new readings too. */
+/* Begins the client's request. A long job for the client is no longer wanted, unless it will show the new readings too. The caller holds
+   the lock. */
 static void begin(const struct render_thread *thread, struct render_client *client, struct request_group *group, int64_t now_ns)
 {
     enum urgency urgency = client->request.urgency;
@@ -112,7 +119,7 @@ static void begin(const struct render_thread *thread, struct render_client *clie
                                                        .wait_ns = now_ns - client->request.view.input_ns });
 }
 
-/* Under lock. The client's request, and all that the same frame answers. */
+/* Begins the client's request, and all other requests that the same frame answers. The caller holds the lock. */
 static void begin_all(const struct render_thread *thread, struct render_client *first, struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -152,7 +159,7 @@ const struct snapshot *render_thread_readings(struct render_thread *thread, cons
     return thread->snapshot;
 }
 
-/* One question about a pixel. */
+/* Answers one pick query. */
 static void answer_pick(struct render_thread *thread)
 {
     struct render_service *service = thread->service;

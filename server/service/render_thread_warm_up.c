@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Warm-up: what only the first frames cost is paid before anyone waits for them. */
+/* Warm-up: pays the costs of the first frames before clients wait for them. */
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
-static const int64_t IDLE_NS = 5 * NS_PER_MS; /* of warm-up, before looking whether somebody waits */
+static const int64_t IDLE_NS = 5 * NS_PER_MS; /* time for a piece of warm-up before checking for requests */
 
-/* For what it costs. */
+/* Draws a frame and discards it, to fill caches and compile shaders. */
 static void draw_for_nobody(struct render_thread *thread, const struct view *view)
 {
     render_thread_refresh(thread);
@@ -14,7 +14,7 @@ static void draw_for_nobody(struct render_thread *thread, const struct view *vie
         frame_unref(&frame);
 }
 
-/* What only the first frame of a tier costs (shaders) is paid before anyone asks. */
+/* Compiles the shaders of a tier by drawing a small frame. */
 void render_thread_warm_tier(struct render_thread *thread, enum tier tier)
 {
     struct view view;
@@ -23,7 +23,7 @@ void render_thread_warm_tier(struct render_thread *thread, enum tier tier)
     draw_for_nobody(thread, &view);
 }
 
-/* Frames that somebody waits for: the next ones find their fields, buffers and shaders. */
+/* Draws the views that clients will request first, so that their fields, buffers and shaders exist. */
 void render_thread_draw_first(struct render_thread *thread)
 {
     const struct render_service_params *params = &thread->service->params;

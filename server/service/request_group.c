@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Orders in a list. */
+/* Lists of requests that one frame answers. */
 #include "service/request_group.h"
 
 #include "base/mem.h"

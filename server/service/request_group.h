@@ -4,25 +4,25 @@
 #define SERVICE_REQUEST_GROUP_H
 #include "service/frame_request.h"
 
-struct request_ticket { /* a request that was begun */
+struct request_ticket { /* a request whose drawing has begun */
     uint64_t client, number;
     struct frame_request request;
     int64_t wait_ns; /* from the input to the start of drawing */
 };
 
-struct request_group { /* zero-initialise; request_group_finish */
+struct request_group { /* zero-initialise; free with request_group_finish() */
     struct request_ticket *tickets;
     size_t count, capacity;
 };
 
 /* Appends a copy of the ticket. */
 void request_group_add(struct request_group *group, const struct request_ticket *ticket);
-/* Moves the tickets for which belongs(ticket, arg) is true into `into`, which is emptied first. Both keep their order. */
+/* Moves the tickets for which belongs(ticket, arg) returns true into `into`, which is emptied first. Both lists keep their order. */
 void request_group_split(struct request_group *group, bool (*belongs)(const struct request_ticket *ticket, void *arg), void *arg,
                          struct request_group *into);
-/* Returns whether one of them wants the frame with what it was drawn from. */
+/* Returns whether a request wants the frame with the record of its inputs. */
 bool request_group_wants_record(const struct request_group *group);
-/* Frees the memory; the group is empty and can be used again. */
+/* Frees the memory; the group is empty and can be reused. */
 void request_group_finish(struct request_group *group);
 
 #endif

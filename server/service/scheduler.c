@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which class of request is drawn next. */
+/* Chooses which class of request is drawn next. */
 #include "service/scheduler.h"
 
 #include "base/clock.h"
 
-static const int64_t PAUSE_NS = 150 * NS_PER_MS;       /* after a moving frame the next of the same session may come */
-static const int64_t SHARE_NS = 3 * NS_PER_S;          /* what takes long gets its turn in this time, whoever moves */
-static const int64_t SNAPSHOT_SHARE_NS = 1 * NS_PER_S; /* likewise a frame that somebody asked for by itself, and has none of yet */
+static const int64_t INPUT_PAUSE_NS = 150 * NS_PER_MS; /* pause after a moving frame in which the same session's next camera is awaited */
+static const int64_t LONG_TURN_NS = 3 * NS_PER_S;      /* long-running frames get a turn after at most this long, even while cameras move */
+static const int64_t SNAPSHOT_TURN_NS = 1 * NS_PER_S;  /* the same for a snapshot over HTTP, whose client has no frame yet */
 
 int scheduler_share(enum urgency urgency)
 {
@@ -30,7 +30,7 @@ static bool is_pending(int64_t asked_ns)
 
 static bool share_due(const struct scheduler *scheduler, enum urgency urgency, int64_t asked_ns, int64_t now_ns)
 {
-    int64_t share_ns = urgency == URGENCY_SNAPSHOT ? SNAPSHOT_SHARE_NS : SHARE_NS;
+    int64_t share_ns = urgency == URGENCY_SNAPSHOT ? SNAPSHOT_TURN_NS : LONG_TURN_NS;
     return scheduler->step_next && is_pending(asked_ns) && now_ns - asked_ns >= share_ns && now_ns - scheduler->long_ns >= share_ns;
 }
 
@@ -48,9 +48,9 @@ enum urgency scheduler_choose(const struct scheduler *scheduler, const int64_t a
         return URGENCY_DATA;
     if (!is_pending(asked_ns[slow]))
         return URGENCY_COUNT;
-    if (now_ns - scheduler->input_ns >= PAUSE_NS)
+    if (now_ns - scheduler->input_ns >= INPUT_PAUSE_NS)
         return slow;
-    *wait_until_ns = scheduler->input_ns + PAUSE_NS;
+    *wait_until_ns = scheduler->input_ns + INPUT_PAUSE_NS;
     return URGENCY_COUNT;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drawing time by address: who has spent how much, for as long as it has clients or is ahead of the others. */
+/* Drawing time charged to each address. An account exists while its address has clients or was charged more than the others. */
 #include "service/time_accounts.h"
 
 #include "base/mem.h"

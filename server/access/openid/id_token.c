@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checking ID tokens, by libcjose. */
+/* Verifies ID tokens, using libcjose. */
 #include "access/openid/id_token.h"
 
 #include <cjose/cjose.h>
@@ -38,7 +38,7 @@ static bool is_for(const json_t *key, const char *alg, const char *kid)
            (!kid || (its_kid && !strcmp(its_kid, kid)));
 }
 
-/* Without its private and foreign members, which libcjose would want to be complete. */
+/* Imports a public key. Private and foreign members are left out, because libcjose would require them to be complete. */
 static cjose_jwk_t *import_key(const json_t *key)
 {
     static const char *const members[] = { "kty", "kid", "n", "e", "crv", "x", "y" };
@@ -140,11 +140,11 @@ enum id_token_fault id_token_verify(const char *token, const struct id_token_exp
     return ID_TOKEN_BAD;
 }
 
-/* --- what they say -------------------------------------------------------------------------------------------------------- */
+/* --- reading the claims ------------------------------------------------------------------------------------------------------- */
 
 static const json_t *at_path(const json_t *claims, const char *path)
 {
-    const json_t *whole = json_object_get(claims, path); /* names of claims may be URLs, which have dots */
+    const json_t *whole = json_object_get(claims, path); /* a claim's name may be a URL, which contains dots */
     char *copy = mem_strdup(path), *rest = copy;
     const json_t *found = claims;
     for (char *part; !whole && (part = strsep(&rest, "."));)
@@ -171,7 +171,7 @@ enum role id_token_role(const struct openid_config *config, const json_t *claims
     return best;
 }
 
-/* What would break a line, or hide in one, is no name. */
+/* Copies a name. Returns false for invalid UTF-8 and control characters, which would break or hide in a line of text. */
 static bool copy_name(const char *text, char *out, size_t size)
 {
     size_t at = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* ID tokens of OpenID Connect: signature, then claims (OpenID Connect Core 1.0, 3.1.3.7). Only algorithms with public keys are accepted, so
-   neither `none` nor a signature made with a public key passes. Pure: time is handed in. Any thread. */
+/* ID tokens of OpenID Connect: checks the signature, then the claims (OpenID Connect Core 1.0, 3.1.3.7). Only public-key algorithms are
+   accepted, so neither `none` nor an HMAC made with a public key passes. Pure: the caller passes the time. Any thread. */
 #ifndef OPENID_ID_TOKEN_H
 #define OPENID_ID_TOKEN_H
 #include <jansson.h>
@@ -11,27 +11,27 @@ enum { ID_TOKEN_BYTES = 64 * 1024, ID_TOKEN_SKEW_S = 60 };
 
 struct id_token_expected {
     const struct openid_config *config;
-    const json_t *jwks; /* the provider's keys */
-    const char *nonce;  /* NULL: of a refreshed token, which need not have one */
-    const char *sub;    /* whose it is; NULL: not known yet */
+    const json_t *jwks; /* the provider's public keys */
+    const char *nonce;  /* NULL: not checked; a refreshed token need not have one */
+    const char *sub;    /* expected subject; NULL: not known yet */
     int64_t now_s;      /* UTC */
-    int64_t patience_s; /* how long a token is accepted after its `exp` */
+    int64_t patience_s; /* seconds for which a token is accepted after its `exp` */
 };
 
 enum id_token_fault {
     ID_TOKEN_GOOD,
     ID_TOKEN_BAD,
-    ID_TOKEN_NO_KEY, /* its key is not among them: the provider may have a new one */
+    ID_TOKEN_NO_KEY, /* the token's key is not among them: the provider may have a new one */
 };
 
-/* Verifies a token. Returns its claims in *claims (json_decref) if it is good; else *why (static) says what is wrong. */
+/* Verifies a token. If it is good, writes its claims to *claims (json_decref); otherwise *why (static text) says what is wrong. */
 enum id_token_fault id_token_verify(const char *token, const struct id_token_expected *expected, json_t **claims, const char **why);
-/* Returns the highest role that the claims' groups give; the claim's name may be a path with dots. */
+/* Returns the highest role that the claims' groups give; the name of the groups claim may be a path with dots. */
 enum role id_token_role(const struct openid_config *config, const json_t *claims);
-/* Returns whether the claims have the groups at all. */
+/* Returns whether the claims contain groups at all. */
 bool id_token_has_groups(const struct openid_config *config, const json_t *claims);
-/* Writes the person's name, as it stands in lists and journals: the name claim, else e-mail, else sub. Returns false if there is none that
-   can be shown. */
+/* Writes the person's name for lists and journals: the name claim, else e-mail, else sub. Returns false if none of them can be
+   displayed. */
 bool id_token_name(const struct openid_config *config, const json_t *claims, char *out, size_t size);
 
 #endif

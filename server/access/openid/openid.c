@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signing in by OpenID Connect: what the loop asks for. */
+/* Sign-in with OpenID Connect: the functions that the event loop calls. */
 #include "access/openid/openid.h"
 
 #include <curl/curl.h>
@@ -14,7 +14,7 @@
 
 static const int64_t ERROR_EVERY_NS = 5 * NS_PER_S;
 
-/* --- the loop's side ------------------------------------------------------------------------------------------------------ */
+/* --- the event loop's side ---------------------------------------------------------------------------------------------------- */
 
 const struct openid_config *openid_config_of(const struct openid *openid)
 {
@@ -57,7 +57,7 @@ char *openid_begin(struct openid *openid, const uint8_t address[16], const char 
     return url;
 }
 
-/* An answer of another provider (RFC 9207). */
+/* Returns whether the answer comes from another provider than the configured one (RFC 9207). */
 static bool is_other_issuer(const struct openid *openid, const char *iss)
 {
     if (iss)
@@ -65,7 +65,8 @@ static bool is_other_issuer(const struct openid *openid, const char *iss)
     return json_is_true(json_object_get(openid->metadata, "authorization_response_iss_parameter_supported"));
 }
 
-/* Under the lock. Whoever waits is counted by address, so that no single one takes all room. */
+/* Returns whether another answer may wait. Waiting answers are limited per address, so that one address cannot use all places. The
+   caller holds the lock. */
 static bool has_room(const struct openid *openid, const uint8_t address[16])
 {
     int of_address = 0;
@@ -74,8 +75,8 @@ static bool has_room(const struct openid *openid, const uint8_t address[16])
     return openid->codes.count < OPENID_CODES && of_address < OPENID_CODES_OF_ADDRESS;
 }
 
-/* Under the lock. Errors that a browser brings, somebody's refusal to sign in or the provider's own, are no guesses at anything. Anybody
-   can bring any number of them, so one is recorded now and then. */
+/* Decides how to treat an error that a browser brought from the provider (a refused sign-in, or the provider's own failure). It is no
+   guess at a secret. Anyone can send any number of them, so only one in ERROR_EVERY_NS is recorded. The caller holds the lock. */
 static enum openid_result judge_error(struct openid *openid, int64_t now_ns)
 {
     if (openid->error_ns && now_ns - openid->error_ns < ERROR_EVERY_NS)
@@ -194,7 +195,7 @@ const char *openid_vouch(struct openid *openid, const char *id_token, struct tok
                                                 .patience_s = (int64_t)(openid->config->hours * 3600) };
     enum id_token_fault fault = keys ? id_token_verify(id_token, &expected, &claims, &why) : ID_TOKEN_NO_KEY;
     json_decref(keys);
-    if (fault == ID_TOKEN_NO_KEY) { /* the provider may have a new key: the thread fetches its keys now */
+    if (fault == ID_TOKEN_NO_KEY) { /* the provider may have a new key: make the thread fetch its keys now */
         pthread_mutex_lock(&openid->lock);
         openid->discover_ns = clock_mono_ns();
         pthread_cond_broadcast(&openid->wake);
@@ -239,7 +240,7 @@ char *openid_end(struct openid *openid, const char *cookie, const char *from)
     return url;
 }
 
-/* --- life ----------------------------------------------------------------------------------------------------------------- */
+/* --- life cycle --------------------------------------------------------------------------------------------------------------- */
 
 struct openid *openid_start(const struct openid_params *params)
 {

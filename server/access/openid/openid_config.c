@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reading the file of --openid. */
+/* Reads the file of --openid. */
 #include "access/openid/openid_config.h"
 
 #include <inttypes.h>
@@ -14,7 +14,7 @@
 static const double CHECK_S = 30, HOURS = 12;
 enum { MOST_GROUPS = 200 };
 
-/* What is sent there may be read on the way. */
+/* Returns whether the URL is unencrypted and not local, so that secrets sent there could be read on the way. */
 static bool is_unsafe(const char *url)
 {
     char host[256], name[256];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The file of --openid: which identity provider signs people in, and which of its groups have which role. OPENID.md describes its keys.
-   Thread: one reads it; immutable from then on. */
+/* The file of --openid: the identity provider, and the roles of its groups. OPENID.md describes its keys. Thread: one reads it;
+   immutable from then on. */
 #ifndef OPENID_OPENID_CONFIG_H
 #define OPENID_OPENID_CONFIG_H
 #include "base/log/log.h"
@@ -12,23 +12,23 @@ struct openid_group {
 };
 
 struct openid_config {
-    char *issuer, *client_id, *client_secret_file; /* the last: NULL: a public client */
-    char *url;                                     /* of our page, as browsers have it, with a slash at its end */
-    char *redirect_uri;                            /* made of that */
-    char *ca_file;                                 /* NULL: certificates that the machine trusts */
-    char *scope, *prompt, *label;                  /* prompt NULL: none; label: of the button */
+    char *issuer, *client_id, *client_secret_file; /* client_secret_file NULL: a public client without a secret */
+    char *url;                                     /* URL of this server's page as browsers see it, with a trailing slash */
+    char *redirect_uri;                            /* derived from url */
+    char *ca_file;                                 /* NULL: the machine's trusted certificates */
+    char *scope, *prompt, *label;                  /* prompt NULL: not sent; label: text of the sign-in button */
     char *name_claim, *groups_claim;
     struct openid_group *groups;
     size_t group_count;
     double check_s, hours;
     bool secure;     /* url is https: cookies are sent over TLS only */
-    char cookie[40]; /* its name; another for each plant of a host */
+    char cookie[40]; /* name of the session cookie; differs per plant, so that two plants on one host do not share a login */
 };
 
-/* Reads the file. Returns NULL after an error, already logged. */
+/* Reads the file. Returns NULL on failure, already logged. */
 struct openid_config *openid_config_read(struct log *log, const char *path);
-void openid_config_free(struct openid_config **config); /* &NULL is fine; leaves NULL */
-/* Returns the highest role that a group gives; ROLE_NOBODY: none. */
+void openid_config_free(struct openid_config **config); /* &NULL is allowed; sets *config to NULL */
+/* Returns the highest role of a group; ROLE_NOBODY: none. */
 enum role openid_config_role(const struct openid_config *config, const char *group);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* HTTP to the identity provider, by libcurl. */
+/* HTTP requests to the identity provider, using libcurl. */
 #include "access/openid/openid_http.h"
 
 #include <stdio.h>
@@ -71,7 +71,7 @@ static void set_client(struct http_request *request, const struct openid_config 
         openid_add_argument(form, "client_secret", secret);
     if (!secret || in_form)
         return;
-    struct text user = { 0 }, password = { 0 }; /* RFC 6749, 2.3.1: both are encoded as in a form */
+    struct text user = { 0 }, password = { 0 }; /* RFC 6749, 2.3.1: user and password are form-encoded */
     openid_add_argument(&user, "", config->client_id);
     openid_add_argument(&password, "", secret);
     curl_easy_setopt(request->handle, CURLOPT_HTTPAUTH, (long)CURLAUTH_BASIC);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is known of the identity provider: its addresses, its keys, what it tells about a person. */
+/* What is known about the identity provider: its endpoints, its keys, and what it reports about a person. */
 #include <stdio.h>
 #include <string.h>
 
@@ -9,7 +9,8 @@
 #include "base/mem.h"
 
 static const int64_t OLD_NS = 3600 * NS_PER_S, RETRY_NS = 5 * NS_PER_S;
-static const int64_t KEYS_NS = 10 * NS_PER_S; /* between two requests for keys, whatever tokens name: strangers choose those */
+/* minimum time between two requests for keys, whatever keys tokens name: outsiders can send any token */
+static const int64_t KEYS_NS = 10 * NS_PER_S;
 
 void openid_say(struct openid *openid, const char *why)
 {
@@ -117,11 +118,12 @@ static json_t *take_keys(struct openid *openid)
     return keys;
 }
 
-/* Has others than `keys`, unless they were asked for a moment ago. Returns false if the provider's present ones could not be had. */
+/* Fetches keys other than `keys`, unless keys were fetched a moment ago. Returns false if the provider's present keys could not be
+   fetched. */
 static bool renew_keys(struct openid *openid, const json_t *keys)
 {
     pthread_mutex_lock(&openid->asking);
-    bool renewed = openid->jwks != keys; /* somebody else did */
+    bool renewed = openid->jwks != keys; /* another thread has fetched new keys already */
     if (!renewed && clock_mono_ns() - openid->jwks_ns > KEYS_NS)
         renewed = ask_keys(openid);
     pthread_mutex_unlock(&openid->asking);
@@ -152,7 +154,7 @@ bool openid_complete(struct openid *openid, json_t *claims, const char *access_t
     bool lacks = !id_token_has_groups(openid->config, claims) || !json_object_get(claims, openid->config->name_claim) ||
                  !id_token_name(openid->config, claims, name, sizeof(name));
     bool asks = url && access_token && lacks;
-    *told = !asks && json_object_get(claims, "iss"); /* by an ID token */
+    *told = !asks && json_object_get(claims, "iss"); /* the claims come from an ID token */
     if (asks && openid_get(openid->config, url, access_token, &openid->stopping, &reply) && reply.status == 200) {
         const char *sub = json_string_value(json_object_get(claims, "sub")), *its = json_string_value(json_object_get(reply.json, "sub"));
         *told = sub && its && !strcmp(sub, its);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Codes and refresh tokens are exchanged for what a person may do. */
+/* Exchanges codes and refresh tokens for a person's rights. */
 #include <stdio.h>
 #include <string.h>
 
@@ -24,7 +24,8 @@ static void replace(char **text, const char *by)
     *text = mem_strdup(by);
 }
 
-/* Where the provider lists ways to say who we are, and HTTP Basic, which is usual, is not one of them. */
+/* Returns whether the client secret goes into the form: the provider lists its authentication methods, and HTTP Basic, the usual one, is
+   not among them. */
 static bool secret_in_form(struct openid *openid)
 {
     pthread_mutex_lock(&openid->lock);
@@ -56,9 +57,9 @@ static void keep_tokens(struct person *person, const json_t *json)
     person->access_until_s = seconds > 0 ? clock_utc_ns() / NS_PER_S + seconds : 0;
 }
 
-/* --- a code --------------------------------------------------------------------------------------------------------------- */
+/* --- redeeming a code --------------------------------------------------------------------------------------------------------- */
 
-/* Of claims that are good. NULL: *why (mem_free). */
+/* Makes a person from valid claims. NULL with *why (mem_free). */
 static struct person *make_person(struct openid *openid, json_t *claims, const json_t *tokens, char **why)
 {
     struct token_holder holder = { .signed_in = true, .until_utc_ns = clock_utc_ns() + (int64_t)(openid->config->hours * 3600e9) };
@@ -92,8 +93,8 @@ static struct person *take_tokens(struct openid *openid, const struct openid_job
     return person;
 }
 
-/* Only invalid_grant says that the code is none (RFC 6749, 5.2). All else is between the provider and us: our secret is over, or it is
-   busy. */
+/* Only invalid_grant means that the code is wrong (RFC 6749, 5.2). Every other error is between provider and server: the client secret
+   has expired, or the provider is busy. */
 static enum openid_result judge_code(const struct openid_reply *reply, const char *error)
 {
     if (reply->status == 200)
@@ -120,7 +121,7 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
                           error ? error : "it does not say why", reply.status);
     else
         person = take_tokens(openid, job, reply.json, why);
-    if (!person && reply.status == 200) { /* what is of no use here must not stay in force there */
+    if (!person && reply.status == 200) { /* a refresh token that is not used here should not stay valid at the provider */
         pthread_mutex_lock(&openid->lock);
         openid_revoke_later(openid, text_of(reply.json, "refresh_token"));
         pthread_mutex_unlock(&openid->lock);
@@ -130,7 +131,7 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
     return person;
 }
 
-/* --- again and again ------------------------------------------------------------------------------------------------------ */
+/* --- checking rights again ---------------------------------------------------------------------------------------------------- */
 
 static enum openid_rights take_claims(struct openid *openid, struct person *person, json_t *claims, const char **why)
 {
@@ -164,7 +165,8 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     const char *error = text_of(reply.json, "error");
     *why = "the provider does not answer";
     if (answered && is_refusal(reply.status) && error && strcmp(error, "invalid_grant") != 0) {
-        *why = "the provider refuses to be asked"; /* us, and not this person: a secret may be over */
+        /* the provider refuses this server, not the person: the client secret may have expired */
+        *why = "the provider refuses to be asked";
     } else if (answered && is_refusal(reply.status)) {
         rights = RIGHTS_GONE;
         *why = "the provider ended the log-in";
@@ -182,7 +184,7 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     return rights;
 }
 
-/* Without a refresh token, as long as the access token lasts. */
+/* Checks a person's rights without a refresh token, while the access token is valid. */
 static enum openid_rights ask_again(struct openid *openid, struct person *person, const char **why)
 {
     char *url = openid_endpoint(openid, "userinfo_endpoint");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the identity provider is asked: a thread hands out what is due, and each piece is asked for by a thread of its own, so that neither
-   a slow answer nor a crowd of log-ins keeps rights from ending in time. */
+/* Requests to the identity provider: one thread starts what is due, and each request runs in a thread of its own, so that neither a slow
+   answer nor a burst of log-ins delays the end of rights. */
 #include <string.h>
 
 #include "access/openid/openid_impl.h"
@@ -8,7 +8,8 @@
 #include "base/mem.h"
 #include "message/names.h"
 
-static const int64_t AGAIN_NS = 5 * NS_PER_S, LOOK_NS = 3600 * NS_PER_S; /* until an unknown provider, a known one is looked at again */
+/* interval until an unknown provider, and a known one, is checked again */
+static const int64_t AGAIN_NS = 5 * NS_PER_S, LOOK_NS = 3600 * NS_PER_S;
 static const int at_once[OPENID_TASKS] = {
     [OPENID_TASK_CODE] = 4, [OPENID_TASK_CHECK] = 16, [OPENID_TASK_REVOKE] = 1, [OPENID_TASK_DISCOVER] = 1
 };
@@ -16,12 +17,12 @@ static const int at_once[OPENID_TASKS] = {
 struct task {
     struct openid *openid;
     enum openid_task kind;
-    struct openid_job *job; /* of a code, a revocation */
-    struct person person;   /* of a check: a copy that owns its texts */
+    struct openid_job *job; /* for a code or a revocation */
+    struct person person;   /* for a check: a copy that owns its texts */
     int64_t began_ns;
 };
 
-/* --- what is said --------------------------------------------------------------------------------------------------------- */
+/* --- audit and log ------------------------------------------------------------------------------------------------------------ */
 
 void openid_record(struct openid *openid, const char *event, const char *result, const struct token_holder *holder, const char *from,
                    const char *what, const char *why)
@@ -105,7 +106,7 @@ static struct openid_job *take_job(struct openid_jobs *jobs)
     return job;
 }
 
-/* A provider that takes none would have them pile up: the oldest give way, and end by themselves there. */
+/* Drops the oldest queued revocation if too many wait because the provider accepts none; that token expires at the provider by itself. */
 void openid_revoke_later(struct openid *openid, const char *refresh_token)
 {
     if (!refresh_token || !json_object_get(openid->metadata, "revocation_endpoint"))
@@ -175,7 +176,7 @@ static void do_revoke(struct task *task)
 
 /* --- rights --------------------------------------------------------------------------------------------------------------- */
 
-/* To be worked on without the lock. */
+/* Copies a person, to be used without the lock. */
 static void copy_person(struct person *out, const struct person *person)
 {
     *out = *person;
@@ -201,7 +202,8 @@ static void end_person(struct openid *openid, struct person *person, const char 
     tell_loop(openid);
 }
 
-/* Under the lock. A refresh token that was got meanwhile belongs to nobody, if the person has signed out, or ends. */
+/* Applies the result of a check. If the person has signed out meanwhile, or the rights ended, a newly received refresh token is revoked.
+   The caller holds the lock. */
 static void settle(struct openid *openid, struct task *task, enum openid_rights rights, const char *why)
 {
     struct person *person = sign_ins_numbered(openid->table, task->person.number), *copy = &task->person;
@@ -264,7 +266,7 @@ static void do_discover(struct task *task)
     pthread_mutex_unlock(&task->openid->lock);
 }
 
-/* --- who does what -------------------------------------------------------------------------------------------------------- */
+/* --- starting tasks ----------------------------------------------------------------------------------------------------------- */
 
 static void *run_task(void *arg)
 {
@@ -287,7 +289,7 @@ static bool may_start(const struct openid *openid, enum openid_task kind)
     return openid->running[kind] < at_once[kind];
 }
 
-/* Under the lock. Returns what is to be done now; NULL: nothing, until *next_ns by the monotonic clock. */
+/* Returns the task to do now; NULL: none is due before *next_ns (monotonic). The caller holds the lock. */
 static struct task *take_task(struct openid *openid, int64_t *next_ns)
 {
     struct person *person = may_start(openid, OPENID_TASK_CHECK) ? sign_ins_next_check(openid->table) : NULL;
@@ -319,7 +321,8 @@ static struct task *take_task(struct openid *openid, int64_t *next_ns)
     return copy;
 }
 
-/* Under the lock, which is given up where there can be no thread: then it is done by this one. */
+/* Starts a task in a thread of its own, or runs it here if no thread can be created. The caller holds the lock, which is released
+   meanwhile. */
 static void start_task(struct openid *openid, struct task *task)
 {
     pthread_t thread;

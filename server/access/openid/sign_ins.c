@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Log-ins under way, and people who are signed in. */
+/* Tables of log-ins in progress and of signed-in people. */
 #include "access/openid/sign_ins.h"
 
 #include <openssl/crypto.h>
@@ -10,12 +10,12 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-static const int64_t PATIENCE_NS = 600 * NS_PER_S; /* for somebody to log in at the provider */
+static const int64_t PATIENCE_NS = 600 * NS_PER_S; /* maximum time for a user to log in at the provider */
 
 struct sign_ins {
     struct sign_in *begun;
     size_t begun_count, begun_capacity;
-    struct person *people; /* who came first, first */
+    struct person *people; /* in the order in which people signed in */
     size_t count, capacity;
     uint64_t next_number;
 };
@@ -31,7 +31,7 @@ static void to_base64url(const uint8_t bytes[32], char out[SIGN_IN_SECRET_CHARS 
     out[SIGN_IN_SECRET_CHARS] = 0;
 }
 
-/* 256 random bits, in base64url. False: the system has no randomness. */
+/* Writes 256 random bits in base64url. Returns false if the system has no randomness. */
 static bool make_secret(char out[SIGN_IN_SECRET_CHARS + 1])
 {
     uint8_t bytes[32];
@@ -57,7 +57,7 @@ bool sign_in_path_good(const char *path)
     return path[0] == '/' && path[1] != '/' && strlen(path) < SIGN_IN_PATH_BYTES;
 }
 
-/* --- log-ins under way ---------------------------------------------------------------------------------------------------- */
+/* --- log-ins in progress ------------------------------------------------------------------------------------------------------ */
 
 struct sign_ins *sign_ins_create(void)
 {
@@ -87,7 +87,7 @@ void sign_ins_destroy(struct sign_ins **pointer)
     *pointer = NULL;
 }
 
-/* The one to use for a new log-in of that address: a free one, or the oldest that may give way. */
+/* Returns the entry for a new log-in of that address: a free one, or the oldest that may be replaced. */
 static struct sign_in *find_place(struct sign_ins *table, const uint8_t address[16], int64_t now_ns)
 {
     struct sign_in *oldest = NULL, *own = NULL, *unused = NULL;
@@ -154,7 +154,7 @@ void sign_ins_remove(struct sign_ins *table, struct person *person)
     memmove(person, person + 1, (table->count - i) * sizeof(*person));
 }
 
-/* A person may have few sessions, and all people not more than there is room for: the oldest ends. */
+/* Limits the number of sessions per person and in total: removes the oldest session if there are too many. */
 static void make_room(struct sign_ins *table, const char *sub, char **left)
 {
     struct person *same = NULL;
