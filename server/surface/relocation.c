@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the surface in the background, and computes distances on it for one request after another. */
+/* Builds the surface in the background, and computes distances on it, one request after another. */
 #include "surface/relocation.h"
 
 #include <math.h>
@@ -35,11 +35,11 @@ struct relocation {
     pthread_cond_t idle;
     /* --- below: under lock */
     enum relocation_state state;
-    struct surface *surface;            /* once warm: read without the lock */
-    struct vertex_embedding *embedding; /* likewise; NULL: the surface's vertices are the shape's */
-    struct relocation_ask *asks;        /* waiting or running, oldest first */
+    struct surface *surface;            /* once warm, read without the lock */
+    struct vertex_embedding *embedding; /* once warm, read without the lock; NULL: the surface's vertices are the shape's */
+    struct relocation_ask *asks;        /* waiting or running requests, oldest first */
     uint64_t last_ticket;
-    size_t jobs; /* submitted, and not through */
+    size_t jobs; /* jobs submitted to the workers and not finished */
 };
 
 static void corner(const struct relocation_shape *shape, size_t t, size_t i, double out[3])
@@ -59,8 +59,8 @@ static double size_of(const struct relocation_shape *shape)
 
 /* --- places ----------------------------------------------------------------------------------------------------------------- */
 
-/* Without the surface: all triangles are tried, which takes some milliseconds. */
-static bool drop(const struct relocation *relocation, const double point_m[3], struct relocation_place *place)
+/* Projects without the surface: tries all triangles, which takes a few milliseconds. */
+static bool project_onto_triangles(const struct relocation *relocation, const double point_m[3], struct relocation_place *place)
 {
     double best_m = relocation->size_m;
     bool found = false;
@@ -107,7 +107,7 @@ static bool find_place(const struct relocation *relocation, const struct surface
     if (!isfinite(point_m[0]) || !isfinite(point_m[1]) || !isfinite(point_m[2]))
         return false;
     if (!surface)
-        return drop(relocation, point_m, place);
+        return project_onto_triangles(relocation, point_m, place);
     surface_find_point(surface, point_m, NULL, &at);
     *place = (struct relocation_place){ .distance_m = at.distance_m, .vertex = nearest_vertex(&relocation->shape, at.point_m) };
     memcpy(place->surface_m, at.point_m, sizeof(at.point_m));
@@ -116,7 +116,7 @@ static bool find_place(const struct relocation *relocation, const struct surface
 
 /* --- the surface ------------------------------------------------------------------------------------------------------------ */
 
-static struct relocation_ask *take(struct relocation *relocation, uint64_t ticket)
+static struct relocation_ask *take_ask(struct relocation *relocation, uint64_t ticket)
 {
     for (struct relocation_ask **at = &relocation->asks; *at; at = &(*at)->next)
         if ((*at)->ticket == ticket) {
@@ -142,7 +142,7 @@ static void end_job(struct relocation *relocation)
     pthread_mutex_unlock(&relocation->lock);
 }
 
-/* The oldest ask that nobody has begun; NULL: it was cancelled meanwhile. */
+/* Returns the oldest request that is not running, and marks it as running. NULL: it was cancelled meanwhile. */
 static struct relocation_ask *begin_ask(struct relocation *relocation)
 {
     pthread_mutex_lock(&relocation->lock);
@@ -172,7 +172,7 @@ static void solve_next(void *arg)
             find_distances(relocation, ask->place.surface_m, geodesic_m))
             status = RELOCATION_DONE;
         pthread_mutex_lock(&relocation->lock);
-        take(relocation, ask->ticket);
+        take_ask(relocation, ask->ticket);
         status = ask->cancelled ? RELOCATION_CANCELLED : status;
         pthread_mutex_unlock(&relocation->lock);
         if (status != RELOCATION_DONE) {
@@ -184,7 +184,7 @@ static void solve_next(void *arg)
     end_job(relocation);
 }
 
-/* NULL: there is none that is any good. */
+/* Reads the stored surface. NULL: there is no valid one. */
 static struct surface *read_surface(const struct relocation *relocation, struct vertex_embedding **embedding)
 {
     struct cache_file kept = { 0 };
@@ -326,7 +326,7 @@ void relocation_cancel(struct relocation *relocation, uint64_t ticket)
         ask->cancelled = true;
         ask = NULL;
     } else if (ask) {
-        take(relocation, ticket);
+        take_ask(relocation, ticket);
     }
     pthread_mutex_unlock(&relocation->lock);
     if (ask)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From a model's triangles to a surface that distances can be computed on: weld, repair, sample. */
+/* Builds a surface for distances from a model's triangles: weld, repair, sample. */
 #include "surface/surface.h"
 
 #include <math.h>
@@ -18,11 +18,11 @@
 #include "surface/surface_impl.h"
 #include "surface/mesh/decimate.h"
 
-#define WELD_OF_SIZE 1e-6 /* vertices this near are one: float positions are no finer */
+#define WELD_OF_SIZE 1e-6 /* relative size of the distance within which vertices are welded: floats are no finer */
 #define TOLERANCE_OF_SIZE 5e-4
-#define SAMPLES 15000.0        /* of an even surface; what the model has beyond that comes on top */
-#define WIDER 1.25             /* so much at a time, where that would be too many */
-#define POINTS_PER_SPACING 2.7 /* points on one square spacing of a surface sampled by halving edges: measured */
+#define SAMPLES 15000.0        /* points of an evenly sampled surface, besides the model's own */
+#define SPACING_GROWTH 1.25             /* growth of the spacing while there are too many points */
+#define POINTS_PER_SPACING 2.7 /* points per square of the spacing, for a surface sampled by halving edges; measured */
 
 static double seconds_since(int64_t *since_ns)
 {
@@ -122,7 +122,7 @@ static bool close_seams(struct surface *surface, char *why)
     return made.k >= 0 || no_surface(surface, why, "out of memory for neighbours of %zu points", surface->mesh.point_count);
 }
 
-/* Puts visible triangles first. Returns how many there are. */
+/* Puts visible triangles first. Returns their number. */
 static size_t sort_hidden(struct trimesh *mesh, char *hidden)
 {
     size_t front = 0;
@@ -143,7 +143,8 @@ static size_t sort_hidden(struct trimesh *mesh, char *hidden)
     return front;
 }
 
-/* Where edges cross just at an edge, each of its faces got a point of its own: a crack that distances would have to go round. */
+/* Merges coincident crossing points: where edges cross at an edge, each of its faces got its own point, a crack that distances would have
+   to go around. */
 static void merge_twins(struct surface *surface, uint32_t *crossings, size_t crossing_count)
 {
     uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
@@ -157,8 +158,8 @@ static void merge_twins(struct surface *surface, uint32_t *crossings, size_t cro
     mem_free(target);
 }
 
-/* The model's own points stay, and so do samples: all before `added`. */
-static void thin_out(struct surface *surface, const uint32_t *part, size_t added, char *hidden)
+/* Removes inserted points that are not needed. Points numbered below `added` stay: the model's own and the samples. */
+static void decimate(struct surface *surface, const uint32_t *part, size_t added, char *hidden)
 {
     struct trimesh *mesh = &surface->mesh;
     uint32_t *target = mem_array(mesh->point_count, sizeof(*target));
@@ -180,7 +181,7 @@ static void thin_out(struct surface *surface, const uint32_t *part, size_t added
     mem_free(keep);
 }
 
-/* What hiding opened. */
+/* Closes rims that hiding triangles opened. */
 static void close_rims(struct surface *surface, const struct body_parts *parts, char **hidden)
 {
     struct repair_report made = { 0 };
@@ -212,7 +213,7 @@ static void join_parts(struct surface *surface, struct body_parts *parts)
         mem_free(part);
         part = parts_spread(&surface->mesh, parts->of_source);
     }
-    thin_out(surface, part, own, hidden);
+    decimate(surface, part, own, hidden);
     size_t visible_count = sort_hidden(&surface->mesh, hidden);
     target = mem_array(surface->mesh.point_count, sizeof(*target));
     spatial_order_mesh(&surface->mesh, visible_count, target);
@@ -225,7 +226,7 @@ static void join_parts(struct surface *surface, struct body_parts *parts)
     mem_free(made.crossings);
 }
 
-/* Moves triangles with an edge longer than the asset's main part behind the others. Returns how many they are. */
+/* Moves triangles with an edge longer than the asset's main part to the end. Returns their number. */
 static size_t set_aside_needles(struct surface *surface)
 {
     struct trimesh *mesh = &surface->mesh;
@@ -239,9 +240,9 @@ static size_t set_aside_needles(struct surface *surface)
     return count;
 }
 
-/* Samples the surface evenly. Rods and narrow strips take more points than their area says. If these are too many, the spacing grows: a
-   part that is left unsampled beside a sampled one has edges as long as the asset, and distances there are poor. Triangles that reach from
-   the main part to a stray vertex are not sampled: they would take all points. */
+/* Samples the surface evenly. Rods and narrow strips take more points than their area suggests. If there are too many points, the spacing
+   grows: leaving one part unsampled would leave edges as long as the asset, and poor distances. Triangles that reach from the main part to
+   a stray vertex are not sampled: they would use up all points. */
 static void sample(struct surface *surface)
 {
     struct surface_report *report = &surface->report;
@@ -253,7 +254,7 @@ static void sample(struct surface *surface)
         report->spacing_m = sqrt(POINTS_PER_SPACING * trimesh_area(mesh) / SAMPLES);
     trimesh_sample(mesh, report->spacing_m, limit);
     while (mesh->point_count >= limit) {
-        report->spacing_m *= WIDER;
+        report->spacing_m *= SPACING_GROWTH;
         trimesh_copy(mesh, &whole);
         trimesh_sample(mesh, report->spacing_m, limit);
     }
@@ -263,7 +264,7 @@ static void sample(struct surface *surface)
     report->samples = mesh->point_count - before;
 }
 
-/* Model vertices that no triangle is left at, and how many are hidden. */
+/* Finds model vertices without a triangle, and counts the hidden ones. */
 static void find_strays(struct surface *surface)
 {
     char *used = mem_array(surface->mesh.point_count, 1);
@@ -287,7 +288,7 @@ static void find_strays(struct surface *surface)
     mem_free(used);
 }
 
-/* The pieces of each of the model's triangles that are seen; of several in one plane together, if they are not told apart. */
+/* Groups the visible pieces of each model triangle; coplanar triangles that were merged form one group. */
 static void list_pieces(struct surface *surface)
 {
     const struct trimesh *mesh = &surface->visible;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances held against those of the heat method. */
+/* Compares distances with those of the heat method. */
 #include <stdatomic.h>
 #include <string.h>
 
@@ -9,12 +9,12 @@
 #include "surface/geodesic/heat.h"
 #include "surface/surface_impl.h"
 
-#define TIME_OF_SPACING 3.0 /* t in mean edge lengths squared */
-#define LONGEST_DECAY 500.0 /* the farthest point is no more than this many roots of t away, so that its heat is a number */
-#define MOST_SOURCES 32     /* are checked; they are taken evenly from all */
+#define TIME_OF_SPACING 3.0 /* t in squared mean edge lengths */
+#define MAX_DECAY 500.0     /* the farthest point is at most this many sqrt(t) away, so that its heat does not underflow */
+#define MAX_SOURCES 32      /* number of sources checked, spread evenly over all */
 #define BLOCK 8             /* right-hand sides solved together */
 
-/* The way from some point to the farthest one from it, on the piece of surface with most triangles. */
+/* Returns the distance from some point to the farthest one, on the component with most triangles. */
 static double reach_of(const struct surface *surface)
 {
     const struct trimesh *mesh = &surface->visible;
@@ -34,9 +34,9 @@ static double reach_of(const struct surface *surface)
     return reach_m;
 }
 
-/* How far the two methods differ, as a share of the largest distance. Heat leaves a constant open: it is taken so that they agree on
-   average. Heat smooths ridges and borders over about one root of t, so some percent at single points are its nature; more is a sign that
-   the surface does not hang together as it looks. */
+/* Returns the difference of the two methods, relative to the largest distance. Heat distances have a free constant, chosen to match on
+   average. The heat method smooths ridges and borders over about sqrt(t), so a few percent at single points are normal; more indicates that
+   the surface is not connected as it looks. */
 static double disagreement_of(const struct propagation *propagation, const struct surface_field *field, size_t source, const double *heat_m)
 {
     double sum = 0, squares = 0, largest_m = 0, count = 0;
@@ -58,7 +58,7 @@ struct field_check {
     const struct surface_field *field;
     const struct heat *heat;
     size_t count;
-    double *disagreement; /* of each source checked */
+    double *disagreement; /* per source checked */
     atomic_bool failed;
 };
 
@@ -97,13 +97,13 @@ bool surface_check(struct surface *surface, const struct surface_field *field)
         surface->component = mem_array(surface->mesh.point_count, sizeof(*surface->component));
         trimesh_components(&surface->visible, surface->component);
     }
-    double decay_m = max_of(sqrt(TIME_OF_SPACING) * surface->edge_m, 2 * reach_of(surface) / LONGEST_DECAY);
+    double decay_m = max_of(sqrt(TIME_OF_SPACING) * surface->edge_m, 2 * reach_of(surface) / MAX_DECAY);
     struct heat *heat = heat_create(surface->log, &surface->intrinsic, surface->component, decay_m * decay_m);
     factored_ns = clock_mono_ns();
     if (!heat)
         return false;
     check.heat = heat;
-    check.count = field->source_count < MOST_SOURCES ? field->source_count : MOST_SOURCES;
+    check.count = field->source_count < MAX_SOURCES ? field->source_count : MAX_SOURCES;
     check.disagreement = mem_array(check.count, sizeof(*check.disagreement));
     if (surface->workers)
         workers_for(surface->workers, check.count, BLOCK, check_block, &check);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances from many places, block by block over all cores, and what follows from them in between. */
+/* Computes distances from many sources, block by block on all cores, and interpolates them at other points. */
 #include <stdatomic.h>
 #include <string.h>
 
@@ -8,15 +8,15 @@
 #include "base/mem.h"
 #include "surface/surface_impl.h"
 
-#define BLOCK 16 /* sources propagated one after another by one thread, then written side by side */
+#define BLOCK 16 /* sources per block: propagated one after another by one thread, then stored together */
 
 struct solve {
     const struct surface *surface;
     const struct surface_point *hits;
     size_t count;
-    float *out;                            /* NULL, or [point][vertex] */
-    struct surface_field *field;           /* or NULL */
-    const struct surface_columns *columns; /* or NULL */
+    float *out;                            /* NULL, or distances [point][vertex] */
+    struct surface_field *field;           /* NULL, or the field to fill */
+    const struct surface_columns *columns; /* NULL, or the cache of columns */
     atomic_bool failed;
 };
 
@@ -33,7 +33,7 @@ static const struct stray *stray_of(const struct surface *surface, uint32_t vert
     return low < surface->stray_count && surface->strays[low].vertex == vertex ? &surface->strays[low] : NULL;
 }
 
-/* distances_m: of the points, so many numbers apart. */
+/* distances_m: of a source at all points, `apart` elements from one to the next. */
 static float at_stray(const struct stray *stray, const float *distances_m, size_t apart)
 {
     double sum = 0;
@@ -50,7 +50,7 @@ static void take_vertices(const struct surface *surface, const float *distances_
         out[surface->strays[i].vertex] = at_stray(&surface->strays[i], distances_m, 1);
 }
 
-/* Columns of a block into the rows of the field: a line of memory at a time. */
+/* Transposes a block of columns into rows of the field, one cache line at a time. */
 static void take_rows(const struct solve *solve, const float *block, size_t first, size_t count)
 {
     size_t points = solve->surface->mesh.point_count;
@@ -59,13 +59,13 @@ static void take_rows(const struct solve *solve, const float *block, size_t firs
             solve->field->distances_m[p * solve->field->source_count + first + s] = block[s * points + p];
 }
 
-struct abreast { /* sources that are propagated at once */
+struct abreast { /* sources that are propagated together */
     struct propagation_front fronts[PROPAGATION_ABREAST];
     struct propagation_source from[PROPAGATION_ABREAST];
     size_t source[PROPAGATION_ABREAST], count;
 };
 
-/* block: columns of the sources from `first` on, if it is for a field. */
+/* block: columns of the sources from `first` on, if a field is filled. */
 static bool propagate(const struct solve *solve, struct abreast *abreast, float *block, size_t first)
 {
     const struct surface *surface = solve->surface;
@@ -181,8 +181,8 @@ void surface_field_at_vertex(const struct surface_field *field, const struct sur
         out[s] = at_stray(stray, field->distances_m + s, field->source_count);
 }
 
-/* Seen from a surface point, an edge of its triangle from corner a to corner b: its length, and the point's place with a at (0, 0) and b at
-   (side, 0). */
+/* An edge of a surface point's triangle, from corner a to corner b, as seen from the point: its length, and the point's position with a at
+   (0, 0) and b at (side, 0). */
 struct edge_window {
     float side, half, per, x, y;
 };
@@ -195,19 +195,20 @@ static struct edge_window sight_of(double ab, double to_a, double to_b)
     return (struct edge_window){ (float)ab, (float)ab / 2, 1 / (2 * (float)ab), (float)x, (float)y };
 }
 
-/* The square of what the corners' distances offer through the edge, where the source, laid out beyond it, has a ray there: else best2. */
+/* Returns the squared distance through the edge, with the source laid out beyond it, if its ray crosses the edge and is shorter than best2;
+   else best2. */
 SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db, float best2)
 {
     const float x = sight->x, y = sight->y;
     float sx = (da - db) * (da + db) * sight->per + sight->half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
-    float dx = x - sx, dy = y + sy, cut = sx * y + x * sy; /* where the source's ray cuts the edge, times dy */
+    float dx = x - sx, dy = y + sy, cut = sx * y + x * sy; /* where the source's ray crosses the edge, times dy */
     float straight2 = dx * dx + dy * dy;
-    straight2 = cut >= 0 ? straight2 : INFINITY; /* not where da or db is INFINITY */
+    straight2 = cut >= 0 ? straight2 : INFINITY; /* false where da or db is INFINITY */
     straight2 = cut <= sight->side * dy ? straight2 : INFINITY;
     return straight2 < best2 ? straight2 : best2;
 }
 
-/* Through each of the edges, or along a straight line from a corner. */
+/* Fills a row with the shortest distance through any edge, or in a straight line from a corner. */
 SIMD_BODY void fill_row(const struct edge_window sights[3], const float to_m[3], const float *restrict a, const float *restrict b,
                         const float *restrict c, size_t count, float *restrict out)
 {

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dropping points onto a surface. */
+/* Projects points onto a surface. */
 #include <math.h>
 #include <string.h>
 
 #include "base/math/vec.h"
 #include "surface/surface_impl.h"
 
-#define SPOT_ON_SURFACE 1e-3 /* mean edges: nearer than that, a point lies on its triangle */
-#define ON_PIECE 1e-5        /* likewise: no nearer piece is looked for */
-#define FEW_PIECES 24        /* of a triangle of the model are tried one by one */
-#define SPOT_PATIENCE 4.0    /* how much farther than the nearest a triangle may be that faces the right way */
-#define ROUNDING 1e-9        /* of a distance, more than it is off by */
+#define SPOT_ON_SURFACE 1e-3 /* mean edges: a point nearer than this is on its triangle */
+#define ON_PIECE 1e-5        /* mean edges: no nearer piece is searched for */
+#define MAX_TRIED_PIECES 24  /* up to this many pieces of a model triangle are tried one by one */
+#define FACING_FACTOR 4.0    /* a triangle that faces the right way may be farther than the nearest by this factor */
+#define ROUNDING 1e-9        /* relative to a distance, more than its rounding error */
 
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)
 {
@@ -42,7 +42,7 @@ bool surface_find_point_within(const struct surface *surface, const double point
     struct bvh_place any, facing = { .tri = TRIMESH_NONE };
     bvh_nearest(surface->bvh, point_m, limit_m * (1 + ROUNDING), NULL, NULL, &any);
     if (normal && any.tri != TRIMESH_NONE && any.distance_m > surface->edge_m * SPOT_ON_SURFACE)
-        bvh_nearest(surface->bvh, point_m, any.distance_m * SPOT_PATIENCE, surface_faces,
+        bvh_nearest(surface->bvh, point_m, any.distance_m * FACING_FACTOR, surface_faces,
                     &(struct surface_facing){ &surface->visible, normal }, &facing);
     const struct bvh_place *at = facing.tri == TRIMESH_NONE ? &any : &facing;
     hit->tri = at->tri;
@@ -120,7 +120,7 @@ bool surface_find_point_on(const struct surface *surface, const double point_m[3
     *hit = (struct surface_point){ .tri = TRIMESH_NONE, .distance_m = limit_m };
     for (size_t i = 0; i < count; i++)
         pieces += first[planes.at[i] + 1] - first[planes.at[i]];
-    if (pieces > FEW_PIECES)
+    if (pieces > MAX_TRIED_PIECES)
         return surface_find_point_among(surface, point_m, limit_m, is_in_one_of, &planes, hit);
     double enough_m = fmin(surface->edge_m * ON_PIECE, limit_m / 2);
     for (size_t i = 0; i < count; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packing a surface: what took long to find; what follows from that quickly is made again. */
+/* Packs the results that took long to compute; the rest is recomputed when unpacking. */
 #include "surface/surface_store.h"
 
 #include "base/mem.h"
@@ -11,7 +11,7 @@ struct surface_totals {
     struct surface_report report;
 };
 
-/* Sides that are glued are equally long: those with the lower number are kept. */
+/* Glued sides have equal lengths: only that of the lower-numbered side is stored. */
 static bool is_kept(const struct intrinsic *in, uint32_t side)
 {
     uint32_t other = in->glue[side / 3][side % 3];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Serialises a surface, so that one that was built once can be loaded in a fiftieth of the time. Thread: any. */
+/* Serialises a surface; loading takes a fiftieth of the time of building. Thread: any. */
 #ifndef SURFACE_SURFACE_STORE_H
 #define SURFACE_SURFACE_STORE_H
 #include "base/files/pack.h"
@@ -7,11 +7,11 @@
 
 /* Appends the surface to *to as bytes. */
 void surface_pack(const struct surface *surface, struct text *to);
-/* Rebuilds a surface from bytes; distances on it are the same to the last bit. Returns NULL if the bytes are no surface or memory runs out.
-   The caller destroys it. */
+/* Rebuilds a surface from bytes; distances on it are bit-identical. Returns NULL if the bytes are invalid or memory runs out. The caller
+   destroys it. */
 struct surface *surface_unpack(struct unpack *from, struct log *log, struct workers *workers);
 
-/* Its file holds that and no more (base/files/cache_file.h). */
+/* Magic of the file, which contains only the surface (base/files/cache_file.h). */
 #define SURFACE_MAGIC "PLCSURF3"
 
 #endif

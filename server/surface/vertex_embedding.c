@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finding vertices on a surface by their place. */
+/* Finds vertices on a surface by their position. */
 #include "surface/vertex_embedding.h"
 
 #include <math.h>
@@ -11,10 +11,10 @@
 #include "surface/surface_impl.h"
 
 #define GRAIN 512
-#define ON_SURFACE 1e-3 /* mean edges: as near, a vertex lies on a face */
+#define ON_SURFACE 1e-3 /* mean edges: a vertex nearer than this is on a face */
 
 struct anchor {
-    uint32_t point; /* of the surface, or TRIMESH_NONE: at `hit` */
+    uint32_t point; /* surface point; TRIMESH_NONE: attached at `hit` */
     struct surface_point hit;
 };
 
@@ -24,7 +24,7 @@ struct vertex_embedding {
     struct anchor *at;
 };
 
-struct point_table { /* points that have triangles, by place */
+struct point_table { /* hash table of points that have triangles, by position */
     const struct trimesh *mesh;
     uint32_t *points;
     size_t mask;
@@ -35,7 +35,7 @@ static size_t hash_of(const struct point_table *table, const double place_m[3])
     return XXH3_64bits(place_m, 3 * sizeof(*place_m)) & table->mask;
 }
 
-/* The slot that has the place, or the free one where it would be. */
+/* Returns the slot of the position, or a free slot where it would be inserted. */
 static size_t slot_of(const struct point_table *table, const double place_m[3])
 {
     size_t slot = hash_of(table, place_m);
@@ -64,8 +64,8 @@ struct embedding_job {
     struct vertex_embedding *embedding;
     struct point_table table;
     const float (*positions_m)[3];
-    double (*normals)[3]; /* of no certain length */
-    char *is_off;         /* no triangle of the finest level has it: it may be nearer to another side than to its own */
+    double (*normals)[3]; /* not normalised */
+    char *is_off;         /* no triangle of the finest level has the vertex: it may be nearer to another side of a wall than to its own */
 };
 
 static bool find_normals(struct embedding_job *job, const float (*normals)[3], const uint32_t *triangles, size_t triangle_count)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Heat method (Crane, Weischedel, Wardetzky 2013) by sparse Cholesky factors. */
+/* The heat method (Crane, Weischedel, Wardetzky 2013) with sparse Cholesky factors. */
 #include "surface/geodesic/heat.h"
 
 #include <float.h>
@@ -11,7 +11,8 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-/* L alone is singular on every piece of surface; this much of M, in shares of the piece's area, moves distances by a millionth. */
+/* L is singular on each connected component. Adding this fraction of M, relative to the component's area, changes distances by a
+   millionth. */
 #define REGULARISATION 1e-6
 
 struct heat {
@@ -23,7 +24,7 @@ struct heat {
     cholmod_common common;
 };
 
-/* Shares of each piece's own area. */
+/* Returns the mass to add per row, relative to the area of its component. */
 static double *regularisation(const struct heat *heat, const uint32_t *component)
 {
     double *area_m2 = mem_array(heat->in->point_count, sizeof(*area_m2)), *share = mem_array(heat->laplacian.row_count, sizeof(*share));
@@ -85,13 +86,13 @@ void heat_destroy(struct heat **heat_ptr)
     *heat_ptr = NULL;
 }
 
-/* From heat to the weak divergence of its unit gradient, in place of `u`'s column: b_i = integral of grad psi_i . X. */
+/* Turns heat `u` into the weak divergence of its unit gradient: b_i = integral of grad psi_i . X. */
 static void flow(const struct heat *heat, double *u, double *b)
 {
     const struct intrinsic *in = heat->in;
     memset(b, 0, heat->laplacian.row_count * sizeof(*b));
     for (size_t i = 0; i < heat->laplacian.row_count; i++)
-        u[i] = -log(max_of(u[i], DBL_MIN)); /* Varadhan: distance over the root of t */
+        u[i] = -log(max_of(u[i], DBL_MIN)); /* Varadhan: distance divided by sqrt(t) */
     for (size_t t = 0; t < in->tri_count; t++) {
         const struct laplacian_slope *s = &heat->laplacian.slopes[t];
         const uint32_t r0 = heat->laplacian.row_of[in->points[t][0]], r1 = heat->laplacian.row_of[in->points[t][1]],

@@ -8,13 +8,13 @@
 
 struct heat;
 
-/* Builds and factors the systems (M + t L) u = source and L d = div(grad / |grad|), t = time_m2. component[point]: its connected component.
-   `in` must outlive it. Returns NULL if out of memory, logged. */
+/* Builds and factors the systems (M + t L) u = source and L d = div(grad / |grad|), t = time_m2. component[point]: connected component of
+   the point. `in` must outlive the result. Returns NULL when out of memory, logged. */
 struct heat *heat_create(struct log *log, const struct intrinsic *in, const uint32_t *component, double time_m2);
-/* Frees the factors. &NULL is fine; leaves NULL. */
+/* Frees the factors. &NULL is fine; sets it to NULL. */
 void heat_destroy(struct heat **heat);
 
-/* A source: a place given by weights of three points. */
+/* A source: a surface point, as weights of a triangle's three points. */
 struct heat_source {
     uint32_t points[3];
     double weights[3];

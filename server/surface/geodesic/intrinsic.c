@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Gluing triangles into patches, and flipping edges to Delaunay. */
+/* Glues triangles into patches, and flips edges until they are Delaunay. */
 #include "surface/geodesic/intrinsic.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "surface/mesh/tri_edges.h"
 
 #define MOLLIFY 1e-4
-#define FLIPS_PER_EDGE 50u /* never met; ends what rounding could keep going */
+#define FLIPS_PER_EDGE 50u /* never reached; ends flips that rounding might repeat forever */
 
 void intrinsic_finish(struct intrinsic *in)
 {
@@ -20,7 +20,7 @@ void intrinsic_finish(struct intrinsic *in)
     *in = (struct intrinsic){ 0 };
 }
 
-/* Turns the triangles of each patch the same way round. */
+/* Gives all triangles of a patch the same orientation. */
 static void orient(struct intrinsic *in, const struct tri_edges *edges, signed char *facing)
 {
     tri_edges_orient_all(edges, facing);
@@ -33,13 +33,13 @@ static void orient(struct intrinsic *in, const struct tri_edges *edges, signed c
     }
 }
 
-/* The number that a side has once triangles are turned. */
+/* Returns the number of a side after its triangle was reoriented. */
 static uint32_t turned_side(uint32_t side, const signed char *facing)
 {
     return facing[side / 3] < 0 ? side - side % 3 + 2 - side % 3 : side;
 }
 
-/* Two sides are glued where they run opposite ways; where they do not (a Moebius band) the edge stays as it is. */
+/* Glues pairs of sides that run in opposite directions. Where they do not (a Moebius strip) the edge is never flipped. */
 static void glue_sides(struct intrinsic *in, const struct tri_edges *edges, const signed char *facing)
 {
     for (uint32_t side = 0; side < 3 * in->tri_count; side++) {
@@ -63,7 +63,8 @@ static double cotangent_opposite(const double lengths[3], int side)
     return (b * b + c * c - a * a) / (2 * sqrt(max_of(area2, 1e-300)));
 }
 
-/* Flips the edge between two triangles of one patch. False: it cannot be (both sides of one triangle, or not convex). */
+/* Flips the edge between two triangles of one patch. Returns false if that is impossible: both sides belong to one triangle, or the
+   quadrilateral is not convex. */
 static bool flip(struct intrinsic *in, uint32_t t, int i)
 {
     uint32_t u = in->glue[t][i] / 3;
@@ -75,7 +76,7 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     double pq = lt[i], qr = lt[(i + 1) % 3], rp = lt[(i + 2) % 3], ps = lu[(j + 1) % 3], sq = lu[(j + 2) % 3];
     double rx = (pq * pq + rp * rp - qr * qr) / (2 * pq), ry = sqrt(max_of(rp * rp - rx * rx, 0));
     double sx = (pq * pq + ps * ps - sq * sq) / (2 * pq), sy = -sqrt(max_of(ps * ps - sx * sx, 0));
-    double cut = ry - sy > 0 ? rx + (sx - rx) * ry / (ry - sy) : -1; /* where the new edge crosses the old one */
+    double cut = ry - sy > 0 ? rx + (sx - rx) * ry / (ry - sy) : -1; /* where the new edge crosses the old one, from p */
     if (cut <= 0 || cut >= pq)
         return false;
     double rs = hypot(rx - sx, ry - sy);
@@ -86,7 +87,7 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     memcpy(in->points[u], (const uint32_t[3]){ r, s, q }, sizeof(in->points[u]));
     memcpy(in->lengths[t], (const double[3]){ rs, rp, ps }, sizeof(in->lengths[t]));
     memcpy(in->lengths[u], (const double[3]){ rs, sq, qr }, sizeof(in->lengths[u]));
-    /* A side may be glued to a side of the same pair; rename those before they are written back. */
+    /* A side may be glued to a side of the same pair of triangles: such sides are renumbered before being written back. */
     uint32_t outer[4] = { g_rp, g_ps, g_sq, g_qr };
     const uint32_t was[4] = { 3 * t + (uint32_t)((i + 2) % 3), 3 * u + (uint32_t)((j + 1) % 3), 3 * u + (uint32_t)((j + 2) % 3),
                               3 * t + (uint32_t)((i + 1) % 3) };
@@ -108,7 +109,8 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     return true;
 }
 
-/* Lengthens all sides by the same little, so that no triangle is flatter than MOLLIFY mean edges (Sharp & Crane 2020, section 4.5). */
+/* Lengthens all sides by the same small amount, so that no triangle is flatter than MOLLIFY mean edges (Sharp & Crane 2020, section
+   4.5). */
 static void mollify(struct intrinsic *in)
 {
     double sum = 0, lack = 0;

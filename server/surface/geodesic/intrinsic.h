@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The intrinsic Delaunay triangulation of a trimesh: edge lengths instead of places, edges flipped within patches until no edge has
-   a negative cotangent weight (Bobenko & Springborn 2007; Fisher et al. 2007). Edges with one face, or more than two, stay. */
+/* Intrinsic Delaunay triangulation of a mesh: edge lengths instead of positions; edges are flipped within patches until no cotangent weight
+   is negative (Bobenko & Springborn 2007; Fisher et al. 2007). Edges with one face, or more than two, are never flipped. */
 #ifndef SURFACE_GEODESIC_INTRINSIC_H
 #define SURFACE_GEODESIC_INTRINSIC_H
 #include "surface/mesh/trimesh.h"
 
 struct intrinsic {
     size_t tri_count, point_count;
-    uint32_t (*points)[3]; /* of each triangle, turned the same way throughout a patch */
-    double (*lengths)[3];  /* side i: from corner i to corner i + 1 */
-    uint32_t (*glue)[3];   /* 3 * triangle + side on the other side, TRIMESH_NONE: not flippable */
+    uint32_t (*points)[3]; /* per triangle; all triangles of a patch have the same orientation */
+    double (*lengths)[3];  /* of side i, from corner i to corner i + 1 */
+    uint32_t (*glue)[3];   /* per triangle and side: the adjacent side, as 3 * triangle + side; TRIMESH_NONE: the edge cannot be flipped */
     size_t flips;
 };
 

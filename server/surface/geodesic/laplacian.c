@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finite elements, triangle by triangle. */
+/* Assembles finite element matrices, triangle by triangle. */
 #include "surface/geodesic/laplacian.h"
 
 #include <cblas.h>
@@ -11,7 +11,7 @@
 static pthread_once_t blas_once = PTHREAD_ONCE_INIT;
 static void blas_alone(void)
 {
-    openblas_set_num_threads(1); /* the workers share the cores; threads below them would fight */
+    openblas_set_num_threads(1); /* the workers use all cores already; BLAS threads would compete with them */
 }
 
 void laplacian_start(cholmod_common *common)
@@ -44,7 +44,7 @@ static void measure(struct laplacian *laplacian)
     for (size_t t = 0; t < in->tri_count; t++) {
         double x, y, a = in->lengths[t][0];
         intrinsic_layout(in->lengths[t], &x, &y);
-        y = max_of(y, 1e-6 * a); /* a triangle that rounding made flat */
+        y = max_of(y, 1e-6 * a); /* a triangle that rounding flattened */
         laplacian->slopes[t] = (struct laplacian_slope){ .x1 = 1 / a, .y1 = -x / (a * y), .y2 = 1 / y, .area = a * y / 2 };
         for (int i = 0; i < 3; i++)
             laplacian->mass_m2[laplacian->row_of[in->points[t][i]]] += a * y / 6;
@@ -95,7 +95,7 @@ cholmod_sparse *laplacian_assemble(const struct laplacian *laplacian, const doub
                 rows[n] = a > b ? a : b;
                 columns[n] = a > b ? b : a;
                 values[n] = stiffness * s->area * (gx[i] * gx[j] + gy[i] * gy[j]);
-                if (i != j && a == b) /* an edge from a point to itself, which flips can make: counts for both corners */
+                if (i != j && a == b) /* flips can create an edge from a point to itself, which counts for both corners */
                     values[n] *= 2;
             }
     }

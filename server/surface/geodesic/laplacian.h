@@ -13,10 +13,10 @@ struct laplacian_slope {     /* gradients of the three hat functions in the tria
 
 struct laplacian {
     const struct intrinsic *in;
-    uint32_t *row_of; /* point -> row, TRIMESH_NONE: no triangle */
+    uint32_t *row_of; /* by point: its row in the matrices; TRIMESH_NONE: the point has no triangle */
     size_t row_count;
     struct laplacian_slope *slopes; /* by triangle */
-    double *mass_m2;                /* by row: a third of the area around the point */
+    double *mass_m2;                /* per row: a third of the area of all triangles at the point */
 };
 
 /* Numbers the rows and measures the triangles of `in`, which must outlive it. Returns false if out of memory; call laplacian_finish() in
@@ -24,7 +24,7 @@ struct laplacian {
 bool laplacian_init(struct laplacian *laplacian, const struct intrinsic *in);
 /* Frees the arrays. */
 void laplacian_finish(struct laplacian *laplacian);
-/* Starts CHOLMOD for factors of such matrices: silent, one ordering, and BLAS on one thread, since the workers share the cores. */
+/* Starts CHOLMOD for factoring such matrices: no output, one ordering, and single-threaded BLAS, since the workers use all cores. */
 void laplacian_start(cholmod_common *common);
 /* Returns diag(mass) + stiffness * L, the lower triangle of a symmetric matrix, which the caller frees; NULL if out of memory. */
 cholmod_sparse *laplacian_assemble(const struct laplacian *laplacian, const double *mass, double stiffness, cholmod_common *common);

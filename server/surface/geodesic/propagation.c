@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What meets at each point of a mesh, ready for distances to be unfolded over it. */
+/* Prepares a mesh for propagation: builds the fans of triangles around each point. */
 #include "surface/geodesic/propagation.h"
 
 #include <string.h>
@@ -7,12 +7,12 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define STEPS_PER_EDGE 32.0 /* buckets to a mean edge: points in one bucket are taken in any order */
+#define STEPS_PER_EDGE 32.0 /* buckets per mean edge length: points in one bucket are processed in any order */
 #define NEAR_EDGES 5.0
 #define MAX_BUCKETS (1u << 16)
-#define MOST_TRIED 64 /* triangles at a point that may be the next one round it; else a row ends */
+#define MAX_TRIED 64 /* triangles tested for being the next around a point; beyond, the row ends */
 
-/* The corners of the t-th triangle walked over, and its sides from corner i to corner i + 1. */
+/* Returns the corners of the t-th triangle in order of propagation; tri_sides() writes its sides from corner i to corner i + 1. */
 static const uint32_t *tri_points(const struct propagation *propagation, const struct intrinsic *in, size_t t)
 {
     return t < in->tri_count ? in->points[t] : propagation->mesh->tris[t];
@@ -28,12 +28,12 @@ static void tri_sides(const struct propagation *propagation, const struct intrin
 
 /* --- fans ---------------------------------------------------------------------------------------------------------------------- */
 
-struct end { /* of a side that leaves the point in hand */
+struct end { /* a side that leaves the current point */
     uint32_t to;
-    float length_m; /* as in a fan */
+    float length_m; /* as in struct propagation_fan */
 };
 
-struct vertex_wedge { /* a triangle at the point */
+struct vertex_wedge { /* a triangle at the current point */
     struct end ends[2];
     float cosine, sine;
 };
@@ -60,10 +60,11 @@ static void turn_round(struct vertex_wedge *wedge)
     wedge->ends[1] = swap;
 }
 
-/* Puts wedges that follow one another after the first `count` ones, as many as there are. Returns how many that makes. */
+/* Moves wedges that continue the row to positions after the first `count` wedges, as long as there are any. Returns the new length of the
+   row. */
 static size_t extend(struct vertex_wedge *wedges, size_t count, size_t all)
 {
-    for (size_t i = count; i < all && i < count + MOST_TRIED; i++)
+    for (size_t i = count; i < all && i < count + MAX_TRIED; i++)
         for (int end = 0; end < 2; end++) {
             const struct end *last = &wedges[count - 1].ends[1];
             if (wedges[i].ends[end].to != last->to || wedges[i].ends[end].length_m != last->length_m)
@@ -102,7 +103,8 @@ static struct propagation_fan *add_fan(struct propagation *propagation, uint32_t
     return fan;
 }
 
-/* Ends of wedges in a row, and the wedges in between. What is cut by a fan's end begins the next one too. Returns the lanes in use. */
+/* Appends a row of adjacent wedges to the fans. A wedge that a fan's end cuts is repeated in the next fan. Returns the number of lanes used
+   in the last fan. */
 static int add_row(struct propagation *propagation, uint32_t point, const struct vertex_wedge *row, size_t count, int lane)
 {
     for (size_t i = 0; i <= count; i++) {
@@ -132,7 +134,7 @@ static void add_fans(struct propagation *propagation, uint32_t point, struct ver
     }
 }
 
-/* Where the corners at each point begin; one more at the end. */
+/* Returns per point the index of its first corner; one more at the end. */
 static uint32_t *count_corners(const struct propagation *propagation, const struct intrinsic *in)
 {
     size_t points = propagation->mesh->point_count;
@@ -168,7 +170,7 @@ static void make_fans(struct propagation *propagation, const struct intrinsic *i
     mem_free(first);
 }
 
-/* The ring of buckets must span the longest edge, and what is near: an offer is never farther ahead than that. */
+/* Chooses the ring of buckets: it must span the longest edge and near_m, since offers are at most that far ahead. */
 static void choose_buckets(struct propagation *propagation, const struct intrinsic *in)
 {
     double sum = 0, longest = 0, sides[3];

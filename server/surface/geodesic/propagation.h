@@ -1,58 +1,58 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Geodesic distances by propagation from a source, triangle by triangle, nearer points first, each triangle unfolded into the plane
-   (Novotni and Klein 2002): exact where the surface is flat or developable. */
+/* Geodesic distances by propagation from a source, triangle by triangle, nearest points first, unfolding each triangle into the plane
+   (Novotni and Klein 2002). Exact where the surface is flat or developable. */
 #ifndef SURFACE_GEODESIC_PROPAGATION_H
 #define SURFACE_GEODESIC_PROPAGATION_H
 #include "surface/geodesic/intrinsic.h"
 
-#define PROPAGATION_FAN 8 /* points around one that are looked at side by side, a lane of a vector register each */
+#define PROPAGATION_FAN 8 /* neighbours of a point that are processed at once, one per lane of a vector register */
 
-/* What propagation needs to know of a mesh, shared by all runs: the fans of triangles around each point. */
+/* Data about a mesh that all propagations share: the fans of triangles around each point. */
 struct propagation {
     const struct trimesh *mesh;
     const struct intrinsic *in;
-    uint32_t *first;                     /* of each point in fans; one more at the end */
-    struct propagation_fan {             /* seen from a point, others in order, and the triangle between each and the next */
-        uint32_t to[PROPAGATION_FAN];    /* the point itself where there is no more */
-        float length_m[PROPAGATION_FAN]; /* < 0: not to be reached through these triangles; INFINITY: none */
-        float cosine[PROPAGATION_FAN], sine[PROPAGATION_FAN]; /* of the angle to the next; sine 0: no triangle in between */
+    uint32_t *first;                     /* per point: index of its first fan; one more at the end */
+    struct propagation_fan {             /* neighbours of a point in angular order, and the triangle between each and the next */
+        uint32_t to[PROPAGATION_FAN];    /* neighbour; the point itself in unused lanes */
+        float length_m[PROPAGATION_FAN]; /* < 0: the neighbour cannot be reached through these triangles; INFINITY: unused lane */
+        float cosine[PROPAGATION_FAN], sine[PROPAGATION_FAN]; /* of the angle to the next neighbour; sine 0: no triangle in between */
     } * fans;
     size_t fan_count, fan_capacity;
-    char *hidden;      /* of each point: it has no visible triangle */
-    float steps_per_m; /* buckets of a front */
-    double near_m;     /* so far points are looked for straight from the source */
+    char *hidden;      /* per point: 1 if it has no visible triangle */
+    float steps_per_m; /* buckets per metre of distance */
+    double near_m;     /* radius around the source within which points are tested for a straight line to it */
     uint32_t bucket_count;
 };
-/* Builds the fans. Visible triangles (the first visible_count) are crossed as the intrinsic triangulation has them, which leaves few obtuse
-   ones; from them propagation enters the mesh's interior triangles, so that one that passes through a surface has distances at its interior
-   end too, but never returns. mesh and in must outlive it. Free with propagation_finish(). */
+/* Builds the fans. Visible triangles (the first visible_count) are used in their intrinsic Delaunay form, which has few obtuse ones.
+   Propagation continues from them into interior triangles, so that a triangle that passes through a surface also has distances at its
+   interior end, but never returns from there. mesh and in must outlive the propagation. Free with propagation_finish(). */
 void propagation_init(struct propagation *propagation, const struct trimesh *mesh, size_t visible_count, const struct intrinsic *in);
 /* Frees the fans. */
 void propagation_finish(struct propagation *propagation);
 
-/* The state of one propagation, of one thread; zero-initialise, and use again and again. */
+/* State of one propagation, used by one thread; zero-initialise; may be reused. */
 struct propagation_front {
-    float *distance_m;     /* of all points; INFINITY where no way leads */
-    float *straight_m;     /* and as the crow flies */
+    float *distance_m;     /* per point; INFINITY: not reached */
+    float *straight_m;     /* per point: straight-line distance from the source */
     char *settled;
     uint32_t *buckets;
     struct propagation_item {
         uint32_t point, next;
     } * items;
-    uint64_t at; /* the bucket in hand */
+    uint64_t at; /* number of the current bucket */
     double source_m[3];
     size_t item_count, item_capacity;
 };
 /* Frees the state. */
 void propagation_front_finish(struct propagation_front *front);
 
-#define PROPAGATION_ABREAST 2 /* fronts that one thread takes at once, at most: it waits less for each */
+#define PROPAGATION_ABREAST 2 /* sources that one thread propagates at once, at most, to hide memory latency */
 struct propagation_source {
     uint32_t tri;
-    const double *weights; /* of its corners */
+    const double *weights; /* of the triangle's corners */
 };
-/* Computes the distances of all points from each of `count` sources (at most PROPAGATION_ABREAST), into the front of the same number.
-   Results do not depend on which sources run together. Returns false if out of memory. Thread: any, with fronts of its own. */
+/* Computes the distances of all points from each of `count` sources (at most PROPAGATION_ABREAST), each in the front of the same index.
+   Results do not depend on which sources are computed together. Returns false when out of memory. Thread: any, with its own fronts. */
 bool propagation_run(const struct propagation *propagation, struct propagation_front *fronts, const struct propagation_source *sources,
                      size_t count);
 

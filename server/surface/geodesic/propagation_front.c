@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Unfolding distances outwards from a source, nearer points first. */
+/* Propagates distances outwards from a source, nearest points first. */
 #include <math.h>
 #include <string.h>
 
@@ -8,14 +8,14 @@
 #include "base/mem.h"
 #include "surface/geodesic/propagation.h"
 
-#define INSIDE 1e-6      /* least weight of a corner: the source is a little inside its triangle */
-#define ASIDE 1e-3       /* of the way to the side across: a place beside a corner */
-#define ANY_ORDER 2      /* buckets within which a point may be taken before a nearer one */
-#define DEEPEST 32       /* triangles that a straight line near the source passes through */
-#define NO_LENGTH 1e-300 /* only so that nothing is divided by 0 */
+#define MIN_WEIGHT 1e-6    /* smallest weight of a corner: the source is kept slightly inside its triangle */
+#define CORNER_OFFSET 1e-3 /* offset from a corner, relative to the way to the middle of the opposite side */
+#define ANY_ORDER 2        /* number of buckets within which points may be processed out of order */
+#define MAX_DEPTH 32       /* largest number of triangles that a straight line near the source is followed through */
+#define NO_LENGTH 1e-300   /* avoids division by 0 */
 
 typedef float lanes __attribute__((vector_size(4 * PROPAGATION_FAN)));
-typedef int32_t mask __attribute__((vector_size(4 * PROPAGATION_FAN))); /* of each lane all bits, or none */
+typedef int32_t mask __attribute__((vector_size(4 * PROPAGATION_FAN))); /* all bits of a lane set, or none */
 
 void propagation_front_finish(struct propagation_front *front)
 {
@@ -37,7 +37,7 @@ static bool clear(const struct propagation *propagation, struct propagation_fron
         front->buckets = mem_try_array(propagation->bucket_count, sizeof(*front->buckets));
         if (!front->distance_m || !front->straight_m || !front->settled || !front->buckets)
             return false;
-        memset(front->buckets, 0xff, propagation->bucket_count * sizeof(*front->buckets)); /* a front leaves them empty */
+        memset(front->buckets, 0xff, propagation->bucket_count * sizeof(*front->buckets)); /* a finished front leaves all buckets empty */
     }
     for (size_t i = 0; i < count; i++)
         front->distance_m[i] = INFINITY;
@@ -46,7 +46,7 @@ static bool clear(const struct propagation *propagation, struct propagation_fron
     return true;
 }
 
-/* Its turn comes soon, and memory is slow. */
+/* Prefetches the fans of a point that will be processed soon. */
 static inline void fetch_fans(const struct propagation *propagation, uint32_t point)
 {
     const char *from = (const char *)&propagation->fans[propagation->first[point]],
@@ -55,8 +55,8 @@ static inline void fetch_fans(const struct propagation *propagation, uint32_t po
         __builtin_prefetch(from);
 }
 
-/* No way is shorter than the straight line. What is offered may be: an edge's two ends have their distances by ways round a fold, or round
-   a rod, and a source that is laid out to fit both is nearer than either. */
+/* Offers a point a distance, but at least the straight-line distance. An offer may be shorter: the two ends of an edge may have got their
+   distances by paths around a fold or a rod, and a source laid out to fit both is too near. */
 static inline void offer(const struct propagation *propagation, struct propagation_front *front, uint32_t point, float offered_m)
 {
     float distance_m = offered_m < front->straight_m[point] ? front->straight_m[point] : offered_m;
@@ -66,10 +66,11 @@ static inline void offer(const struct propagation *propagation, struct propagati
         fetch_fans(propagation, point);
     front->distance_m[point] = distance_m;
     if (front->settled[point])
-        return; /* nothing goes out from a point twice, or small corrections would run over the whole surface again and again */
+        return; /* a point never propagates twice, since small corrections would run over the whole surface again and again */
     if (front->item_count == front->item_capacity)
         mem_grow(&front->items, &front->item_capacity, front->item_count + 1, sizeof(*front->items));
-    uint64_t number = (uint64_t)(int64_t)(distance_m * propagation->steps_per_m); /* not negative, but so it is one instruction */
+    /* the value is not negative; the conversion via int64_t is a single instruction */
+    uint64_t number = (uint64_t)(int64_t)(distance_m * propagation->steps_per_m);
     uint32_t *bucket = &front->buckets[(number > front->at ? number : front->at) & (propagation->bucket_count - 1)];
     front->items[front->item_count] = (struct propagation_item){ point, *bucket };
     *bucket = (uint32_t)front->item_count++;
@@ -81,7 +82,7 @@ SIMD_BODY void root(lanes *x)
         (*x)[i] = sqrtf((*x)[i]);
 }
 
-/* A bit for each lane. */
+/* Returns one bit per lane. */
 SIMD_BODY uint32_t bits_of(const mask *which)
 {
     const mask bits = { 1, 2, 4, 8, 16, 32, 64, 128 }, left = *which & bits;
@@ -96,8 +97,9 @@ SIMD_BODY void choose(const mask *which, const lanes *x, const lanes *otherwise,
     *out = (lanes)((*which & (mask)*x) | (~*which & (mask)*otherwise));
 }
 
-/* What the edge from p (at d) to b (at db, pb away) offers to c, pc away from p: the source is laid out in the triangle's plane on the
-   other side of the edge. INFINITY where its ray to c does not pass between p and b, or b is farther than `reached`. */
+/* Computes what the edge from p (distance d) to b (distance db, pb away) offers to c, pc away from p: the source is laid out in the
+   triangle's plane on the other side of the edge. INFINITY where the ray to c does not pass between p and b, or b is farther than
+   `reached`. */
 SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c,
                             const lanes *cosine, const lanes *sine, lanes *out)
 {
@@ -106,15 +108,15 @@ SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lan
     mask seen = (sy2 >= zero) & (db <= *reached);
     lanes sy = (lanes)(seen & (mask)sy2), cx = pc * *cosine, cy = pc * *sine;
     root(&sy);
-    lanes x = cx - sx, height = cy + sy, cut = sx * cy + cx * sy; /* where the ray cuts the edge, times the height */
+    lanes x = cx - sx, height = cy + sy, cut = sx * cy + cx * sy; /* where the ray crosses the edge, times the height */
     seen &= (cy > zero) & (cut >= zero) & (cut <= pb * height);
     lanes straight = x * x + height * height;
     root(&straight);
     choose(&seen, &straight, &infinite, out);
 }
 
-/* To each of a fan's points: along the edge from p (at d), or through the triangle that it has with the point before or after it, if that
-   one is nearer. */
+/* Computes the offers to each neighbour in a fan: along the edge from p (distance d), or through the triangle shared with the previous or
+   next neighbour, if that neighbour is nearer. */
 SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes *d_of_each, const lanes *length_m, const lanes *cosine,
                          const lanes *sine, lanes *out)
 {
@@ -137,17 +139,17 @@ SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes 
     choose(&less, &through, &along, out);
 }
 
-/* Where a front is. */
+/* Progress of a front. */
 struct front_turn {
     struct propagation_front *front;
-    const struct propagation_fan *fan, *end; /* the fan in hand; the end of its point's */
-    lanes d, reached;                        /* of the point */
-    uint32_t empty;                          /* buckets in a row */
-    float offered_m[PROPAGATION_FAN];        /* to the fan's points */
-    uint32_t takes;                          /* a bit for each of those that may take it */
+    const struct propagation_fan *fan, *end; /* current fan, and end of the current point's fans */
+    lanes d, reached;                        /* distance of the current point; `reached`: distance up to which points are final */
+    uint32_t empty;                          /* number of consecutive empty buckets */
+    float offered_m[PROPAGATION_FAN];        /* offers to the fan's points */
+    uint32_t takes;                          /* one bit per neighbour that may take its offer */
 };
 
-/* Takes the next point in hand. False: there is none left. */
+/* Takes the next point to process. Returns false if there is none. */
 SIMD_BODY bool next_point(const struct propagation *propagation, struct front_turn *turn)
 {
     struct propagation_front *front = turn->front;
@@ -157,7 +159,7 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
         while (*bucket != TRIMESH_NONE) {
             struct propagation_item item = front->items[*bucket];
             *bucket = item.next;
-            if (front->settled[item.point]) /* it was reached by a shorter way */
+            if (front->settled[item.point]) /* it was reached by a shorter path */
                 continue;
             front->settled[item.point] = 1;
             turn->d = front->distance_m[item.point] - (lanes){ 0 };
@@ -171,7 +173,8 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
     return false;
 }
 
-/* What the point in hand offers to those of its fan: no branches, so that those of several fronts are under way at once. */
+/* Computes the offers of the current point to the neighbours of the fan. Free of branches, so that the computations of several fronts
+   overlap. */
 SIMD_BODY void look_round(struct front_turn *turn)
 {
     const lanes zero = { 0 };
@@ -200,10 +203,11 @@ SIMD_BODY void hand_out(const struct propagation *propagation, struct front_turn
 
 /* --- near the source ------------------------------------------------------------------------------------------------------------ */
 
-/* What the source, at (0, 0), sees through an edge in its plane: the edge from l to r, turning left, and the directions low to high. */
+/* What the source, at (0, 0), sees through an edge in the plane: the edge runs from l to r, turning left; visible directions are from low
+   to high. */
 struct window {
     double l[2], r[2], low[2], high[2];
-    uint32_t entered; /* 3 * triangle + side: the triangle beyond, in which that side runs from r to l */
+    uint32_t entered; /* 3 * triangle + side of the triangle beyond the edge, in which that side runs from r to l */
 };
 
 static double cross(const double a[2], const double b[2])
@@ -211,8 +215,8 @@ static double cross(const double a[2], const double b[2])
     return a[0] * b[1] - a[1] * b[0];
 }
 
-/* The third corner of the triangle beyond. An edge is taken as long as it is, however short: with another length the corner would not lie
-   beyond it but on it, inside every window, and 2^DEEPEST windows would be looked through. */
+/* Lays out the third corner of the triangle beyond the edge. The edge keeps its true length, however short: with another length the corner
+   would lie on the edge, inside every window, and 2^MAX_DEPTH windows would be followed. */
 static void lay_out_apex(const struct window *window, double to_l_m, double to_r_m, double apex[2])
 {
     double e[2] = { window->r[0] - window->l[0], window->r[1] - window->l[1] }, length = max_of(hypot(e[0], e[1]), NO_LENGTH);
@@ -232,7 +236,8 @@ static void look_through(const struct propagation *propagation, struct propagati
     lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
     double distance_m = hypot(apex[0], apex[1]);
     bool after_low = cross(window->low, apex) >= 0, before_high = cross(apex, window->high) >= 0;
-    if (!after_low && !before_high) /* a corner beyond an edge is not behind the source: its place is no number, and windows stay wide */
+    /* a corner beyond an edge cannot be behind the source: its position is NAN, and windows would not narrow */
+    if (!after_low && !before_high)
         return;
     if (after_low && before_high && distance_m < propagation->near_m)
         offer(propagation, front, in->points[t][(side + 2) % 3], (float)distance_m);
@@ -242,18 +247,18 @@ static void look_through(const struct propagation *propagation, struct propagati
         memcpy(i ? next.l : next.r, apex, sizeof(apex));
         if (i ? after_low : before_high)
             memcpy(i ? next.low : next.high, apex, sizeof(apex));
-        if (next.entered != TRIMESH_NONE && cross(next.low, next.high) > 0 && depth < DEEPEST)
+        if (next.entered != TRIMESH_NONE && cross(next.low, next.high) > 0 && depth < MAX_DEPTH)
             look_through(propagation, front, &next, depth + 1);
     }
 }
 
-/* A triangle laid out in a plane, the source at (0, 0). */
+/* A triangle laid out in the plane with the source at (0, 0). */
 struct laid {
-    uint32_t tri; /* of the intrinsic triangulation */
+    uint32_t tri; /* number in the intrinsic triangulation */
     double corners[3][2];
 };
 
-/* False: an edge of the triangle was flipped. */
+/* Lays out a triangle whose edges were not flipped. Returns false if one was. */
 static bool lay_out_kept(const struct intrinsic *in, const uint32_t given[3], uint32_t tri, const double weights[3], struct laid *laid)
 {
     const uint32_t *v = in->points[tri];
@@ -273,17 +278,17 @@ static bool lay_out_kept(const struct intrinsic *in, const uint32_t given[3], ui
     return true;
 }
 
-/* Straight on from the middle of the window's edge to a place beyond, triangle by triangle; the window is then that through which the last
-   one was entered. False: the surface ends before. */
+/* Follows a straight line from the middle of the window's edge to the point `to` beyond, triangle by triangle. The window becomes the edge
+   through which the last triangle was entered. Returns false if the surface ends before. */
 static bool walk_to(const struct intrinsic *in, const double to[2], struct window *window, double apex[2])
 {
     const double from[2] = { (window->l[0] + window->r[0]) / 2, (window->l[1] + window->r[1]) / 2 };
     const double way[2] = { to[0] - from[0], to[1] - from[1] };
-    for (int depth = 0; depth < DEEPEST; depth++) {
+    for (int depth = 0; depth < MAX_DEPTH; depth++) {
         uint32_t t = window->entered / 3, side = window->entered % 3;
         lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
         bool passes_l = cross(way, (const double[2]){ apex[0] - from[0], apex[1] - from[1] }) > 0;
-        const double *end = passes_l ? window->l : window->r; /* of the side that the way is bound for */
+        const double *end = passes_l ? window->l : window->r; /* end of the side through which the line leaves */
         double along[2] = { apex[0] - end[0], apex[1] - end[1] }, beyond[2] = { to[0] - end[0], to[1] - end[1] };
         if (passes_l ? cross(along, beyond) >= 0 : cross(beyond, along) >= 0)
             return true;
@@ -295,14 +300,14 @@ static bool walk_to(const struct intrinsic *in, const double to[2], struct windo
     return false;
 }
 
-/* Where a place is with r at (0, 0), l at (side, 0) and the rest above. */
+/* Lays out a point with r at (0, 0), l at (side, 0), and the point above. */
 static void place_above(double side, double to_r_m, double to_l_m, double out[2])
 {
     intrinsic_layout((const double[3]){ side, to_l_m, to_r_m }, &out[0], &out[1]);
 }
 
-/* In the triangles that lie beyond a side that was not flipped, if these are the flipped triangle's: its third corner is among them, and
-   where it is to be; round an end of the side they may have it, too. */
+/* Lays out the source in the intrinsic triangles beyond an unflipped side of the flipped triangle. They are the right ones if the
+   triangle's third corner is among them at its expected position; another side's triangles may contain that corner as well. */
 static bool lay_out_beyond(const struct propagation *propagation, uint32_t entered, uint32_t third, const double source[3],
                            struct laid *laid)
 {
@@ -313,11 +318,11 @@ static bool lay_out_beyond(const struct propagation *propagation, uint32_t enter
     double at[2], corner[2], beside[2], apex[2];
     place_above(first.l[0], vec_distance(points[r], points[third]), vec_distance(points[l], points[third]), corner);
     place_above(first.l[0], vec_distance(points[r], source), vec_distance(points[l], source), at);
-    beside[0] = corner[0] + ASIDE * (first.l[0] / 2 - corner[0]);
-    beside[1] = corner[1] - ASIDE * corner[1];
+    beside[0] = corner[0] + CORNER_OFFSET * (first.l[0] / 2 - corner[0]);
+    beside[1] = corner[1] - CORNER_OFFSET * corner[1];
     struct window window = first;
     if (!walk_to(in, beside, &window, apex) || in->points[window.entered / 3][(window.entered + 2) % 3] != third ||
-        hypot(apex[0] - corner[0], apex[1] - corner[1]) > ASIDE * first.l[0])
+        hypot(apex[0] - corner[0], apex[1] - corner[1]) > CORNER_OFFSET * first.l[0])
         return false;
     window = first;
     if (!walk_to(in, at, &window, apex))
@@ -351,8 +356,8 @@ static bool lay_out_flipped(const struct propagation *propagation, const uint32_
     return false;
 }
 
-/* Points that the source sees in a straight line have that distance, though its ray may pass between points that are farther away than
-   they are: the order from near to far, which is right elsewhere, is wrong so near to it. */
+/* Sets the distances of points that the source sees in a straight line. Propagation alone would be wrong near the source: the ray may pass
+   between points that are farther away than its end, so processing from near to far is the wrong order there. */
 static void look_around(const struct propagation *propagation, struct propagation_front *front, uint32_t tri, const double weights[3])
 {
     const struct intrinsic *in = propagation->in;
@@ -360,9 +365,9 @@ static void look_around(const struct propagation *propagation, struct propagatio
     double inside[3], sum = 0;
     struct laid laid;
     for (int i = 0; i < 3; i++)
-        sum += max_of(weights[i], INSIDE);
+        sum += max_of(weights[i], MIN_WEIGHT);
     for (int i = 0; i < 3; i++)
-        inside[i] = max_of(weights[i], INSIDE) / sum;
+        inside[i] = max_of(weights[i], MIN_WEIGHT) / sum;
     if (!lay_out_kept(in, given, tri, inside, &laid) && !lay_out_flipped(propagation, given, inside, &laid))
         return;
     for (int i = 0; i < 3; i++) {
@@ -377,7 +382,7 @@ static void look_around(const struct propagation *propagation, struct propagatio
     }
 }
 
-/* From the source to all points: one after another, since places of points that offers go to lie all over the memory. */
+/* Computes the straight-line distances from the source to all points in one pass, because offers access points in random order. */
 SIMD_BODY void measure_straight(const struct trimesh *mesh, struct propagation_front *front)
 {
     const double q[3] = { front->source_m[0], front->source_m[1], front->source_m[2] }, (*points)[3] = (const double(*)[3])mesh->points;
@@ -388,9 +393,9 @@ SIMD_BODY void measure_straight(const struct trimesh *mesh, struct propagation_f
     }
 }
 
-/* From what is in the buckets outwards: the fronts take turns, a fan each. A front's next fan hangs on what the last one's came to, and the
-   processor would wait for that; fronts know nothing of each other. */
-SIMD_BODY void go_on(const struct propagation *propagation, struct propagation_front *fronts, size_t count)
+/* Propagates the fronts from the points in their buckets, taking turns fan by fan. Within a front each fan depends on the results of the
+   previous one; alternating between independent fronts hides that latency. */
+SIMD_BODY void propagate_fronts(const struct propagation *propagation, struct propagation_front *fronts, size_t count)
 {
     struct front_turn turns[PROPAGATION_ABREAST] = { { 0 } };
     size_t left = 0;
@@ -420,14 +425,14 @@ SIMD_AVX2 static void measure_straight_wide(const struct trimesh *mesh, struct p
     measure_straight(mesh, front);
 }
 
-static void go_on_plain(const struct propagation *propagation, struct propagation_front *fronts, size_t count)
+static void propagate_fronts_plain(const struct propagation *propagation, struct propagation_front *fronts, size_t count)
 {
-    go_on(propagation, fronts, count);
+    propagate_fronts(propagation, fronts, count);
 }
 
-SIMD_AVX2 static void go_on_wide(const struct propagation *propagation, struct propagation_front *fronts, size_t count)
+SIMD_AVX2 static void propagate_fronts_wide(const struct propagation *propagation, struct propagation_front *fronts, size_t count)
 {
-    go_on(propagation, fronts, count);
+    propagate_fronts(propagation, fronts, count);
 }
 
 static bool set_out(const struct propagation *propagation, struct propagation_front *front, uint32_t tri, const double weights[3])
@@ -452,6 +457,6 @@ bool propagation_run(const struct propagation *propagation, struct propagation_f
     for (size_t i = 0; i < count; i++)
         if (!set_out(propagation, &fronts[i], sources[i].tri, sources[i].weights))
             return false;
-    (simd_has_avx2() ? go_on_wide : go_on_plain)(propagation, fronts, count);
+    (simd_has_avx2() ? propagate_fronts_wide : propagate_fronts_plain)(propagation, fronts, count);
     return true;
 }

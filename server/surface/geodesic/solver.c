@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* cholmod_solve2 with its work spaces. */
+/* Calls cholmod_solve2 with reused work memory. */
 #include "surface/geodesic/solver.h"
 
 #include <string.h>

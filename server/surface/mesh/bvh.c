@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Boxes around boxes around triangles, split at the middle of the longer side. */
+/* Builds the bounding volume hierarchy, splitting at the median along the longer side. */
 #include "surface/mesh/bvh.h"
 
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "surface/mesh/bvh_impl.h"
 
 #define LEAF_TRIS 4u
-#define SAME_PLACE 1e-6 /* of the longest side: where a segment is parallel to a triangle, rounding decides where their planes meet */
+#define SAME_PLACE 1e-6 /* relative to the longest side; for a segment parallel to a triangle, rounding decides where their planes meet */
 
 static void box_of(const struct bvh *bvh, uint32_t first, uint32_t count, double low[3], double high[3])
 {

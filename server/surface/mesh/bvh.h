@@ -8,14 +8,14 @@
 
 struct bvh;
 
-/* Builds the hierarchy of a mesh, which must outlive it unchanged. The caller destroys it. */
+/* Builds the hierarchy of a mesh, which must outlive the hierarchy unchanged. The caller destroys it. */
 struct bvh *bvh_create(const struct trimesh *mesh);
-/* Frees the hierarchy. &NULL is fine; leaves NULL. */
+/* Frees the hierarchy. &NULL is fine; sets it to NULL. */
 void bvh_destroy(struct bvh **bvh);
 
 struct bvh_place {
-    uint32_t tri;      /* TRIMESH_NONE: nothing within reach */
-    double weights[3]; /* of its corners */
+    uint32_t tri;      /* TRIMESH_NONE: nothing within the limit */
+    double weights[3]; /* of the triangle's corners */
     double point[3], distance_m;
 };
 /* Finds the point of the mesh nearest to `point` within limit_m (may be INFINITY), on triangles for which allowed(arg, tri) returns true
@@ -23,8 +23,8 @@ struct bvh_place {
 void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                  const void *arg, struct bvh_place *place);
 
-/* Returns whether any such point exists: quicker than finding the nearest. *tri: a triangle to try first, or TRIMESH_NONE (points near each
-   other often have the same one); receives the triangle found. */
+/* Returns whether the mesh has such a point; faster than finding the nearest. *tri: a triangle to try first, or TRIMESH_NONE (neighbouring
+   points often have the same one); receives the triangle found. */
 bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                     const void *arg, uint32_t *tri);
 
@@ -36,8 +36,8 @@ void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[
 void bvh_ray(const struct bvh *bvh, const double origin[3], const double direction[3], void (*visit)(void *arg, uint32_t tri, double t),
              void *arg);
 
-/* Computes where the segment from p to q passes through a triangle: its fraction t (0..1) and the barycentric weights. Returns false if it
-   does not, or is parallel to the triangle but for rounding. */
+/* Computes where the segment from p to q passes through a triangle: its fraction t (0..1) and the barycentric weights. Returns false if the
+   segment misses the triangle, or is parallel to it within rounding. */
 bool triangle_crossed(const double p[3], const double q[3], const double a[3], const double b[3], const double c[3], double *t,
                       double weights[3]);
 

@@ -5,8 +5,8 @@
 #include "surface/mesh/bvh.h"
 
 #define BVH_WIDE 8
-#define BVH_IS_TRIANGLE 0x80000000u /* in a child's number */
-#define BVH_STACK 256               /* seven of each node on the way down wait, and there are 10 or less */
+#define BVH_IS_TRIANGLE 0x80000000u /* flag in a child's number: the child is a triangle */
+#define BVH_STACK 256               /* entries of the traversal stack: each level leaves at most seven, and there are at most 10 levels */
 
 struct bvh_node {
     double low[3], high[3];
@@ -19,19 +19,18 @@ struct bvh {
     uint32_t *order;
     double (*centres)[3];
     size_t node_count, node_capacity;
-    struct bvh_wide { /* the same boxes, three halvings at once, down to single triangles: for queries */
+    struct bvh_wide { /* the same boxes as nodes with eight children, down to single triangles; used by queries */
         float low[3][BVH_WIDE], high[3][BVH_WIDE];
-        uint32_t child[BVH_WIDE]; /* or a triangle; what there is none of has a box that is turned inside out */
-    } * wide;                     /* children before parents: the root is the last one */
+        uint32_t child[BVH_WIDE]; /* index of a node, or a triangle; unused children have an inverted box */
+    } * wide;                     /* children precede parents, so the root is last */
     size_t wide_count, wide_capacity;
 };
 
-/* Builds the nodes of eight children (bvh->wide), which queries use, from the binary tree. Their boxes, in floats, hold those in
-   doubles. */
+/* Builds the nodes of eight children (bvh->wide), which queries use, from the binary tree. Their float boxes enclose the double ones. */
 void bvh_build_wide(struct bvh *bvh);
 
-/* Computes where the line through p meets a triangle: t in lengths of direction, unbounded, and the barycentric weights. Returns false
-   if it does not. */
+/* Computes where the line through p meets a triangle: t in multiples of `direction`, unbounded, and the barycentric weights. Returns false
+   if the line misses the triangle. */
 bool bvh_line_meets(const double p[3], const double direction[3], const double a[3], const double b[3], const double c[3], double *t,
                     double weights[3]);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The nearest place on triangles: eight boxes are looked at side by side. */
+/* Nearest-point queries on the hierarchy, testing eight boxes at a time. */
 #include <float.h>
 #include <string.h>
 #if defined(__x86_64__)
@@ -11,10 +11,11 @@
 #include "base/mem.h"
 #include "surface/mesh/bvh_impl.h"
 
-#define BOX_MARGIN 2.4e-7 /* share of a box's largest coordinate, four roundings: a point in the box is in it in floats too */
-#define MARGIN 1e-5       /* of a square in floats, many times what it is off by */
-#define SURE 1e-8         /* of its sides' squares: where the square of a triangle's area is more, its weights are right to eight digits, */
-#define INSIDE 1e-6       /* and one that is more is sure to be positive */
+/* relative to a box's largest coordinate: four roundings, so that a point in the box is also in its float version */
+#define BOX_MARGIN 2.4e-7
+#define MARGIN 1e-5          /* relative to a squared distance in floats, much more than its rounding error */
+#define EXACT_AREA 1e-8      /* relative to the sides' squares: above this squared area, weights are exact to eight digits */
+#define SURELY_POSITIVE 1e-6 /* such a weight is certainly positive if it exceeds this */
 
 static void weights_on_edge(const double p[3], const double a[3], const double b[3], double *wa, double *wb)
 {
@@ -26,8 +27,9 @@ static void weights_on_edge(const double p[3], const double a[3], const double b
     *wa = 1 - *wb;
 }
 
-/* Inside the prism over the triangle: barycentric weights; else the best of its edges. The nearest point of a convex shape is on an edge
-   that has p on its outer side, where the weight of the corner opposite is negative; a sliver's weights are not sure enough for that. */
+/* Inside the prism over the triangle the projection is the nearest point; else the best point of its edges. The nearest point is on an edge
+   with p on its outer side, where the opposite corner's weight is negative; weights of slivers are too inexact for that test, so all edges
+   are tried. */
 void triangle_nearest(const double p[3], const double a[3], const double b[3], const double c[3], double weights[3])
 {
     double ab[3], ac[3], ap[3];
@@ -36,7 +38,7 @@ void triangle_nearest(const double p[3], const double a[3], const double b[3], c
     vec_sub(p, a, ap);
     double d00 = vec_dot(ab, ab), d01 = vec_dot(ab, ac), d11 = vec_dot(ac, ac), d20 = vec_dot(ap, ab), d21 = vec_dot(ap, ac);
     double det = d00 * d11 - d01 * d01;
-    bool is_sure = det > SURE * d00 * d11;
+    bool is_sure = det > EXACT_AREA * d00 * d11;
     weights[0] = weights[1] = weights[2] = 0;
     if (det > 0) {
         weights[1] = (d11 * d20 - d01 * d21) / det;
@@ -50,7 +52,7 @@ void triangle_nearest(const double p[3], const double a[3], const double b[3], c
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
         double w[3] = { 0 }, q[3];
-        if (is_sure && inside[(i + 2) % 3] > INSIDE)
+        if (is_sure && inside[(i + 2) % 3] > SURELY_POSITIVE)
             continue;
         weights_on_edge(p, corners[i], corners[j], &w[i], &w[j]);
         vec_mix(corners[i], corners[j], w[j], q);
@@ -62,7 +64,7 @@ void triangle_nearest(const double p[3], const double a[3], const double b[3], c
     }
 }
 
-/* Most triangles in a box that p is in are. */
+/* A quick test by the triangle's plane: most triangles in a box that contains p are farther. */
 static bool plane_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance2)
 {
     double ab[3], ac[3], ap[3], n[3];
@@ -119,7 +121,7 @@ static struct bvh_box box_of_tri(const struct trimesh *mesh, uint32_t tri)
     return box;
 }
 
-/* Triangles of so many in order, halved so often that single ones, or eight times fewer and so on, are left: all but the root are full. */
+/* Builds a node over `count` triangles in order. They are halved until single ones remain; all nodes but the root have eight children. */
 static struct bvh_box build_wide(struct bvh *bvh, uint32_t first, uint32_t count, int halvings)
 {
     uint32_t firsts[BVH_WIDE + 1] = { first, first + count };
@@ -172,19 +174,19 @@ struct nearest_search {
     const double *point;
     bool (*allowed)(const void *arg, uint32_t tri);
     const void *arg;
-    bool any; /* the first place will do */
+    bool any; /* any point within the limit suffices */
     double best2;
     struct bvh_place *place;
 };
 
-/* No square in floats of what is as near is larger. */
+/* Returns an upper bound in floats: no squared distance computed in floats exceeds it if its point is as near. */
 static inline float in_floats(double best2)
 {
     double most = best2 * (1 + MARGIN) + (double)FLT_MIN;
     return most < (double)FLT_MAX ? (float)most : FLT_MAX;
 }
 
-/* The squares of the distances of a node's boxes, and which of them are no larger than the limit, by bits. */
+/* Computes the squared distances of a node's boxes. Returns a bit for each box within the limit. */
 typedef unsigned look(const struct bvh_wide *node, const float p[3], float limit2, float distance2[BVH_WIDE]);
 
 static unsigned look_plain(const struct bvh_wide *node, const float p[3], float limit2, float distance2[BVH_WIDE])
@@ -220,8 +222,8 @@ SIMD_AVX2 static unsigned look_wide(const struct bvh_wide *node, const float p[3
 #define look_wide look_plain
 #endif
 
-/* Puts those boxes of a node on the stack that are near enough, the nearest on top: squares of distances, which are not negative and have
-   their order as bits too, above numbers of children. Returns how many. */
+/* Pushes the children within the limit, the nearest on top. Entries have the squared distance in the upper half (non-negative floats sort
+   like their bits) and the child's number in the lower. Returns the number pushed. */
 SIMD_BODY size_t push_near(look *look_at, const struct bvh_wide *node, const float p[3], float limit2, uint64_t *stack)
 {
     float distance2[BVH_WIDE];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a box or a ray meets: eight boxes are looked at side by side, triangles come in the tree's order. */
+/* Overlap and ray queries on the hierarchy, testing eight boxes at a time; triangles are visited in the tree's order. */
 #include "surface/mesh/bvh.h"
 
 #include <math.h>
@@ -13,10 +13,10 @@
 
 struct query { /* a box, or a ray */
     double low[3], high[3];
-    double origin[3], inverse[3]; /* inverse: 1 over the direction */
+    double origin[3], inverse[3]; /* inverse: 1 / direction */
 };
 
-/* Which of a node's boxes are met, by bits. */
+/* Returns a bit for each of a node's boxes that the query meets. */
 typedef unsigned meet(const struct bvh_wide *node, const struct query *query);
 
 static unsigned meet_box_plain(const struct bvh_wide *node, const struct query *query)
@@ -88,7 +88,7 @@ SIMD_AVX2 static unsigned meet_ray_wide(const struct bvh_wide *node, const struc
 #define meet_ray_wide meet_ray_plain
 #endif
 
-/* Puts the met children of a node on the stack, the first on top. Returns how many. */
+/* Pushes the met children of a node, the first on top. Returns their number. */
 static size_t push_met(meet *meets, const struct bvh_wide *node, const struct query *query, uint32_t *stack)
 {
     size_t count = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edges are collapsed onto one end where that changes nothing but the number of triangles. */
+/* Collapses edges onto one end where this changes only the number of triangles. */
 #include "surface/mesh/decimate.h"
 
 #include <string.h>
@@ -7,28 +7,28 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define MOST_STAR 48  /* triangles at a point; one that has more stays */
-#define THINNEST 0.02 /* height of a new triangle, in its longest sides, unless the old one was as thin */
+#define MAX_STAR 48     /* largest number of triangles at a point that may be removed */
+#define MIN_HEIGHT 0.02 /* smallest height of a new triangle, relative to its longest side, unless the old one was as thin */
 #define ROUNDING_OF_AREA 1e-9
 
 struct thin {
     struct trimesh *mesh;
     const struct decimate_params *params;
-    char *hidden, *gone; /* of triangles */
+    char *hidden, *gone; /* per triangle */
     uint32_t *plane;
-    uint32_t *heads, *tails, *next; /* corners (3 * triangle + corner) at each point; the one after each */
+    uint32_t *heads, *tails, *next; /* heads, tails: first and last corner (3 * triangle + corner) per point; next: per corner */
 };
 
-struct star_face { /* a triangle of a star, with the point and with a neighbour in its place */
+struct star_face { /* a triangle of a star */
     uint32_t tri, corner;
-    double normal[3], length; /* twice its area */
+    double normal[3], length; /* normal: not normalised; length: twice the area */
 };
 
 struct star {
     uint32_t point;
-    struct star_face faces[MOST_STAR];
+    struct star_face faces[MAX_STAR];
     size_t count;
-    double longest_m; /* side at the point */
+    double longest_m; /* longest side at the point */
 };
 
 static const double *point_of(const struct thin *thin, uint32_t point)
@@ -41,8 +41,8 @@ static uint32_t corner_of(const struct thin *thin, const struct star_face *face,
     return thin->mesh->tris[face->tri][(face->corner + after) % 3];
 }
 
-/* False: none, or too many. */
-static bool look_round(const struct thin *thin, uint32_t point, struct star *star)
+/* Collects the triangles at a point. Returns false if there are none, or too many. */
+static bool collect_star(const struct thin *thin, uint32_t point, struct star *star)
 {
     star->point = point;
     star->count = 0;
@@ -50,7 +50,7 @@ static bool look_round(const struct thin *thin, uint32_t point, struct star *sta
     for (uint32_t corner = thin->heads[point]; corner != TRIMESH_NONE; corner = thin->next[corner]) {
         if (thin->gone[corner / 3])
             continue;
-        if (star->count == MOST_STAR)
+        if (star->count == MAX_STAR)
             return false;
         struct star_face *face = &star->faces[star->count++];
         *face = (struct star_face){ .tri = corner / 3, .corner = corner % 3 };
@@ -62,7 +62,8 @@ static bool look_round(const struct thin *thin, uint32_t point, struct star *sta
     return star->count > 0;
 }
 
-/* The face with a neighbour in the point's place. False: it would leave its plane, turn over, or be no good. */
+/* Checks a face with a neighbour in the point's place. Returns false if the face would leave its plane, turn over, or become too thin.
+   *length: twice its new area. */
 static bool can_take(const struct thin *thin, const struct star *star, const struct star_face *face, const double to[3], double *length)
 {
     const double *a = point_of(thin, star->point), *b = point_of(thin, corner_of(thin, face, 1));
@@ -75,7 +76,7 @@ static bool can_take(const struct thin *thin, const struct star *star, const str
     *length = vec_length(normal);
     double longest_m = max_of(vec_distance(to, b), vec_distance(to, c));
     return vec_dot(normal, face->normal) > 0 && longest_m <= max_of(thin->params->longest_m, star->longest_m) &&
-           *length >= min_of(face->length, THINNEST * longest_m * longest_m);
+           *length >= min_of(face->length, MIN_HEIGHT * longest_m * longest_m);
 }
 
 static bool same_part(const struct thin *thin, uint32_t s, uint32_t t)
@@ -83,8 +84,8 @@ static bool same_part(const struct thin *thin, uint32_t s, uint32_t t)
     return thin->params->part[s] == thin->params->part[t];
 }
 
-/* Whether each part has as much surface as before, seen and hidden; grown: what each face has more. */
-static bool keeps_areas(const struct thin *thin, const struct star *star, const double grown[MOST_STAR], double enough)
+/* Returns whether each part keeps its visible and hidden area. grown: change of each face's doubled area. */
+static bool keeps_areas(const struct thin *thin, const struct star *star, const double grown[MAX_STAR], double enough)
 {
     for (size_t i = 0; i < star->count; i++) {
         double sum = 0;
@@ -104,8 +105,8 @@ static bool has(const struct thin *thin, uint32_t tri, uint32_t point)
     return v[0] == point || v[1] == point || v[2] == point;
 }
 
-/* Whether a corner that loses its face at both is still joined to where the point goes by one that is seen: the lost one may be no more
-   than a line, and all that holds parts together there. */
+/* Returns whether a corner that loses the triangle between `from` and `to` is still connected to `to` by another visible triangle. The lost
+   triangle may be no more than a line, and yet all that connects parts there. */
 static bool stays_joined(const struct thin *thin, uint32_t point, uint32_t from, uint32_t to)
 {
     for (uint32_t corner = thin->heads[point]; corner != TRIMESH_NONE; corner = thin->next[corner]) {
@@ -118,7 +119,7 @@ static bool stays_joined(const struct thin *thin, uint32_t point, uint32_t from,
 
 static bool can_go_to(const struct thin *thin, const struct star *star, uint32_t to)
 {
-    double grown[MOST_STAR], all = 0;
+    double grown[MAX_STAR], all = 0;
     for (size_t i = 0; i < star->count; i++) {
         const struct star_face *face = &star->faces[i];
         double length = 0;
@@ -139,8 +140,8 @@ static bool can_go_to(const struct thin *thin, const struct star *star, uint32_t
     return true;
 }
 
-/* The nearest neighbour that the point can go to, or TRIMESH_NONE. */
-static uint32_t place_for(const struct thin *thin, const struct star *star)
+/* Returns the nearest neighbour that the point can be collapsed into, or TRIMESH_NONE. */
+static uint32_t find_collapse_target(const struct thin *thin, const struct star *star)
 {
     uint32_t best = TRIMESH_NONE;
     double best_m = INFINITY;
@@ -155,7 +156,7 @@ static uint32_t place_for(const struct thin *thin, const struct star *star)
     return best;
 }
 
-/* Pieces change hands between triangles of the model that lie in one plane. */
+/* Merges planes of the star's model triangles: their pieces may have moved from one to the other. */
 static void join_planes(struct thin *thin, const struct star *star)
 {
     for (size_t i = 0; i < star->count; i++)
@@ -170,7 +171,7 @@ static void join_planes(struct thin *thin, const struct star *star)
         }
 }
 
-static void go_to(struct thin *thin, const struct star *star, uint32_t to)
+static void collapse(struct thin *thin, const struct star *star, uint32_t to)
 {
     for (size_t i = 0; i < star->count; i++) {
         const struct star_face *face = &star->faces[i];
@@ -198,8 +199,8 @@ static void list_corners(struct thin *thin)
     }
 }
 
-/* Leaves out what is gone. */
-static void close_up(struct thin *thin, uint32_t *target)
+/* Removes deleted triangles and points. */
+static void compact(struct thin *thin, uint32_t *target)
 {
     struct trimesh *mesh = thin->mesh;
     size_t points = 0, tris = 0;
@@ -233,15 +234,15 @@ void decimate_mesh(struct trimesh *mesh, char *hidden, const struct decimate_par
         plane[source] = source;
     list_corners(&thin);
     for (uint32_t p = 0; p < mesh->point_count; p++) {
-        uint32_t to = !params->keep[p] && look_round(&thin, p, &star) ? place_for(&thin, &star) : TRIMESH_NONE;
+        uint32_t to = !params->keep[p] && collect_star(&thin, p, &star) ? find_collapse_target(&thin, &star) : TRIMESH_NONE;
         if (to == TRIMESH_NONE)
             continue;
         join_planes(&thin, &star);
-        go_to(&thin, &star, to);
+        collapse(&thin, &star, to);
     }
     for (uint32_t source = 0; source < source_count; source++)
         plane[source] = trimesh_root(plane, source);
-    close_up(&thin, target);
+    compact(&thin, target);
     mem_free(thin.gone);
     mem_free(thin.heads);
     mem_free(thin.tails);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Nearest neighbours in a point cloud, by FLANN's exact kd-tree. */
+/* Nearest neighbours in a point cloud with FLANN's exact kd-tree. */
 #include "surface/mesh/point_cloud.h"
 
 #include <flann/flann.h>
@@ -20,7 +20,7 @@ static float *floats_of(const double (*points)[3], size_t count)
     return floats;
 }
 
-/* Neighbours of the points queued; those whose k neighbours all lie within the radius are queued again. */
+/* One round of queries. Points whose k neighbours are all within the radius are queued for the next round. */
 struct round {
     const double (*points)[3];
     float *floats;

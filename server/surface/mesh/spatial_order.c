@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Points and triangles in an order in which what is near is near in memory. */
+/* Sorts points along a Morton curve and triangles by their first point. */
 #include "surface/mesh/spatial_order.h"
 
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define BITS 21 /* of each coordinate; three of them fill a number */
+#define BITS 21 /* per coordinate; three fit into a 64-bit key */
 
 struct keyed {
     uint64_t key;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Listing edges by a hash table, and walking from triangle to triangle across them. */
+/* Collects edges with a hash table, and walks across them from triangle to triangle. */
 #include "surface/mesh/tri_edges.h"
 
 #include "base/mem.h"

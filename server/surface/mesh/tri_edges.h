@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The edges of triangles: which triangles meet at each, and which way round these run. Thread: one, unless constant. */
+/* The edges of triangles: which triangles meet at each edge, and in which direction their sides run along it. Thread: one, unless
+   constant. */
 #ifndef SURFACE_MESH_TRI_EDGES_H
 #define SURFACE_MESH_TRI_EDGES_H
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-/* A side of a triangle: 3 t + i is that of triangle t from its corner i to the next. */
+/* Sides are numbered: 3 t + i is the side of triangle t from its corner i to the next. */
 struct tri_edge {
-    uint32_t sides[2], faces; /* the first two of the sides that lie here; how many do */
+    uint32_t sides[2], faces; /* the first two sides at this edge; faces: number of sides at this edge */
 };
 
 struct tri_edges {
@@ -18,8 +19,8 @@ struct tri_edges {
     uint32_t *of_side;
 };
 
-/* Lists the edges of triangles, which must live as long. Finish with tri_edges_finish(). tri_edges_try_init returns false if out of memory,
-   and then there is nothing to finish. */
+/* Builds the edges. `tris` must outlive them. Free with tri_edges_finish(). tri_edges_try_init() returns false when out of memory; nothing
+   needs freeing then. */
 void tri_edges_init(struct tri_edges *e, const uint32_t (*tris)[3], size_t tri_count);
 bool tri_edges_try_init(struct tri_edges *e, const uint32_t (*tris)[3], size_t tri_count);
 /* Frees the lists. */
@@ -30,16 +31,16 @@ static inline const struct tri_edge *tri_edges_at(const struct tri_edges *e, siz
     return &e->edges[e->of_side[3 * t + (size_t)i]];
 }
 
-/* Returns the side of another triangle at the edge where `side` lies, or TRIMESH_NONE if the edge has not exactly two triangles. */
+/* Returns the side of the other triangle at the edge of `side`, or TRIMESH_NONE if the edge does not have exactly two triangles. */
 uint32_t tri_edges_across(const struct tri_edges *e, uint32_t side);
-/* Returns whether two sides of one edge run the same way along it: one of their triangles is flipped. */
+/* Returns whether two sides of one edge run in the same direction along it, that is their triangles have opposite orientations. */
 bool tri_edges_run_alike(const struct tri_edges *e, uint32_t side, uint32_t other);
 
-/* Finds which way round each triangle is that is joined with `first` by edges of two triangles: 1 as `first`, -1 contrary to it, in
-   facing[triangle], which has to be 0 before. Writes these triangles to `joined`, which has room for all. Sets *two_sided to false where
-   they cannot all be turned to one side, as on a Moebius strip. Returns how many they are. */
+/* Finds the orientation of all triangles connected with `first` by edges of two triangles: facing[triangle] receives 1: as `first`, or -1:
+   opposite; it must be 0 before. Writes these triangles to `joined`, which has room for all. Sets *two_sided to false where no consistent
+   orientation exists, as on a Moebius strip. Returns the number of these triangles. */
 size_t tri_edges_orient(const struct tri_edges *e, uint32_t first, signed char *facing, uint32_t *joined, bool *two_sided);
-/* Does so for all triangles, each as the lowest one that it is joined with. facing: zeroed. */
+/* Orients all triangles; in each connected set the lowest triangle has 1. facing: zeroed by the caller. */
 void tri_edges_orient_all(const struct tri_edges *e, signed char *facing);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Welding, splitting and counting triangles that share points. */
+/* Welds, splits and counts triangles with shared points. */
 #include "surface/mesh/trimesh.h"
 
 #include <string.h>
@@ -90,7 +90,7 @@ void edge_table_prefetch(const struct edge_table *table, uint32_t a, uint32_t b)
     __builtin_prefetch(&table->numbers[slot]);
 }
 
-#define AHEAD 8 /* triangles */
+#define AHEAD 8 /* prefetch distance in triangles */
 void edge_table_prefetch_ahead(const struct edge_table *table, const uint32_t (*tris)[3], size_t tri, size_t tri_count)
 {
     for (int i = 0; i < 3 && tri + AHEAD < tri_count; i++)
@@ -150,7 +150,7 @@ void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, u
     mesh->tri_source[mesh->tri_count++] = source;
 }
 
-/* Points in a grid of cells of twice the welding distance; a point looks into the eight cells that its neighbourhood touches. */
+/* Grid of cells of twice the welding distance; a lookup reads the eight cells that the point's neighbourhood touches. */
 struct weld_grid {
     double cell_m;
     uint32_t *heads, *next;
@@ -249,13 +249,13 @@ static void sort3(uint32_t v[3])
             }
 }
 
-/* A set of triangles: the edge of the two lower points, numbered, and the third. The number that the triangle has there. */
+/* Returns the number of a triangle in a set of triangles, keyed by its three points regardless of order. */
 static uint32_t tri_number(struct edge_table *pairs, struct edge_table *seen, const uint32_t tri[3])
 {
     uint32_t v[3] = { tri[0], tri[1], tri[2] };
     sort3(v);
     uint32_t pair = edge_table_add(pairs, v[0], v[1]);
-    /* Pair and point are numbers of different kinds: keep them apart, the table does not know order. */
+    /* Pair numbers and points share one table that ignores order: even and odd keys keep them apart. */
     return edge_table_add(seen, pair * 2u, v[2] * 2u + 1u);
 }
 
@@ -269,10 +269,11 @@ static bool tri_has_area(const struct trimesh *mesh, uint32_t a, uint32_t b, uin
     vec_sub(mesh->points[c], mesh->points[b], bc);
     vec_cross(ab, ac, n);
     double longest2 = max_of(vec_dot(ab, ab), max_of(vec_dot(ac, ac), vec_dot(bc, bc)));
-    return vec_length(n) > 1e-6 * longest2; /* height over a millionth of the longest edge; else its corner hangs on that edge (repair.h) */
+    /* height over a millionth of the longest edge; flatter triangles leave their corner hanging on that edge (repair.h) */
+    return vec_length(n) > 1e-6 * longest2;
 }
 
-/* Keeps triangles that have an area and are not there yet. */
+/* Removes triangles without area, and duplicates. */
 static void clean(struct trimesh *mesh, size_t *degenerate, size_t *repeated)
 {
     struct edge_table pairs, seen;
@@ -360,14 +361,15 @@ double trimesh_tri_area(const struct trimesh *mesh, size_t tri)
     return vec_length(n) / 2;
 }
 
-/* New points on edges: edge number -> first point; the edge is cut into equal parts, listed from its lower to its higher point. */
+/* Points inserted on edges: by edge number, the first point and the number of equal parts; points are numbered from the edge's lower to its
+   higher end. */
 struct cuts {
     struct edge_table edges;
     uint32_t *first, *parts;
     size_t first_capacity, parts_capacity;
 };
 
-static void model_cache_finish(struct cuts *cuts)
+static void cuts_finish(struct cuts *cuts)
 {
     edge_table_finish(&cuts->edges);
     mem_free(cuts->first);
@@ -391,7 +393,7 @@ static void cut_edge(struct trimesh *mesh, struct cuts *cuts, uint32_t a, uint32
     }
 }
 
-/* The points from a to b along their edge, without b. */
+/* Lists the points from a to b along their edge, without b. */
 static size_t side_points(const struct cuts *cuts, uint32_t a, uint32_t b, uint32_t *out)
 {
     uint32_t e = edge_table_find(&cuts->edges, a, b);
@@ -408,9 +410,9 @@ static size_t side_count(const struct cuts *cuts, uint32_t a, uint32_t b)
     return e == TRIMESH_NONE ? 1 : cuts->parts[e];
 }
 
-/* Closes a triangle whose edges were cut like a zip: one chain is the side a-b that was cut most, the other goes a-c-b, and at each step
-   the shorter cross edge is taken. The chain a-b waits before b for the other one, so that no piece is flat. A thin triangle gets no points
-   inside, however long it is. */
+/* Triangulates a triangle whose edges were cut, like a zip: one chain is the side a-b with most points, the other goes a-c-b; at each step
+   the shorter cross edge is taken. The chain a-b waits before b for the other one, so that no piece is flat. Thin triangles get no points
+   inside, however long they are. */
 static void zip_tri(struct trimesh *mesh, const struct cuts *cuts, size_t t)
 {
     int side = longest_side(mesh, t);
@@ -449,7 +451,7 @@ static void zip_all(struct trimesh *mesh, struct cuts *cuts)
         zip_tri(mesh, cuts, t);
 }
 
-/* One round: triangles higher than height_m above their longest edge get a middle on it. False: there was none. */
+/* One round: triangles higher than height_m above their longest edge get a point in its middle. Returns false if there was none. */
 static bool halve_round(struct trimesh *mesh, double height_m, size_t point_limit)
 {
     struct cuts cuts = { 0 };
@@ -463,7 +465,7 @@ static bool halve_round(struct trimesh *mesh, double height_m, size_t point_limi
     }
     zip_all(mesh, &cuts);
     bool any = cuts.edges.count > 0;
-    model_cache_finish(&cuts);
+    cuts_finish(&cuts);
     return any;
 }
 
@@ -479,7 +481,7 @@ static void cut_long_edges(struct trimesh *mesh, double spacing_m, size_t point_
                 cut_edge(mesh, &cuts, a, b, (uint32_t)min_of(parts, (double)(point_limit - mesh->point_count) + 2));
         }
     zip_all(mesh, &cuts);
-    model_cache_finish(&cuts);
+    cuts_finish(&cuts);
 }
 
 void trimesh_sample(struct trimesh *mesh, double spacing_m, size_t point_limit)

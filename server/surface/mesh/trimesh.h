@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangle mesh with shared points, whose edges may have any number of faces. The form of a surface between the model and its distances.
-   Thread: one, unless constant. */
+/* Triangle mesh with shared points, whose edges may have any number of faces; the form of a surface between model and distances. Thread:
+   one, unless constant. */
 #ifndef SURFACE_MESH_TRIMESH_H
 #define SURFACE_MESH_TRIMESH_H
 #include <stdbool.h>
@@ -12,8 +12,8 @@
 struct trimesh {
     double (*points)[3];
     uint32_t (*tris)[3];
-    uint32_t *tri_source; /* the model's triangle that this one is a piece of */
-    uint32_t *tri_times;  /* how many of the model's lay there, each with the same three points; NULL: not counted (any more) */
+    uint32_t *tri_source; /* number of the model triangle that this triangle is a piece of */
+    uint32_t *tri_times;  /* number of model triangles with these three points; NULL: not counted */
     size_t point_count, point_capacity, tri_count, tri_capacity, source_capacity, times_capacity;
 };
 
@@ -24,9 +24,9 @@ bool trimesh_weld(struct trimesh *mesh, const float (*positions)[3], size_t vert
                   double weld_m, uint32_t *vertex_point, size_t *degenerate, size_t *repeated);
 /* Frees the mesh. */
 void trimesh_finish(struct trimesh *mesh);
-/* Frees tri_times: multiplicities are not tracked from now on. */
+/* Frees tri_times: multiplicities are no longer tracked. */
 void trimesh_stop_counting(struct trimesh *mesh);
-/* Makes `copy` (zero-initialised, or a mesh that is given up) a deep copy of the mesh, without multiplicities. */
+/* Makes `copy` (zero-initialised, or a mesh whose content may be overwritten) a deep copy of the mesh, without multiplicities. */
 void trimesh_copy(struct trimesh *copy, const struct trimesh *mesh);
 
 /* Appends a point. Returns its number. */
@@ -40,20 +40,20 @@ bool trimesh_find_twins(const struct trimesh *mesh, double within_m, uint32_t *t
    *repeated). */
 void trimesh_rename(struct trimesh *mesh, const uint32_t *target, size_t *degenerate, size_t *repeated);
 
-/* Adds points until no edge is longer than spacing_m or there are point_limit points: halves triangles higher than that, then cuts long
-   edges into equal parts. */
+/* Adds points until no edge is longer than spacing_m or there are point_limit points: first halves triangles whose height exceeds
+   spacing_m, then cuts long edges into equal parts. */
 void trimesh_sample(struct trimesh *mesh, double spacing_m, size_t point_limit);
 
-/* Writes to component[point] the lowest point of its connected component. Returns the number of components among points that have
+/* Writes to component[point] the lowest point of its connected component. Returns the number of components, counting points that have
    triangles. */
 size_t trimesh_components(const struct trimesh *mesh, uint32_t *component);
 
-/* Union-find: returns the root of i's set, the lowest member. parent[i] = i at first. */
+/* Union-find: returns the root of i's set, which is the lowest member. Initially parent[i] = i. */
 uint32_t trimesh_root(uint32_t *parent, uint32_t i);
 /* Union-find: joins the sets of a and b. */
 void trimesh_join(uint32_t *parent, uint32_t a, uint32_t b);
 
-/* Along the triangle's normal, and twice as long as it is large. */
+/* Writes the triangle's normal, with twice the triangle's area as length. */
 void trimesh_normal(const struct trimesh *mesh, size_t tri, double out[3]);
 double trimesh_tri_area(const struct trimesh *mesh, size_t tri);
 /* Returns the total area, square metres. */
@@ -71,11 +71,11 @@ void edge_table_init(struct edge_table *table, size_t expected);
 void edge_table_finish(struct edge_table *table);
 /* Returns the edge's number, adding it with number table->count if it is new. */
 uint32_t edge_table_add(struct edge_table *table, uint32_t a, uint32_t b);
-/* Returns the edge's number, or TRIMESH_NONE if it is not there. */
+/* Returns the edge's number, or TRIMESH_NONE if the table does not contain it. */
 uint32_t edge_table_find(const struct edge_table *table, uint32_t a, uint32_t b);
-/* Prefetches the memory where the edge will be looked up soon. */
+/* Prefetches the memory that a lookup of the edge will read. */
 void edge_table_prefetch(const struct edge_table *table, uint32_t a, uint32_t b);
-/* The same of the edges of the triangle that comes a few after this one, of so many. */
+/* Prefetches the edges of a triangle a few after `tri`, if there are that many. */
 void edge_table_prefetch_ahead(const struct edge_table *table, const uint32_t (*tris)[3], size_t tri, size_t tri_count);
 
 #endif

@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pairs of faces, told apart by their planes and, in the plane of one, by its sides. */
+/* Tests pairs of faces: separated by the plane of one of them or, within that plane, by its sides. */
 #include "surface/repair/crossing_faces.h"
 
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "surface/mesh/bvh.h"
 
-#define ROUNDING 1e-10 /* of the largest coordinate: far more than what sampling moves a point by */
-#define SLIVER 1e-5    /* height, of the model's size: the plane of a lower face is not trusted */
-#define BESIDE 1e-4    /* of a face's longest side: so exactly is known where it cuts a plane */
+#define ROUNDING 1e-10 /* relative to the largest coordinate: much more than sampling moves a point */
+#define SLIVER 1e-5    /* height relative to the model's size: the plane of a flatter face is not reliable */
+#define BESIDE 1e-4    /* relative to a face's longest side: accuracy of its intersection with a plane */
 
 struct crossing_face {
     const double *at[3];
-    double normal[3], height_m, longest_m; /* normal: of length 1 */
+    double normal[3], height_m, longest_m; /* normal: unit vector */
 };
 
 struct crossing_search {
     const struct body_parts *parts;
     double rounding_m, sliver_m;
-    uint32_t tri;     /* whose edges are in question */
-    struct crossing_face face; /* that */
+    uint32_t tri;     /* the face being tested */
+    struct crossing_face face; /* geometry of `tri` */
     bool crosses;
 };
 
@@ -35,7 +35,8 @@ static void face_init(struct crossing_face *face, const struct trimesh *mesh, ui
     face->height_m = face->longest_m > 0 ? doubled_m2 / face->longest_m : 0;
 }
 
-/* From the plane of a face to the corners of another one. True: they are all to one side of it, or clear_m from it at most. */
+/* Computes the heights of a face's corners over another face's plane. Returns true if they are all on one side of the plane, or at most
+   clear_m beyond it. */
 static bool lies_to_one_side(const struct crossing_face *plane, const struct crossing_face *face, double clear_m, double heights_m[3])
 {
     double low_m = INFINITY, high_m = -INFINITY;
@@ -49,7 +50,7 @@ static bool lies_to_one_side(const struct crossing_face *plane, const struct cro
     return high_m <= clear_m || low_m >= -clear_m;
 }
 
-/* How far a place in a face's plane is beyond its side from corner i to the next one. */
+/* Returns how far a point in a face's plane is beyond its side from corner i to the next. */
 static double beyond_side(const struct crossing_face *face, int i, const double place[3])
 {
     double along[3], out[3], from[3];
@@ -60,7 +61,7 @@ static double beyond_side(const struct crossing_face *face, int i, const double 
     return vec_dot(from, out);
 }
 
-/* Whether a face lies to one side of the line from a to b, in its plane. */
+/* Returns whether a face is on one side of the line from a to b, in the face's plane. */
 static bool lies_beside(const struct crossing_face *face, const double a[3], const double b[3], double margin_m)
 {
     double along[3], across[3], low_m = INFINITY, high_m = -INFINITY;
@@ -76,7 +77,7 @@ static bool lies_beside(const struct crossing_face *face, const double a[3], con
     return low_m > margin_m || high_m < -margin_m;
 }
 
-/* The corner of a face that is also the other one's; -1: none. */
+/* Returns the corner of a face that the other face shares; -1: none. */
 static int shared_corner(const struct crossing_face *face, const struct crossing_face *other)
 {
     for (int i = 0; i < 3; i++)
@@ -86,8 +87,7 @@ static int shared_corner(const struct crossing_face *face, const struct crossing
     return -1;
 }
 
-/* The face, which reaches through the plane of `other`, cuts it along a line: whether that stays clear of `other`, but for a corner that
-   both have. */
+/* The face crosses the plane of `other` along a line. Returns whether that line stays clear of `other`, except for a shared corner. */
 static bool cuts_beside(const struct crossing_face *face, const double heights_m[3], const struct crossing_face *other, double margin_m)
 {
     const int shared = shared_corner(face, other), from = shared_corner(other, face);
@@ -100,7 +100,8 @@ static bool cuts_beside(const struct crossing_face *face, const double heights_m
         vec_mix(face->at[i], face->at[j], heights_m[i] / (heights_m[i] - heights_m[j]), ends[count++]);
     }
     for (int i = 0; i < 3; i++) {
-        bool beyond = count > 0 && (from < 0 || i == from || (i + 1) % 3 == from); /* from a corner, sides at it alone tell */
+        /* with a shared corner only the sides at that corner decide */
+        bool beyond = count > 0 && (from < 0 || i == from || (i + 1) % 3 == from);
         for (int end = 0; end < count; end++)
             beyond = beyond && beyond_side(other, i, ends[end]) > margin_m;
         if (beyond)

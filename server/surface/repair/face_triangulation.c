@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Points set into one triangle, and sides between them. */
+/* Inserts points into one triangle, and edges between them. */
 #include "surface/repair/face_triangulation.h"
 
 #include <math.h>
@@ -9,8 +9,8 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define ON_EDGE 1e-9 /* a weight below this is on the edge */
-#define ON_WAY 1e-6  /* as near to a straight way, as a share of its length, it passes over a point */
+#define ON_EDGE 1e-9 /* a point with a smaller weight is on the edge */
+#define ON_WAY 1e-6  /* a straight line passes over a point if it is nearer than this, relative to the line's length */
 
 void face_triangulation_finish(struct face_triangulation *face)
 {
@@ -42,7 +42,7 @@ static double twice_area(const struct face_triangulation *face, uint32_t a, uint
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-/* The sub-triangle that holds a local point: the one whose smallest weight is largest. */
+/* Finds the sub-triangle that contains a local point: the one whose smallest weight is largest. */
 static size_t locate(const struct face_triangulation *face, uint32_t point, double weights[3])
 {
     size_t best = 0;
@@ -64,7 +64,7 @@ static size_t locate(const struct face_triangulation *face, uint32_t point, doub
     return best;
 }
 
-/* Splits every sub-triangle that has the side u-v at the point. */
+/* Splits every sub-triangle with the side u-v at the point. */
 static void split_side(struct face_triangulation *face, uint32_t u, uint32_t v, uint32_t point)
 {
     size_t count = face->tri_count;
@@ -97,7 +97,7 @@ void face_triangulation_insert(struct face_triangulation *face, uint32_t point)
 
 /* --- sides between points ------------------------------------------------------------------------------------------------------ */
 
-struct crossed { /* sides that a straight way crosses, in the order that they are found */
+struct crossed { /* sides that a straight line crosses, in order */
     uint32_t (*sides)[2];
     size_t count, capacity;
 };
@@ -108,7 +108,7 @@ static void add_crossed(struct crossed *crossed, uint32_t a, uint32_t b)
     memcpy(crossed->sides[crossed->count++], (const uint32_t[2]){ a, b }, sizeof(*crossed->sides));
 }
 
-/* The triangle with the side from a to b, and its third corner; tri_count: there is none. */
+/* Returns the triangle with the side from a to b, and its third corner; tri_count: there is none. */
 static size_t find_side(const struct face_triangulation *face, uint32_t a, uint32_t b, uint32_t *apex)
 {
     for (size_t t = 0; t < face->tri_count; t++)
@@ -120,7 +120,7 @@ static size_t find_side(const struct face_triangulation *face, uint32_t a, uint3
     return face->tri_count;
 }
 
-/* Is it on the way from u to v, or at its end? */
+/* Returns whether a point is on the line from u to v, or at its end. */
 static bool is_passed(const struct face_triangulation *face, uint32_t u, uint32_t v, uint32_t point)
 {
     const double *p = face->at[u], *q = face->at[v], *r = face->at[point];
@@ -128,8 +128,9 @@ static bool is_passed(const struct face_triangulation *face, uint32_t u, uint32_
     return point == v || (along > ON_WAY * length2 && along < length2 && fabs(twice_area(face, u, v, point)) < ON_WAY * length2);
 }
 
-/* Where the way from u to v ends or passes over a point, and the sides that it crosses until there. u: it leads nowhere. */
-static uint32_t follow_way(const struct face_triangulation *face, uint32_t u, uint32_t v, struct crossed *crossed)
+/* Follows the line from u to v until it ends or passes over a point, and collects the crossed sides. Returns that point; u: the line leads
+   nowhere. */
+static uint32_t follow_line(const struct face_triangulation *face, uint32_t u, uint32_t v, struct crossed *crossed)
 {
     uint32_t right = u, left = u, apex;
     for (size_t t = 0; t < face->tri_count; t++)
@@ -144,7 +145,7 @@ static uint32_t follow_way(const struct face_triangulation *face, uint32_t u, ui
                 left = b;
             }
         }
-    while (right != left && crossed->count < face->tri_count) { /* flat triangles may lead round and round */
+    while (right != left && crossed->count < face->tri_count) { /* flat triangles might lead around in circles */
         add_crossed(crossed, right, left);
         if (find_side(face, left, right, &apex) == face->tri_count)
             return u;
@@ -158,8 +159,8 @@ static uint32_t follow_way(const struct face_triangulation *face, uint32_t u, ui
     return u;
 }
 
-/* Turns the side from a to b; false: the two triangles at it are no convex quadrangle. */
-static bool turn_side(struct face_triangulation *face, const uint32_t side[2], uint32_t turned[2])
+/* Flips the side from a to b. Returns false if its two triangles are no convex quadrilateral. */
+static bool flip_side(struct face_triangulation *face, const uint32_t side[2], uint32_t turned[2])
 {
     uint32_t a = side[0], b = side[1], c = a, d = a;
     size_t one = find_side(face, a, b, &c), other = find_side(face, b, a, &d);
@@ -179,19 +180,19 @@ static bool is_crossed(const struct face_triangulation *face, uint32_t u, uint32
     return (twice_area(face, u, v, side[0]) > 0) != (twice_area(face, u, v, side[1]) > 0);
 }
 
-/* Sloan 1993: each side that is in the way is turned until none is. */
+/* Sloan 1993: flips each crossing side until none is left. */
 void face_triangulation_connect(struct face_triangulation *face, uint32_t u, uint32_t v)
 {
     struct crossed crossed = { 0 };
     size_t steps = 0;
     for (uint32_t end; u != v && steps++ < face->count; u = end) {
         crossed.count = 0;
-        end = follow_way(face, u, v, &crossed);
+        end = follow_line(face, u, v, &crossed);
         if (end == u)
             break;
         for (size_t i = 0, most = 4 * crossed.count * crossed.count; i < crossed.count && i < most; i++) {
             uint32_t side[2] = { crossed.sides[i][0], crossed.sides[i][1] }, turned[2];
-            if (!turn_side(face, side, turned))
+            if (!flip_side(face, side, turned))
                 add_crossed(&crossed, side[0], side[1]);
             else if (is_crossed(face, u, end, turned))
                 add_crossed(&crossed, turned[0], turned[1]);

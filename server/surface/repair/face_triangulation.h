@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangulation of one face while points and edges are inserted into it: points in its plane, and triangles between them with one
+/* Triangulation of one face while points and edges are inserted: points in the face's plane, and triangles between them with one
    orientation. */
 #ifndef SURFACE_REPAIR_FACE_TRIANGULATION_H
 #define SURFACE_REPAIR_FACE_TRIANGULATION_H
@@ -7,21 +7,21 @@
 #include <stdint.h>
 
 struct face_triangulation {
-    uint32_t *ids; /* of its points, in the mesh */
+    uint32_t *ids; /* per point: its number in the mesh */
     double (*at)[2];
-    uint32_t (*tris)[3]; /* of its points */
+    uint32_t (*tris)[3]; /* indices of points of this triangulation */
     size_t count, capacity, at_capacity, tri_count, tri_capacity;
 };
 
 /* Frees the triangulation. */
 void face_triangulation_finish(struct face_triangulation *face);
-/* Appends a point, the mesh's point `id`, at (x, y) in the face's plane. Returns its number here; no triangle uses it yet. */
+/* Appends the mesh's point `id` at (x, y) in the face's plane. Returns its number in the triangulation; no triangle uses the point yet. */
 uint32_t face_triangulation_add_point(struct face_triangulation *face, uint32_t id, double x, double y);
 /* Appends a triangle of three points. */
 void face_triangulation_add_tri(struct face_triangulation *face, uint32_t a, uint32_t b, uint32_t c);
-/* Splits the triangle that contains the point, or the two triangles at the edge that it lies on. */
+/* Splits the triangle that contains the point, or the two triangles at the edge that contains it. */
 void face_triangulation_insert(struct face_triangulation *face, uint32_t point);
-/* Makes the straight line from u to v an edge, or several over points that it passes through, by flipping the edges that cross it. */
+/* Makes the straight line from u to v an edge, or several edges if it passes over points, by flipping the edges that cross it. */
 void face_triangulation_connect(struct face_triangulation *face, uint32_t u, uint32_t v);
 
 #endif

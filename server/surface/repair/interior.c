@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles inside another, closed part, or covered by one, by counting what rays meet. */
+/* Finds triangles inside another, closed part, or covered by one, by counting ray intersections. */
 #include "surface/repair/interior.h"
 
 #include <math.h>
@@ -10,20 +10,20 @@
 #include "surface/mesh/bvh.h"
 
 #define RAYS 5
-#define RAYS_INSIDE 4 /* so many must agree */
-#define VOTE_EVERY 16 /* of a region's triangles, one of so many is asked */
-#define BESIDE 1.5    /* reaches: so far to either side of a triangle that lies on another part's surface is looked */
-#define BARELY 0.05   /* likewise, of one that may be inside its own part */
-#define FLUSH 0.9     /* cosine between faces that lie on each other, at least */
-#define SLIVER 2.0    /* likewise, high: a triangle that looks anywhere */
+#define RAYS_INSIDE 4 /* number of rays that must agree */
+#define VOTE_EVERY 16 /* one of this many triangles of a region is tested */
+#define BESIDE 1.5    /* reaches: distance of test points on either side of a triangle that lies on another part's surface */
+#define BARELY 0.05   /* reaches: distance of test points from a triangle that may be inside its own part */
+#define FLUSH 0.9     /* smallest cosine between faces that lie on each other */
+#define SLIVER 2.0    /* reaches: height of a triangle whose normal is not reliable */
 
 struct solid { /* a closed part, as it was before it was cut up */
     uint32_t part;
-    bool is_thin; /* a plate: what ends within it is near both sides of it */
-    bool winds;   /* it passes through itself: its inside is what it goes round */
+    bool is_thin; /* a plate: a triangle that ends inside is near both of its sides */
+    bool winds;   /* self-intersecting body: the winding number decides what is inside */
     double low[3], high[3];
-    struct trimesh mesh;     /* its triangles; the arrays belong to others */
-    const signed char *side; /* side of its triangles, as in struct body_parts */
+    struct trimesh mesh;     /* its triangles; the arrays are not owned */
+    const signed char *side; /* per triangle, as in struct body_parts */
     struct bvh *bvh;
 };
 
@@ -31,8 +31,8 @@ struct solids {
     struct solid *at;
     size_t count;
     uint32_t (*tris)[3];    /* of all parts, part by part */
-    signed char *sides;     /* likewise */
-    struct solid **of_part; /* NULL: it is not closed */
+    signed char *sides;     /* the same for sides */
+    struct solid **of_part; /* by part; NULL: the part is not closed */
 };
 
 static void solids_finish(struct solids *solids)
@@ -45,7 +45,7 @@ static void solids_finish(struct solids *solids)
     mem_free(solids->of_part);
 }
 
-static void surface_pass_init(struct solid *solid)
+static void solid_init(struct solid *solid)
 {
     for (int axis = 0; axis < 3; axis++) {
         solid->low[axis] = INFINITY;
@@ -92,7 +92,7 @@ static void solids_init(struct solids *solids, const struct body_parts *parts)
         solids->sides[at] = parts->side[t];
     }
     for (size_t i = 0; i < solids->count; i++)
-        surface_pass_init(&solids->at[i]);
+        solid_init(&solids->at[i]);
     mem_free(first);
 }
 
@@ -101,23 +101,23 @@ struct interior_search {
     const uint32_t *part;
     const struct body_parts *parts;
     const struct solids *solids;
-    const size_t *asked; /* triangles to look at */
+    const size_t *asked; /* triangles to test */
     char *hidden;
 };
 
-/* Directions that no model is aligned to. */
+/* Directions that no model is aligned with. */
 static const double directions[RAYS][3] = {
     { 0.3572, 0.6129, 0.7048 },    { -0.7741, 0.2417, 0.5851 }, { 0.1693, -0.8846, 0.4345 },
     { -0.4419, -0.3251, -0.8361 }, { 0.8523, 0.2951, -0.4318 },
 };
 
 #define HITS 32
-struct hits { /* of one ray */
+struct hits { /* intersections of one ray */
     const struct solid *solid;
     const double *direction;
     double same_m;
-    int count, turns; /* count: of places; turns: how often it goes out more than in */
-    struct ray_hits { /* the first places */
+    int count, turns; /* count: of points hit; turns: exits minus entries */
+    struct ray_hits { /* the first points hit */
         double t;
         int faces;
         bool bounds;
@@ -143,7 +143,7 @@ static void count_hit(void *arg, uint32_t tri, double t)
     hits->count++;
 }
 
-/* Two faces at one place are a wall between two bodies. */
+/* Returns whether the ray started inside. Two faces at one point are a wall between two bodies and count twice. */
 static bool says_inside(const struct hits *hits)
 {
     int bounds = hits->count > HITS ? hits->count - HITS : 0;
@@ -179,13 +179,13 @@ static bool is_inside(const struct solid *solid, const double place[3], double s
     return inside >= RAYS_INSIDE;
 }
 
-struct interior_face { /* in question: its middle and normal, and the solid that it is part of, if that is closed */
+struct interior_face { /* the triangle being tested: centre and normal, and the solid that it belongs to if that is closed */
     double middle[3], normal[3];
-    double height_m; /* over its longest edge */
+    double height_m; /* height over its longest edge */
     const struct solid *own;
 };
 
-/* Is one side of it inside the one solid, and the other side inside the other? */
+/* Returns whether one side of the face is inside one solid and the other side inside the other. */
 static bool is_between(const struct interior_face *face, const double normal[3], const struct solid *one, const struct solid *other,
                        double beside_m, double same_m)
 {
@@ -216,7 +216,7 @@ static char is_hidden_by(const struct interior_face *face, const struct solid *s
     double length = vec_length(n);
     for (int axis = 0; axis < 3; axis++)
         n[axis] /= length;
-    /* A sliver between points of both looks anywhere. */
+    /* A sliver between points of both parts has an arbitrary normal. */
     bool lies = fabs(vec_dot(n, face->normal)) > FLUSH, flush = lies || face->height_m < SLIVER * reach_m;
     if (face->own && flush && is_between(face, n, solid, face->own, BESIDE * reach_m, BARELY * reach_m))
         return INTERIOR_INSIDE;
@@ -265,7 +265,7 @@ static void search_some(void *arg, size_t begin, size_t end)
 
 /* --- regions ------------------------------------------------------------------------------------------------------------------ */
 
-/* Points where triangles of several parts meet. A part passes from outside to inside another only there. */
+/* Marks points where triangles of several parts meet. Only there can a part pass from the outside to the inside of another. */
 static void mix_parts(const struct trimesh *mesh, const uint32_t *part, char *mixed)
 {
     uint32_t *of_point = mem_array(mesh->point_count, sizeof(*of_point));
@@ -279,7 +279,8 @@ static void mix_parts(const struct trimesh *mesh, const uint32_t *part, char *mi
     mem_free(of_point);
 }
 
-/* Points on edges with three faces or more: a part passes from outside to inside itself there, or where it was found to cross itself. */
+/* Marks points on edges with three faces or more, and points where a part crosses itself: only there can a part pass from its outside to
+   its inside. */
 static void mix_branches(const struct trimesh *mesh, const uint32_t *part, const char *tangled, char *mixed)
 {
     struct edge_table edges;
@@ -296,7 +297,7 @@ static void mix_branches(const struct trimesh *mesh, const uint32_t *part, const
     mem_free(faces);
 }
 
-/* region[point]: points that hang together without passing a point where parts meet. */
+/* Returns per point its region: points connected without passing a marked point. */
 static uint32_t *find_regions(const struct trimesh *mesh, const char *mixed)
 {
     uint32_t *region = mem_array(mesh->point_count, sizeof(*region));
@@ -313,7 +314,7 @@ static uint32_t *find_regions(const struct trimesh *mesh, const char *mixed)
     return region;
 }
 
-/* The region that a triangle belongs to, TRIMESH_NONE: all its corners are where parts meet. */
+/* Returns the region of a triangle. TRIMESH_NONE: all its corners are marked. */
 static uint32_t region_of(const struct trimesh *mesh, size_t t, const char *mixed, const uint32_t *region)
 {
     for (int i = 0; i < 3; i++)
@@ -336,12 +337,12 @@ static void ask(struct interior_search *search, struct workers *workers, const s
         search_some(search, 0, count);
 }
 
-/* A few triangles of a region may be missed by those that are asked of it. They show at a point within it where triangles that are hidden
-   meet others: all at it are asked, until no more such points come up. */
+/* Testing a part of a region's triangles may miss a few. They show at points of the region where hidden and visible triangles meet: all
+   triangles at such points are tested, until there are no more such points. */
 static void ask_beside(struct interior_search *search, struct workers *workers, const char *mixed, size_t *asked, char *was_asked)
 {
     const struct trimesh *mesh = search->mesh;
-    char *kinds = mem_array(mesh->point_count, 1); /* of the triangles at each point: 1: seen, 2: hidden */
+    char *kinds = mem_array(mesh->point_count, 1); /* triangles at each point: bit 1 visible, bit 2 hidden */
     size_t count;
     do {
         memset(kinds, 0, mesh->point_count);
@@ -368,7 +369,7 @@ struct region_vote { /* votes of a region */
     char most;
 };
 
-/* A closed part hides what is of others, or of itself where it passes through itself. */
+/* Returns whether any closed part may hide others, or itself where it intersects itself. */
 static bool may_hide(const struct body_parts *parts)
 {
     for (size_t p = 0; p < parts->count; p++)
@@ -394,7 +395,7 @@ bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struc
     size_t *asked = mem_array(mesh->tri_count, sizeof(*asked)), asked_count = 0;
     struct region_vote *votes = mem_array(mesh->point_count, sizeof(*votes));
     struct interior_search search = { .mesh = mesh, .part = part, .parts = parts, .solids = &solids, .hidden = hidden };
-    for (size_t t = 0; t < mesh->tri_count; t++) { /* those where parts meet, and of each region some */
+    for (size_t t = 0; t < mesh->tri_count; t++) { /* all triangles where parts meet, and a sample of each region */
         uint32_t r = region_of(mesh, t, mixed, region);
         if (!untouched(mesh, t, mixed) || votes[r].seen++ % VOTE_EVERY == 0)
             asked[asked_count++] = t;
@@ -411,7 +412,7 @@ bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struc
             vote->most = hidden[asked[i]] > vote->most ? hidden[asked[i]] : vote->most;
         }
     asked_count = 0;
-    for (size_t t = 0; t < mesh->tri_count; t++) { /* regions that do not agree with themselves are asked in full */
+    for (size_t t = 0; t < mesh->tri_count; t++) { /* regions whose votes differ are tested in full */
         const struct region_vote *vote = untouched(mesh, t, mixed) ? &votes[region_of(mesh, t, mixed, region)] : NULL;
         if (vote && vote->hidden > 0 && vote->hidden < vote->asked)
             asked[asked_count++] = t;

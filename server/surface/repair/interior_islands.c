@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Visible triangles left over amid hidden ones. */
+/* Hides visible triangles left over among hidden ones. */
 #include <math.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "surface/repair/interior.h"
 
-struct island {                /* by its lowest point */
-    double seen_m2, hidden_m2; /* area; of hidden triangles that touch it */
-    bool free;                 /* a point of it touches none */
+struct island {                /* group of visible triangles, indexed by its lowest point */
+    double seen_m2, hidden_m2; /* seen_m2: its area; hidden_m2: of hidden triangles that touch it */
+    bool free;                 /* a point of the group touches no hidden triangle */
 };
 
 void interior_islands(const struct trimesh *mesh, char *hidden)
@@ -44,7 +44,8 @@ void interior_islands(const struct trimesh *mesh, char *hidden)
 void interior_resolve_across(const struct trimesh *mesh, char *hidden)
 {
     uint32_t *seen = mem_array(mesh->point_count, sizeof(*seen)), *group = mem_array(mesh->point_count, sizeof(*group));
-    uint32_t *first = mem_array(mesh->point_count, sizeof(*first)); /* of a group, by its lowest point: the first piece that it touches */
+    /* per group, by its lowest point: the first visible piece that it touches */
+    uint32_t *first = mem_array(mesh->point_count, sizeof(*first));
     char *is_seen = mem_array(mesh->point_count, 1), *joins = mem_array(mesh->point_count, 1);
     for (uint32_t i = 0; i < mesh->point_count; i++) {
         seen[i] = group[i] = i;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether surfaces look at each other. */
+/* Tests whether surfaces face each other. */
 #include "surface/repair/line_of_sight.h"
 
 #include <math.h>
@@ -7,8 +7,8 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define LOOKS 0.5    /* cosine between a face's normal and the way to what it looks at, at least */
-#define NEXT_TO 1e-3 /* of the way */
+#define LOOKS 0.5    /* smallest cosine between a face's normal and the direction to the point it looks at */
+#define NEXT_TO 1e-3 /* relative to the distance */
 
 static void list_triangles(struct line_of_sight *sight)
 {
@@ -42,13 +42,13 @@ void line_of_sight_finish(struct line_of_sight *sight)
     mem_free(sight->at);
 }
 
-/* Of an open part: who knows which way is outwards? */
+/* Returns whether the triangle's part is open, so that its outer side is unknown. */
 static bool looks_both_ways(const struct line_of_sight *sight, uint32_t tri)
 {
     return !sight->parts->closed[sight->parts->of_source[sight->mesh->tri_source[tri]]];
 }
 
-/* Outwards, of length 1, or 0: it bounds nothing, and looks nowhere. */
+/* Computes the outward unit normal; 0 if the triangle bounds nothing, and so looks nowhere. */
 static void find_normal(const struct line_of_sight *sight, uint32_t tri, double n[3])
 {
     const struct trimesh *mesh = sight->mesh;
@@ -101,7 +101,7 @@ static void block(void *arg, uint32_t tri, double t)
     ray->is_blocked = ray->is_blocked || (t > NEXT_TO && t < 1 + NEXT_TO && ray->sight->body[tri] == ray->own);
 }
 
-/* By its own body: a wall between two bodies that are one part looks at what is behind one of them. */
+/* Returns whether the point's own body blocks the view: a wall between two bodies of one part would look at things behind one of them. */
 static bool is_blocked(const struct line_of_sight *sight, const double from[3], const double way[3], uint32_t own)
 {
     struct sight_ray ray = { sight, own, false };

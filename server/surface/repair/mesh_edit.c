@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Setting points into edges and faces, and cutting up the triangles that they touch. */
+/* Inserts points into edges and faces, and triangulates the triangles that contain them. */
 #include "surface/repair/mesh_edit.h"
 
 #include <math.h>
@@ -71,14 +71,14 @@ static void find_targets(const struct mesh_edit *edit, size_t point_count, uint3
         target[i] = trimesh_root(target, i);
 }
 
-struct crossing_lists { /* items by edge (lower points first, then by t) and by triangle */
+struct crossing_lists { /* insertions by edge (from the lower point, by t) and by triangle */
     struct edge_table edges;
-    uint32_t *edge_first, *tri_first; /* of each edge number, each triangle; one more at the end */
+    uint32_t *edge_first, *tri_first; /* by edge number and by triangle: first item; one more at the end */
     struct mesh_edit_insertion *by_edge;
     uint32_t *by_tri;
-    uint32_t *target;                   /* of each point: the one it becomes */
-    uint32_t *partner_first, *partners; /* of each of these: those that it is joined to; NULL: none is */
-    uint32_t *slot;                     /* likewise: one more than its place in the piece in hand, 0: it is not in it */
+    uint32_t *target;                   /* per point: the point that replaces it */
+    uint32_t *partner_first, *partners; /* per replaced point: the points to connect it with; NULL: there are none */
+    uint32_t *slot;                     /* per replaced point: one more than its index in the current face, 0: not in it */
 };
 
 static int by_t(const void *a, const void *b)
@@ -87,7 +87,7 @@ static int by_t(const void *a, const void *b)
     return p->t < q->t ? -1 : p->t > q->t;
 }
 
-/* Both ways, of what the points become. */
+/* Lists connections in both directions, between replaced points. */
 static void lists_partners(struct crossing_lists *lists, const struct mesh_edit_pair *joins, size_t count, size_t point_count)
 {
     if (!count)
@@ -161,7 +161,7 @@ static bool is_corner(const uint32_t corners[3], uint32_t point)
     return point == corners[0] || point == corners[1] || point == corners[2];
 }
 
-/* Local points on the side from a to b (global c0 to c1), in that order, without the ends. */
+/* Lists the local points on the side from a to b, in order, without the ends. */
 static size_t side(struct face_triangulation *face, const struct crossing_lists *lists, const uint32_t corners[3], uint32_t a, uint32_t b,
                    uint32_t *out)
 {
@@ -187,7 +187,7 @@ static double distance2(const struct face_triangulation *face, uint32_t a, uint3
     return x * x + y * y;
 }
 
-/* The chains a-b, which has most points, and a-c-b closed like a zip, as trimesh_sample does. */
+/* Triangulates between the chain a-b, which has most points, and a-c-b, like a zip, as trimesh_sample() does. */
 static void zip(struct face_triangulation *face, const uint32_t *low, size_t low_count, const uint32_t *high, size_t high_count)
 {
     size_t i = 1, j = 1, ab = low_count - 1, acb = high_count - 1;
@@ -255,7 +255,7 @@ static bool touched(const struct crossing_lists *lists, const uint32_t v[3], siz
            edge_table_find(&lists->edges, v[1], v[2]) != TRIMESH_NONE || edge_table_find(&lists->edges, v[2], v[0]) != TRIMESH_NONE;
 }
 
-/* A point in the plane of the triangle, from its place in space. */
+/* Inserts a point into the triangle's plane, from its position in space. */
 static void set_point(struct face_triangulation *face, const struct trimesh *mesh, const uint32_t corners[3], uint32_t id)
 {
     double w[3];
@@ -267,7 +267,7 @@ static void set_point(struct face_triangulation *face, const struct trimesh *mes
     }
     for (size_t i = 0; i < face->count; i++)
         if (face->ids[i] == id)
-            return; /* it is there already, as a corner or on a side */
+            return; /* the point is there already, as a corner or on a side */
     face_triangulation_insert(face, face_triangulation_add_point(face, id, x, y));
 }
 
@@ -295,7 +295,7 @@ static void cut(struct cutter *cutter, const struct crossing_lists *lists, struc
     uint32_t corners[3], source = mesh->tri_source[t];
     memcpy(corners, mesh->tris[t], sizeof(corners));
     lay_out(face, mesh, corners);
-    uint32_t a = 0; /* the side with most points begins at a */
+    uint32_t a = 0; /* start of the side with most points */
     for (uint32_t i = 1; i < 3; i++)
         if (side_count(lists, corners, i) > side_count(lists, corners, a))
             a = i;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which faces of a body look the same way, and which are walls within it. */
+/* Orients the faces of parts outwards, finds walls within parts, and limits the reach of thin parts. */
 #include "surface/repair/parts.h"
 
 #include <math.h>
@@ -9,13 +9,14 @@
 #include "base/mem.h"
 #include "surface/repair/parts_impl.h"
 
-#define DOUBLES 0.75 /* of a wall's area, at least: slits that stay in one layer leave single pieces at a wall */
+/* smallest share of a wall's area with doubled triangles: slits that stay in one layer leave single pieces at a wall */
+#define MIN_DOUBLED_SHARE 0.75
 #define OF_THICKNESS 0.5
-#define REACH_LEAST 0.05 /* tolerances */
+#define MIN_REACH 0.05 /* smallest reach, in tolerances */
 
 /* --- which way patches face ----------------------------------------------------------------------------------------------- */
 
-/* Turns patches whose volume, seen from their middle, is negative: outwards is the same side for all. */
+/* Flips patches whose volume, relative to their centre, is negative, so that all face outwards. */
 static void face_outwards(struct parts_finding *f)
 {
     const struct trimesh *mesh = &f->parts->solid;
@@ -45,9 +46,8 @@ static void face_outwards(struct parts_finding *f)
     mem_free(votes);
 }
 
-/* Where two bodies touch with the same vertices, welding left one face of two: it is a wall between them. A patch that ends at edges of
-   three faces or more, and whose triangles are there twice as often as others of its part, is such a wall. What stands on a surface,
-   like a fin, bounds nothing either. */
+/* Finds walls: where two bodies touch with identical vertices, welding left one face of two. Such a patch ends at edges of three faces or
+   more, and its triangles have twice the multiplicity of others in its part. A fin, which stands on a surface, bounds nothing either. */
 static void drop_walls(struct parts_finding *f, const uint32_t *times)
 {
     struct body_parts *parts = f->parts;
@@ -65,7 +65,7 @@ static void drop_walls(struct parts_finding *f, const uint32_t *times)
     }
     for (size_t t = 0; t < mesh->tri_count; t++) {
         const struct surface_patch *patch = &f->patches[f->patch[t]];
-        bool fin = patch->open_m > patch->branching_m, wall = patch->doubles_m2 > DOUBLES * patch->area_m2;
+        bool fin = patch->open_m > patch->branching_m, wall = patch->doubles_m2 > MIN_DOUBLED_SHARE * patch->area_m2;
         if (patch->loose || (patch->branching_m > 0 && (fin || wall)))
             parts->side[t] = 0;
     }
@@ -74,7 +74,8 @@ static void drop_walls(struct parts_finding *f, const uint32_t *times)
 
 /* --- how near is touching --------------------------------------------------------------------------------------------------- */
 
-/* A plate's thickness is twice its volume by its area; other bodies are thicker than that. */
+/* Limits the reach to half of the thickness, estimated as twice the volume over the area. That is exact for plates; other bodies are
+   thicker. */
 static void limit_reach(struct body_parts *parts, double tolerance_m)
 {
     const struct trimesh *mesh = &parts->solid;
@@ -93,7 +94,7 @@ static void limit_reach(struct body_parts *parts, double tolerance_m)
     for (size_t p = 0; p < parts->count; p++)
         if (parts->closed[p]) {
             double thickness_m = 2 * fabs(volume_m3[p]) / area_m2[p];
-            parts->reach_m[p] = min_of(tolerance_m, max_of(OF_THICKNESS * thickness_m, REACH_LEAST * tolerance_m));
+            parts->reach_m[p] = min_of(tolerance_m, max_of(OF_THICKNESS * thickness_m, MIN_REACH * tolerance_m));
             parts->thin[p] = parts->reach_m[p] < tolerance_m;
         }
     mem_free(area_m2);

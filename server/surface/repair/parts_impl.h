@@ -8,15 +8,17 @@
 struct parts_finding {
     struct body_parts *parts;
     struct tri_edges edges;
-    uint32_t *patch;                         /* of each triangle: its lowest one */
-    struct surface_patch {                   /* by its lowest triangle */
-        double open_m, branching_m, area_m2; /* edges with one face; with three or more, of which it has only one */
-        double doubles_m2;                   /* of triangles that are there twice as often as others of the part */
-        bool loose;                          /* it stands on others, and is open */
+    uint32_t *patch;       /* per triangle: lowest triangle of its patch */
+    struct surface_patch { /* indexed by the patch's lowest triangle */
+        /* open_m: length of edges with one face; branching_m: of edges with three or more faces, one of them the patch's */
+        double open_m, branching_m, area_m2;
+        double doubles_m2; /* area of triangles with at least twice the multiplicity of the part's others */
+        bool loose;        /* the patch stands on others, and is open */
     } * patches;
 };
 
-/* Finds edges, patches and parts of parts->solid, which of them are closed, and the bodies of mesh, whose triangles are the solid's. */
+/* Finds edges, patches and parts of parts->solid, decides which are closed, and assigns bodies to the triangles of `mesh`, which equal the
+   solid's. */
 void parts_number(struct parts_finding *f, const struct trimesh *mesh);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which triangles make up a body: patches, what stands on them, and how they hang together. */
+/* Finds which triangles make up a body: patches, fins that stand on them, and how patches are connected. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,8 +8,9 @@
 #include "base/mem.h"
 #include "surface/repair/parts_impl.h"
 
-#define OPEN_OF_SIZE 0.05 /* open edges together, in roots of the area: a hair gap's leftovers, not a pipe's end */
-#define ALONE 0.5         /* likewise, of a patch and all edges that it ends at */
+/* total length of open edges, relative to the root of the area: leftovers of a hair gap rather than the end of a pipe */
+#define MAX_OPEN_OF_SIZE 0.05
+#define MAX_BODY_OPEN_OF_SIZE 0.5 /* the same for a patch, counting all edges at which it ends */
 
 static double edge_length(const struct trimesh *mesh, size_t t, int i)
 {
@@ -31,12 +32,12 @@ static void find_patches(struct parts_finding *f)
 
 /* --- what hangs together ------------------------------------------------------------------------------------------------------ */
 
-/* Faces at edges with three or more, edge by edge and there patch by patch: one patch with so many faces. A patch with two of them runs
-   through there, and the others only stand on it, as a fin does. */
+/* Faces at edges with three or more faces, sorted by edge and patch; one entry per patch. A patch with two of them continues through the
+   edge, and the others only stand on it, like a fin. */
 struct branches {
     struct open_branch {
         uint32_t edge, patch, faces;
-        bool runs_through; /* some patch does at this edge */
+        bool runs_through; /* a patch continues through this edge */
         double length_m;
     } * at;
     size_t count;
@@ -101,23 +102,23 @@ static bool stands(const struct open_branch *branch)
     return branch->runs_through && branch->faces == 1;
 }
 
-struct core { /* patches that hang together otherwise than by standing on each other; by its lowest triangle */
+struct core { /* patches connected in other ways than by standing on each other; indexed by the lowest triangle */
     double open_m, area_m2;
     bool stands;
 };
 
 static bool is_closed(double open_m, double area_m2)
 {
-    return open_m <= OPEN_OF_SIZE * sqrt(area_m2);
+    return open_m <= MAX_OPEN_OF_SIZE * sqrt(area_m2);
 }
 
-/* Patches at each other's edges are one part, but not two closed ones where one only stands on the other, or on something that does: fins
-   of two bodies, joined by a seam, do not make the bodies one. of: of each triangle, its patch; becomes its part, by the lowest one. */
+/* Joins patches that meet at edges into parts, but not two closed ones where one only stands on the other, or on a fin: fins of two bodies,
+   joined by a seam, do not make the bodies one. of: per triangle, its patch; becomes its part, named by the lowest triangle. */
 static void join_patches(struct parts_finding *f, const struct branches *b, uint32_t *of)
 {
     size_t tri_count = f->parts->solid.tri_count;
     struct core *cores = mem_array(tri_count, sizeof(*cores));
-    char *holds = mem_array(tri_count, 1); /* of a part, by its root: it has a closed core */
+    char *holds = mem_array(tri_count, 1); /* per part, by its root: it contains a closed core */
     for (size_t i = 1; i < b->count; i++)
         if (b->at[i].edge == b->at[i - 1].edge && !b->at[i].runs_through)
             trimesh_join(of, b->at[i - 1].patch, b->at[i].patch);
@@ -152,7 +153,7 @@ static void number_parts(struct parts_finding *f, const struct branches *b)
     uint32_t *number = mem_array(tri_count, sizeof(*number)), *part = parts->of_tri;
     memcpy(part, f->patch, tri_count * sizeof(*part));
     join_patches(f, b, part);
-    for (uint32_t t = 0; t < tri_count; t++) /* the root is the lowest, so it is numbered before the others ask for it */
+    for (uint32_t t = 0; t < tri_count; t++) /* the root is the lowest triangle, so it is numbered first */
         number[t] = trimesh_root(part, t) == t ? (uint32_t)parts->count++ : number[trimesh_root(part, t)];
     memcpy(part, number, tri_count * sizeof(*part));
     mem_free(number);
@@ -165,7 +166,7 @@ static void find_closed(struct parts_finding *f)
     double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *open_m = mem_array(parts->count, sizeof(*open_m));
     for (size_t t = 0; t < mesh->tri_count; t++) {
         double n[3], open = 0;
-        bool fin = f->patches[f->patch[t]].loose; /* so is what stands on an edge that is closed without it */
+        bool fin = f->patches[f->patch[t]].loose; /* a fin, or a triangle on an edge that is closed without it */
         trimesh_normal(mesh, t, n);
         area_m2[parts->of_tri[t]] += vec_length(n) / 2;
         for (int i = 0; i < 3; i++) {
@@ -182,13 +183,13 @@ static void find_closed(struct parts_finding *f)
     mem_free(open_m);
 }
 
-/* Bodies that a few edges join to others by mistake are told from them: such a patch is nearly closed by itself. */
+/* Separates bodies that are joined to others by a few edges by mistake: such a patch is nearly closed by itself. */
 static void find_bodies(struct parts_finding *f, const struct trimesh *mesh)
 {
     struct body_parts *parts = f->parts;
     for (size_t t = 0; t < mesh->tri_count; t++) {
         const struct surface_patch *patch = &f->patches[f->patch[t]];
-        bool alone = patch->branching_m > 0 && patch->open_m + patch->branching_m < ALONE * sqrt(patch->area_m2);
+        bool alone = patch->branching_m > 0 && patch->open_m + patch->branching_m < MAX_BODY_OPEN_OF_SIZE * sqrt(patch->area_m2);
         parts->body_of_source[mesh->tri_source[t]] = alone ? (uint32_t)parts->count + f->patch[t] : parts->of_tri[t];
     }
 }

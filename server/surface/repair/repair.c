@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bridging what is broken: seams along open edges, and along those that hiding opened. */
+/* Closes seams along border edges, and along edges that hiding triangles opened. */
 #include "surface/repair/repair.h"
 
 #include <math.h>
@@ -13,10 +13,10 @@
 #include "surface/mesh/point_cloud.h"
 #include "surface/repair/repair_impl.h"
 
-#define GAP_OF_EDGE 0.45 /* two points become one only if they are nearer than this share of the shortest edge at either */
+#define GAP_OF_EDGE 0.45 /* two points are merged only if they are nearer than this fraction of the shortest edge at either */
 #define EXACT_OF_TOLERANCE 0.01
-#define STRAIGHT 0.1 /* of that: a straight border is no straighter, and points are no nearer to each other, once they are welded */
-#define FLUSH 0.99   /* cosine between faces that lie on each other, at least; between edges that run along each other */
+#define STRAIGHT 0.1 /* tolerances; straight borders deviate up to this after welding, and points are no nearer to each other */
+#define FLUSH 0.99   /* smallest cosine between faces that lie on each other, and between edges that run along each other */
 
 /* --- seams: one round joins points, the next sets points into edges ---------------------------------------------------------- */
 
@@ -24,9 +24,9 @@ struct seams {
     const struct trimesh *mesh;
     const struct borders *borders;
     struct mesh_edit *edit;
-    double tolerance_m, end_m; /* places nearer to the end of an edge than end_m are left to the joining of points */
-    bool fits;                 /* only what fits exactly */
-    struct nearest_edge {      /* for each border point, the best place found on an open edge that is not its own */
+    double tolerance_m, end_m; /* end_m: insertions nearer than this to an edge's end are left to the merging of points */
+    bool fits;                 /* only exact fits */
+    struct nearest_edge {      /* per border point: the best position found on a border edge that is not its own */
         double distance_m, t;
         uint32_t edge;
     } * nearest;
@@ -38,7 +38,7 @@ static void outwards(const struct seams *s, uint32_t e, uint32_t p, double along
     vec_sub(s->mesh->points[edge[edge[0] == p]], s->mesh->points[p], along);
 }
 
-/* Of two edges that run along each other: do their faces lie on each other? */
+/* Returns whether the faces of two edges that run along each other lie on each other. */
 static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
 {
     const uint32_t edges[2] = { e, f };
@@ -56,8 +56,8 @@ static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
     return vec_dot(side[0], side[1]) > FLUSH * sqrt(vec_dot(side[0], side[0]) * vec_dot(side[1], side[1]));
 }
 
-/* Would two points, become one, close an edge of the one's against an edge of the other's though their faces lie on each other? Such faces
-   are of bodies that touch, and what is across the gap would be left with nothing to close with. */
+/* Returns whether merging two points would close an edge of one with an edge of the other although their faces lie on each other. Such
+   faces belong to bodies that touch, and the surfaces across the gap would have nothing left to close with. */
 static bool would_fold(const struct seams *s, size_t i, size_t j)
 {
     const struct borders *b = s->borders;
@@ -87,15 +87,15 @@ static void join_near(void *arg, size_t i, size_t j, double distance_m)
         mesh_edit_merge_points(s->edit, b->points[i], b->points[j], distance_m);
 }
 
-/* The other end of the edge with this place in the list of those at a point. */
+/* Returns the other end of a point's n-th border edge. */
 static uint32_t beyond(const struct seams *s, uint32_t n, uint32_t p)
 {
     const uint32_t *edge = s->borders->edges[s->borders->at[n]];
     return edge[edge[0] == p];
 }
 
-/* Whether the border at a point runs along the edge: its next point is on the edge's line as well. With cracks everywhere, points lie just
-   on edges that they are not of. towards: the way along the edge that is meant; NULL: either. */
+/* Returns whether the border at a point runs along the edge, that is its next point is on the edge's line as well: with cracks everywhere,
+   points are near edges by chance. towards: required direction along the edge; NULL: either. */
 static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const double towards[3], double within_m)
 {
     const struct borders *b = s->borders;
@@ -113,7 +113,7 @@ static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const doub
     return false;
 }
 
-/* Does the border run straight through a point, along the edge? Then it hangs there; gaps seldom run as straight. */
+/* Returns whether the border runs straight through a point, along the edge: it is a hanging vertex, since gaps are seldom as straight. */
 static bool hangs(const struct seams *s, uint32_t p, uint32_t e)
 {
     double forth[3], back[3], within_m = STRAIGHT * s->tolerance_m;
@@ -131,7 +131,8 @@ static bool have_an_edge(const struct seams *s, uint32_t p, uint32_t q)
     return false;
 }
 
-/* Is p, so far from an end of an edge, at that end? Points that hang in one line are apart, however near they are. */
+/* Returns whether p, distance_m from an end of an edge, counts as that end. Hanging vertices in one line stay separate, however near they
+   are. */
 static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t end, double distance_m, double length_m)
 {
     if (distance_m > max_of(REPAIR_AT_END * length_m, s->end_m))
@@ -140,8 +141,8 @@ static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t en
     return !(apart && (have_an_edge(s, p, end) || (hangs(s, p, e) && hangs(s, end, e))));
 }
 
-/* What fits is set into all edges that run there: set into the nearest only, points of several edges close some of them with each other,
-   and what is left of the others stays open. */
+/* Tries to insert a border point into an edge. A hanging vertex is inserted into all edges that run there: inserted into the nearest only,
+   points of several edges would close some of them with each other and leave the rest open. */
 static void try_edge(struct seams *s, size_t i, uint32_t e)
 {
     const struct borders *b = s->borders;
@@ -201,7 +202,7 @@ static void set_into_edges(struct seams *s)
     mem_free(s->nearest);
 }
 
-/* Joins points on open edges, or sets them into open edges, where they are within tolerance_m. */
+/* One round: merges border points (within tolerance_m), or inserts them into border edges. */
 static void seam_round(struct trimesh *mesh, const struct borders *borders, double tolerance_m, double end_m, bool fits, bool into_edges,
                        uint32_t *target, size_t target_count, struct repair_report *report)
 {
@@ -227,8 +228,8 @@ void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
     size_t target_count = mesh->point_count;
     for (uint32_t i = 0; i < target_count; i++)
         target[i] = i;
-    /* What fits exactly first: it is no border any more when gaps are closed, and is not drawn to a neighbour. A point that lies on an edge
-       by chance does not fit: pieces of that edge too short to be closed would keep its own gap open. */
+    /* Exact fits come first: their edges are then no borders when gaps are closed, and are not pulled to a neighbour. A point that is on an
+       edge by chance is no fit: it would cut the edge into pieces too short to be closed. */
     for (int round = 0; round < 4; round++) {
         struct borders borders;
         borders_init(&borders, mesh);
@@ -253,8 +254,8 @@ void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *targ
 
 /* --- rims ------------------------------------------------------------------------------------------------------------------- */
 
-/* Takes the triangles with hidden[tri] == which. */
-static void take(struct trimesh *to, const struct trimesh *from, const char *hidden, char which)
+/* Copies the triangles with hidden[tri] == which. */
+static void copy_triangles(struct trimesh *to, const struct trimesh *from, const char *hidden, char which)
 {
     *to = (struct trimesh){ .points = from->points, .point_count = from->point_count };
     for (size_t t = 0; t < from->tri_count; t++)
@@ -270,8 +271,8 @@ size_t repair_rims(struct trimesh *mesh, const char *hidden, const struct body_p
         target[i] = i;
     for (size_t p = 0; p < parts->count; p++)
         widest_m = max_of(widest_m, parts->reach_m[p]);
-    take(&seen, mesh, hidden, 0);
-    take(&rest, mesh, hidden, 1);
+    copy_triangles(&seen, mesh, hidden, 0);
+    copy_triangles(&rest, mesh, hidden, 1);
     for (int round = 0; round < 2 && rest.tri_count; round++) {
         struct borders borders;
         size_t degenerate = 0, repeated = 0;

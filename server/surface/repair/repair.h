@@ -4,40 +4,40 @@
 #define SURFACE_REPAIR_H
 #include "surface/repair/parts.h"
 
-/* A bridge that was made: a place of the surface, and the place that it was joined to; equal where edges cross a face. */
+/* A bridge: a surface point and the point that it was joined to; both are equal where an edge crosses a face. */
 struct crack_bridge {
     double from_m[3], to_m[3];
 };
 
-/* What was repaired; it grows from call to call. */
+/* Results of the repair; accumulated over several calls. */
 struct repair_report {
     size_t bridges;
-    struct crack_bridge *made; /* of all of them; mem_free. Grows from call to call */
+    struct crack_bridge *made; /* all bridges; free with mem_free */
     size_t made_count, made_capacity;
     double longest_m;
-    int k;               /* neighbours asked of the point cloud; -1: out of memory */
-    uint32_t *crossings; /* points where a part passes through itself; mem_free */
+    int k;               /* neighbours requested per point; -1: out of memory */
+    uint32_t *crossings; /* points where a part intersects itself; free with mem_free */
     size_t crossing_count, crossing_capacity;
 };
 
-/* Closes seams: merges points on border edges with others on border edges (unwelded vertices), or inserts them into border edges (hanging
-   vertices, hair gaps). Candidates come from the point cloud of border points. Points closer to each other along an edge than 2.2 times the
-   gap are left alone, so that nothing small collapses. target[point], of the points before: receives what it has become. */
+/* Closes seams: merges points on border edges with other border points (unwelded vertices), or inserts them into border edges (hanging
+   vertices, hair gaps). Candidates come from the point cloud of border points. Points with an edge shorter than 2.2 times the gap are left
+   alone, so that no small feature collapses. target[point]: receives the new number of each previous point. */
 void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct repair_report *report);
 
-/* Only merges points on border edges with others on border edges, as one round of repair_seams(), but none where faces that lie on each
-   other would be joined. target: as repair_seams(). */
+/* Only merges border points with border points, as one round of repair_seams() does, but not where this would join faces that lie on each
+   other. target: as in repair_seams(). */
 void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct repair_report *report);
 
-/* Joins parts in contact: where an edge passes through a face (also of its own part, parts->crossed), a point is inserted into both, and
-   both are cut along the line where two faces cross; where a point lies within both parts' reach of another body, or within the tolerance
-   and both face each other (line_of_sight.h), it is inserted there; where the rim of a face that lies on another part crosses an edge, a
-   point is inserted into both. target: as repair_seams(). */
+/* Joins parts in contact. Where an edge passes through a face (also of its own part, parts->crossed), a point is inserted into both, and
+   both faces are cut along their intersection. Where a point is within both parts' reach of another body, or within the tolerance and both
+   face each other (line_of_sight.h), the point is inserted there. Where the rim of a face that lies on another part crosses an edge, a
+   point is inserted into both. target: as in repair_seams(). */
 void repair_contacts(struct trimesh *mesh, struct body_parts *parts, uint32_t *target, struct repair_report *report);
 
-/* Closes rims that are open because what met there is hidden: where bodies with common vertices along part of a rim have a gap along the
-   rest, the hidden faces in between had closed both. Closed as seams are, within both parts' reach. hidden[tri]: 0 or 1. Puts visible
-   triangles first. Returns how many there are. target: as repair_seams(). */
+/* Closes rims that are open because their neighbours are hidden: where two bodies share vertices along a part of a rim and have a gap along
+   the rest, hidden faces had closed the gap. Closes them as seams, within both parts' reach. hidden[tri]: 0 or 1. Puts visible triangles
+   first. Returns their number. target: as in repair_seams(). */
 size_t repair_rims(struct trimesh *mesh, const char *hidden, const struct body_parts *parts, uint32_t *target,
                    struct repair_report *report);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Carrying out what the bridging found, and noting each bridge. */
+/* Applies the edits that mesh repair found, and records each bridge. */
 #include <string.h>
 
 #include "base/math/vec.h"
@@ -39,7 +39,8 @@ static void place_of(const struct trimesh *mesh, const struct mesh_edit_insertio
         place[axis] = w[0] * mesh->points[v[0]][axis] + w[1] * mesh->points[v[1]][axis] + w[2] * mesh->points[v[2]][axis];
 }
 
-/* Points from first_new on are crossings: each is set into an edge first, and then into a face or one with a corner of it. */
+/* Records bridges. Points from first_new on are crossings: each is inserted into an edge first, and then into a face, or merged with one of
+   its corners. */
 static void note_bridges(struct repair_report *report, const struct mesh_edit *edit, const struct trimesh *mesh, uint32_t first_new)
 {
     uint32_t last_new = TRIMESH_NONE;
@@ -61,7 +62,7 @@ void repair_apply(struct mesh_edit *edit, struct trimesh *mesh, uint32_t *target
                   struct repair_report *report)
 {
     uint32_t *then = mem_array(mesh->point_count, sizeof(*then));
-    report->bridges += edit->item_count + edit->pair_count - crossings; /* a crossing is set into both parts, and is one */
+    report->bridges += edit->item_count + edit->pair_count - crossings; /* a crossing is inserted into both faces but counts once */
     report->longest_m = max_of(report->longest_m, edit->longest_m);
     note_bridges(report, edit, mesh, (uint32_t)(mesh->point_count - crossings));
     if (edit->item_count + edit->pair_count) {

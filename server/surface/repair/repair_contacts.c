@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bridging what is broken: parts that touch or cross. */
+/* Joins parts that touch or cross. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,23 +13,23 @@
 #include "surface/repair/repair.h"
 #include "surface/repair/repair_impl.h"
 
-#define PARALLEL 1e-4 /* squared sine of the angle between edges */
+#define PARALLEL 1e-4 /* squared sine of the angle between edges that count as parallel */
 
 struct contacts {
     struct trimesh *mesh;
     struct body_parts *parts;
-    const uint32_t *part, *body; /* of its triangles, as they are now */
+    const uint32_t *part, *body; /* per triangle of the present mesh */
     const struct bvh *bvh;
     struct mesh_edit *edit;
-    uint32_t own;   /* of the edge's triangle: its part; of the point's: its body */
-    double reach_m; /* of the point's part, or of the rim's */
+    uint32_t own;   /* part of the current edge's triangle, or body of the current point's */
+    double reach_m; /* of the current point's part, or of the rim's */
     uint32_t edge[2];
-    uint32_t *touched; /* of each point: the body that it touches, or TRIMESH_NONE */
+    uint32_t *touched; /* per point: the body that it touches, or TRIMESH_NONE */
     struct contact_crossing {
-        uint32_t tri, a, b, c, d; /* edge a-b through tri, or, if that is TRIMESH_NONE, over the edge c-d */
-        uint32_t point;           /* there, once it is set */
+        uint32_t tri, a, b, c, d; /* edge a-b passes through tri or, if that is TRIMESH_NONE, over the edge c-d */
+        uint32_t point;           /* the inserted point */
         double t, s, weights[3];
-        bool own; /* within one part */
+        bool own; /* edge and triangle belong to one part */
     } * crossings;
     size_t crossing_count, crossing_capacity;
 };
@@ -45,7 +45,7 @@ static double reach_of(const struct contacts *c, uint32_t tri)
     return c->parts->reach_m[c->part[tri]];
 }
 
-/* Both ends stand clear of the triangle's plane: faces of one part that lie on each other do not count as crossing. */
+/* Returns whether both ends are clear of the triangle's plane: faces of one part that lie on each other do not count as crossing. */
 static bool stands_clear(const struct contacts *c, const uint32_t *v)
 {
     double n[3], up[3];
@@ -71,7 +71,7 @@ static void visit_crossed(void *arg, uint32_t tri)
         return;
     double length = vec_distance(p, q), reach_m = min_of(c->parts->reach_m[c->own], reach_of(c, tri));
     if (t * length < reach_m || (1 - t) * length < reach_m || (own && !stands_clear(c, v)))
-        return; /* the end of the edge touches; that is found by points */
+        return; /* only the end of the edge touches; find_touches() handles that */
     struct contact_crossing *found = add_crossing(c);
     *found = (struct contact_crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t, .own = own };
     memcpy(found->weights, w, sizeof(w));
@@ -79,7 +79,7 @@ static void visit_crossed(void *arg, uint32_t tri)
         c->parts->crossed[c->own] = c->parts->tangled[c->own] = 1;
 }
 
-/* Sets a point into the face tri at the place with these weights: into the side it is on, or made one with the corner it is at. */
+/* Inserts a point into a face at these weights: into the side that contains it, or merged with the corner there. */
 static void set_into_face(const struct contacts *c, uint32_t point, uint32_t tri, const double w[3], double distance_m)
 {
     const uint32_t *v = c->mesh->tris[tri];
@@ -97,7 +97,7 @@ static void set_into_face(const struct contacts *c, uint32_t point, uint32_t tri
     mesh_edit_insert_in_tri(c->edit, point, tri, distance_m);
 }
 
-/* Triangles near the edge in hand. */
+/* Visits the triangles near the current edge. */
 static void look_around(struct contacts *c, void (*visit)(void *arg, uint32_t tri), double margin_m)
 {
     const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
@@ -109,8 +109,8 @@ static void look_around(struct contacts *c, void (*visit)(void *arg, uint32_t tr
     bvh_overlaps(c->bvh, low, high, margin_m, visit, c);
 }
 
-/* An edge is searched around once, for the first triangle that has it, which says what part it is of; where that one cannot cross anything,
-   no other triangle asks again. may_cross: of the model's triangles, as crossing_faces_find() tells. */
+/* Searches each edge once, for the first triangle that has it, which determines its part; if that triangle cannot cross anything, the edge
+   is skipped. may_cross: by model triangle, from crossing_faces_find(). */
 static void find_crossings(struct contacts *c, const char *may_cross)
 {
     struct edge_table edges;
@@ -148,7 +148,7 @@ static bool other_body_as_far(const void *arg, uint32_t tri)
     return c->body[tri] != c->own && reach_of(c, tri) >= c->reach_m;
 }
 
-/* The nearest place of another body, within the reach of both. */
+/* Finds the nearest point of another body, within the reach of both. */
 static void find_touch(const struct contacts *c, const double point_m[3], struct bvh_place *place)
 {
     bvh_nearest(c->bvh, point_m, c->reach_m, other_body, c, place);
@@ -156,8 +156,8 @@ static void find_touch(const struct contacts *c, const double point_m[3], struct
         bvh_nearest(c->bvh, point_m, c->reach_m, other_body_as_far, c, place);
 }
 
-/* What is nearer to a thin part than half its thickness touches it, from whichever side; what is farther must be looked at. That is a gap
-   to be bridged, not one in which anything were hidden: rims and the lines of crossing faces go by the reach alone. */
+/* Anything nearer to a thin part than half its thickness touches it, from either side; farther surfaces must face it. Such a distance is a
+   gap to bridge, in which nothing can be hidden: rims and intersections therefore use the reach alone. */
 static void find_touches(struct contacts *c)
 {
     struct line_of_sight sight;
@@ -186,7 +186,7 @@ static void find_touches(struct contacts *c)
 
 /* --- the rim of a contact ----------------------------------------------------------------------------------------------------- */
 
-/* Where two edges that are not parallel come nearest to each other: shares of the way. */
+/* Computes where two edges that are not parallel are nearest, as fractions of both. */
 static bool edges_meet(const double a[3], const double b[3], const double c[3], const double d[3], double *t, double *s)
 {
     double ab[3], cd[3], ac[3];
@@ -233,7 +233,7 @@ static void visit_rim(void *arg, uint32_t tri)
     }
 }
 
-/* Edges both of whose ends touch another body, while a face at them leaves it: that body is cut along them. */
+/* Finds edges with both ends on another body while a face at them leaves it: that body is cut along such edges. */
 static void find_rims(struct contacts *c)
 {
     for (uint32_t t = 0; t < c->mesh->tri_count; t++)
@@ -249,7 +249,7 @@ static void find_rims(struct contacts *c)
         }
 }
 
-/* Points are added only when all is found: the searches look at the array that they are in. */
+/* Points are added after all searches, because the searches read the array of points. */
 static void set_crossings(struct contacts *c, struct repair_report *report)
 {
     for (size_t i = 0; i < c->crossing_count; i++) {
@@ -271,8 +271,8 @@ static void set_crossings(struct contacts *c, struct repair_report *report)
 
 /* --- the lines along which faces cross ---------------------------------------------------------------------------------------- */
 
-struct meeting {             /* of two triangles, at a point of the line along which they cross */
-    uint32_t tris[2], point; /* the lower one first */
+struct meeting {             /* two triangles meet at a point of their intersection */
+    uint32_t tris[2], point; /* tris: the lower one first */
 };
 
 struct meetings {
@@ -289,7 +289,7 @@ static int compare_meetings(const void *a, const void *b)
     return (x->point > y->point) - (x->point < y->point);
 }
 
-/* An edge that passes through a triangle belongs to others: each of them meets it there. */
+/* Lists meetings: where an edge passes through a triangle, each triangle at the edge meets it. */
 static void find_meetings(const struct contacts *c, struct meetings *meetings)
 {
     struct edge_table edges;
@@ -321,7 +321,7 @@ static void find_meetings(const struct contacts *c, struct meetings *meetings)
     mem_free(of_edge);
 }
 
-/* The line ends at a corner of the one that touches the other. */
+/* Connects the point with a corner of `tri` that touches `other`, where the intersection ends. */
 static void join_corners(const struct contacts *c, uint32_t point, uint32_t tri, uint32_t other)
 {
     const uint32_t *v = c->mesh->tris[tri], *u = c->mesh->tris[other];
@@ -338,7 +338,7 @@ static void join_corners(const struct contacts *c, uint32_t point, uint32_t tri,
     }
 }
 
-/* Two triangles cross along a line with two ends; near a corner some may be found twice. */
+/* Connects the ends of the intersection of two triangles; near a corner some points may be found twice. */
 static void join_meetings(const struct contacts *c, const struct meeting *meetings, size_t count)
 {
     size_t far = 0;
@@ -354,7 +354,7 @@ static void join_meetings(const struct contacts *c, const struct meeting *meetin
             join_corners(c, meetings[0].point, meetings[0].tris[i], meetings[0].tris[1 - i]);
 }
 
-/* Both faces are cut along it: what is to either side of it can be told apart then. */
+/* Cuts both faces along their intersection, so that its two sides can be told apart. */
 static void cut_along(struct contacts *c)
 {
     struct meetings meetings = { 0 };
@@ -378,7 +378,7 @@ static bool is_one_body(const struct contacts *c)
     return t == c->mesh->tri_count;
 }
 
-/* What is one body can only cross itself. */
+/* Finds all contacts. A mesh of a single body can only cross itself. */
 static void find_contacts(struct contacts *c)
 {
     char *may_cross = crossing_faces_find(c->parts);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vertices that hang in an edge that is not open: other faces at it are of another body that stands there. */
+/* Inserts hanging vertices into edges that are not borders, because other faces at the edge belong to another body there. */
 #include "surface/repair/repair.h"
 
 #include <math.h>
@@ -11,17 +11,17 @@
 #include "surface/repair/borders.h"
 #include "surface/repair/repair_impl.h"
 
-#define ROUNDS 4 /* an edge of several faces that are all cut, each elsewhere, takes as many, less one */
+#define MAX_ROUNDS 4 /* an edge whose faces are all cut at different points takes one round fewer than it has faces */
 
 struct hanging {
     const struct trimesh *mesh;
     const struct borders *borders;
     struct mesh_edit *edit;
     double within_m;
-    uint32_t *last; /* of each border point: the edge that it was last set into */
+    uint32_t *last; /* per border point: the last edge that it was inserted into */
 };
 
-/* Where p lies along a-b, as a share of it; negative: not on it, or at its ends. */
+/* Returns the position of p along a-b as a fraction; negative: p is not on the edge, or at an end. */
 static double place_on(const struct hanging *h, uint32_t p, uint32_t a, uint32_t b, double *distance_m)
 {
     double ab[3], ap[3], at[3];
@@ -35,7 +35,7 @@ static double place_on(const struct hanging *h, uint32_t p, uint32_t a, uint32_t
     return *distance_m <= h->within_m ? t : -1;
 }
 
-/* Does the border run straight on at p, coming from a? */
+/* Returns whether the border continues straight at p, coming from a. */
 static bool runs_straight(const struct hanging *h, uint32_t p, uint32_t a)
 {
     const struct borders *b = h->borders;
@@ -49,7 +49,7 @@ static bool runs_straight(const struct hanging *h, uint32_t p, uint32_t a)
     return false;
 }
 
-/* Sets into the edge a-b what lies on it at the other end of an open edge at a. */
+/* Inserts into the edge a-b the points on it that border edges connect with a. */
 static void look_from(struct hanging *h, uint32_t a, uint32_t b, uint32_t number)
 {
     const struct borders *borders = h->borders;
@@ -70,8 +70,8 @@ static bool is_at_border(const struct hanging *h, uint32_t a, uint32_t b)
     return h->borders->slot[a] != TRIMESH_NONE || h->borders->slot[b] != TRIMESH_NONE;
 }
 
-/* Edges with an end on a border, and whether several faces were there, one of them without another across: a body has a slit there. What is
-   closed there is not cut by what ends at it; an edge with one face is left to the closing of seams. */
+/* Finds edges with an end on a border, several faces, and an odd number of them: a body has a slit there. Returns a flag per edge number.
+   Closed edges are not cut by borders that end at them; edges with one face are left to the closing of seams. */
 static char *find_odd(const struct hanging *h, struct edge_table *edges)
 {
     const struct trimesh *mesh = h->mesh;
@@ -113,7 +113,7 @@ static bool set_hanging(struct trimesh *mesh, const struct borders *borders, dou
             uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3], number;
             if (!is_at_border(&h, a, b) || !odd[number = edge_table_find(&edges, a, b)])
                 continue;
-            odd[number] = 0; /* once is enough */
+            odd[number] = 0; /* each edge once */
             look_from(&h, a, b, number);
             look_from(&h, b, a, number);
         }
@@ -128,7 +128,7 @@ static bool set_hanging(struct trimesh *mesh, const struct borders *borders, dou
 void repair_hanging(struct trimesh *mesh, struct borders *borders, double within_m, uint32_t *target, size_t target_count,
                     struct repair_report *report)
 {
-    int rounds = borders->edge_count ? ROUNDS : 0;
+    int rounds = borders->edge_count ? MAX_ROUNDS : 0;
     while (rounds-- > 0 && set_hanging(mesh, borders, within_m, target, target_count, report)) {
         borders_finish(borders);
         borders_init(borders, mesh);

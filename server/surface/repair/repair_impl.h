@@ -6,17 +6,17 @@
 #include "surface/repair/borders.h"
 #include "surface/repair/repair.h"
 
-#define REPAIR_AT_END 1e-3 /* this near to an end of an edge, as a share of its length, it is the end */
+#define REPAIR_AT_END 1e-3 /* a point within this fraction of an edge's length from its end counts as the end */
 
 /* Returns whether the triangle has this point as a corner. */
 bool repair_tri_has(const struct trimesh *mesh, uint32_t tri, uint32_t point);
-/* Applies the collected edits to the mesh, counts the bridges in the report, and finishes the edit. The last `crossings` points of the mesh
+/* Applies the collected edits to the mesh, counts the bridges in the report, and frees the edit. The last `crossings` points of the mesh
    are each inserted in two places and count once. */
 void repair_apply(struct mesh_edit *edit, struct trimesh *mesh, uint32_t *target, size_t target_count, size_t crossings,
                   struct repair_report *report);
-/* Inserts points of straight open borders into edges that run along the border and share one end with it, of several bodies one of which
-   has a slit there, for what fits exactly. Into all such edges: with the nearest only, two points in one edge would close with each other
-   and the edge itself stay open. borders: those of the mesh, updated. */
+/* Inserts points of straight borders into edges that run along the border and share one end with it: edges of several bodies one of which
+   has a slit there. Used for exact fits. A point is inserted into all such edges: with the nearest only, two points in one edge would close
+   with each other and the edge stay open. borders: of the mesh; updated. */
 void repair_hanging(struct trimesh *mesh, struct borders *borders, double within_m, uint32_t *target, size_t target_count,
                     struct repair_report *report);
 
