@@ -37,37 +37,37 @@ static const struct cli_command {
     const char *name, *help;
     int (*run)(int argc, char **argv);
 } commands[] = {
-    { "snapshot", "one picture, from a plant file or from a daemon, as PNG", cmd_snapshot },
-    { "clip", "a film of what was recorded, as MP4", cmd_clip },
-    { "import", "a CAD export into a plant's folder: model, names, attributes, plant file", cmd_import },
-    { "nodes", "what is in a model: nodes, sizes, properties", cmd_import },
-    { "match", "a control system's tag list to the equipment of an imported plant", cmd_match },
-    { "probe", "put load on a daemon and print a table of latencies", cmd_probe },
-    { "tags", "print the tags of a daemon and their values", cmd_tags },
-    { "init", "make what the service plantcastd@NAME reads, with a certificate and first tokens", cmd_init },
-    { "ready", "say by the exit status whether a daemon is ready", cmd_ready },
-    { "drain", "have a daemon of this machine send its sessions to other nodes", cmd_drain },
-    { "reload", "have a daemon of this machine load its plant anew, and say what came of it", cmd_reload },
-    { "history", "take series into a plant's history, or print what was recorded", cmd_history },
-    { "backup", "history, journal and configuration of a plant, also while its daemon records", cmd_backup },
-    { "restore", "what backup made, put in place", cmd_restore },
-    { "fleet", "one page and one /metrics over the servers of many plants", cmd_fleet },
-    { "token", "make, list and revoke what lets people and programs in", cmd_token },
-    { "sensors", "propose places for more sensors; name those that drift; accept assumed places", cmd_sensors },
-    { "verify", "say whether a signed picture is what the server drew, and draw it again", cmd_verify },
-    { "read", "the value at a pixel of a picture with a legend strip, also of a JPEG or a screenshot", cmd_read },
-    { "audit", "say whether an audit trail is whole, or where it was changed", cmd_audit },
+    { "snapshot", "draw one picture as PNG, from a plant file or by a daemon", cmd_snapshot },
+    { "clip", "make a film of recorded history as MP4", cmd_clip },
+    { "import", "convert CAD exports into a plant's folder: models, names, attributes, plant file", cmd_import },
+    { "nodes", "list the nodes of a model, with sizes and properties", cmd_import },
+    { "match", "match a control system's tag list to the equipment of an imported plant", cmd_match },
+    { "probe", "put load on a daemon and print its latencies", cmd_probe },
+    { "tags", "print the tags of a daemon with their values", cmd_tags },
+    { "init", "create an instance of the service plantcastd@NAME, with a certificate and first tokens", cmd_init },
+    { "ready", "check whether a daemon is ready (exit status)", cmd_ready },
+    { "drain", "move the sessions of a daemon on this machine to other nodes", cmd_drain },
+    { "reload", "reload the plant of a daemon on this machine, and print the result", cmd_reload },
+    { "history", "import or export a plant's history", cmd_history },
+    { "backup", "back up history, journal and configuration of a plant, while its daemon runs or not", cmd_backup },
+    { "restore", "restore a backup", cmd_restore },
+    { "fleet", "serve one page and one /metrics for the servers of many plants", cmd_fleet },
+    { "token", "create, list and revoke tokens of users and programs", cmd_token },
+    { "sensors", "suggest places for more sensors, detect drift, accept assumed places", cmd_sensors },
+    { "verify", "verify a signed picture or film, and draw it again", cmd_verify },
+    { "read", "read the value at a pixel of a picture with a legend strip (PNG, JPEG, screenshot)", cmd_read },
+    { "audit", "verify an audit trail", cmd_audit },
 };
 enum { COMMANDS = sizeof(commands) / sizeof(commands[0]) };
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcast COMMAND ...      (plantcast COMMAND --help tells more)\n\n", out);
+    fputs("usage: plantcast COMMAND [ARGUMENT ...]\n       plantcast COMMAND --help\n\n", out);
     for (int i = 0; i < COMMANDS; i++)
         fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].help);
-    fputs("\nWherever a daemon's URL is given (http:// or https://):\n"
-          "  --token-file FILE   its first line is the token that lets us in (see plantcast token)\n"
-          "  --ca FILE           certificates (PEM) that are trusted beside this machine's own\n",
+    fputs("\nOptions of every command that connects to a daemon (http:// or https://):\n"
+          "  --token-file FILE   file whose first line is the token (see `plantcast token`)\n"
+          "  --ca FILE           trusted certificates (PEM), in addition to the system's\n",
           out);
 }
 

@@ -19,14 +19,14 @@ enum {
 };
 
 static const char SUMMARY[] =
-    "Shows a view of a Plantcast daemon as video, by RTSP and SRT, from one H.264 encoder. Markers, legend, clock and\n"
-    "the age of the values are in the picture. If the server is gone, or tells no value, a card says so within 3 s.";
-static const char DETAIL[] = "Outputs are off unless asked for. They listen on 127.0.0.1 unless --listen says otherwise, which takes "
-                             "--readers-file or --open-readers:\n"
-                             "  RTSP  rtsp://HOST:PORT/plantcast (user and password)\n"
-                             "  SRT   srt://HOST:PORT, as caller (passphrase: the password)\n"
-                             "Only SRT is encrypted. With --http, http://127.0.0.1:PORT/metrics has counters in Prometheus' text form.\n"
-                             "Exit status: 2 wrong usage, 1 anything else.";
+    "Serves a view of a Plantcast daemon as video by RTSP and SRT, encoded once as H.264. The picture has markers, legend,\n"
+    "clock and the age of the values. When the server or its values are lost, a card says so within 3 s.";
+static const char DETAIL[] =
+    "Give --rtsp, --srt or both. On an address other than 127.0.0.1 (--listen), --readers-file or --open-readers is required.\n"
+    "  RTSP  rtsp://HOST:PORT/plantcast (user and password)\n"
+    "  SRT   srt://HOST:PORT, as caller (passphrase: the password)\n"
+    "Only SRT is encrypted. Metrics in Prometheus' text format: http://127.0.0.1:PORT/metrics with --http PORT.\n"
+    "Exit status: 0 success, 2 wrong usage, 1 any other error.";
 
 static int wrong(const char *fmt, ...) G_GNUC_PRINTF(1, 2);
 static int wrong(const char *fmt, ...)
@@ -158,23 +158,26 @@ int options_read(struct video_options *options, int *argc, char ***argv)
     *options = (struct video_options){ .width_px = 1280, .height_px = 720, .fps = 10, .kbps = 4000, .every_ms = 1000 };
     options->most_readers = 64;
     const GOptionEntry entries[] = {
-        { "view", 0, 0, G_OPTION_ARG_STRING, &options->view, "a view with a name, of the plant file or saved in the page", "ID" },
-        { "query", 0, 0, G_OPTION_ARG_STRING, &options->query, "a view as /snapshot.png takes it: group=temperature&camera=...", "TEXT" },
-        { "language", 0, 0, G_OPTION_ARG_STRING, &options->language, "of cards, strip, legend and labels: en, ko or de (en)", "L" },
-        { "token-file", 0, 0, G_OPTION_ARG_FILENAME, &options->token_path, "its first line is a viewer's token (plantcast token)", "FILE" },
-        { "ca", 0, 0, G_OPTION_ARG_FILENAME, &options->ca_path, "certificates (PEM) that are trusted, in place of this machine's", "FILE" },
-        { "size", 0, 0, G_OPTION_ARG_STRING, &size, "of the video (1280x720)", "WxH" },
-        { "fps", 0, 0, G_OPTION_ARG_INT, &options->fps, "frames a second, also while nothing changes: 5 to 30 (10)", "N" },
-        { "kbps", 0, 0, G_OPTION_ARG_INT, &options->kbps, "kbit/s at most (4000)", "N" },
-        { "every", 0, 0, G_OPTION_ARG_INT, &options->every_ms, "ms between new pictures: 200 to 1000 (1000)", "MS" },
-        { "listen", 0, 0, G_OPTION_ARG_STRING, &options->listen, "address of all outputs (127.0.0.1)", "ADDRESS" },
-        { "rtsp", 0, 0, G_OPTION_ARG_INT, &options->rtsp_port, "serve RTSP", "PORT" },
-        { "srt", 0, 0, G_OPTION_ARG_INT, &options->srt_port, "listen for callers by SRT", "PORT" },
-        { "http", 0, 0, G_OPTION_ARG_INT, &options->http_port, "serve /metrics on 127.0.0.1", "PORT" },
-        { "readers-file", 0, 0, G_OPTION_ARG_FILENAME, &readers_path, "its first line, USER:PASSWORD, lets in those who watch", "FILE" },
-        { "open-readers", 0, 0, G_OPTION_ARG_NONE, &open_readers, "whoever reaches the address may watch", NULL },
-        { "most-readers", 0, 0, G_OPTION_ARG_INT, &options->most_readers, "of each output at once (64)", "N" },
-        { "time-code", 0, 0, G_OPTION_ARG_NONE, &time_code, "a row of blocks below the picture tells its time to programs", NULL },
+        { "view", 0, 0, G_OPTION_ARG_STRING, &options->view, "named view, of the plant file or saved on the page", "ID" },
+        { "query", 0, 0, G_OPTION_ARG_STRING, &options->query,
+          "view by parameters of /snapshot.png: group=temperature&camera=...", "TEXT" },
+        { "language", 0, 0, G_OPTION_ARG_STRING, &options->language, "language of all text: en, ko or de (default: en)", "L" },
+        { "token-file", 0, 0, G_OPTION_ARG_FILENAME, &options->token_path,
+          "file whose first line is a viewer's token (plantcast token)", "FILE" },
+        { "ca", 0, 0, G_OPTION_ARG_FILENAME, &options->ca_path, "trusted certificates (PEM), instead of the system's", "FILE" },
+        { "size", 0, 0, G_OPTION_ARG_STRING, &size, "size of the video (default: 1280x720)", "WxH" },
+        { "fps", 0, 0, G_OPTION_ARG_INT, &options->fps, "frames a second, 5 to 30, also of a still picture (default: 10)", "N" },
+        { "kbps", 0, 0, G_OPTION_ARG_INT, &options->kbps, "bit rate limit in kbit/s (default: 4000)", "N" },
+        { "every", 0, 0, G_OPTION_ARG_INT, &options->every_ms, "milliseconds between new pictures, 200 to 1000 (default: 1000)", "MS" },
+        { "listen", 0, 0, G_OPTION_ARG_STRING, &options->listen, "address of all outputs (default: 127.0.0.1)", "ADDRESS" },
+        { "rtsp", 0, 0, G_OPTION_ARG_INT, &options->rtsp_port, "serve RTSP on this port", "PORT" },
+        { "srt", 0, 0, G_OPTION_ARG_INT, &options->srt_port, "accept SRT callers on this port", "PORT" },
+        { "http", 0, 0, G_OPTION_ARG_INT, &options->http_port, "serve /metrics on this port of 127.0.0.1", "PORT" },
+        { "readers-file", 0, 0, G_OPTION_ARG_FILENAME, &readers_path, "file whose first line is USER:PASSWORD of the viewers", "FILE" },
+        { "open-readers", 0, 0, G_OPTION_ARG_NONE, &open_readers, "no password: everybody who reaches the address may watch", NULL },
+        { "most-readers", 0, 0, G_OPTION_ARG_INT, &options->most_readers, "viewers of each output at once (default: 64)", "N" },
+        { "time-code", 0, 0, G_OPTION_ARG_NONE, &time_code,
+          "add a row of blocks below the picture that programs read the time from", NULL },
         { "version", 0, 0, G_OPTION_ARG_NONE, &version, "print the version", NULL },
         { NULL, 0, 0, G_OPTION_ARG_NONE, NULL, NULL, NULL }
     };

@@ -22,26 +22,29 @@
 enum { TICK_MS = 100, EXIT_USAGE = 2, MAX_SPEED = 10000 };
 
 static const char usage_text[] =
-    "usage: plantcast-sim PLANT.yaml [options]\n"
-    "Serves every register that the tags of the plant's Modbus sources name. Writes are refused.\n"
+    "usage: plantcast-sim PLANT.yaml [OPTION ...]\n"
     "\n"
-    "  --port N         listen there instead of at the port of the first source; further ports follow it\n"
-    "  --bind ADDRESS   IPv4 address to listen at (127.0.0.1)\n"
-    "  --values FILE    CSV of recorded series; may be given several times. Wide: a header line, the time in a column whose\n"
-    "                   name ends in _ms, _s, _min or _h, or as instants (2026-11-20T10:00:00Z; without a zone: the plant's).\n"
-    "                   One value a line: Tag, Time, Value. Long: no header, lines of time in ms,type,entity,property,value\n"
+    "Simulates the field devices of a plant: serves all registers of its Modbus sources. Writes are refused.\n"
+    "\n"
+    "  --port N         listen on this port (default: the port of the first source; further devices follow it)\n"
+    "  --bind ADDRESS   IPv4 address to listen on (default: 127.0.0.1)\n"
+    "  --values FILE    CSV file of recorded series; may be repeated. Three forms:\n"
+    "                   wide: a header; the time in a column whose name ends in _ms, _s, _min or _h, or as instants\n"
+    "                   such as 2026-11-20T10:00:00Z (without a zone: the plant's); one column for each series\n"
+    "                   one value a line: a header Tag, Time, Value\n"
+    "                   long: no header; lines of time in ms,type,entity,property,value\n"
     "  --map TAG=SERIES[*SCALE[+OFFSET]]\n"
-    "                   feed the tag from a column, or from entity/property of a long file; may be given several times\n"
-    "  --speed X        run X times as fast (1)\n"
-    "  --loop           start recorded series again at their end; else they stay at their last value\n"
-    "  --mqtt HOST:PORT publish the tags of MQTT sources, as numbers or JSON, to this broker: one of your own, where nobody\n"
-    "                   takes them for measured\n"
-    "  --control PORT   take commands there, on 127.0.0.1 only\n"
-    "  --help           print this\n"
+    "                   feed the tag from a column, or from entity/property of a long file; may be repeated\n"
+    "  --speed X        run X times as fast (default: 1)\n"
+    "  --loop           restart recorded series at their end (default: keep the last value)\n"
+    "  --mqtt HOST:PORT publish the tags of MQTT sources to this broker, as numbers or JSON. Use a broker of your own:\n"
+    "                   subscribers cannot tell these values from measured ones\n"
+    "  --control PORT   accept commands on this port of 127.0.0.1\n"
+    "  --help           print this text\n"
     "\n"
-    "Tags without a series follow a process around the column `Sim Value` of the tag list (without it: 40 % of their range).\n"
-    "The column `Sim Loop` says where in the process a tag is; any word will do. PLANT.map beside PLANT.yaml may have lines as\n"
-    "for --map, `values FILE` (beside it), `speed X`, `loop` and # comments. Upsets, one after the other:\n";
+    "Tags without a series vary around the column `Sim Value` of the tag list (default: 40 % of their range). The column\n"
+    "`Sim Loop` names the part of the process that a tag belongs to. PLANT.map next to PLANT.yaml may hold lines as for --map,\n"
+    "`values FILE`, `speed X`, `loop` and # comments. Upsets, one after another:\n";
 
 struct sim_options {
     const char *plant, *bind, *broker;

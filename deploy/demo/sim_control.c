@@ -10,13 +10,14 @@
 
 const char sim_control_help[] =
     "  set TAG VALUE   hold the tag at VALUE (engineering units; nan and inf where its type can hold them)\n"
-    "  get TAG         say its present value\n"
-    "  fail TAG        refuse every request that touches its registers (exception 2, illegal address)\n"
+    "  get TAG         print the present value\n"
+    "  fail TAG        refuse each request for a register of the tag (exception 2, illegal address)\n"
     "  release TAG     undo set and fail\n"
-    "  pause, resume   stop answering and publishing (connections stay open), go on\n"
-    "  stats           say how much was read and refused, and which upset is running\n"
+    "  pause           stop answering and publishing; connections stay open\n"
+    "  resume          undo pause\n"
+    "  stats           print counts of reads and refusals, and the present upset\n"
     "  quit            end plantcast-sim\n"
-    "  Every line is answered with `ok`, `ok ...` or `error: ...`.\n";
+    "  Each line is answered with `ok`, `ok ...` or `error: ...`.\n";
 
 struct sim_command {
     const char *name, *tag, *value; /* "" where it has none */

@@ -45,22 +45,23 @@ static void print_usage(FILE *out)
         "       plantcast import --undo [--force] -o FOLDER\n"
         "       plantcast import --serve [--port N] [MODEL... TAGS] -o FOLDER\n"
         "\n"
-        "Reads CAD exports and writes into FOLDER a GLB file for each, with names, hierarchy and attributes, and plant.yaml, which names\n"
-        "them. Where FOLDER has a plant, these are new exports: assets and sensors follow what they are on, and a review says what was\n"
-        "added, removed, moved or renamed, and which tags lost their place (IMPORT.md).\n"
-        "  MODEL             .glb .gltf; .rvm (AVEVA PDMS, E3D, Marine), with its attributes beside it as .att or .txt of the same name;\n"
+        "Converts CAD exports to GLB, with names, hierarchy and attributes, and writes a plant.yaml that uses them. If FOLDER\n"
+        "holds a plant, the exports are a new revision of it: assets and sensors are matched to the new geometry, and a review\n"
+        "lists what was added, removed, moved or renamed, and the tags that lost their place (IMPORT.md).\n"
+        "\n"
+        "  MODEL             .glb .gltf; .rvm (AVEVA PDMS, E3D, Marine) with attributes next to it as .att or .txt of the same name;\n"
         "                    .step .stp .stpz .iges .igs; .ifc .ifczip; .obj .stl .ply .fbx .dae .zae .3ds\n"
-        "  --name NAME       of the plant; else the first model's file name\n"
-        "  --dry-run         of a new export: only says what it would change\n"
-        "  --undo            puts models, plant file, tag list and matches back as they were before the last new export\n"
-        "  --force           undoes it although people have changed these since; what they have now stays beside, as NAME.undone\n"
-        "  --anew            plant.yaml and tags.csv are made anew; those that are there are kept as NAME.1, NAME.2, ...\n"
-        "  --report FILE     writes what was lost, left out, guessed and reported as an error, as JSON (IMPORT.md)\n"
-        "  --serve           opens a page on this machine, where models and tag lists are dropped, tags matched and sensors placed\n"
-        "  --port N          of that page (8080)\n",
+        "  --name NAME       name of the plant (default: file name of the first model)\n"
+        "  --dry-run         print what a new revision would change, and change nothing\n"
+        "  --undo            restore models, plant file, tag list and matches from before the last revision\n"
+        "  --force           undo even if these were edited since; the edited files are kept as NAME.undone\n"
+        "  --anew            write a new plant.yaml and tags.csv; the present ones are kept as NAME.1, NAME.2, ...\n"
+        "  --report FILE     write losses, omissions, guesses and errors to FILE as JSON (IMPORT.md)\n"
+        "  --serve           serve a page on this machine to drop models and tag lists, match tags and place sensors\n"
+        "  --port N          port of that page (default: 8080)\n",
         out);
     options_print(out);
-    fputs("Exit status: 0 good, 1 nothing was imported, 2 usage, 3 some models could not be read and the others were imported.\n", out);
+    fputs("Exit status: 0 success, 1 nothing imported, 2 wrong usage, 3 some models could not be read, the others were imported.\n", out);
 }
 
 static int fail_at(const char *path, const char *why)

@@ -15,16 +15,16 @@ static void print_usage(FILE *out)
     fputs(
         "usage: plantcast nodes MODEL [--grep RE] [--tree N] [--json]\n"
         "\n"
-        "Prints what a model has: how many nodes, how large it is, how far from its origin; then for each node its number, triangles, "
-        "size\n"
-        "and centre (Z up) with all below it, path and properties. A node without a name has that of its mesh, else its number, which the\n"
-        "plant file takes too (nodes: \"#12\").\n"
-        "  --grep RE         only nodes whose path or properties an extended regular expression finds, whatever the case\n"
-        "  --tree N          the uppermost N levels, indented\n"
-        "  --json            for programs\n",
+        "Lists the nodes of a model: number, triangles, size and centre (Z up) of each node with its children, path and\n"
+        "properties. The first lines give the number of nodes, the size, and the distance from the origin. A node without a name\n"
+        "takes that of its mesh, else its number, which a plant file accepts too (nodes: \"#12\").\n"
+        "\n"
+        "  --grep RE         only nodes whose path or properties match an extended regular expression, ignoring case\n"
+        "  --tree N          only the first N levels, indented\n"
+        "  --json            print JSON\n",
         out);
     options_print(out);
-    fputs("Exit status: 0 good, 1 the model could not be read, 2 usage, 3 no node was found.\n", out);
+    fputs("Exit status: 0 success, 1 the model could not be read, 2 wrong usage, 3 no node matched.\n", out);
 }
 
 /* Reads the outline of a model. glTF is read directly; other formats are first converted to GLB, as import does. */

@@ -11,16 +11,16 @@ const struct conversion_params options_default = { .chord_m = 0.001, .timeout_s 
 
 void options_print(FILE *out)
 {
-    fputs("  --chord MM        how far a triangle may be from a round surface (1), where the model has true surfaces\n"
-          "  --units UNIT      m, mm, cm, in or ft, of models that do not say\n"
-          "  --mesh-units UNIT the same, but only of OBJ, STL, PLY and 3DS: glTF stays in metres\n"
-          "  --up AXIS         y or z, of models that do not say\n"
-          "  --encoding NAME   of names, such as GB18030, Shift-JIS, EUC-KR, Windows-1251 (default: the encoding that the model\n"
-          "                    states, else the most likely one, which is printed)\n"
-          "  --keep-covered    RVM: keep faces that lie on a neighbour's face, which nobody can see\n"
-          "  --timeout S       limit of the time that reading one model may take (120)\n"
-          "  --memory MB       limit of the memory that reading one model may take (2048)\n"
-          "  --formats         which formats this build reads\n",
+    fputs("  --chord MM        greatest distance in mm from a triangle to the true surface, where a model has one (default: 1)\n"
+          "  --units UNIT      unit of models that name none: m, mm, cm, in or ft\n"
+          "  --mesh-units UNIT unit of OBJ, STL, PLY and 3DS models alone\n"
+          "  --up AXIS         up axis of models that name none: y or z\n"
+          "  --encoding NAME   encoding of names, such as GB18030, Shift-JIS, EUC-KR, Windows-1251 (default: the encoding that the\n"
+          "                    model names, else the most likely one, which is printed)\n"
+          "  --keep-covered    RVM: keep faces that are covered by a neighbouring face\n"
+          "  --timeout S       time limit in seconds for reading one model (default: 120)\n"
+          "  --memory MB       memory limit for reading one model (default: 2048)\n"
+          "  --formats         print the formats that this build reads\n",
           out);
 }
 

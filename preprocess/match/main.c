@@ -13,25 +13,26 @@
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcast match PLANT TAGS [options]\n"
+    fputs("usage: plantcast match PLANT TAGS [OPTION ...]\n"
           "\n"
-          "Matches the tag list that a control system exports to the equipment of an imported plant, and writes into the plant's folder\n"
-          "tags.csv, matches.csv (what was matched, and why) and, in plant.yaml, groups. What people changed there stays.\n"
-          "Also reads match_rules.csv (Tag,Equipment: ordered patterns) and aliases.csv (Alias,Equipment) in that folder.\n"
-          "  PLANT                 the plant's folder, or its plant.yaml\n"
-          "  TAGS                  Kepware, Ignition, AVEVA, Emerson, Honeywell, plain CSV or .xlsx\n"
-          "  --equipment CHOICE    what becomes an asset: level=N, a pattern of names, or @FILE of names; may be repeated\n"
-          "  --encoding NAME       of TAGS, such as GB18030, Shift-JIS, EUC-KR, Windows-1251; without it, the encoding is found and said\n"
-          "  --decide FILE         decisions as if they had been written into matches.csv by hand, CSV: Tag,Status,Asset\n"
-          "  --source ID           of plant.yaml, where these tags are read\n"
-          "  --modbus HOST[:PORT]  makes that source, of type modbus, or changes the one that was made so\n"
-          "  --unit N              of that source: unit identifier, 0 to 255\n"
-          "  --byte-order ORDER    of that source: ABCD, CDAB, BADC, DCBA\n"
-          "  --address-base N      of that source: what the first register is called, 0 or 1 (1)\n"
-          "  --timeout S           limit of the time that reading and matching may take (120)\n"
-          "  --memory MB           limit of the memory that they may take (2048)\n"
-          "  --dry-run             says what it would do\n"
-          "Exit status: 0 good, 1 something cannot be read or would not be valid (nothing is written), 2 usage.\n",
+          "Matches the tag list of a control system to the equipment of an imported plant. Writes tags.csv, matches.csv (each match\n"
+          "with its reason) and the groups of plant.yaml; entries that a person edited are kept. Also reads match_rules.csv\n"
+          "(Tag,Equipment: ordered patterns) and aliases.csv (Alias,Equipment) in the plant's folder.\n"
+          "\n"
+          "  PLANT                 folder of the plant, or its plant.yaml\n"
+          "  TAGS                  tag list: Kepware, Ignition, AVEVA, Emerson, Honeywell, plain CSV or .xlsx\n"
+          "  --equipment CHOICE    nodes that become assets: level=N, a name pattern, or @FILE of names; may be repeated\n"
+          "  --encoding NAME       encoding of TAGS, such as GB18030, Shift-JIS, EUC-KR, Windows-1251 (default: detected, and printed)\n"
+          "  --decide FILE         apply decisions as if edited by hand in matches.csv; CSV: Tag,Status,Asset\n"
+          "  --source ID           source in plant.yaml that these tags are read from\n"
+          "  --modbus HOST[:PORT]  create that source with type modbus, or update it\n"
+          "  --unit N              unit identifier of the source, 0 to 255\n"
+          "  --byte-order ORDER    byte order of the source: ABCD, CDAB, BADC or DCBA\n"
+          "  --address-base N      number of the first register of the source, 0 or 1 (default: 1)\n"
+          "  --timeout S           time limit in seconds (default: 120)\n"
+          "  --memory MB           memory limit (default: 2048)\n"
+          "  --dry-run             print the changes, and write nothing\n"
+          "Exit status: 0 success, 1 input cannot be read or the result would be invalid (nothing is written), 2 wrong usage.\n",
           out);
 }
 

@@ -14,11 +14,11 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast audit verify FILE [--known NUMBER:HASH]\n"
           "\n"
-          "Verifies the trail that plantcastd --audit FILE writes, with the full files beside it: each line has a hash of its own\n"
-          "and of the line before, so a changed, removed or added line is found. FILE.head tells of removed last lines;\n"
-          "who can change that, too, is found by a line's number and hash that were kept elsewhere, in the journal or on a\n"
-          "syslog server:\n"
-          "  --known NUMBER:HASH   the trail must have that line\n",
+          "Verifies the audit trail that plantcastd --audit FILE writes, and the full files next to it. Each line has a hash of its\n"
+          "text and of the line before, which reveals changed, removed or added lines. FILE.head reveals removed last lines.\n"
+          "An intruder who can rewrite all of these is revealed by a number and hash kept elsewhere (journal or syslog server):\n"
+          "\n"
+          "  --known NUMBER:HASH   the trail must contain this line\n",
           out);
 }
 

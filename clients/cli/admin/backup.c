@@ -44,18 +44,16 @@ static void print_usage(FILE *out)
           "       plantcast backup --verify FOLDER\n"
           "       plantcast restore FOLDER PLANT.yaml [--history DIR]\n"
           "\n"
-          "backup copies history, the journal of alarms, what was proven, the plant file and its tag list into a new folder, also\n"
-          "while the daemon records: each database as it was at one moment. Models are not in it. Nobody but its maker may read it.\n"
-          "Links are not followed, and what belongs to somebody else than its folder does is not read: neither for root.\n"
+          "backup copies history, alarm journal, loop check records, plant file and tag list into a new folder that only its owner\n"
+          "can read. The daemon may run: each database is copied as of one moment. Models are not included. Symbolic links are not\n"
+          "followed, and files whose owner is not that of their folder are skipped, also when run as root.\n"
           "\n"
-          "--verify restores a backup aside, in a folder beside it that is removed again, compares what is there with what was backed\n"
-          "up, and checks each database.\n"
+          "--verify restores a backup into a temporary folder next to it, compares all files and checks each database.\n"
           "\n"
-          "restore checks that a backup is whole and puts it in place: the plant file as PLANT.yaml, its tag list and history where the\n"
-          "plant file says. By root, each file belongs to whom its folder belongs to. Nothing is overwritten: where a file is in the\n"
-          "way, nothing is restored.\n"
+          "restore checks a backup and then writes the plant file to PLANT.yaml, and tag list and history where the plant file says.\n"
+          "Run by root, each file gets the owner of its folder. If a file exists already, nothing is restored.\n"
           "\n"
-          "  --history DIR    where history is, or is to be (as the plant file says; else beside it)\n",
+          "  --history DIR    folder of the history (default: the one that the plant file names, else next to it)\n",
           out);
 }
 

@@ -18,10 +18,10 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast drain PID [--wait SECONDS]\n"
           "\n"
-          "Sends the signal USR1 to that daemon: within 12 s its sessions are sent elsewhere, one after the other. Ends once that is\n"
-          "over, or the daemon has ended. For preStop of a container, and for ExecStop= of a unit.\n"
+          "Sends SIGUSR1 to the daemon with this process ID: it moves its sessions to other nodes, one after another, within 12 s.\n"
+          "Returns when all are moved or the daemon has ended. For preStop of a container and ExecStop= of a systemd unit.\n"
           "\n"
-          "  --wait SECONDS  how long to wait; 0: not at all (13)\n",
+          "  --wait SECONDS  wait at most this long; 0: do not wait (default: 13)\n",
           out);
 }
 

@@ -7,10 +7,11 @@
 #include "clients/cli/viewer/stream_reach.h"
 #include "clients/link/daemon.h"
 
-static const char usage[] = "usage: plantcast ready URL\n"
-                            "\n"
-                            "Ends with 0 if the daemon (http://HOST:PORT/ or https://) serves pictures, else with 1 and the reason.\n"
-                            "It also opens a WebSocket, which a proxy in between may not pass on.\n";
+static const char usage[] =
+    "usage: plantcast ready URL\n"
+    "\n"
+    "Checks that the daemon at URL (http://HOST:PORT/ or https://) serves pictures, and that a WebSocket can be opened, which\n"
+    "a reverse proxy may block. If not, prints the reason. Exit status: 0 ready, 1 not ready.\n";
 
 int cmd_ready(int argc, char **argv)
 {

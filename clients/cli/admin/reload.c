@@ -21,11 +21,13 @@ static void print_usage(FILE *out)
     fputs(
         "usage: plantcast reload PID [--runtime DIR] [--timeout SECONDS]\n"
         "\n"
-        "Sends the signal HUP to that daemon, waits until it has loaded plant file and tag list anew, and ends with 0, or, if it refused\n"
-        "them, with 1 and the reasons. For ExecReload= of a unit; over the network, POST /api/v1/reload does the same.\n"
+        "Sends SIGHUP to the daemon with this process ID and waits until it has reloaded plant file and tag list. If the daemon\n"
+        "rejects them, prints the reasons; the daemon keeps the old ones. For ExecReload= of a systemd unit; over the network use\n"
+        "POST /api/v1/reload.\n"
         "\n"
-        "  --runtime DIR      the daemon's RUNTIME_DIRECTORY (the one in the environment)\n"
-        "  --timeout SECONDS  how long to wait (600)\n",
+        "  --runtime DIR      RUNTIME_DIRECTORY of the daemon (default: that of the environment)\n"
+        "  --timeout SECONDS  wait at most this long (default: 600)\n"
+        "Exit status: 0 reloaded, 1 rejected.\n",
         out);
 }
 

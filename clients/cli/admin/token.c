@@ -27,15 +27,20 @@ static void print_usage(FILE *out)
           "       plantcast token list FILE\n"
           "       plantcast token revoke FILE NAME\n"
           "\n"
-          "ROLE: viewer, operator or engineer, of a person or program; renderer or standby, of a daemon that connects to a core.\n"
-          "add makes a token and prints it, once: the file, which it makes if need be, holds only its SHA-256. plantcastd --tokens FILE\n"
-          "sees within 3 seconds what was added or revoked, and closes the sessions of what was revoked.\n"
-          "--until: the last day on which it is good. --plant: it is good only for the plant of that name, where plants share the file.\n"
-          "--views: it is a viewer's, and good for pictures (/snapshot.png?view=ID) of these views of the plant file only.\n"
-          "--display: it is a viewer's, and good for that display of a wall of the plant file only; implies --unattended.\n"
-          "--unattended: of a wall or a program: plantcastd --lock-after does not lock it.\n"
-          "It lies in a folder of root's, or of yours, and is no link. The daemon has to be able to read it: chown root:plantcast FILE;\n"
-          "chmod 640 FILE\n",
+          "add creates a token and prints it, once: FILE holds only its SHA-256 hash, and is created if missing. A daemon with\n"
+          "--tokens FILE applies changes within 3 s, and closes the sessions of revoked tokens.\n"
+          "\n"
+          "  --role ROLE      viewer, operator or engineer, for users and programs; renderer or standby, for daemons that connect to\n"
+          "                   a core\n"
+          "  --name NAME      name of the user or program\n"
+          "  --until DATE     last day on which the token is valid\n"
+          "  --plant PLANT    valid for the plant of this name only, if several plants share FILE\n"
+          "  --views ID,...   viewer only: valid only for pictures (/snapshot.png?view=ID) of these views of the plant file\n"
+          "  --display WALL:NUMBER  viewer only: valid only for this display of a wall of the plant file; implies --unattended\n"
+          "  --unattended     never signed out by plantcastd --lock-after: for walls and programs\n"
+          "\n"
+          "FILE must be in a folder that root or you own, and must not be a symbolic link. Let the daemon read it:\n"
+          "chown root:plantcast FILE; chmod 640 FILE\n",
           out);
 }
 

@@ -37,11 +37,14 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast fleet FLEET.yaml [--check]\n"
           "       plantcast fleet FLEET.yaml --serve [--address ADDRESS] [--port PORT] [--host NAME]\n"
           "\n"
-          "Serves one page, and one /metrics, over the servers of many plants: a small picture of each, alarms by priority, links that\n"
-          "are down, version, certificate, disk, last backup. A plant that does not answer says since when. The page has no log-in:\n"
-          "ADDRESS is one of this machine (127.0.0.1, the default, or ::1); a proxy before it decides who may see it.\n"
-          "NAME is what people reach that proxy by; requests for other names are refused, since a foreign page may have sent them.\n"
-          "PORT: default 8090; 0: any that is free. INSTALL.md describes the file.\n",
+          "Serves one page and one /metrics for the servers of many plants: a small picture of each, alarms by priority, lost\n"
+          "connections, version, certificate, disk and last backup. A plant that does not answer is shown with the time since when.\n"
+          "The page has no sign-in: put a reverse proxy in front that decides who may see it. INSTALL.md describes FLEET.yaml.\n"
+          "\n"
+          "  --check            check FLEET.yaml only\n"
+          "  --address ADDRESS  address of this machine to listen on: 127.0.0.1 or ::1 (default: 127.0.0.1)\n"
+          "  --port PORT        TCP port; 0: any free port (default: 8090)\n"
+          "  --host NAME        host name of the proxy. Requests for other names are refused: a foreign page may have sent them\n",
           out);
 }
 

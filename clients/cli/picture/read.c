@@ -20,10 +20,10 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast read PICTURE X Y [X Y]...\n"
           "\n"
-          "Says which value a pixel shows, and between which bounds its colour cannot be told apart. PICTURE is a PNG or JPEG that was\n"
-          "drawn with --strip legend (of /snapshot.png: strip=legend), or a copy of it: scaled, compressed, part of a screenshot. Nothing\n"
-          "but its pixels is looked at: the strip below says range and unit. X, Y: from its upper left corner, the first is 0.\n"
-          "Exit status: 0: read; 1: no strip, or not all of these pixels show a value; 2: it could not be asked.\n",
+          "Prints the value that a pixel shows, and the bounds within which its colour is the same. PICTURE is a PNG or JPEG drawn\n"
+          "with --strip legend (/snapshot.png: strip=legend), or a copy of one: scaled, compressed, or part of a screenshot. Range\n"
+          "and unit are read from the strip; metadata is ignored. X and Y count from 0 at the upper left corner.\n"
+          "Exit status: 0 success, 1 no strip, or a pixel shows no value, 2 the picture could not be read.\n",
           out);
 }
 

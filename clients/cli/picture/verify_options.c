@@ -10,14 +10,15 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast verify (PICTURE.png | CLIP.mp4) --key FILE [--tour]\n"
           "                        [--plant PLANT.yaml [--prepared FOLDER] [--history FOLDER]]\n"
           "\n"
-          "Says whether PICTURE.png, or each picture of CLIP.mp4 (plantcast clip --signed), is what a server with --signing-key drew:\n"
-          "pixels, readings, time, view and configuration; of a clip also whether one is missing between the first and the last.\n"
-          "  --key FILE          the server's public key: openssl pkey -in signing.key -pubout -out FILE\n"
-          "  --tour              the film is one of a tour: its view changes; each is printed, and since when\n"
-          "  --plant PLANT.yaml  draw it again from the readings that it tells, and count the pixels that agree within 1/255\n"
-          "  --prepared FOLDER   where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
-          "  --history FOLDER    compare these readings with what was recorded there\n"
-          "Exit status: 0: all of it agrees; 1: something does not; 2: it could not be asked.\n",
+          "Verifies that PICTURE.png, or each picture of CLIP.mp4 (plantcast clip --signed), is as a server with --signing-key drew\n"
+          "it: pixels, readings, time, view and configuration. For a film also that no picture is missing in between.\n"
+          "\n"
+          "  --key FILE          public key of the server: openssl pkey -in signing.key -pubout -out FILE\n"
+          "  --tour              the film is a tour: its view may change, and each change is printed\n"
+          "  --plant PLANT.yaml  draw the picture again from its readings, and count the pixels that agree within 1/255\n"
+          "  --prepared FOLDER   output folder of plantcast-prep (default: PLANT.prepared next to the plant file)\n"
+          "  --history FOLDER    compare the readings with this recorded history\n"
+          "Exit status: 0 all agrees, 1 something differs, 2 the check could not be made.\n",
           out);
 }
 

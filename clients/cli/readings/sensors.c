@@ -26,13 +26,16 @@ static void print_usage(FILE *out)
     fputs(
         "usage: plantcast sensors suggest PLANT.yaml --add N [--group ID] [--asset ID] [--prepared FOLDER] [--csv]\n"
         "       plantcast sensors drift PLANT.yaml [--to INSTANT] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
-        "       plantcast sensors accept PLANT.yaml ... (--help tells more)\n"
-        "Proposes places for N more sensors, one after the other, each where it takes away most of what the present ones do not see: hot\n"
-        "spots of the group's hot_spot_m that no sensor would read as 5 % of its range (PLANT.md, show: blind).\n"
-        "  --group ID         of which sensors; the plant's first group\n"
-        "  --asset ID         only there; else wherever the group has sensors whose place is known\n"
-        "  --prepared FOLDER  where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
-        "  --csv              the same as a table\n",
+        "       plantcast sensors accept PLANT.yaml ...      (details: plantcast sensors accept --help)\n"
+        "\n"
+        "suggest proposes places for N more sensors, one after another, each where it covers most of the hot spots that the present\n"
+        "sensors miss: spots of the group's hot_spot_m that no sensor would read as 5 % of its range (PLANT.md, show: blind).\n"
+        "\n"
+        "  --add N            number of sensors\n"
+        "  --group ID         sensor group (default: the first one)\n"
+        "  --asset ID         only on this asset (default: all assets on which the group has placed sensors)\n"
+        "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to the plant file)\n"
+        "  --csv              print CSV\n",
         out);
 }
 

@@ -24,16 +24,19 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast sensors accept PLANT.yaml [--asset ID] [--group ID] [--tags PATTERN] [--within M] [--confidence C]\n"
           "                                [--prepared FOLDER] [--dry-run]\n"
           "       plantcast sensors accept PLANT.yaml --undo LIST.N\n"
-          "Accepts assumed places (PLANT.md, Assumed places): clears `Place` in the tag list for all sensors that every option admits.\n"
-          "The previous list is kept beside it as LIST.1, LIST.2, ... A daemon takes the new list with `plantcast reload`.\n"
-          "  --asset ID, --group ID   only sensors of these\n"
-          "  --tags PATTERN     only tags of this name: * and ? stand for any letters; without them a part of the name or description\n"
-          "  --within M         at most M metres from the surface of the asset\n"
-          "  --confidence C     at least this confidence of the match, 0 to 1, by matches.csv beside the tag list\n"
-          "  --prepared FOLDER  where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
-          "  --dry-run          prints the names of these sensors and changes nothing\n"
-          "  --undo LIST.N      puts this version of the list back\n"
-          "Exit status: 1 if no sensor is accepted or the list cannot be written.\n",
+          "\n"
+          "Accepts assumed places (PLANT.md, Assumed places): clears `Place` in the tag list for all sensors that match every\n"
+          "option. The previous list is kept next to it as LIST.1, LIST.2, ... Run `plantcast reload` to apply the new list.\n"
+          "\n"
+          "  --asset ID         only sensors on this asset\n"
+          "  --group ID         only sensors of this group\n"
+          "  --tags PATTERN     only tags with this name; * and ? are wildcards. Without wildcards: part of the name or description\n"
+          "  --within M         only sensors at most M metres from the surface of their asset\n"
+          "  --confidence C     only sensors matched with at least this confidence, 0 to 1 (matches.csv next to the tag list)\n"
+          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to the plant file)\n"
+          "  --dry-run          print the names of these sensors, and change nothing\n"
+          "  --undo LIST.N      restore this version of the list\n"
+          "Exit status: 1 if no sensor was accepted or the list cannot be written.\n",
           out);
 }
 

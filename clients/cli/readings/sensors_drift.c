@@ -18,13 +18,15 @@ struct drift_options {
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcast sensors drift PLANT.yaml [--to INSTANT] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
-          "Lists for each sensor by how much it drifted in a week away from what the others of its group on its asset say of it, by\n"
-          "recorded hourly means (PLANT.md, Sensors that drift). At least three sensors and half a week are needed.\n"
-          "  --to INSTANT       the week ends then; now. 2026-11-20T10:00:00Z, or back from now: -1d\n"
-          "  --group ID         of which sensors; all groups\n"
-          "  --prepared FOLDER  where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
-          "  --folder DIR       where history is (as the plant file says; else beside it)\n"
-          "CSV: tag,verdict (found, none, unknown),change,error,scatter,unit,hours. Exit status: 1: a drift was found.\n",
+          "\n"
+          "Prints for each sensor how far its hourly means drifted within a week from the value that the other sensors of its group\n"
+          "on the same asset predict (PLANT.md, Sensors that drift). Needs at least three sensors and half a week of history.\n"
+          "\n"
+          "  --to INSTANT       end of the week (default: now): 2026-11-20T10:00:00Z, or back from now: -1d\n"
+          "  --group ID         sensor group (default: all)\n"
+          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to the plant file)\n"
+          "  --folder DIR       folder of the history (default: the one that the plant file names, else next to it)\n"
+          "Output: CSV of tag,verdict (found, none, unknown),change,error,scatter,unit,hours. Exit status: 1 if a sensor drifts.\n",
           out);
 }
 

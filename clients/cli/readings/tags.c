@@ -15,9 +15,11 @@ static void print_usage(FILE *out)
           "       plantcast tags --probe DEVICE [--address-base 0|1] [--rtu] ADDRESS\n"
           "\n"
           "Prints the tags of a daemon (http://HOST:PORT/, or https:// with --token-file FILE) with value, quality and age.\n"
-          "--browse prints the variables of an OPC UA server that hold numbers, as a tag list; --browse --help says its options.\n"
-          "--probe reads one address of a field device, HOST, HOST:PORT or /dev/LINE (19200 baud, even parity), such as hr:0 or\n"
-          "2!400001, and shows what it is in every type and byte order. --rtu: the device takes RTU frames over TCP. It only reads.\n",
+          "\n"
+          "  --browse   print the numeric variables of an OPC UA server as a tag list (options: --browse --help)\n"
+          "  --probe    read one address of a Modbus device and print it in every type and byte order. DEVICE is HOST, HOST:PORT or\n"
+          "             /dev/LINE (19200 baud, even parity); ADDRESS is such as hr:0 or 2!400001. Nothing is written to the device\n"
+          "  --rtu      the device expects RTU frames over TCP\n",
           out);
 }
 

@@ -23,8 +23,9 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast tags --browse opc.tcp://HOST[:PORT][/PATH] [--login FILE]\n"
           "                      [--certificate FILE --key FILE --trusted FOLDER [--server-name NAME]]\n"
           "\n"
-          "Prints the variables of an OPC UA server that hold numbers as a tag list (CSV): elements of arrays one by one. Without a\n"
-          "certificate nothing is encrypted. The options are those of a source of type opcua in a plant file. It only reads.\n",
+          "Prints the numeric variables of an OPC UA server as a tag list (CSV), with one row for each element of an array. Options\n"
+          "are those of a source of type opcua in a plant file. Without a certificate the connection is not encrypted. Nothing is\n"
+          "written to the server.\n",
           out);
 }
 
