@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-sim: the devices of a plant as Modbus TCP servers, and what is published over MQTT, fed by a simulated process or by recorded
+/* plantcast-sim: simulates the devices of a plant as Modbus TCP servers, and MQTT publishers, fed by a simulated process or by recorded
    series. */
 #include "sim.h"
 
@@ -103,7 +103,7 @@ static bool take_option(struct sim_options *options, int option, const char *tex
     }
 }
 
-/* EXIT_SUCCESS: go on. EXIT_USAGE: said what is wrong. -1: only help was wanted. */
+/* Returns EXIT_SUCCESS to go on; EXIT_USAGE after an error message; -1 if only help was wanted. */
 static int read_options(struct sim_options *options, int argc, char **argv)
 {
     static const struct option known[] = {
@@ -133,7 +133,7 @@ static int read_options(struct sim_options *options, int argc, char **argv)
     return status;
 }
 
-/* Reads PLANT.map beside PLANT.yaml, if there is one. */
+/* Reads PLANT.map next to PLANT.yaml, if there is one. */
 static void read_map_file(struct sim_options *options, struct diag *diag)
 {
     const char *dot = strrchr(options->plant, '.'), *slash = strrchr(options->plant, '/');
@@ -155,7 +155,7 @@ static bool open_port(struct sim_port *port, const char *address, int number, si
     return status == 0;
 }
 
-static int stop_fd = -1; /* readable once the program is told to end */
+static int stop_fd = -1; /* eventfd; readable when the program must end */
 
 static void on_signal(int number)
 {
@@ -165,7 +165,7 @@ static void on_signal(int number)
     errno = cause;
 }
 
-/* Not a mask and a signalfd: libraries start threads before main, and those do not have our mask. */
+/* Handles signals by a handler instead of a mask and a signalfd: threads that libraries start before main() do not have our mask. */
 static bool await_signals(void)
 {
     struct sigaction action = { .sa_handler = on_signal, .sa_flags = SA_RESTART };
@@ -220,7 +220,7 @@ static int run(struct sim_options *options)
     bool good = false;
     struct plant *plant = plant_load(options->plant, &diag);
     if (plant) {
-        timestamp_use_zone(plant->time_zone); /* of recorded times */
+        timestamp_use_zone(plant->time_zone); /* for times in recorded series */
         read_map_file(options, &diag);
         values = sim_values_create(plant, &options->map, options->loop || options->map.loop, &diag);
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The simulated Modbus devices of a plant, one for each port that its sources name, and what it publishes. Thread: one. */
+/* The simulated Modbus devices of a plant, one for each port that its sources name, and its MQTT publisher. Thread: one. */
 #ifndef DEMO_SIM_H
 #define DEMO_SIM_H
 #include "sim_modbus.h"
@@ -8,8 +8,8 @@
 
 struct sim_device {
     struct sim_modbus modbus;
-    int port;          /* as the plant says */
-    int listen_port;   /* where it is served */
+    int port;        /* port in the plant file */
+    int listen_port; /* port on which it listens */
     size_t tag_count;
 };
 
@@ -23,9 +23,9 @@ struct sim {
     bool quit;
 };
 
-/* Makes devices with registers for all tags of Modbus sources. port > 0: the first device listens there, the others on the ports after it.
-   broker: HOST:PORT where tags of MQTT sources are published, or NULL. Returns false if there is nothing to serve, or no memory (printed to
-   stderr). */
+/* Makes devices with registers for all tags of Modbus sources. port > 0: the first device listens there, the others on the ports after
+   it. broker: HOST:PORT where tags of MQTT sources are published, or NULL. Returns false if there is nothing to serve, or memory is
+   exhausted (printed to stderr). */
 bool sim_init(struct sim *sim, const struct plant *plant, struct sim_values *values, int port, const char *broker);
 void sim_finish(struct sim *sim);
 /* Writes the present values of all tags to the registers. */
@@ -33,7 +33,7 @@ void sim_update(struct sim *sim);
 /* Returns the device of a tag, and its unit; NULL if the tag is not on Modbus. */
 struct sim_device *sim_device_of(const struct sim *sim, const struct plant_tag *tag, int *unit);
 
-/* Executes a line of the control port; arg: struct sim. */
+/* Executes a line from the control port; arg: struct sim. */
 sim_take sim_control_take;
 extern const char sim_control_help[];
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The control port: one command a line, one line back. For tests and demonstrations. */
+/* The control port: one command a line, answered by one line. For tests and demonstrations. */
 #include "sim.h"
 
 #include <ctype.h>
@@ -20,7 +20,7 @@ const char sim_control_help[] =
     "  Each line is answered with `ok`, `ok ...` or `error: ...`.\n";
 
 struct sim_command {
-    const char *name, *tag, *value; /* "" where it has none */
+    const char *name, *tag, *value; /* "" if the command has none */
 };
 
 static void set_tag(struct sim *sim, size_t tag, const char *text, char *reply, size_t bytes)
@@ -38,7 +38,7 @@ static void set_tag(struct sim *sim, size_t tag, const char *text, char *reply, 
         sim_values_force(sim->values, tag, value);
 }
 
-/* Without a device. */
+/* Executes the commands that need no device. */
 static void do_with_published(struct sim *sim, const struct sim_command *command, size_t tag, char *reply, size_t bytes)
 {
     char *end;
@@ -122,7 +122,7 @@ static void execute(struct sim *sim, const struct sim_command *command, char *re
         snprintf(reply, bytes, "error: unknown command %s", command->name);
 }
 
-/* Command, tag, value: the value is the last word, so that a tag may have blanks in its name. */
+/* Splits a line into command, tag and value. The value is the last word, so that a tag's name may contain blanks. */
 static struct sim_command parse(char *line)
 {
     struct sim_command command = { "", "", "" };

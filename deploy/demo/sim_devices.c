@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which device serves which tag. */
+/* Assigns tags to simulated devices. */
 #include "sim.h"
 
 #include <stdio.h>

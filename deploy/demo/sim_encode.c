@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scaling turned round, the value as bytes with the most significant first, and the bytes put where the byte order says. */
+/* Encodes a value: reverses the scaling, makes bytes with the most significant first, and places them by the byte order. */
 #include "sim_encode.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Which byte of the value (A the most significant) stands at each place on the wire. */
+/* Byte of the value at each place on the wire (A the most significant), by byte order. */
 static const char *const places_16[] = { "AB", "AB", "AB", "BA", "BA" };
 static const char *const places_32[] = { "ABCD", "ABCD", "CDAB", "BADC", "DCBA" };
 static const char *const places_64[] = { "ABCDEFGH", "ABCDEFGH", "GHEFCDAB", "BADCFEHG", "HGFEDCBA" };
@@ -42,7 +42,7 @@ static uint64_t whole(double raw, double low, double high)
     raw = nearbyint(raw);
     if (raw <= low)
         raw = low;
-    if (raw >= high) /* 2^63 and 2^64 are doubles, the numbers before them are not */
+    if (raw >= high) /* 2^63 and 2^64 are doubles, the integers below them are not */
         return high >= 18446744073709551615.0 ? UINT64_MAX : high >= 9223372036854775807.0 ? INT64_MAX : (uint64_t)high;
     return raw < 0 ? (uint64_t)(int64_t)raw : (uint64_t)raw;
 }
@@ -55,7 +55,7 @@ static uint64_t bcd(uint64_t number)
     return digits;
 }
 
-/* The bits of the raw value, right-aligned. */
+/* Returns the bits of the raw value, right-aligned. */
 static uint64_t bits_of(enum data_type type, double raw)
 {
     uint64_t bits = 0;

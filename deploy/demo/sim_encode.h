@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes values in engineering units as registers, as a device does. Shares no code with server/value/decode.c. Thread: any. */
+/* Encodes values in engineering units as registers, as a device does. Shares no code with server/value/decode.c, which it tests. Thread:
+   any. */
 #ifndef DEMO_SIM_ENCODE_H
 #define DEMO_SIM_ENCODE_H
 #include <stdbool.h>
@@ -7,12 +8,12 @@
 
 #include "plant/plant.h"
 
-/* Returns how many registers a tag occupies: 1, 2 or 4; 1 for a coil or a discrete input. */
+/* Returns the number of registers of a tag: 1, 2 or 4; 1 for a coil or a discrete input. */
 int sim_encode_width(const struct plant_tag *tag);
-/* Returns the number that a value in engineering units is before scaling; of a bit, 0 or 1. */
+/* Returns the raw number, before scaling, of a value in engineering units; for a bit 0 or 1. */
 double sim_encode_raw(const struct plant_tag *tag, double value);
-/* Writes the value to `words` (0 or 1 for coils and discrete inputs; for a bit of a register, that bit only). Clamps it to the data type.
-   Returns false, with words unchanged, if the type cannot hold NaN or infinity. */
+/* Writes the value to `words` (0 or 1 for coils and discrete inputs; for a bit of a register, only that bit). Clamps it to the data
+   type. Returns false, with `words` unchanged, if the type cannot hold NaN or infinity. */
 bool sim_encode(const struct plant_tag *tag, double value, uint16_t *words);
 
 #endif

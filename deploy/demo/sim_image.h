@@ -9,16 +9,16 @@
 #include "plant/plant.h"
 
 struct sim_unit;
-struct sim_image { /* zero-initialise */
-    struct sim_unit *units[256]; /* NULL: no such unit */
+struct sim_image {               /* zero-initialise */
+    struct sim_unit *units[256]; /* by unit identifier; NULL: no such unit */
 };
 
 void sim_image_finish(struct sim_image *image);
 /* Adds the registers of a tag. */
 void sim_image_add(struct sim_image *image, int unit, const struct plant_tag *tag);
-/* Writes the value of a tag. Returns false if its type cannot hold it. */
+/* Writes the value of a tag. Returns false if its data type cannot hold the value. */
 bool sim_image_set(struct sim_image *image, int unit, const struct plant_tag *tag, double value);
-/* Makes the device refuse, or no longer refuse, requests that include the tag. */
+/* Makes the device refuse requests that include the tag, or accept them again. */
 void sim_image_fail(struct sim_image *image, int unit, const struct plant_tag *tag, bool failing);
 /* Returns 0, or the exception code with which a request for these registers is refused. */
 int sim_image_refusal(const struct sim_image *image, int unit, enum register_table table, int first, int count);

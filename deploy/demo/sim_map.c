@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads what a person wrote about series and tags. */
+/* Parses the mapping from series to tags. */
 #include "sim_map.h"
 
 #include <ctype.h>
@@ -23,7 +23,7 @@ static char *trim(char *text)
     return text;
 }
 
-/* `SCALE`, `SCALE+OFFSET`, `SCALE-OFFSET`. */
+/* Parses `SCALE`, `SCALE+OFFSET` or `SCALE-OFFSET`. */
 static bool read_factors(const char *text, double *scale, double *offset)
 {
     char *end;

@@ -10,25 +10,25 @@
 struct sim_map_entry {
     char *tag, *series;
     double scale, offset;
-    const char *file; /* where it is stated, for messages; owned by the map */
+    const char *file; /* file that states the entry, for messages; owned by the map */
     int line;
 };
 
 struct sim_map { /* zero-initialise */
     struct sim_map_entry *entries;
     size_t count, capacity;
-    char **files;      /* CSV files to look for series in */
+    char **files; /* CSV files to search for series */
     size_t file_count, file_capacity;
     char **map_files;
     size_t map_file_count, map_file_capacity;
-    double speed;      /* 0: not stated */
+    double speed; /* 0: not stated */
     bool loop;
 };
 
 /* Adds an entry: `TAG=SERIES`, `TAG=SERIES*SCALE`, `TAG=SERIES*SCALE+OFFSET` (or -OFFSET). Errors go to diag. */
 void sim_map_add(struct sim_map *map, const char *text, const char *file, int line, struct diag *diag);
 void sim_map_add_file(struct sim_map *map, const char *path);
-/* Reads a map file: lines as above, `values PATH` (relative to the map file), `speed X`, `loop`, and # comments. */
+/* Reads a map file: lines with entries, `values PATH` (relative to the map file), `speed X`, `loop`, and # comments. */
 void sim_map_read(struct sim_map *map, const char *path, struct diag *diag);
 void sim_map_finish(struct sim_map *map);
 

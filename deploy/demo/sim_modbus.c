@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One request at a time: checked here, answered by libmodbus. */
+/* Processes one request at a time: checked here, answered by libmodbus. */
 #include "sim_modbus.h"
 
 enum { HEADER_BYTES = 7, LENGTH_AT = 4, UNIT_AT = 6, FUNCTION_AT = 7, FIRST_AT = 8, COUNT_AT = 10, READ_BYTES = 12 };
 
 bool sim_modbus_init(struct sim_modbus *device)
 {
-    *device = (struct sim_modbus){ .modbus = modbus_new_tcp("127.0.0.1", MODBUS_TCP_DEFAULT_PORT) }; /* never connects */
+    *device = (struct sim_modbus){ .modbus = modbus_new_tcp("127.0.0.1", MODBUS_TCP_DEFAULT_PORT) }; /* the context never connects */
     return device->modbus != NULL;
 }
 

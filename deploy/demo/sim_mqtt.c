@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One message a topic; for JSON, with all values that tags find in it. */
+/* Publishes one message per topic; a JSON message has the values of all tags of the topic. */
 #include "sim_mqtt.h"
 
 #include <jansson.h>
@@ -19,7 +19,7 @@ enum { KEEPALIVE_S = 10, MOST_ITEMS = 1000 };
 struct sim_mqtt {
     const struct plant *plant;
     struct mosquitto *library;
-    struct mqtt_topics *topics; /* by source; of those that are not simulated, none */
+    struct mqtt_topics *topics; /* by source; empty for sources that are not simulated */
     int64_t *due_ns;            /* by source */
     size_t tag_count;
 };
@@ -47,7 +47,7 @@ static bool connect_to(struct sim_mqtt *mqtt, const char *where)
     mosquitto_lib_init();
     mqtt->library = good ? mosquitto_new(NULL, true, NULL) : NULL;
     if (mqtt->library) {
-        mosquitto_connect_async(mqtt->library, host, (int)port, KEEPALIVE_S); /* a broker that is not there yet is tried again */
+        mosquitto_connect_async(mqtt->library, host, (int)port, KEEPALIVE_S); /* retries until the broker is up */
         good = mosquitto_loop_start(mqtt->library) == MOSQ_ERR_SUCCESS;
     }
     mem_free(host);
@@ -97,7 +97,7 @@ size_t sim_mqtt_tag_count(const struct sim_mqtt *mqtt)
 
 /* --- publishing ------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the object that a filter's comparisons describe, such as {"id": "A.T2"}; NULL where a path in them has several steps. */
+/* Returns the object that a filter's comparisons describe, such as {"id": "A.T2"}; NULL if a path in them has several steps. */
 static json_t *described(const struct json_path_step *filter)
 {
     json_t *object = json_object();
@@ -119,7 +119,8 @@ static json_t *described(const struct json_path_step *filter)
     return object;
 }
 
-/* Returns the index of the array's item that a filter selects; appends such an item if there is none. -1: it cannot be made. */
+/* Returns the index of the array item that a filter selects; appends such an item if there is none. Returns -1 if the item cannot be
+   made. */
 static long selected_index(json_t *array, const struct json_path_step *filter)
 {
     json_t *wanted = described(filter), *item;
@@ -139,8 +140,8 @@ static long selected_index(json_t *array, const struct json_path_step *filter)
     return found == SIZE_MAX ? -1 : (long)found;
 }
 
-/* Returns the member or the item of *root that a step leads to, and makes what is missing on the way; *at: its index, of an item.
-   NULL: it cannot be made. The value is new: json_decref(). */
+/* Returns the member or item of *root that a step leads to, creating what is missing; *at: the index of an item. The caller owns a
+   reference (json_decref()). NULL: it cannot be made. */
 static json_t *slot_of(json_t **root, const struct json_path_step *step, long *at)
 {
     if (!*root)
@@ -159,7 +160,7 @@ static json_t *slot_of(json_t **root, const struct json_path_step *step, long *a
     return json_incref(json_array_get(*root, (size_t)*at));
 }
 
-/* Puts a value, which is taken over, at a path below root. */
+/* Puts a value at a path below *root. Takes ownership of the value. */
 static void put(json_t **root, const char *path, json_t *value)
 {
     struct json_path_step step;
@@ -176,7 +177,7 @@ static void put(json_t **root, const char *path, json_t *value)
         return;
     }
     if (json_is_null(made))
-        made = NULL; /* json_null() is one shared value that is not counted */
+        made = NULL; /* json_null() is one shared value without a reference count */
     put(&made, path, value);
     if (step.kind == JSON_PATH_NAME)
         json_object_set_new(*root, step.name, made);
@@ -184,7 +185,7 @@ static void put(json_t **root, const char *path, json_t *value)
         json_array_set_new(*root, (size_t)at, made);
 }
 
-/* Puts a value at a path of the source. A path that begins with `@` begins beside the value at `of`. */
+/* Puts a value at a path of the source. A path that begins with `@` starts in the object that contains the value at `of`. */
 static void put_stated(json_t **root, const char *path, const char *of, json_t *value)
 {
     struct json_path_step step;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Publishes the values of tags of MQTT sources, as numbers or JSON, to one broker. Thread: one; the library has one of its own. */
+/* Publishes the values of tags of MQTT sources, as numbers or JSON, to one broker. Thread: one; the library has a thread of its own. */
 #ifndef DEMO_SIM_MQTT_H
 #define DEMO_SIM_MQTT_H
 #include "plant/plant.h"
@@ -7,14 +7,14 @@
 
 struct sim_mqtt;
 
-/* Connects to a broker, HOST:PORT, again and again until it is there. Returns NULL if there is nothing to publish, or where is no HOST:PORT
-   (printed to stderr). plant must outlive it. */
+/* Connects to a broker, HOST:PORT, retrying until it is up. Returns NULL if there is nothing to publish, or `where` is not HOST:PORT
+   (printed to stderr). `plant` must outlive it. */
 struct sim_mqtt *sim_mqtt_create(const struct plant *plant, const char *where);
-void sim_mqtt_destroy(struct sim_mqtt **mqtt); /* &NULL is fine; leaves NULL */
+void sim_mqtt_destroy(struct sim_mqtt **mqtt); /* Ends the connection. &NULL is fine; leaves NULL. */
 size_t sim_mqtt_tag_count(const struct sim_mqtt *mqtt);
 /* Returns whether a tag is published. */
 bool sim_mqtt_has(const struct plant *plant, size_t tag);
-/* Publishes the topics of the sources that are due by their poll_ms. */
+/* Publishes the topics of all sources that are due by their poll_ms. */
 void sim_mqtt_step(struct sim_mqtt *mqtt, const struct sim_values *values, int64_t now_mono_ns, int64_t now_utc_ns);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Several listeners and their clients in one poll(). */
+/* Serves several listeners and their clients with one poll(). */
 #include "sim_port.h"
 
 #include <arpa/inet.h>
@@ -58,7 +58,7 @@ static void admit(struct sim_port *port)
     client->count = 0;
 }
 
-/* False: the connection has ended. */
+/* Handles the bytes of a client. Returns false if the connection has ended. */
 static int serve_client(struct sim_port *port, struct sim_client *client)
 {
     ssize_t got = recv(client->fd, client->bytes + client->count, SIM_PORT_BYTES - client->count, 0), used;

@@ -14,7 +14,7 @@ struct sim_client {
     size_t count;
 };
 
-/* Handles the message at the start of bytes. Returns its length, 0 if it is not complete yet, or -1 to close the connection. */
+/* Handles the message at the start of `bytes`. Returns its length, 0 if it is not complete yet, or -1 to close the connection. */
 typedef ssize_t sim_take(void *arg, int fd, const uint8_t *bytes, size_t count);
 
 struct sim_port {
@@ -28,7 +28,7 @@ struct sim_port {
 /* Opens a port. Returns 0, or -errno if it cannot listen there. */
 int sim_port_open(struct sim_port *port, const char *address, int number, sim_take *take, void *arg);
 void sim_port_close(struct sim_port *port);
-/* Serves all ports until timeout_ms has passed or extra_fd is readable. Returns 1 in the latter case, else 0. */
+/* Serves all ports until timeout_ms has passed or extra_fd is readable. Returns 1 if extra_fd is readable, else 0. */
 int sim_ports_serve(struct sim_port *ports, size_t count, int extra_fd, int timeout_ms);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Upsets as a table of who feels them; each tag a first-order lag behind its loop. The shares and the limits of the demo
-   plant belong together: an upset brings few tags beyond their limits and moves many within them. */
+/* Upsets are a table of effects on loops; each tag is a first-order lag behind its loop. The shares match the limits of the demo plant:
+   an upset drives few tags beyond their limits and moves many within them. */
 #include "sim_process.h"
 
 #include <math.h>
@@ -17,15 +17,15 @@ static const double MAX_STEP_S = 1.0, TAU = 6.283185307179586;
 #define MACHINE "machine" /* one machine in each cycle, in turn */
 
 struct effect {
-    const char *word;  /* in the name of the loop */
+    const char *word; /* word in the name of the loop */
     enum process_kind kind;
-    double share;      /* of the tag's span, at the height of the upset */
-    double dead_s;     /* before it is felt */
+    double share;  /* fraction of the tag's span, at the peak of the upset */
+    double dead_s; /* seconds before the effect begins */
 };
 
 struct upset {
     const char *name;
-    double start_s, rise_s, hold_s, fall_s; /* within the cycle */
+    double start_s, rise_s, hold_s, fall_s; /* times in seconds within the cycle */
     struct effect effects[MAX_EFFECTS];
 };
 
@@ -49,15 +49,15 @@ static const struct upset upsets[UPSETS] = {
 
 static const struct {
     const char *word;
-    double lag; /* times as slow as others */
+    double lag; /* factor by which the loop is slower than others */
 } slow_loops[] = { { "storage", 60 }, { "weather", 60 }, { "steam", 20 } };
 
 struct process_state {
     enum process_kind kind;
     double normal, span;
     double shares[UPSETS], dead_s[UPSETS];
-    uint32_t loop;             /* hash of its name: phase of its drift */
-    int machine;               /* number of the machine it is on, or -1 */
+    uint32_t loop; /* hash of the loop's name; sets the phase of its drift */
+    int machine;   /* number of its machine, or -1 */
     double dead_own_s, lag_s;
     double lagged, drift, noise, value;
     uint64_t random;
@@ -109,7 +109,8 @@ static double level(const struct upset *upset, double time_s)
     return 1 - smooth((t - upset->rise_s - upset->hold_s) / upset->fall_s);
 }
 
-/* A machine by its name: a pump or motor, or the tag of a pump, compressor or air cooler (P-101, K-101, EA-101). */
+/* Returns whether a loop's name is that of a machine: a pump or motor, or the tag of a pump, compressor or air cooler (P-101, K-101,
+   EA-101). */
 static bool is_machine(const char *loop)
 {
     static const char *const starts[] = { "P-", "K-", "C-", "EA-" };
@@ -124,7 +125,8 @@ static bool has_number(const char *loop)
     return strpbrk(loop, "0123456789") != NULL;
 }
 
-/* Machines are numbered as they come. All tags of one loop are on one, and so are all loops that bear no number. */
+/* Returns the number of a tag's machine, numbered in order of appearance. All tags of one loop are on one machine, and so are all loops
+   without a number. */
 static int machine_of(struct process *process, const struct process_tag *tags, size_t tag)
 {
     if (!is_machine(tags[tag].loop))
@@ -142,7 +144,7 @@ static bool feels(const struct process_state *state, const struct effect *effect
     return there && effect->kind == state->kind;
 }
 
-/* The strongest effect of each upset on this loop. */
+/* Finds the strongest effect of each upset on a loop. */
 static void find_effects(struct process_state *state, const char *loop)
 {
     for (int u = 0; u < UPSETS; u++)
@@ -206,7 +208,7 @@ struct process *process_create(const struct process_tag *tags, size_t count, uin
         state->random = seed ^ (uint64_t)hash_of(tags[i].name) << 20;
         state->machine = machine_of(process, tags, i);
         find_effects(state, tags[i].loop);
-        double own = 0.75 + 0.5 * uniform(&state->random); /* no two feel it alike */
+        double own = 0.75 + 0.5 * uniform(&state->random); /* tags of a loop react differently */
         for (int u = 0; u < UPSETS; u++)
             state->shares[u] *= own;
         state->dead_own_s = 6 * uniform(&state->random);
@@ -226,7 +228,7 @@ void process_destroy(struct process **process)
     *process = NULL;
 }
 
-/* Ornstein-Uhlenbeck, exact for any step. */
+/* Steps an Ornstein-Uhlenbeck process, exact for any step size. */
 static double wander(double x, double sigma, double time_constant_s, double dt_s, uint64_t *random)
 {
     double keep = exp(-dt_s / time_constant_s);

@@ -10,19 +10,19 @@ enum process_kind { PROCESS_TEMPERATURE, PROCESS_PRESSURE, PROCESS_VIBRATION, PR
 
 struct process_tag {
     enum process_kind kind;
-    double normal;     /* operating value */
-    double span;       /* of its range; drifts and upsets are fractions of it */
-    const char *name;  /* need only live for the call, like loop */
-    const char *loop;  /* any word: upsets affect the loops that --help lists; others drift with a phase derived from it */
+    double normal;    /* operating value */
+    double span;      /* width of its range; drifts and upsets are fractions of it */
+    const char *name; /* name and loop need to live only during the call */
+    const char *loop; /* any word: upsets affect the loops that --help lists; others drift with a phase derived from the word */
 };
 
 struct process;
 
 struct process *process_create(const struct process_tag *tags, size_t count, uint64_t seed);
-void process_destroy(struct process **process); /* &NULL is fine; leaves NULL */
+void process_destroy(struct process **process); /* Frees the process. &NULL is fine; leaves NULL. */
 void process_step(struct process *process, double dt_s);
 double process_value(const struct process *process, size_t tag);
-/* Returns the progress of the current upset, 0..1, and its name; 0 and "" between upsets. */
+/* Returns the progress of the current upset, 0 to 1, and its name; 0 and "" between upsets. */
 double process_upset(const struct process *process, const char **name);
 /* Returns one line for each upset, for --help (static). */
 const char *process_upset_help(void);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses for each tag where its value comes from. */
+/* Selects the source of each tag's value. */
 #include "sim_values.h"
 
 #include <math.h>
@@ -14,9 +14,9 @@
 struct tag_value {
     bool forced;
     double forced_to;
-    const struct series *series; /* NULL: the process */
+    const struct series *series; /* recorded series; NULL: the simulated process */
     double scale, offset;
-    struct unit_change change;   /* of the series' values to what a device gives */
+    struct unit_change change; /* unit conversion from the series to the device's value */
 };
 
 struct sim_values {
@@ -53,7 +53,7 @@ static enum process_kind kind_of(const struct plant *plant, const struct plant_t
     return mentions(quantity, vibration) || mentions(unit, speeds) ? PROCESS_VIBRATION : PROCESS_OTHER;
 }
 
-/* A device gives values in its own unit. Where nothing is said, the tag runs at 40 % of its range. */
+/* Chooses a tag's range in the device's own unit. Without stated values, the tag runs at 40 % of its range. */
 static void choose_range(const struct plant *plant, const struct plant_tag *tag, struct process_tag *out)
 {
     double low = 0, high = 100;
@@ -114,7 +114,7 @@ static const struct series *find_series(struct sim_values *values, const struct 
     return found ? &values->series[values->series_count++] : NULL;
 }
 
-/* A file that says a unit is in it; a device gives values in that of its tag's row. */
+/* Sets the unit conversion of a tag with a series: from the unit that the file states to the unit of the tag's row. */
 static void take_unit(struct sim_values *values, const struct sim_map_entry *entry, size_t tag, struct diag *diag)
 {
     const char *unit = values->tags[tag].series ? values->tags[tag].series->unit : NULL, *own = values->plant->tags[tag].own_unit;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The present value of every tag: forced through the control port, replayed from a series, or from the simulated process. Thread: one. */
+/* The current value of every tag: forced through the control port, replayed from a series, or from the simulated process. Thread: one. */
 #ifndef DEMO_SIM_VALUES_H
 #define DEMO_SIM_VALUES_H
 #include "base/text/diag.h"
@@ -8,15 +8,15 @@
 
 struct sim_values;
 
-/* Reads the columns `Sim Value` (operating value) and `Sim Loop` of the tag list, and the series that the map names. NULL: errors
-   are in diag. plant must outlive it, map need only live for the call. */
+/* Reads the columns `Sim Value` (operating value) and `Sim Loop` of the tag list, and the series that the map names. Returns NULL after
+   errors, which are in diag. `plant` must outlive the result; `map` needs to live only during the call. */
 struct sim_values *sim_values_create(const struct plant *plant, const struct sim_map *map, bool loop, struct diag *diag);
 void sim_values_destroy(struct sim_values **values); /* &NULL is fine; leaves NULL */
 void sim_values_step(struct sim_values *values, double dt_s);
 double sim_values_at(const struct sim_values *values, size_t tag);
 void sim_values_force(struct sim_values *values, size_t tag, double value);
 void sim_values_release(struct sim_values *values, size_t tag);
-/* The same as process_upset(). */
+/* Does the same as process_upset(). */
 double sim_values_upset(const struct sim_values *values, const char **name);
 
 #endif

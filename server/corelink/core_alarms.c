@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Each alarm by its name and kind; times as ages too, so that clocks need not agree. */
+/* Sends alarms by name and kind. Times are sent as ages too, so that the clocks of the nodes need not agree. */
 #include "corelink/core_alarms.h"
 
 #include <math.h>
@@ -120,7 +120,7 @@ static bool read_row(const json_t *one, struct journal_entry *out)
     return good;
 }
 
-/* Into the journal, and the states after them into the same file behind them. */
+/* Writes changes from the core to the journal; the alarm states that follow them are written to the same file afterwards. */
 static const char *take_rows(struct alarm_service *service, const json_t *rows)
 {
     const json_t *one;

@@ -6,13 +6,13 @@
 
 #include "alarm/alarm_service.h"
 
-/* Returns the message with alarms that changed after `since`, the oldest change first; since 0: with all that are not normal. *number:
-   of the last change in it. The caller owns it. */
+/* Returns the message with alarms that changed after `since`, the oldest change first; since 0: all alarms that are not normal. *number:
+   number of the last change in it. The caller owns the message. */
 json_t *core_alarms_message(struct alarm_service *service, uint64_t since, int64_t now_utc_ns, uint64_t *number);
-/* Adds to such a message, for a core that stands by, the changes of alarms after *row and after a time, for its journal.
-   *row: of the last of them. To be called after core_alarms_message(). */
+/* Adds to the message of core_alarms_message(), for a standby core's journal, the alarm changes after row *row and after a time. Sets
+   *row to the last one. Call it after core_alarms_message(). */
 void core_alarms_add_rows(json_t *message, struct alarm_service *service, uint64_t *row, int64_t after_utc_ns);
-/* Takes such a message into a service that mirrors. Returns NULL, or what is wrong with it (static); then nothing changed. */
+/* Applies such a message to a mirroring alarm service. Returns NULL, or what is wrong with the message (static); then nothing changed. */
 const char *core_alarms_take(struct alarm_service *service, const json_t *message);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Questions to the core, by libcurl. */
+/* Queries to the core, by libcurl. */
 #include "corelink/core_history.h"
 
 #include <stdatomic.h>
@@ -10,14 +10,14 @@
 #include "base/system/http_request.h"
 #include "corelink/core_instant.h"
 
-enum { MOST_BYTES = 64 << 20, CONNECT_S = 4, SLOW_S = 10 /* without a byte */, STATUS_GOOD = 200 };
+enum { MOST_BYTES = 64 << 20, CONNECT_S = 4, SLOW_S = 10 /* SLOW_S: without a byte */, STATUS_GOOD = 200 };
 
 struct core_history {
     struct log *log;
     struct core_link *link;
     const _Atomic bool *stop;
     struct http_request request;
-    char said[CURL_ERROR_SIZE + 100]; /* as logged last; "": the last question was answered */
+    char said[CURL_ERROR_SIZE + 100]; /* last logged error; "": the last query succeeded */
 };
 
 struct core_history *core_history_create(struct log *log, struct core_link *link, const _Atomic bool *stop)
@@ -63,7 +63,7 @@ static bool fail(struct core_history *history, const char *path, const char *why
     return false;
 }
 
-/* What it says in place of what it was asked for: its first line. */
+/* Logs a refused query, with the first line of the core's answer. */
 static bool refused(struct core_history *history, const char *path, long status, const char *text)
 {
     char why[120];
@@ -83,7 +83,7 @@ bool core_history_get(struct core_history *history, const char *path, struct tex
     curl_easy_setopt(request->handle, CURLOPT_URL, url);
     if (peer.ca_path)
         curl_easy_setopt(request->handle, CURLOPT_CAINFO, peer.ca_path);
-    size_t begin = out->length; /* the answer grows behind what is there */
+    size_t begin = out->length; /* the answer is appended to the text */
     request->answer = *out;
     request->most_bytes = begin + MOST_BYTES;
     request->error[0] = 0;

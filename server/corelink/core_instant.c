@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* "PCI1", count, where history begins; then for each tag, in their order: quality, alarm and its state, value, age, source time.
-   Little-endian. */
+/* Format, little-endian: "PCI1", count, start of the history; then for each tag in order: quality, alarm and its state, value, age,
+   source time. */
 #include "corelink/core_instant.h"
 
 #include <endian.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The renderer's thread: connects, takes what comes, sends what waits. */
+/* The renderer's thread: connects to a core, processes its messages, sends queued messages. */
 #include "corelink/core_link.h"
 
 #include <arpa/inet.h>
@@ -25,41 +25,41 @@
 #include "value/backoff.h"
 #include "value/lookup.h"
 
-enum { CORE_ACT_BYTES = 200 * 1024 /* less than a core takes */ };
+enum { CORE_ACT_BYTES = 200 * 1024 /* below the maximum that a core accepts */ };
 enum { MOST_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
-static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* that clocks may differ before it is said */;
-static const int64_t STEP_NS = 500 * NS_PER_MS; /* what differs less is left: a clock that pages reckon with does not step for it */
-static const int64_t QUICK_NS = 100 * NS_PER_MS; /* only who comes as quickly tells the time */
+static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* maximum difference of the clocks that is not logged */;
+static const int64_t STEP_NS = 500 * NS_PER_MS; /* smaller differences are not corrected, so that the clock which pages use does not step */
+static const int64_t QUICK_NS = 100 * NS_PER_MS; /* maximum delay of a message whose clock is used */
 
 struct pending_request {
-    uint64_t id, client; /* id 0: free */
+    uint64_t id, client; /* id 0: free slot */
 };
 
 struct core_link {
     struct core_link_params params;
-    char authorization[TOKEN_BYTES + 16]; /* "": none */
+    char authorization[TOKEN_BYTES + 16]; /* value of the header; "": none */
     int stop_fd;
     counter *up, *connects, *refused, *behind;
-    /* --- below: of the thread */
-    struct mirrored *readings; /* room for all tags */
+    /* --- below: used by the link's thread only */
+    struct mirrored *readings; /* buffer for one reading of each tag */
     struct text in;
     struct lws *wsi;
     struct host_turn turn;
     struct {
-        int count, index;   /* addresses of its name, ADDRESSES at most; the one that is tried next */
-        char said[ADDRESSES][WHY_BYTES]; /* of each, why there was no connection, as logged last */
+        int count, index;                /* number of addresses of the host name, at most ADDRESSES; index of the next one to try */
+        char said[ADDRESSES][WHY_BYTES]; /* per address: last logged reason why there was no connection */
     } hosts[CORE_URLS];
-    int address;            /* that is tried now */
-    int64_t heard_ns, begun_ns, least_ns, readings_ns; /* the last two: least_ns and at_ns of struct core_readings */
-    bool ended, taken, votes, introduced, clock_said; /* votes: it is not taken, but for its promises */
-    bool at_fault;          /* what it said last is a fault of ours or the core's, and no lost link */
-    char why[WHY_BYTES];    /* this connection ended */
+    int address;                                       /* index of the address being tried */
+    int64_t heard_ns, begun_ns, least_ns, readings_ns; /* least_ns and readings_ns: least_ns and at_ns of struct core_readings */
+    bool ended, taken, votes, introduced, clock_said;  /* votes: connected only to promise leases, without readings */
+    bool at_fault;                                     /* the last error is a misconfiguration of this node or the core, not a lost link */
+    char why[WHY_BYTES];                               /* why this connection ended */
     struct thread thread;
     /* --- below: under thread.lock */
     struct lws_context *context; /* NULL: not connected */
     bool is_up;
-    int up_index;           /* of the URL that readings come from */
-    struct text *out;       /* messages that wait to be sent */
+    int up_index;     /* index of the URL that sends readings */
+    struct text *out; /* messages that wait to be sent */
     size_t out_count, out_capacity;
     struct pending_request waiting[CORE_ACTS];
     uint64_t last_id;
@@ -103,19 +103,19 @@ bool core_link_is_up(struct core_link *link)
     return up;
 }
 
-/* Under the lock. Takes the text. */
+/* Queues a message. Call with the lock held. Takes ownership of `text`. */
 static void queue(struct core_link *link, char *text)
 {
     mem_grow(&link->out, &link->out_capacity, link->out_count + 1, sizeof(*link->out));
     struct text *out = &link->out[link->out_count++];
     const char room[LWS_PRE] = { 0 };
     *out = (struct text){ 0 };
-    text_add_bytes(out, room, sizeof(room)); /* lws writes its framing there */
+    text_add_bytes(out, room, sizeof(room)); /* lws writes its framing here */
     text_add_bytes(out, text, strlen(text));
     mem_free(text);
 }
 
-/* What the core could not take would end the link. NULL: it cannot. */
+/* Packs an act into a message. Returns NULL if the core could not accept it, which would end the link. */
 static char *pack_act(const struct core_act *act, uint64_t id)
 {
     json_t *message = json_loads(act->text, 0, NULL);
@@ -169,7 +169,7 @@ static void end(struct core_link *link, const char *why)
     link->ended = true;
 }
 
-/* It says what is wrong, or what is wrong here. */
+/* Ends the connection because of a fault reported by the core, or found in its messages. */
 static void refuse(struct core_link *link, const char *why)
 {
     counter_inc(link->refused, 1);
@@ -177,7 +177,8 @@ static void refuse(struct core_link *link, const char *why)
     end(link, why);
 }
 
-/* Whoever leads has other files than we have: its readings are none of ours, but it needs to know that we do not lead. */
+/* Keeps a connection for votes only: the leader's configuration differs from ours, so its readings cannot be used, but it needs our
+   promise not to take the lead. */
 static void stay_to_vote(struct core_link *link, const char *why)
 {
     char *said = link->hosts[link->turn.index].said[link->address], text[WHY_BYTES];
@@ -234,7 +235,7 @@ static void on_links(struct core_link *link, const json_t *message)
             store_link_down(link->params.store, (int)i, now_ns);
 }
 
-/* Returns whose act it is, 0: nobody's any more. */
+/* Frees the slot of an act. Returns the client that waits for its answer; 0: none any more. */
 static uint64_t take_waiting(struct core_link *link, uint64_t id)
 {
     uint64_t client = 0;
@@ -260,7 +261,7 @@ static void on_answer(struct core_link *link, const json_t *message)
     }
 }
 
-/* The leader asks for time: nothing is sent where it cannot be promised. */
+/* Answers the leader's request for a promise. Sends nothing if this node cannot promise. */
 static void on_lease(struct core_link *link, const json_t *message)
 {
     const json_t *number = json_object_get(message, "number"), *sent = json_object_get(message, "sent_age_ms");
@@ -274,7 +275,7 @@ static void on_lease(struct core_link *link, const json_t *message)
     lws_callback_on_writable(link->wsi);
 }
 
-/* Who was told of which alarms. */
+/* Stores which recipients were notified of which alarms, as the leader reports. */
 static void on_told(struct core_link *link, const json_t *message)
 {
     const char *kept = json_string_value(json_object_get(message, "kept"));
@@ -314,7 +315,7 @@ static void on_text(struct core_link *link)
     json_decref(message);
 }
 
-/* Readings carry ages; what is shown as a time is the core's. */
+/* Follows the core's clock for displayed times; readings carry ages, which need no common clock. */
 static void compare_clocks(struct core_link *link, int64_t core_utc_ns, int64_t late_ns)
 {
     int64_t ahead_ns = core_utc_ns - clock_utc_ns();
@@ -367,7 +368,7 @@ static void on_bytes(struct core_link *link)
     }
     link->least_ns = readings.least_ns;
     link->readings_ns = readings.at_ns;
-    if (readings.late_ns > CORE_SILENT_NS) { /* what waits in a slow network, or did while we slept, is no reading of now */
+    if (readings.late_ns > CORE_SILENT_NS) { /* readings delayed by a slow network, or received while this machine slept, are not current */
         end(link, "its readings come more than 2 s late");
         return;
     }
@@ -470,7 +471,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR: on_failure(link, in); break;
     case LWS_CALLBACK_CLIENT_RECEIVE: on_receive(link, in, len); return link->ended ? -1 : 0;
     case LWS_CALLBACK_CLIENT_WRITEABLE: return send_next(link);
-    case LWS_CALLBACK_EVENT_WAIT_CANCELLED: /* something is to be sent, or the thread to end */
+    case LWS_CALLBACK_EVENT_WAIT_CANCELLED: /* a message is queued, or the thread must end */
         if (link->wsi)
             lws_callback_on_writable(link->wsi);
         break;
@@ -491,7 +492,7 @@ struct link_wakeup {
     struct core_link *link;
 };
 
-/* So that lws_service() returns now and then. */
+/* Timer that makes lws_service() return regularly. */
 static void on_look(lws_sorted_usec_list_t *sul)
 {
     struct link_wakeup *look = lws_container_of(sul, struct link_wakeup, sul);
@@ -535,7 +536,7 @@ bool core_link_peer(struct core_link *link, struct core_peer *out)
     pthread_mutex_unlock(&link->thread.lock);
     if (!up || !parse_url(link->params.urls[index], &url))
         return false;
-    bool address = strchr(url.host, ':'); /* IPv6 */
+    bool address = strchr(url.host, ':'); /* an IPv6 address */
     snprintf(out->url, sizeof(out->url), "http%s://%s%s%s:%d", url.tls ? "s" : "", address ? "[" : "", url.host, address ? "]" : "",
              url.port);
     out->authorization = link->authorization;
@@ -543,7 +544,8 @@ bool core_link_peer(struct core_link *link, struct core_peer *out)
     return true;
 }
 
-/* The system's resolver has no timeout, and lws would wait for it. Each try takes the next address of the name. False: why. */
+/* Resolves the host name with a timeout, which the system's resolver and lws lack. Each attempt uses the next address. Returns false
+   with the reason in link->why. */
 static bool resolve(struct core_link *link, const struct core_url *url, char address[INET6_ADDRSTRLEN])
 {
     struct lookup *lookup = lookup_start(url->host, url->port);
@@ -620,7 +622,7 @@ static void watch_silence(struct core_link *link)
         end(link, "no readings came for 2 s");
 }
 
-/* Until it ends; link->why says why. */
+/* Runs one connection until it ends; link->why has the reason. */
 static void run_connection(struct core_link *link)
 {
     struct core_url url;
@@ -643,7 +645,7 @@ static void run_connection(struct core_link *link)
 
 /* --- the thread --------------------------------------------------------------------------------------------------------------- */
 
-/* Whether it was done nobody here can know. */
+/* Tells all clients with unanswered acts that the outcome is unknown. */
 static void answer_waiting(struct core_link *link)
 {
     for (size_t i = 0; i < CORE_ACTS; i++) {
@@ -655,7 +657,7 @@ static void answer_waiting(struct core_link *link)
     }
 }
 
-/* Nothing of it is a reading now. */
+/* Makes all readings Bad after the loss of the core. */
 static void lost(struct core_link *link)
 {
     const struct plant *plant = link->params.plant;
@@ -676,14 +678,14 @@ static void lost(struct core_link *link)
     memcpy(said, link->why, WHY_BYTES);
 }
 
-/* The next address of this core's name, or the next core. Returns when. */
+/* Selects the next address of this core's name, or the next core. Returns when to try it. */
 static int64_t take_turn(struct core_link *link)
 {
     int *index = &link->hosts[link->turn.index].index, count = link->hosts[link->turn.index].count;
     *index = count ? (link->address + 1) % count : 0;
     if (*index)
         return clock_mono_ns();
-    if (link->turn.backoff.failures > 1) /* operators wait: a second at most, give or take */
+    if (link->turn.backoff.failures > 1) /* keep the delay at about a second: operators are waiting */
         link->turn.backoff.failures = 1;
     return host_turn_next_ns(&link->turn, link->params.url_count, clock_mono_ns());
 }
@@ -731,7 +733,7 @@ struct core_link *core_link_start(const struct core_link_params *params)
     link->connects = counters_add(c, "plantcast_core_connects_total", "counter", "Connections to cores that brought readings.");
     link->refused = counters_add(c, "plantcast_core_refused_total", "counter", "Connections to cores that do not belong to this renderer.");
     link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge", "By so much the core's clock is ahead of ours.");
-    lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* where to is the loop's to say */
+    lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* the loop logs the connection's target */
     thread_init(&link->thread);
     link->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (link->stop_fd < 0)

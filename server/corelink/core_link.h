@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A renderer's link to its core, on a thread of its own: brings readings, links and alarms to the store and the alarm service, and sends
-   what operators do. When the core is lost, or was silent for CORE_SILENT_NS, all readings are Bad at once. It is tried again for ever. */
+/* A renderer's link to its core, on a thread of its own: passes readings, link states and alarms to the store and the alarm service, and
+   sends the actions of operators to the core. When the core is lost, or silent for CORE_SILENT_NS, all readings become Bad at once. The
+   link reconnects for ever. */
 #ifndef CORELINK_CORE_LINK_H
 #define CORELINK_CORE_LINK_H
 #include "alarm/alarm_service.h"
@@ -11,63 +12,65 @@
 #include "value/store.h"
 
 #define CORE_SILENT_NS (2 * INT64_C(1000000000))
-enum { CORE_URLS = 4, CORE_ACTS = 256 /* that wait for their answers */ };
+enum { CORE_URLS = 4, CORE_ACTS = 256 /* acts waiting for their answers */ };
 
 struct core_link_params {
     struct log *log;
     struct counters *counters;
     const struct plant *plant;
     struct store *store;
-    struct alarm_service *alarm_service; /* which mirrors; all three outlive the link */
-    const char *urls[CORE_URLS];         /* ws://HOST:PORT or wss://; tried in turn: one of them is the core */
+    struct alarm_service *alarm_service; /* must mirror; plant, store and alarm service must outlive the link */
+    const char *urls[CORE_URLS];         /* ws://HOST:PORT or wss://, tried in turn: one of them is the core */
     int url_count;
-    const char *token_path, *ca_path;    /* file of the token; certificates that are trusted. NULL: none; the system's */
-    const char *version, *node;          /* of this program; this renderer's name, for the core's log */
-    struct lease_keeper *keeper;         /* of a core that stands by: it promises what the leader asks. NULL: of a renderer */
-    struct historian *historian;         /* of such a core: it records what the leader does. NULL: nothing is recorded */
-    const char *folder;                  /* of such a core: where what its notifier is to know is kept. NULL: nowhere */
-    void (*notify)(void *arg);           /* called by the thread when there is something to collect */
+    const char *token_path, *ca_path; /* token file, NULL: none; trusted certificates, NULL: the system's */
+    const char *version, *node;       /* version of this program; name of this renderer for the core's log */
+    struct lease_keeper *keeper;      /* for a standby core: makes the promises that the leader requests. NULL: a renderer */
+    struct historian *historian;      /* for a standby core: records the leader's samples. NULL: nothing is recorded */
+    const char *folder;               /* for a standby core: folder for the state of the leader's notifier. NULL: not stored */
+    void (*notify)(void *arg);        /* called by the link's thread when core_link_collect() has something */
     void *notify_arg;
 };
 
 struct core_link;
-/* Returns whether that is the URL of a core: scheme, host, port, and no path. */
+/* Returns whether a URL is valid for a core: scheme, host, port, and no path. */
 bool core_link_url_good(const char *url);
-/* Returns NULL if the token cannot be read or there is no thread (logged). Strings of params are used while the link lives. */
+/* Starts the link. Returns NULL if the token cannot be read or the thread cannot be started (logged). The strings of `params` must
+   outlive the link. */
 struct core_link *core_link_start(const struct core_link_params *params);
-/* Ends the thread. What waits for an answer gets one that nothing is known of it: core_link_collect still has it. */
+/* Ends the thread. Acts without an answer get one that says the outcome is unknown; core_link_collect() still returns it. */
 void core_link_halt(struct core_link *link);
-void core_link_stop(struct core_link **link); /* likewise, and frees; &NULL is fine; leaves NULL */
-bool core_link_is_up(struct core_link *link); /* returns whether readings come. Any thread */
+void core_link_stop(struct core_link **link); /* Ends the thread like core_link_halt() and frees the link. &NULL is fine; leaves NULL. */
+bool core_link_is_up(struct core_link *link); /* Returns whether the core sends readings. Any thread. */
 
-/* Where else the core answers, for HTTP. */
+/* HTTP address of the core. */
 struct core_peer {
-    char url[320];                            /* http or https, without a path */
-    const char *authorization, *ca_path; /* the value of that header, "": none; as of params. Both live as long as the link */
+    char url[320]; /* http or https URL, without a path */
+    /* value of the authorization header, "": none; ca_path as in params. Both live as long as the link */
+    const char *authorization, *ca_path;
 };
-/* Returns which core readings come from now. False: from none. Any thread */
+/* Returns the core that sends readings now. False: none does. Any thread. */
 bool core_link_peer(struct core_link *link, struct core_peer *out);
 
 struct core_act {
-    uint64_t client;          /* whose answer it will be */
-    const char *from;         /* the person's address */
-    const char *token;        /* token that the person gave here; the core verifies it. NULL: none */
-    const char *id_token;     /* ID token of a person who is signed in here. NULL: none */
-    const char *text;         /* the client's message, JSON */
+    uint64_t client;      /* id of the client that gets the answer */
+    const char *from;     /* IP address of the user */
+    const char *token;    /* token that the user presented here; the core verifies it. NULL: none */
+    const char *id_token; /* ID token of a user who signed in here. NULL: none */
+    const char *text;     /* the client's message, JSON */
 };
-/* Sends what somebody does to the core. Returns false if there is no core now, or too much waits: nothing was sent. Any thread. */
+/* Sends a user's action to the core. Returns false, with nothing sent, if there is no core now or too many acts wait. Any thread. */
 bool core_link_act(struct core_link *link, const struct core_act *act);
 
-/* Sends a message that has no answer, JSON. Returns false if there is no core now. Any thread. */
+/* Sends a JSON message that has no answer. Returns false if there is no core now. Any thread. */
 bool core_link_tell(struct core_link *link, const char *text);
 
-/* What came for the loop. */
+/* A message for the loop. */
 struct core_arrival {
     struct core_arrival *next;
-    uint64_t client; /* whose answer it is; 0: it is `core` or `lists`, of the core itself */
+    uint64_t client; /* client whose answer it is; 0: a message `core` or `lists` of the core itself */
     char *text;
 };
-/* Returns what came since the last call, in order; each for core_arrival_free. */
+/* Returns the messages since the last call, in order; free each with core_arrival_free(). */
 struct core_arrival *core_link_collect(struct core_link *link);
 void core_arrival_free(struct core_arrival *arrival);
 

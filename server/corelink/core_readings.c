@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* "PCR1", count, the core's clock and its monotonic one; then for each reading: tag, quality, value, age, source time. Little-endian. */
+/* Format, little-endian: "PCR1", count, the core's UTC and monotonic clocks; then for each reading: tag, quality, value, age, source
+   time. */
 #include "corelink/core_readings.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@
 #include "corelink/little_endian.h"
 #include "value/quality.h"
 
-enum { DRIFT = 5000 /* one part of so many: by no more do two machines' clocks drift apart */ };
+enum { DRIFT = 5000 /* maximum drift between the clocks of two machines: one part in 5000 */ };
 static const char MAGIC[4] = { 'P', 'C', 'R', '1' };
 
 void core_sent_init(struct core_sent *sent, size_t tag_count)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* "PCS1", count; then for each sample: tag, quality, value, time. Little-endian. */
+/* Format, little-endian: "PCS1", count; then for each sample: tag, quality, value, time. */
 #include "corelink/core_samples.h"
 
 #include <math.h>
@@ -14,8 +14,8 @@ static const char MAGIC[4] = { 'P', 'C', 'S', '1' };
 
 struct core_samples {
     struct store *store;
-    pthread_mutex_t lock; /* taken under the store's */
-    /* --- below: under lock */
+    pthread_mutex_t lock; /* taken while the store's lock is held */
+    /* --- below: under `lock` */
     struct sample_event *at;
     size_t count, capacity;
     bool lost;

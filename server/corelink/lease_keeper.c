@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that talks to the database. What the standby answers comes in beside it. */
+/* The thread that talks to the database. Promises of the standby arrive on other threads. */
 #include "corelink/lease_keeper.h"
 
 #include <errno.h>
@@ -18,31 +18,33 @@
 
 enum { ASKED = 32, NUMBER_BYTES = 24 };
 static const int64_t PATIENCE_NS = NS_PER_S, LEAST_PATIENCE_NS = 50 * NS_PER_MS;
-static const int64_t GONE_NS = 10 * NS_PER_S; /* a standby whose connection ended is back by then, as after a reload */
-static const int64_t GOODBYE_NS = 300 * NS_PER_MS; /* before the kernel ends the process: to say why, and to leave in good order */
+/* a standby whose connection has ended still counts for this long, for example during a reload */
+static const int64_t GONE_NS = 10 * NS_PER_S;
+static const int64_t GOODBYE_NS = 300 * NS_PER_MS; /* time to log the reason and shut down in order before the kernel ends the process */
 
 struct lease_keeper {
     struct lease_keeper_params params;
     struct plant_postgres postgres;
     char *plant, *node;
     int stop_fd;
-    timer_t timer; /* ends the process when the lease does */
+    timer_t timer; /* kernel timer that ends the process when the lease expires */
     bool has_timer;
     struct {
         counter *active, *epoch, *age, *database, *standby, *differs;
     } counters;
-    /* --- below: of the thread */
-    struct postgres_link *link; /* NULL: there is none */
-    bool looks;                 /* what the row is now is not known */
+    /* --- below: used by the keeper's thread only */
+    struct postgres_link *link; /* connection to the database; NULL: none */
+    bool looks;                 /* the current row is unknown and must be read */
     bool told_won, told_lost;
     char said[POSTGRES_WHY_BYTES], led_by[LEASE_NODE_BYTES];
-    int64_t namesake_beat; /* of the row, when another of our name was found there first; -1: it lives, as was said; 0: there is none */
+    /* beat of the row when it first named another core with our name; -1: that core is alive, which was logged; 0: none */
+    int64_t namesake_beat;
     struct thread thread;
     /* --- below: under thread.lock */
     struct lease lease;
-    char standby[LEASE_NODE_BYTES]; /* that is connected, or was until gone_ns */
-    int64_t gone_ns;                /* 0: it is connected */
-    bool follows;                   /* it has our version and configuration */
+    char standby[LEASE_NODE_BYTES]; /* standby that is connected, or was until gone_ns */
+    int64_t gone_ns;                /* 0: connected */
+    bool follows;                   /* the standby has our version and configuration */
     uint64_t asked;
     struct {
         uint64_t number;
@@ -50,7 +52,7 @@ struct lease_keeper {
     } questions[ASKED];
 };
 
-/* Goes on while the machine sleeps, and is never set. */
+/* Returns the lease's clock, which continues while the machine sleeps and is never set. */
 static int64_t now_of_lease(void)
 {
     struct timespec now;
@@ -58,7 +60,8 @@ static int64_t now_of_lease(void)
     return (int64_t)now.tv_sec * NS_PER_S + now.tv_nsec;
 }
 
-/* Under the lock. Stopped, swapped out or in an endless loop: the kernel ends it then, and nothing of it runs again. */
+/* Sets the kernel timer to the end of the lease. Call with the lock held. The kernel then ends the process even if it is stopped,
+   swapped out or in an endless loop. */
 static void set_timer(struct lease_keeper *keeper)
 {
     const struct lease *lease = &keeper->lease;
@@ -94,7 +97,7 @@ static bool is_well(struct lease_keeper *keeper)
     return true;
 }
 
-/* As long as a leader may still wait. */
+/* Returns the timeout of database requests: what remains of a leader's lease. */
 static int64_t patience(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);
@@ -159,7 +162,7 @@ static bool read_row(struct lease_keeper *keeper, struct lease_row *row)
     return there && is_well(keeper);
 }
 
-/* Changes the row if it is as it was seen: 1, it was changed; 0: it is another one; -1: nobody knows. */
+/* Changes the row if it is still as `seen`. Returns 1: changed; 0: the row differs; -1: unknown. */
 static int change_row(struct lease_keeper *keeper, const char *sql, const struct lease_row *seen, const char *name, int64_t instance)
 {
     char epoch[NUMBER_BYTES], beat[NUMBER_BYTES], own[NUMBER_BYTES];
@@ -198,7 +201,8 @@ static int name_bytes(const char *node)
     return id ? (int)(id - node) : (int)strlen(node);
 }
 
-/* One that has ended changes the row no more: it may be ourselves, before our disk was replaced. */
+/* Logs if another core with our name is alive. A dead one, which may be this node before its disk was replaced, no longer changes the
+   row. */
 static void look_for_namesake(struct lease_keeper *keeper, const struct lease_row *row)
 {
     int own = name_bytes(keeper->node), bytes = name_bytes(row->leader);
@@ -282,7 +286,7 @@ static void renew(struct lease_keeper *keeper)
     }
 }
 
-/* What became of it. */
+/* Reports the outcome of a turn: metrics, log, callbacks. */
 static void tell(struct lease_keeper *keeper)
 {
     int64_t now_ns = now_of_lease();
@@ -309,7 +313,7 @@ static void tell(struct lease_keeper *keeper)
     }
 }
 
-/* When there is something to do next. */
+/* Does what is due: connects, reads the row, renews or bids. Returns when to call it again. */
 static int64_t take_turn(struct lease_keeper *keeper)
 {
     int64_t began_ns = now_of_lease();
@@ -328,7 +332,8 @@ static int64_t take_turn(struct lease_keeper *keeper)
     pthread_mutex_lock(&keeper->thread.lock);
     int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - GOODBYE_NS + 1;
     pthread_mutex_unlock(&keeper->thread.lock);
-    return leads && !keeper->told_lost && last_ns > began_ns && last_ns < next_ns ? last_ns : next_ns; /* not to miss saying so */
+    /* wake in time to report the end of the lease */
+    return leads && !keeper->told_lost && last_ns > began_ns && last_ns < next_ns ? last_ns : next_ns;
 }
 
 static void *run(void *arg)

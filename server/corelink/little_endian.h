@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers in messages between nodes: little-endian, at any address. Pure. */
+/* Reads and writes little-endian numbers in messages between nodes, at any alignment. Pure. */
 #ifndef CORELINK_LITTLE_ENDIAN_H
 #define CORELINK_LITTLE_ENDIAN_H
 #include <endian.h>

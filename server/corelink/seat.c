@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* FOLDER/node: the number, the inode of the file, and the machine's id. */
+/* The file FOLDER/node holds the random number, the file's inode, and the machine's id. */
 #include "corelink/seat.h"
 
 #include <errno.h>
@@ -26,7 +26,7 @@ static void read_machine(char out[MACHINE_BYTES])
     mem_free(text);
 }
 
-/* A folder that was copied has another inode, or is on another machine. */
+/* Reads the number. It is invalid if the folder was copied: the inode differs then, or the machine's id. */
 static bool read_id(struct seat *seat, unsigned long long inode, const char *machine)
 {
     char line[LINE_BYTES] = "", of[MACHINE_BYTES] = "";

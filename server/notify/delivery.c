@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* SMTP and HTTP by libcurl. */
+/* Delivers messages by SMTP and HTTP through libcurl. */
 #include "notify/delivery.h"
 
 #include <curl/curl.h>
@@ -20,15 +20,15 @@ struct transfer {
     size_t bytes, at;
     char why[CURL_ERROR_SIZE];
     struct log *log;
-    const char *name;  /* of the recipient */
-    char mailbox[256]; /* that the server was asked for last; "": it was asked for something else */
+    const char *name;  /* name of the recipient */
+    char mailbox[256]; /* mailbox in the last RCPT command; "": the last command was another one */
 };
 
 struct delivery {
     struct log *log;
     const struct plant_notify *notify;
     CURLM *multi;
-    struct transfer *transfers; /* by recipient */
+    struct transfer *transfers; /* by index of the recipient */
 };
 
 struct delivery *delivery_create(struct log *log, const struct plant_notify *notify)
@@ -91,7 +91,8 @@ static size_t drop_answer(char *bytes, size_t size, size_t count, void *arg)
     return size * count;
 }
 
-/* What one mailbox of several is refused with is no failure of the whole, so nothing else says it. */
+/* Debug callback that logs the refusal of a single mailbox: the mail counts as delivered if others accept it, so nothing else reports
+   the refusal. */
 static int hear_refusals(CURL *handle, curl_infotype type, char *bytes, size_t count, void *arg)
 {
     static const char ask[] = "RCPT TO:";
@@ -119,7 +120,7 @@ static void set_common(struct delivery *delivery, struct transfer *transfer, con
     curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
     curl_easy_setopt(handle, CURLOPT_TIMEOUT_MS, (long)(delivery->notify->timeout_s * 1000));
     curl_easy_setopt(handle, CURLOPT_SSLVERSION, (long)CURL_SSLVERSION_TLSv1_2);
-    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* a name server that hangs does not keep the daemon from ending */
+    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* a hanging name server does not keep the daemon from ending */
     if (ca_file)
         curl_easy_setopt(handle, CURLOPT_CAINFO, ca_file);
 }
@@ -144,7 +145,7 @@ static char *set_mail(struct delivery *delivery, struct transfer *transfer, cons
     for (size_t i = 0; i < recipient->addresses.count; i++)
         transfer->list = curl_slist_append(transfer->list, recipient->addresses.at[i]);
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT, transfer->list);
-    curl_easy_setopt(handle, CURLOPT_MAIL_RCPT_ALLLOWFAILS, 1L); /* one mailbox that is gone does not keep it from the others */
+    curl_easy_setopt(handle, CURLOPT_MAIL_RCPT_ALLLOWFAILS, 1L); /* one missing mailbox does not stop the mail to the others */
     curl_easy_setopt(handle, CURLOPT_DEBUGFUNCTION, hear_refusals);
     curl_easy_setopt(handle, CURLOPT_DEBUGDATA, transfer);
     curl_easy_setopt(handle, CURLOPT_VERBOSE, 1L);
@@ -204,8 +205,8 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 
 /* --- the wait --------------------------------------------------------------------------------------------------------------- */
 
-/* Returns NULL, or why a transfer that ended did not reach its recipient (mem_free). A redirection is no delivery: it may lead to a
-   log-in. */
+/* Returns NULL, or why an ended transfer did not reach its recipient (mem_free). A redirection counts as failure: it may lead to a login
+   page. */
 static char *why_not(const struct transfer *transfer, CURLcode code)
 {
     long status = 0;

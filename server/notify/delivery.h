@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Delivers messages by SMTP and HTTP, one at a time per recipient, all recipients at once; nothing blocks. Thread: one, but for
+/* Delivers messages by SMTP and HTTP, one at a time per recipient, all recipients in parallel, without blocking. Thread: one, except
    delivery_wake(). */
 #ifndef NOTIFY_DELIVERY_H
 #define NOTIFY_DELIVERY_H
@@ -9,15 +9,15 @@
 #include "plant/sections/notification.h"
 
 struct delivery;
-/* notify must outlive it. Returns NULL if libcurl cannot be used (logged). */
+/* Creates a delivery; `notify` must outlive it. Returns NULL if libcurl cannot be used (logged). */
 struct delivery *delivery_create(struct log *log, const struct plant_notify *notify);
-void delivery_destroy(struct delivery **delivery); /* cuts off what is under way; &NULL is fine; leaves NULL */
+void delivery_destroy(struct delivery **delivery); /* Aborts transfers in progress and frees the delivery. &NULL is fine; leaves NULL. */
 
 bool delivery_is_idle(const struct delivery *delivery, int recipient);
-/* Begins to send to an idle recipient. Takes body (mem_free). Returns NULL, or why it cannot (mem_free). */
+/* Starts sending to an idle recipient. Takes ownership of `body` (mem_free). Returns NULL, or why sending cannot start (mem_free). */
 char *delivery_start(struct delivery *delivery, int recipient, char *body, size_t bytes);
-/* Waits up to that long for something to happen, and calls each for deliveries that have ended; why: NULL if the message was taken. */
+/* Waits up to timeout_ms for activity, and calls `each` for deliveries that have ended; `why` is NULL if the message was accepted. */
 void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void *arg, int recipient, const char *why), void *arg);
-void delivery_wake(struct delivery *delivery); /* ends delivery_wait(); any thread */
+void delivery_wake(struct delivery *delivery); /* Ends delivery_wait(); any thread. */
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that tells of alarms. */
+/* The thread that sends alarm notifications. */
 #include "notify/notifier.h"
 
 #include <errno.h>
@@ -30,16 +30,16 @@ struct notifier {
     _Atomic bool stopping;
     _Atomic uint64_t kept_number;
     pthread_mutex_t kept_lock;
-    char *kept; /* under kept_lock; NULL: nothing yet */
+    char *kept; /* content of the file, under `kept_lock`; NULL: none yet */
     struct delivery *delivery;
-    /* --- below: of the thread */
+    /* --- below: used by the notifier's thread only */
     struct outbox *outbox;
-    struct recipient_counters *counters; /* by recipient */
+    struct recipient_counters *counters; /* by index of the recipient */
     counter *lost, *spool_good;
-    bool *failing;       /* by recipient */
-    uint64_t number;     /* of the last change that was looked at */
+    bool *failing;   /* by index of the recipient: its last delivery failed */
+    uint64_t number; /* number of the last alarm change processed */
     bool looked, unsaved;
-    int64_t lost_before; /* by outboxes before a reload */
+    int64_t lost_before; /* alarms lost by outboxes before a reload */
 };
 
 static int64_t now_us(void)
@@ -60,7 +60,7 @@ static int put_file(const char *path, const char *text, bool durable)
     return error;
 }
 
-/* For a daemon that stands by. Takes the text. */
+/* Publishes the file's content for a standby core. Takes ownership of `text`. */
 static void publish(struct notifier *notifier, char *text)
 {
     pthread_mutex_lock(&notifier->kept_lock);
@@ -99,7 +99,7 @@ static void save(struct notifier *notifier)
     if (!notifier->unsaved)
         return;
     char *text = json_text(outbox_save(notifier->outbox), 0);
-    publish(notifier, mem_strdup(text)); /* first: the disk may take its time */
+    publish(notifier, mem_strdup(text)); /* publish first: writing to disk may take long */
     int error = put_file(notifier->path, text, true);
     mem_free(text);
     if (error)
@@ -139,7 +139,7 @@ static void on_end(void *arg, int recipient, const char *why)
             log_err(log, "notify: %s cannot be told: %s; messages are kept and tried again", id, why);
     } else {
         outbox_sent(notifier->outbox, recipient, now_us());
-        save(notifier); /* at once: were the daemon killed before, it would send it again */
+        save(notifier); /* save at once: a daemon killed before would send the message again */
         counter_inc(notifier->counters[recipient].sent, 1);
         if (notifier->failing[recipient])
             log_info(log, "notify: %s is told again", id);
@@ -162,7 +162,8 @@ static char *compose(const struct notifier *notifier, int recipient, const struc
     return json ? json : mail.at;
 }
 
-/* A message is in the file before it is sent, so that it is the same one if the daemon ends meanwhile. */
+/* Sends all messages that are due. A message is saved before it is sent, so that a restarted daemon repeats the same message, not a new
+   one. */
 static void send_due(struct notifier *notifier)
 {
     for (int i = 0; i < (int)notifier->params.plant->notify->recipient_count; i++) {

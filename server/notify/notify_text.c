@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarms in words, for people and for programs. */
+/* Writes alarms as text for people and as JSON for programs. */
 #include "notify/notify_text.h"
 
 #include <math.h>
@@ -11,7 +11,9 @@
 #include "base/text/json_text.h"
 #include "base/text/timestamp.h"
 
-enum { BASE64_LINE = 57 /* bytes, 76 characters */, WORD = 42 /* bytes of an encoded word: a line of 77 characters with its name */ };
+/* BASE64_LINE: bytes of a base64 line of 76 characters. WORD: bytes of an encoded word that fits, with the header's name, a line of
+   77 characters. */
+enum { BASE64_LINE = 57, WORD = 42 };
 
 static const struct plant_tag *tag_of(const struct plant *plant, const struct outbox_item *item)
 {
@@ -55,7 +57,7 @@ static bool is_plain(const char *text)
     return true;
 }
 
-/* As it is where it is short ASCII, else in encoded words (RFC 2047), none of which splits a character. */
+/* Adds a mail header: unchanged if its value is short ASCII, else as encoded words (RFC 2047) that do not split characters. */
 static void add_header(struct text *out, const char *name, const char *value)
 {
     text_add(out, "%s:", name);
@@ -82,7 +84,7 @@ static void add_local_time(struct text *out, const char *format, int64_t utc_us)
     text_add(out, "%s", text);
 }
 
-/* In English, whatever the locale is. */
+/* Adds a date in English, whatever the locale. */
 static void add_date(struct text *out, int64_t utc_us)
 {
     static const char *const days[] = { "Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat" };

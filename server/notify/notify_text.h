@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is sent: an e-mail (RFC 5322), a webhook's JSON, alerts of Alertmanager's API v2. Pure but for the local time of the program's zone.
-   Thread: any. */
+/* Texts of notifications: e-mail (RFC 5322), a webhook's JSON, alerts of Alertmanager's API v2. Pure except for the local time of the
+   process's zone. Thread: any. */
 #ifndef NOTIFY_NOTIFY_TEXT_H
 #define NOTIFY_NOTIFY_TEXT_H
 #include "base/text/text.h"
 #include "notify/outbox.h"
 
-enum { NOTIFY_LINES = 50 /* alarms that an e-mail lists; the rest is counted */ };
+enum { NOTIFY_LINES = 50 /* alarms that an e-mail lists; further ones are only counted */ };
 
-/* Appends a whole e-mail, header and body, with CRLF. now_us: its date. */
+/* Appends a complete e-mail, header and body, with CRLF line ends. now_us: its date. */
 void notify_mail_text(struct text *out, const struct plant *plant, const struct notify_recipient *recipient,
                       const struct outbox_message *message, int64_t now_us);
-/* Each returns JSON; mem_free. */
+/* Return the JSON body; free with mem_free(). */
 char *notify_webhook_text(const struct plant *plant, const struct notify_recipient *recipient, const struct outbox_message *message);
 char *notify_alerts_text(const struct plant *plant, const struct outbox_message *message, int64_t now_us);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who is told of which alarms, and when. */
+/* Decides which recipients are notified of which alarms, and when. */
 #include "notify/outbox_impl.h"
 
 #include <math.h>
@@ -99,7 +99,7 @@ static void queue_item(struct outbox *outbox, int recipient, const struct episod
 {
     struct recipient_box *box = &outbox->boxes[recipient];
     int index = (int)(episode - outbox->episodes);
-    bool may_wait = step > 0 || episode->told_us; /* it has been queued before */
+    bool may_wait = step > 0 || episode->told_us; /* the alarm may be in the queue already */
     for (size_t i = 0; may_wait && i < box->waiting.count; i++)
         if (box->waiting.at[i].episode == index)
             return;
@@ -138,7 +138,7 @@ static void tell(struct outbox *outbox, struct episode *episode, const struct no
     }
 }
 
-/* Steps whose time has come. */
+/* Queues the notifications of all escalation steps that are due. */
 static void advance(struct outbox *outbox, struct episode *episode, int64_t now_us)
 {
     const struct plant_notify *notify = outbox->plant->notify;
@@ -263,7 +263,8 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
     }
     for (size_t i = 0; i < outbox->plant->notify->recipient_count; i++) {
         struct recipient_box *box = &outbox->boxes[i];
-        bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER; /* it is told what is, not what was */
+        /* Alertmanager gets the current alarms, so old messages need not be dropped */
+        bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER;
         if (!keeps && box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
             give_up(outbox, box);
     }
@@ -290,7 +291,7 @@ static bool is_due(const struct outbox *outbox, const struct recipient_box *box,
     return box->waiting.count > 0 && gathered && (!paused || best < box->last_priority);
 }
 
-/* What waits becomes a message: alarms as they are now, but for those that have been set aside meanwhile. */
+/* Makes a message of the queued alarms, with their current states; skips alarms that have been shelved or suppressed meanwhile. */
 static void make_batch(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];
@@ -341,7 +342,7 @@ static bool goes_to(const struct plant_notify *notify, const struct episode *epi
     return false;
 }
 
-/* All alarms that stand, and those that have ended since the last time. */
+/* Makes an Alertmanager message of all active alarms, and of those that have ended since the last message. Returns whether it has any. */
 static bool make_alerts(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];

@@ -1,31 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What outbox.c and outbox_json.c share. Private to them. */
+/* Shared by outbox.c and outbox_json.c. Private to them. */
 #ifndef NOTIFY_OUTBOX_IMPL_H
 #define NOTIFY_OUTBOX_IMPL_H
 #include "notify/outbox.h"
 
-struct episode { /* an alarm from when it first needs somebody until nobody is needed any more, and some time after that */
+struct episode { /* history of one alarm: from when it needs attention until it no longer does, and some time after that */
     char *name;
     int tag;
     enum alarm_kind kind;
     int priority;
     enum alarm_status status;
     double value, limit;
-    int64_t raised_us;   /* of the alarm, when it was last seen */
+    int64_t raised_us; /* start of the alarm, when last put */
     int64_t began_us;
-    int64_t ended_us;    /* 0: it needs somebody */
-    int64_t cleared_us;  /* when it stopped being annunciated; 0: it is */
-    int64_t told_us;     /* when somebody was last told of it; 0: since then somebody acknowledged it */
-    uint32_t rules;      /* bits: those that applied when it began */
-    uint32_t told;       /* bits: recipients */
-    uint8_t steps[NOTIFY_RULES]; /* how many of each rule have been taken */
-    bool aside;          /* shelved, suppressed or out of service */
-    bool seen;           /* since the start: it was put, not only restored */
+    int64_t ended_us;            /* UTC microseconds; 0: the alarm still needs attention */
+    int64_t cleared_us;          /* when the alarm stopped being annunciated; 0: still annunciated */
+    int64_t told_us;             /* time of the last notification; 0: acknowledged since then */
+    uint32_t rules;              /* bit mask of the rules that applied when the episode began */
+    uint32_t told;               /* bit mask of the recipients notified */
+    uint8_t steps[NOTIFY_RULES]; /* by rule: number of escalation steps taken */
+    bool aside;                  /* shelved, suppressed or out of service */
+    bool seen;                   /* put since the start, not only restored */
 };
 
 struct queued_item {
     struct outbox_item said;
-    int episode;         /* its index; -1: that is gone */
+    int episode; /* index of the episode; -1: the episode was removed */
 };
 
 struct queue {
@@ -33,33 +33,34 @@ struct queue {
     size_t count, capacity;
 };
 
-struct recipient_box { /* messages that wait for a recipient */
+struct recipient_box { /* messages queued for one recipient */
     struct queue waiting;
-    struct outbox_item *batch; /* of the message that is being sent, or sent again */
+    struct outbox_item *batch; /* alarms of the message being sent or retried */
     size_t batch_count;
     char id[OUTBOX_ID_BYTES];
     int64_t batch_us;
-    int64_t since_us;    /* when the first that waits came */
-    int64_t sent_us;     /* when a message was last delivered; 0: never */
+    int64_t since_us; /* arrival time of the oldest queued alarm */
+    int64_t sent_us;  /* time of the last delivery; 0: never */
     int64_t retry_us;
-    int last_priority;   /* the most urgent of the last message */
+    int last_priority; /* highest priority in the last message */
     int attempts;
-    int64_t left_out;    /* since the last message */
-    bool changed;        /* of Alertmanager: not all of it has been told */
+    int64_t left_out; /* alarms left out since the last message */
+    bool changed;     /* for Alertmanager: some changes have not been sent yet */
 };
 
 struct outbox {
     const struct plant *plant;
     struct episode *episodes;
     size_t count, capacity;
-    int *by_alarm;       /* 1 + index of the episode, by tag and kind; 0: none */
-    struct recipient_box *boxes; /* by recipient */
-    size_t items;        /* that wait, of all */
+    int *by_alarm;               /* 1 + index of the episode, by tag and alarm kind; 0: none */
+    struct recipient_box *boxes; /* by index of the recipient */
+    size_t items;                /* queued alarms of all recipients */
     int64_t lost, made;
     bool dirty;
 };
 
-int outbox_find(const struct outbox *outbox, const char *name, int tag, enum alarm_kind kind); /* returns an index, or -1 */
+/* Returns the index of an alarm's episode, or -1. */
+int outbox_find(const struct outbox *outbox, const char *name, int tag, enum alarm_kind kind);
 struct episode *outbox_add_episode(struct outbox *outbox, const char *name, int tag, enum alarm_kind kind);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The outbox as JSON: whom of which alarms somebody was told, and what waits. Recipients, rules and alarms stand there by name. */
+/* The outbox as JSON: episodes with their notified recipients, and queued messages. Recipients, rules and alarms are identified by name. */
 #include "notify/outbox_impl.h"
 
 #include <math.h>
@@ -76,7 +76,7 @@ static double value_of(const json_t *object, const char *key)
     return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
-/* Returns whether the plant still has such an alarm; its tag is -1 for a device's. */
+/* Reads the name and kind of an alarm; the tag is -1 for a device's alarm. Returns whether the plant still has that alarm. */
 static bool read_alarm(const struct outbox *outbox, const json_t *object, const char **name, int *tag, enum alarm_kind *kind)
 {
     const char *kind_name = json_string_value(json_object_get(object, "kind"));

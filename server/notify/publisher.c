@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that publishes what has changed. */
+/* The thread that publishes changes. */
 #include "notify/publisher.h"
 
 #include <errno.h>
@@ -24,38 +24,38 @@
 static const int64_t CONNECT_NS = 10 * NS_PER_S;
 
 struct topic {
-    char *name, *unit;       /* unit: as JSON, an object */
-    int64_t received_utc_ns; /* of the reading that was published last */
+    char *name, *unit;       /* unit: a JSON object */
+    int64_t received_utc_ns; /* time of the last published reading */
     uint32_t quality;
-    bool is_published; /* on this connection */
+    bool is_published; /* published on the current connection */
 };
 
 struct publisher {
     struct publisher_params params;
     pthread_t thread;
     bool started;
-    int stop_fd; /* readable: end */
+    int stop_fd; /* eventfd; readable: the thread must end */
     char *client_id;
     counter *up, *messages;
-    /* --- below: of the thread */
+    /* --- below: used by the publisher's thread only */
     struct mqtt_client *client;
     struct snapshot *snapshot;
-    struct topic *topics; /* by tag */
+    struct topic *topics; /* by tag index */
     uint64_t alarm_number;
     bool connected, alarms_published;
-    char said[200]; /* in the log; empty: all is well */
+    char said[200]; /* last problem that was logged; "": no problem */
 };
 
 /* --- what is published -------------------------------------------------------------------------------------------------------- */
 
-/* A level of a topic: what would be a level, or a wildcard, of its own stands as in URLs. */
+/* Appends a name as one level of a topic: characters that separate levels or are wildcards are escaped as in URLs. */
 static void add_level(struct text *text, const char *name)
 {
     for (const char *c = name; *c; c++)
         text_add(text, strchr("/+#%", *c) ? "%%%02X" : "%c", (unsigned char)*c);
 }
 
-/* What is refused is said, and does not hold up the rest. Returns false if the connection has ended. */
+/* Publishes a text. A refused message is logged and does not stop the others. Returns false if the connection has ended. */
 static bool publish(struct publisher *publisher, const char *topic, const char *text)
 {
     int status = mqtt_client_publish(publisher->client, topic, text);
@@ -118,7 +118,7 @@ static void add_alarm(void *arg, const struct alarm *alarm)
     json_array_append_new(arg, one);
 }
 
-/* All that are not normal, in one message: nothing is left over at the broker of one that has ended meanwhile. */
+/* Publishes all alarms that are not normal in one message, so that the broker retains none that has ended. */
 static bool publish_alarms(struct publisher *publisher)
 {
     const struct plant_publish *config = publisher->params.plant->publish;
@@ -154,11 +154,11 @@ static void on_connected(void *arg, bool session_present)
 
 static void on_message(void *arg, const struct mqtt_message *message)
 {
-    (void)arg; /* nothing is subscribed to */
+    (void)arg; /* the publisher subscribes to nothing */
     (void)message;
 }
 
-/* One connection, until it ends. Returns -ECANCELED when the publisher is to stop, else why says what happened. */
+/* Runs one connection until it ends. Returns -ECANCELED when the publisher must stop, else another code with the reason in `why`. */
 static int run_session(struct publisher *publisher, char why[200])
 {
     const struct plant_publish *config = publisher->params.plant->publish;
@@ -221,7 +221,7 @@ static void make_topics(struct publisher *publisher)
     }
 }
 
-/* Two programs must not have one id: the broker would end the connection of the other. */
+/* Returns the configured client id or makes a random one: a broker ends the connection of another client with the same id. */
 static char *make_client_id(const struct plant_publish *config)
 {
     unsigned random = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Publishes readings and alarms to an MQTT broker, as the plant file's `publish` says, on a thread of its own. The newest wins: what a slow
-   broker has not taken yet is not queued behind. Nothing else waits for it. */
+/* Publishes readings and alarms to an MQTT broker, as the plant file's `publish` says, on a thread of its own. There is no queue: a slow
+   broker gets only the newest values. No other thread waits for it. */
 #ifndef NOTIFY_PUBLISHER_H
 #define NOTIFY_PUBLISHER_H
 #include "alarm/alarm_service.h"
@@ -8,15 +8,15 @@
 struct publisher_params {
     struct log *log;
     struct counters *counters;
-    const struct plant *plant;           /* with a `publish` */
+    const struct plant *plant; /* must have a `publish` */
     struct store *store;
-    struct alarm_service *alarm_service; /* all three outlive the publisher */
+    struct alarm_service *alarm_service; /* plant, store and alarm service must outlive the publisher */
 };
 
 struct publisher;
-/* Returns NULL if there is no thread (logged). */
+/* Starts a publisher. Returns NULL if the thread cannot be started (logged). */
 struct publisher *publisher_start(const struct publisher_params *params);
-/* Ends the connection; the broker says "offline" for us. &NULL is fine; leaves NULL. */
+/* Ends the connection; the broker publishes "offline" for us. &NULL is fine; leaves NULL. */
 void publisher_stop(struct publisher **publisher);
 
 #endif

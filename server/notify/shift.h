@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which rules of `notify` an alarm falls under. Pure but for the local time of the program's zone, which is the plant's. Thread: any. */
+/* Selects the rules of `notify` that apply to an alarm. Pure except for the local time of the process's zone, which is the plant's.
+   Thread: any. */
 #ifndef NOTIFY_SHIFT_H
 #define NOTIFY_SHIFT_H
 #include <stdbool.h>
@@ -8,9 +9,10 @@
 #include "plant/plant.h"
 #include "plant/sections/notification.h"
 
-/* Returns whether the shift is on at that time. On the nights when clocks change, a shift is as long as its hours on the wall. */
+/* Returns whether the shift is active at that time, by the local wall clock: on nights when the clocks change, a shift is longer or
+   shorter by an hour. */
 bool shift_is_on(const struct notify_shift *shift, int64_t utc_us);
-/* Returns the rules (bits) for an alarm of that name and priority. tag: -1 for a device's. */
+/* Returns a bit mask of the rules for an alarm of that name and priority. tag: index, or -1 for a device's alarm. */
 uint32_t rules_for(const struct plant *plant, const char *name, int tag, int priority, int64_t utc_us);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* OpenImageIO behind plain C. */
+/* C functions around OpenImageIO's C++ interface. */
 #include "base/image/image.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -25,11 +25,12 @@ namespace
 {
 
 constexpr int MAX_SIDE_PX = 1 << 15;
-constexpr int MAX_FILE_CHANNELS = 64; /* renderers put theirs behind the colours */
-constexpr uint64_t MAX_PIXELS = 1 << 26;                          /* of 8192 x 8192: more than a texture is ever drawn with */
-constexpr uint64_t VALUES_PER_BYTE = 2000, FREE_VALUES = 1 << 20; /* zlib shrinks to a thousandth at best, JPEG to less */
+constexpr int MAX_FILE_CHANNELS = 64; /* renderers append channels of their own after the colours */
+constexpr uint64_t MAX_PIXELS = 1 << 26;                          /* 8192 x 8192; a texture is never drawn with more */
+/* plausible decoded values per byte of file (zlib shrinks to a thousandth at best, JPEG to less), and values that any file may have */
+constexpr uint64_t VALUES_PER_BYTE = 2000, FREE_VALUES = 1 << 20;
 
-/* OpenImageIO chooses its reader by name: the bytes say what they are. */
+/* Returns the reader's name for the format that the first bytes show, since OpenImageIO chooses its reader by the file name. */
 const char *format_of(const unsigned char *bytes, size_t size)
 {
     if (size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0)
@@ -41,7 +42,7 @@ const char *format_of(const unsigned char *bytes, size_t size)
     return nullptr;
 }
 
-/* One to four channels as four: grey, grey and alpha, RGB, RGBA. */
+/* Expands one to four channels to four: grey, grey and alpha, RGB, RGBA. */
 template <typename T> void spread(const T *from, int channels, size_t pixels, T opaque, T *to)
 {
     for (size_t i = 0; i < pixels; i++, from += channels, to += 4) {
@@ -63,7 +64,7 @@ template <> struct kind<float> {
     static constexpr float opaque = 1;
 };
 
-/* Larger sides than max_px are scaled down, in place. */
+/* Scales an image down in place if its sides are larger than max_px. */
 template <typename T> void shrink(T *rgba, uint32_t *width_px, uint32_t *height_px, uint32_t max_px)
 {
     uint32_t longest = std::max(*width_px, *height_px);
@@ -80,7 +81,7 @@ template <typename T> void shrink(T *rgba, uint32_t *width_px, uint32_t *height_
     *height_px = static_cast<uint32_t>(height);
 }
 
-/* The whole image, as four channels, scaled down to max_px. Throws. */
+/* Reads the whole image as four channels, scaled down to max_px. Throws on errors. */
 template <typename T> void read_pixels(OIIO::ImageInput *in, const OIIO::ImageSpec &spec, uint32_t max_px, T **rgba, uint32_t *width_px,
                                        uint32_t *height_px)
 {
@@ -92,7 +93,7 @@ template <typename T> void read_pixels(OIIO::ImageInput *in, const OIIO::ImageSp
         throw std::bad_alloc();
     bool read = in->read_image(0, 0, 0, channels, kind<T>::type, raw.data());
     std::string error = in->geterror();
-    if (!read || error.find("Premature end") != std::string::npos) /* the JPEG reader fills up with grey */
+    if (!read || error.find("Premature end") != std::string::npos) /* the JPEG reader fills missing rows with grey */
         throw std::runtime_error(error.empty() ? "broken" : error);
     spread(raw.data(), channels, pixels, kind<T>::opaque, *rgba);
     *width_px = static_cast<uint32_t>(spec.width);
@@ -123,12 +124,13 @@ bool size_good(const OIIO::ImageSpec &spec, int max_channels, char *why)
 bool claim_good(const OIIO::ImageSpec &spec, const char *format, size_t size, char *why)
 {
     uint64_t values = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) * static_cast<uint64_t>(spec.nchannels);
-    if (strcmp(format, "webp") != 0 && values > FREE_VALUES + VALUES_PER_BYTE * size) /* WebP knows plain colours */
+    if (strcmp(format, "webp") != 0 && values > FREE_VALUES + VALUES_PER_BYTE * size) /* WebP stores plain colours in a few bytes */
         return refuse(why, "%zu bytes claim %d x %d pixels", size, spec.width, spec.height);
     return true;
 }
 
-/* Chunks up to the last: libpng leaves OpenImageIO's reader by a jump, which leaks, where one is cut off. */
+/* Checks that a PNG file has all chunks up to the last: on a truncated file libpng leaves OpenImageIO's reader by longjmp(), which leaks
+   memory. */
 bool png_whole(const unsigned char *bytes, size_t size)
 {
     for (size_t at = 8; size - at >= 12;) {
@@ -166,7 +168,7 @@ bool decode(struct image *image, const void *bytes, size_t size, uint32_t max_px
     return true;
 }
 
-/* Opens what a file holds, whatever its name says. NULL: why. */
+/* Opens an image by its content, whatever its file name says. Returns NULL with the reason in `why` on failure. */
 std::unique_ptr<OIIO::ImageInput> open_file(const char *path, OIIO::ImageSpec *spec, char *why)
 {
     OIIO::ImageSpec hints;
@@ -207,7 +209,7 @@ bool load_float(struct image_float *image, const char *path, uint32_t max_px, ch
     return true;
 }
 
-/* Runs what may throw; a half-made image is freed. */
+/* Runs a function that may throw; frees a partial image after an exception. */
 template <typename I, typename F> bool guarded(I *image, char *why, F read)
 {
     *image = {};
