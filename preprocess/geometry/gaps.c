@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hair gaps, closed as those of the surface that distances are found on. */
+/* Closes hair gaps with the same code as the surface for distance computations. */
 #include "preprocess/geometry/gaps.h"
 
 #include "base/math/gap_split.h"
 #include "base/mem.h"
 #include "surface/repair/repair.h"
 
-#define SAME_M 1e-9 /* so far apart two vertices are at one place */
+#define SAME_M 1e-9 /* metres; vertices this close are at the same position */
 
-/* Where several gaps meet at a corner, each round closes one. */
-enum { MOST_ROUNDS = 4 };
+/* Each round closes one gap at a corner where several meet. */
+enum { MAX_ROUNDS = 4 };
 
 static double widest_m(const float (*positions_m)[3], const uint32_t *indices, size_t index_count, double tolerance_m)
 {
@@ -17,7 +17,7 @@ static double widest_m(const float (*positions_m)[3], const uint32_t *indices, s
     return tolerance_m > 0 ? min_of(most_m, tolerance_m) : most_m;
 }
 
-/* Moves vertices to the points that theirs have become. */
+/* Moves vertices to the merged position of their point. */
 static void move(float (*positions_m)[3], size_t vertex_count, const uint32_t *point_of, const struct trimesh *mesh, const uint32_t *target)
 {
     for (size_t v = 0; v < vertex_count; v++)
@@ -25,7 +25,7 @@ static void move(float (*positions_m)[3], size_t vertex_count, const uint32_t *p
             positions_m[v][axis] = (float)mesh->points[target[point_of[v]]][axis];
 }
 
-/* Returns how many places were moved; -1: out of memory. */
+/* Closes gaps once. Returns the number of positions moved, or -1 if out of memory. */
 static int64_t close_once(float (*positions_m)[3], size_t vertex_count, const uint32_t *indices, size_t index_count, double within_m,
                           uint32_t *point_of)
 {
@@ -55,7 +55,7 @@ bool gaps_close(float (*positions_m)[3], size_t vertex_count, const uint32_t *in
     uint32_t *point_of = mem_try_array(vertex_count, sizeof(*point_of));
     const double within_m = widest_m((const float(*)[3])positions_m, indices, index_count, tolerance_m);
     int64_t moved = point_of ? 1 : -1;
-    for (int round = 0; round < MOST_ROUNDS && moved > 0; round++) {
+    for (int round = 0; round < MAX_ROUNDS && moved > 0; round++) {
         moved = close_once(positions_m, vertex_count, indices, index_count, within_m, point_of);
         *closed += moved > 0 ? (uint32_t)moved : 0;
     }

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Closes hair gaps in what is drawn: faces that exports leave a fraction of a millimetre apart, so that pixels of what is behind show
-   between them. Thread: any. */
+/* Closes hair gaps in the drawn mesh: faces that an export leaves a fraction of a millimetre apart, so that the background shows between
+ * them. Thread: any. */
 #ifndef PREPROCESS_GEOMETRY_GAPS_H
 #define PREPROCESS_GEOMETRY_GAPS_H
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#define GAPS_OF_SIZE 3e-4   /* of the diagonal of the box around it all: no wider gap is a hair gap, */
-#define GAPS_MOST_M 0.002   /* nor one that is wider than that */
+#define GAPS_OF_SIZE 3e-4 /* widest hair gap relative to the diagonal of the bounding box */
+#define GAPS_MOST_M 0.002 /* widest hair gap in metres */
 
-/* Moves vertices at open edges to others at open edges across a gap that is no wider than that, unless their faces lie on each other: then
-   what were two edges has both faces. All vertices at one place are moved together. tolerance_m: no wider gap is closed, either; 0: there
-   is no such limit. Adds the number of places moved to *closed. Returns false if out of memory. */
+/* Closes gaps up to GAPS_OF_SIZE and GAPS_MOST_M: moves vertices at open edges to open edges across the gap, unless their faces overlap, so
+ * that the two edges become one. Vertices at the same position move together. tolerance_m: additional limit of the gap width; 0: none. Adds
+ * the number of moved positions to *closed. Returns false if out of memory. */
 bool gaps_close(float (*positions_m)[3], size_t vertex_count, const uint32_t *indices, size_t index_count, double tolerance_m,
                 uint32_t *closed);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cutting an asset out of a model. */
+/* Cuts an asset out of a model. */
 #include "preprocess/geometry/geometry.h"
 
 #include <math.h>
@@ -12,16 +12,16 @@
 #include "plant/models/transform.h"
 #include "preprocess/geometry/geometry_impl.h"
 
-#define MAX_TRIANGLES 50000000ull /* of one asset */
+#define MAX_TRIANGLES 50000000ull /* per asset */
 #define MAX_SIZE_M 1e7
-#define COARSE_SIZE_M 1e4 /* floats of a larger model have steps of half a millimetre at its ends */
-#define SAME_PLACE_M 1e-3 /* nodes of one name that are no farther apart are as good as one */
+#define COARSE_SIZE_M 1e4 /* metres; in larger models single-precision positions have steps of half a millimetre at the ends */
+#define SAME_PLACE_M 1e-3 /* metres; nodes of the same name this close count as one position */
 #define SHOWN_NODES 6
-#define MIN_SIZE_M 1e-6 /* smaller is a wrong unit; and squares of squares of lengths have to be numbers */
+#define MIN_SIZE_M 1e-6 /* metres; a smaller size means a wrong unit, and fourth powers of lengths would underflow */
 
 /* --- which nodes --------------------------------------------------------------------------------------------------------- */
 
-/* The nodes as patterns see them. Free with mem_free. */
+/* Converts the nodes to the form that patterns are matched against. The caller frees the array with mem_free. */
 static struct model_node *nodes_of(const struct gltf_model *model)
 {
     struct model_node *nodes = mem_array(model->node_count, sizeof(*nodes));
@@ -38,7 +38,8 @@ static struct model_node *nodes_of(const struct gltf_model *model)
     return nodes;
 }
 
-/* Which nodes belong to the asset. NULL: why says that a pattern matches none. Free with mem_free. */
+/* Returns which nodes belong to the asset; the caller frees the array with mem_free. NULL: a pattern matches no node, and why says
+ * which. */
 static bool *taken_nodes(const struct gltf_model *model, const char *patterns, char *why)
 {
     struct model_node *nodes = nodes_of(model);
@@ -133,7 +134,7 @@ static const struct node_box empty_box = { { INFINITY, INFINITY, INFINITY }, { -
 
 static void box_add_primitive(struct node_box *box, const struct gltf_primitive *primitive, const double world[16])
 {
-    for (uint32_t i = 0; i < primitive->vertex_count; i++) { /* there is none that no triangle uses */
+    for (uint32_t i = 0; i < primitive->vertex_count; i++) { /* every vertex is used by some triangle */
         const float *p = primitive->positions[i];
         double q[3];
         transform_point(world, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] }, q);
@@ -150,7 +151,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The median vertex: a model with a stray vertex at the origin of its coordinates keeps its precision where most of it is. */
+/* Computes the median of the vertices as the origin, so that a stray vertex far away does not cost precision where most of the model is. */
 static void median_of(const struct node_primitives *parts, const struct geometry_params *params, double median_m[3])
 {
     size_t count = 0, at = 0;
@@ -239,7 +240,7 @@ static bool several_places(const struct gltf_model *model, const char *pattern, 
                  pattern, numbers, count > SHOWN_NODES ? ", ..." : "");
 }
 
-/* Those inside the asset, or all where none is. */
+/* Reduces the found nodes to those inside the asset, if there are any. */
 static size_t prefer_own(const struct gltf_model *model, const struct geometry_params *params, uint32_t *found, size_t count)
 {
     char why[MODEL_WHY_BYTES];
@@ -299,7 +300,7 @@ bool geometry_node_place(const struct gltf_model *model, const struct geometry_p
 
 /* --- putting parts together ------------------------------------------------------------------------------------------------ */
 
-struct geometry_room { /* capacities of a geometry's arrays */
+struct geometry_room { /* capacities and flags while a geometry's arrays are filled */
     size_t positions, normals, texcoords, second_texcoords, colors, indices, primitives;
     float (*all_texcoords)[2], (*all_second_texcoords)[2];
     uint8_t (*all_colors)[4];
@@ -345,7 +346,7 @@ static void append(struct geometry *geometry, struct geometry_room *room, const 
     room->any_colors |= part->primitive->colors != NULL;
 }
 
-/* What a model without materials looks like: grey paint, seen from both sides since nobody vouches for its faces. */
+/* Material of models without materials: grey, drawn from both sides because the faces' orientation is not reliable. */
 static const struct asset_material plain_material = {
     .base_color = { 0.6f, 0.62f, 0.64f, 1 },
     .roughness = 0.6f,
@@ -360,7 +361,7 @@ static const struct asset_material plain_material = {
     .double_sided = 1,
 };
 
-/* The asset's number of a model's material: parts come sorted, so it is the last one or a new one. */
+/* Returns the asset's index of a material. Primitives are sorted by material, so it is the last one or a new one. */
 static uint32_t material_number(struct geometry *geometry, const struct gltf_model *model, int material, int *last)
 {
     if (geometry->material_count && *last == material)

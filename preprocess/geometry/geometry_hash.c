@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What an asset takes from its model, as one number: equal for a new revision of the model that changes other assets only. */
+/* Hashes the part of a model that an asset uses, so that the hash is unchanged by a revision that affects other assets only. */
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* allows a hash state on the stack */
 #include <xxhash.h>
 
 #include "base/mem.h"
@@ -10,13 +10,13 @@
 struct hashing {
     XXH3_state_t state;
     const struct gltf_model *model;
-    uint32_t *texture; /* of each of the model's textures: which one of the asset's, from 1; 0: not yet */
+    uint32_t *texture; /* by texture of the model: its index among the asset's textures, from 1; 0: not used yet */
     uint32_t textures;
 };
 
 static void add(struct hashing *h, const void *bytes, size_t count)
 {
-    XXH3_64bits_update(&h->state, &count, sizeof(count)); /* so that nothing runs into what follows */
+    XXH3_64bits_update(&h->state, &count, sizeof(count)); /* the length separates consecutive fields */
     if (count)
         XXH3_64bits_update(&h->state, bytes, count);
 }
@@ -26,7 +26,7 @@ static void add_number(struct hashing *h, uint32_t number)
     XXH3_64bits_update(&h->state, &number, sizeof(number));
 }
 
-/* Its number in the asset, and what it is where it is met first. */
+/* Adds a texture's index in the asset, and its content the first time. */
 static void add_texture(struct hashing *h, uint32_t number)
 {
     const struct gltf_model *model = h->model;
@@ -79,7 +79,7 @@ bool geometry_hash(uint64_t *out, const struct gltf_model *model, const struct g
     XXH3_INITSTATE(&h.state);
     XXH3_64bits_reset(&h.state);
     h.texture = mem_array(model->texture_count + 1u, sizeof(*h.texture));
-    const uint32_t numbers[3] = { counts.node_count, counts.skipped_lines, counts.skipped_points }; /* for the report */
+    const uint32_t numbers[3] = { counts.node_count, counts.skipped_lines, counts.skipped_points }; /* these appear in the report */
     add(&h, numbers, sizeof(numbers));
     for (size_t i = 0; good && i < parts.count; i++) {
         const struct node_primitive *part = &parts.at[i], *before = i ? part - 1 : NULL;

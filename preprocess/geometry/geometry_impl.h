@@ -4,7 +4,7 @@
 #define PREPROCESS_GEOMETRY_IMPL_H
 #include "preprocess/geometry/geometry.h"
 
-struct node_primitive { /* one primitive under one node */
+struct node_primitive { /* one primitive of one node */
     const struct gltf_node *node;
     const struct gltf_primitive *primitive;
     uint32_t order;
@@ -12,38 +12,38 @@ struct node_primitive { /* one primitive under one node */
 };
 
 struct node_primitives {
-    struct node_primitive *at; /* sorted by material, blended ones last */
+    struct node_primitive *at; /* sorted by material, blended materials last */
     size_t count, capacity;
 };
-/* Lists the glTF primitives of the nodes that params select. Adds counts of nodes and of skipped lines and points to geometry. Returns
-   false with the reason in why. The caller frees parts->at (mem_free) in both cases. */
+/* Lists the glTF primitives of the nodes that params select. Adds the numbers of nodes and of skipped lines and points to geometry. Returns
+ * false with the reason in why. The caller frees parts->at (mem_free) in both cases. */
 bool node_primitives_find(struct node_primitives *parts, struct geometry *geometry, const struct gltf_model *model,
                           const struct geometry_params *params, char *why);
 
-/* A vertex with all its attributes: vertices are welded only where all of them are equal. */
+/* A vertex with all attributes; vertices are welded only if all attributes are equal. */
 struct geometry_vertex {
     float position[3], normal[3], texcoord[2], second_texcoord[2];
     uint8_t color[4];
 };
 
 struct primitive_mesh {
-    struct geometry_vertex *vertices; /* one per corner at first */
+    struct geometry_vertex *vertices; /* initially one per triangle corner */
     unsigned *indices;
     size_t vertex_count, index_count;
 };
 
-/* Writes the transform from the node's own frame to the asset frame: the node's world matrix, then units and up axis. */
+/* Computes the transform from a node's frame to the asset frame: the node's world matrix, then units and up axis. */
 void primitive_world(const struct geometry_params *params, const struct gltf_node *node, double out[16]);
 
-/* Builds the primitive's triangles in the asset frame, relative to the geometry's origin, welded and ordered for a vertex cache. Returns
-   false if out of memory. Call primitive_mesh_finish() in both cases. */
+/* Builds the primitive's triangles in the asset frame, relative to the geometry's origin, welded and ordered for the vertex cache. Returns
+ * false if out of memory. Call primitive_mesh_finish() in both cases. */
 bool primitive_mesh(struct primitive_mesh *mesh, const struct node_primitive *part, const struct geometry_params *params,
                     struct geometry *geometry);
-/* Frees the mesh's arrays. */
+/* Frees the arrays of the mesh. */
 void primitive_mesh_finish(struct primitive_mesh *mesh);
 
-/* Decodes the textures that the geometry's materials use into geometry->texels, and renumbers the materials' references. Returns false with
-   the reason in why. */
+/* Decodes the textures that the geometry's materials use into geometry->texels, and updates the materials' texture indices. Returns false
+ * with the reason in why. */
 bool geometry_join_textures(struct geometry *geometry, const struct gltf_model *model, char *why);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One primitive under one node as a mesh of its asset. */
+/* Builds the mesh of one primitive of one node. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
@@ -13,7 +13,7 @@
 
 #include "base/math/vec.h"
 
-/* Model units and axes to metres and Z up: (x, y, z) of a Y-up model is (x, -z, y). */
+/* Computes the transform from model units and axes to metres and Z up: (x, y, z) of a Y-up model becomes (x, -z, y). */
 static void frame_of(const struct geometry_params *params, double out[16])
 {
     double u = params->unit_m;
@@ -45,7 +45,7 @@ static double determinant(const double m[16])
     return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) + m[8] * (m[1] * m[6] - m[5] * m[2]);
 }
 
-/* Rows of the inverse transpose, up to a positive factor: the cofactors, turned round where the transform mirrors. */
+/* Computes rows of the inverse transpose up to a positive factor: the cofactors, negated if the transform mirrors. */
 static void normal_matrix(const double m[16], double out[9])
 {
     double sign = determinant(m) < 0 ? -1 : 1;
@@ -77,7 +77,8 @@ static bool has_area(const float (*p)[3], const uint32_t v[3])
     return vec_dot(n, n) > 0;
 }
 
-/* Indices of triangles with an area, wound so that the outside stays outside under a mirroring transform. */
+/* Lists the indices of triangles that have an area. If the transform mirrors, reverses their winding so that the outside stays outside.
+ * Returns the number of indices. */
 static size_t take_triangles(const struct gltf_primitive *primitive, const float (*positions)[3], bool mirrored, uint32_t *out,
                              uint32_t *degenerate)
 {
@@ -95,7 +96,8 @@ static size_t take_triangles(const struct gltf_primitive *primitive, const float
     return count;
 }
 
-/* The winding says which side is out; some exporters' normals do not follow it. Those that lean over an edge are let be. */
+/* Flips a normal that contradicts the winding, which defines the outside; some exporters write such normals. Normals that merely lean over
+ * an edge are kept. */
 static void turn_outward(const float outward[3], float normal[3])
 {
     if (vecf_dot(normal, outward) < -0.2f)
@@ -111,7 +113,7 @@ static void fill_vertex(const struct gltf_primitive *primitive, uint32_t v, cons
         memcpy(out->normal, computed, sizeof(out->normal));
     turn_outward(computed, out->normal);
     for (int i = 0; i < 3; i++) {
-        out->position[i] += 0.0f; /* -0 is 0, or equal places would not weld */
+        out->position[i] += 0.0f; /* turns -0 into 0, so that equal positions weld */
         out->normal[i] += 0.0f;
     }
     if (primitive->texcoords)

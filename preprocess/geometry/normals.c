@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Normals for triangles that come without: angle-weighted, with creases. */
+/* Computes angle-weighted normals with creases. */
 #include "preprocess/geometry/normals.h"
 
 #include <math.h>
@@ -10,9 +10,9 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define MANY 256 /* faces at one place, from which on not each is compared with each */
+#define MANY 256 /* faces at one position up to which all pairs are compared */
 #define LEAF 16
-#define CREASE_COSINE 0.766 /* of 40 degrees: a cylinder of ten sides is round, one of eight has edges */
+#define CREASE_COSINE 0.766 /* cosine of 40 degrees: a cylinder with ten sides is shaded round, one with eight has edges */
 
 static void face_normal(const float a[3], const float b[3], const float c[3], double out[3])
 {
@@ -31,11 +31,11 @@ static double corner_angle(const float at[3], const float b[3], const float c[3]
     return acos(fmin(fmax(vec_dot(ab, ac), -1), 1));
 }
 
-struct around {      /* which corners meet at a place */
-    unsigned *place; /* of each vertex: the first vertex at the same place */
+struct around {      /* the corners that meet at each position */
+    unsigned *place; /* by vertex: the first vertex at the same position */
     uint32_t *first, *corners;
     double (*faces)[3];
-    double *angles; /* of each corner */
+    double *angles; /* by corner: its angle */
 };
 
 static void around_finish(struct around *a)
@@ -72,9 +72,9 @@ static bool around_init(struct around *a, const float (*positions)[3], size_t ve
     return true;
 }
 
-/* --- the sum over the faces at one place ------------------------------------------------------------------------------------- */
+/* --- sum over the faces at one position -------------------------------------------------------------------------------------- */
 
-/* Adds the corner's face, weighted by its angle, if it turns away from `own` by less than the crease angle. */
+/* Adds the corner's face, weighted by its angle, if its normal is within the crease angle of `own`. */
 static void add_face(const struct around *a, uint32_t corner, const double own[3], double sum[3])
 {
     const double *face = a->faces[corner / 3];
@@ -84,7 +84,7 @@ static void add_face(const struct around *a, uint32_t corner, const double own[3
         sum[axis] += a->angles[corner] * face[axis];
 }
 
-/* Writes the sum's direction, or the face's own normal where the sum has none. */
+/* Writes the direction of the sum, or the face's own normal if the sum is zero. */
 static void take_direction(double sum[3], const double own[3], float out[3])
 {
     if (!(vec_normalize(sum) > 0))
@@ -93,15 +93,15 @@ static void take_direction(double sum[3], const double own[3], float out[3])
         out[axis] = (float)sum[axis];
 }
 
-/* Where very many faces meet, not each is compared with each: the normals are halved again and again, and a half that lies within the
-   crease angle as a whole, or beyond it, is taken or left as a whole. Nodes are stored as an implicit binary tree. */
+/* Accelerates positions where very many faces meet: recursively halves the set of normals; a half that is wholly inside or wholly outside
+ * the crease angle is added or skipped as a whole. The binary tree is stored implicitly. */
 struct normals_half {
-    double low[3], high[3], sum[3]; /* of the normals; sum: weighted by angles */
+    double low[3], high[3], sum[3]; /* bounds of the normals, and their sum weighted by angles */
 };
 
 struct halves {
     const struct around *around;
-    uint32_t *corners; /* those at the place, reordered */
+    uint32_t *corners; /* corners at the position, reordered */
     struct normals_half *nodes;
 };
 
@@ -165,7 +165,8 @@ static void halves_sum(const struct halves *halves, size_t node, size_t begin, s
 
 static bool sum_of_many(const struct around *a, uint32_t first, size_t count, float (*corner_normals)[3])
 {
-    size_t node_count = 4; /* halves are equal to one: no node has a number beyond twice the lowest power of 2 above count / LEAF */
+    /* the halves differ by at most one, so node numbers stay below twice the smallest power of 2 above count / LEAF */
+    size_t node_count = 4;
     while (node_count < 4 * (count / LEAF + 1))
         node_count *= 2;
     struct halves halves = { a, mem_try_array(count, sizeof(*halves.corners)), mem_try_array(node_count, sizeof(*halves.nodes)) };

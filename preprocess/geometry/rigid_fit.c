@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The best turn is an eigenvector; power iteration finds it. */
+/* Fits a rotation as an eigenvector, found by power iteration. */
 #include "preprocess/geometry/rigid_fit.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@ static void middle_of(const double (*points)[3], size_t count, double middle[3])
             middle[axis] += points[i][axis] / (double)count;
 }
 
-/* The turn is the eigenvector of this matrix with the largest eigenvalue, as a quaternion. */
+/* Builds Horn's matrix, whose eigenvector with the largest eigenvalue is the rotation as a quaternion. */
 static void horn_matrix(const double (*from)[3], const double (*to)[3], size_t count, const double from_middle[3],
                         const double to_middle[3], double n[4][4])
 {
@@ -35,7 +35,7 @@ static void horn_matrix(const double (*from)[3], const double (*to)[3], size_t c
     memcpy(n, m, sizeof(m));
 }
 
-/* Power iteration; shifted, so that the largest eigenvalue is also the largest by amount. */
+/* Finds the eigenvector by power iteration. A shift makes the largest eigenvalue also the largest in magnitude. */
 static void largest_eigenvector(double n[4][4], double q[4])
 {
     double shift = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds stray triangles and vertices of an asset and the node that they came from. */
+/* Finds stray triangles and vertices of an asset and the node they belong to. */
 #include "preprocess/geometry/stray.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "preprocess/geometry/geometry_impl.h"
 
 struct farthest {
-    struct extent main; /* in the asset frame */
+    struct extent main; /* main part of the asset, in the asset frame */
     double away_m, at_m[3];
     const struct gltf_node *node;
 };
@@ -25,7 +25,7 @@ static double away_from(const struct extent *main, const double place_m[3])
     return vec_length(away_m);
 }
 
-/* Looks at a primitive's vertices, also at those that only triangles without area use. */
+/* Examines a primitive's vertices, including those used only by triangles without area. */
 static void look_at(struct farthest *farthest, const struct node_primitive *part, const struct geometry_params *params)
 {
     double world[16], place_m[3];
@@ -42,7 +42,7 @@ static void look_at(struct farthest *farthest, const struct node_primitive *part
     }
 }
 
-/* Returns the name of the node, or of its nearest ancestor that has one; "": none has. */
+/* Returns the name of the node or of its nearest named ancestor; "": none. */
 static const char *name_of(const struct gltf_model *model, const struct gltf_node *node)
 {
     while (!node->name[0] && node->parent >= 0)
@@ -71,7 +71,7 @@ void stray_text(const struct geometry *geometry, const struct gltf_model *model,
         for (size_t i = 0; i < parts.count; i++)
             look_at(&farthest, &parts.at[i], params);
     mem_free(parts.at);
-    if (stray == 0 && !(farthest.away_m > main_m)) /* the rounding of floats, and vertices of triangles without area beside the rest */
+    if (stray == 0 && !(farthest.away_m > main_m)) /* ignore rounding errors, and vertices of triangles without area near the rest */
         return;
     if (stray > 0)
         snprintf(text, STRAY_TEXT_BYTES, "%zu of its triangles lie up to", stray);

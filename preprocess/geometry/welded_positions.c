@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vertices that lie at one place. */
+/* Finds vertices with equal positions. */
 #include "preprocess/geometry/welded_positions.h"
 
 #include <meshoptimizer.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Maps vertices to distinct positions: vertices with bitwise equal positions share one, whatever their other attributes. */
+/* Maps vertices to distinct positions: vertices with bitwise equal positions share one, regardless of other attributes. */
 #ifndef PREPROCESS_GEOMETRY_WELDED_POSITIONS_H
 #define PREPROCESS_GEOMETRY_WELDED_POSITIONS_H
 #include <stdbool.h>
@@ -12,9 +12,9 @@ struct welded_positions {
     size_t count;
 };
 
-/* Builds the map from vertices to distinct positions. Returns false if out of memory, and then there is nothing to finish. */
+/* Builds the map. Returns false if out of memory; then welded_finish() need not be called. */
 bool welded_init(struct welded_positions *welded, const float (*positions_m)[3], size_t vertex_count);
-/* Frees the map's arrays. */
+/* Frees the arrays of the map. */
 void welded_finish(struct welded_positions *welded);
 
 #endif

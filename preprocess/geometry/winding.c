@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Flipped faces: each triangle's side by those of its neighbours; what is on the smaller side is turned. */
+/* Determines each triangle's orientation relative to its neighbours and turns the minority. */
 #include "preprocess/geometry/winding.h"
 
 #include "base/math/vec.h"
@@ -7,17 +7,17 @@
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/tri_edges.h"
 
-#define MOST_TURNED 0.25 /* of the area of what hangs together */
+#define MAX_TURNED 0.25 /* largest share of a connected group's area that is turned */
 
 struct winding {
     const float (*positions)[3];
     size_t tri_count;
-    uint32_t (*places)[3]; /* of each triangle's corners */
-    signed char *facing;   /* of each triangle: 1 or -1; 0: not known yet */
+    uint32_t (*places)[3]; /* by triangle: the position index of each corner */
+    signed char *facing;   /* by triangle: 1 or -1; 0: not known yet */
     uint32_t *joined;
 };
 
-/* Sums up the area of the triangles that face each way, of -1 first. */
+/* Adds up the area of the triangles of each orientation, -1 first. */
 static void sum_area(const struct winding *w, const uint32_t *indices, size_t count, double area_m2[2])
 {
     area_m2[0] = area_m2[1] = 0;
@@ -29,14 +29,14 @@ static void sum_area(const struct winding *w, const uint32_t *indices, size_t co
     }
 }
 
-/* Turns those of the joined triangles that face the way of less area. Returns how many. */
+/* Turns the triangles of the orientation with less area. Returns their number. */
 static uint32_t turn_smaller(const struct winding *w, uint32_t *indices, size_t count)
 {
     double area_m2[2];
     sum_area(w, indices, count, area_m2);
     const signed char smaller = area_m2[0] < area_m2[1] ? -1 : 1;
     uint32_t turned = 0;
-    for (size_t i = 0; i < count && area_m2[smaller > 0] <= MOST_TURNED * (area_m2[0] + area_m2[1]); i++) {
+    for (size_t i = 0; i < count && area_m2[smaller > 0] <= MAX_TURNED * (area_m2[0] + area_m2[1]); i++) {
         uint32_t *v = indices + 3 * (size_t)w->joined[i], swap = v[1];
         if (w->facing[w->joined[i]] != smaller)
             continue;

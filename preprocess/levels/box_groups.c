@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Space is halved until the boxes in a cell are few, are one group already, or one of them fills it: it meets all that reach in. A
-   sweep along one axis would compare every two boxes of a plate that stands across it. */
+/* Halves space recursively until the boxes in a cell are few, are one group already, or include one that fills the cell and so meets all
+ * others. A sweep along one axis would compare all pairs of boxes along a plate perpendicular to that axis. */
 #include "preprocess/levels/box_groups.h"
 
 #include <math.h>
@@ -10,8 +10,8 @@
 #include "base/mem.h"
 #include "surface/mesh/trimesh.h"
 
-#define FEW 24        /* boxes that are compared each with each */
-#define MOST_DEPTH 96 /* halvings: 24 bits of each axis, and some */
+#define FEW 24       /* number of boxes up to which all pairs are compared */
+#define MAX_DEPTH 96 /* limit of halvings: 24 bits of each axis, plus a margin */
 
 struct box_cell {
     float low_m[3], high_m[3];
@@ -42,7 +42,7 @@ static bool are_one_group(const struct part_box *boxes, const uint32_t *list, si
     return true;
 }
 
-/* The cell is no larger than what lies in it. */
+/* Shrinks the cell to the boxes in it. */
 static void tighten(const struct part_box *boxes, const uint32_t *list, size_t count, struct box_cell *cell)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -64,7 +64,8 @@ static bool holds(const struct part_box *box, const float low_m[3], const float 
     return true;
 }
 
-/* What one box that fills the cell meets: all in it. Else those that have its middle in common. True: all. */
+/* Joins boxes without comparing pairs: all of them if one box fills the cell, else those that contain the cell's centre. Returns whether
+ * all boxes were joined. */
 static bool join_some(const struct part_box *boxes, const uint32_t *list, size_t count, const struct box_cell *cell, uint32_t *parent)
 {
     float middle_m[3];
@@ -82,7 +83,7 @@ static bool join_some(const struct part_box *boxes, const uint32_t *list, size_t
     return filler < count;
 }
 
-/* The axis across which halving leaves fewest boxes in both halves; -1: none is a gain. */
+/* Returns the axis whose halving leaves the fewest boxes in both halves, or -1 if no halving helps. */
 static int best_axis(const struct part_box *boxes, const uint32_t *list, size_t count, const struct box_cell *cell)
 {
     int best = -1;
@@ -116,7 +117,7 @@ static void join_half(const struct part_box *boxes, const uint32_t *list, size_t
     mem_free(inside);
 }
 
-/* Two boxes that meet have a place in common, and so both reach into the half that it lies in. */
+/* Joins the boxes of a cell by recursive halving. Two boxes that overlap share a point, so both are in the half that contains the point. */
 static void join_in(const struct part_box *boxes, uint32_t *list, size_t count, struct box_cell cell, int depth, uint32_t *parent)
 {
     if (count < 2 || are_one_group(boxes, list, count, parent))
@@ -124,7 +125,7 @@ static void join_in(const struct part_box *boxes, uint32_t *list, size_t count, 
     tighten(boxes, list, count, &cell);
     if (join_some(boxes, list, count, &cell, parent) || are_one_group(boxes, list, count, parent))
         return;
-    int axis = count <= FEW || depth >= MOST_DEPTH ? -1 : best_axis(boxes, list, count, &cell);
+    int axis = count <= FEW || depth >= MAX_DEPTH ? -1 : best_axis(boxes, list, count, &cell);
     if (axis < 0) {
         join_each(boxes, list, count, parent);
         return;

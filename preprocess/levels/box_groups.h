@@ -6,12 +6,12 @@
 #include <stdint.h>
 
 struct part_box {
-    float low_m[3], high_m[3]; /* boxes that only touch meet, too */
+    float low_m[3], high_m[3]; /* boxes that only touch count as overlapping */
     uint32_t part;
 };
 
-/* Joins, in the union-find forest `parent` (trimesh_join()), the parts of all boxes that overlap or touch. Takes time that grows little
-   faster than the number of boxes, however they lie. */
+/* Merges the parts of all boxes that overlap or touch, in the union-find forest `parent` (trimesh_join()). Run time is nearly linear in the
+ * number of boxes, however they are placed. */
 void box_groups_join(const struct part_box *boxes, size_t count, uint32_t *parent);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clusters by meshoptimizer's meshlets, which grow over neighbouring triangles. */
+/* Builds clusters with meshoptimizer's meshlets, which grow over adjacent triangles. */
 #include "preprocess/levels/clusters.h"
 
 #include <math.h>
@@ -8,20 +8,20 @@
 
 #include "base/mem.h"
 
-#define MOST_VERTICES 255 /* of a meshlet, says meshoptimizer */
-#define CONE_WEIGHT 0.5f  /* flat clusters against round ones */
+#define MAX_VERTICES 255 /* meshoptimizer's limit of vertices per meshlet */
+#define CONE_WEIGHT 0.5f /* meshoptimizer's preference for flat clusters over compact ones */
 
 struct clusters_making {
     struct workers_task *task;
-    struct level level; /* its arrays are the caller's */
+    struct level level; /* borrows the caller's arrays */
     float (*positions_m)[3];
     uint32_t vertex_count;
-    struct clusters made; /* their indices are numbered in the level */
+    struct clusters made; /* clusters with indices relative to the level */
 };
 
-/* A primitive's own vertices, numbered from 0: meshoptimizer looks at all vertices that it is given. */
+/* The vertices of one primitive, numbered from 0: meshoptimizer's run time depends on the number of vertices it is given. */
 struct local {
-    uint32_t *of; /* by vertex of the geometry: number + 1 in the primitive in hand, else 0 */
+    uint32_t *of; /* by vertex of the geometry: its number in the current primitive + 1, or 0 */
     uint32_t *indices, *vertices;
     float (*positions_m)[3];
     uint32_t count;
@@ -59,16 +59,16 @@ static void cut_primitive(struct clusters_making *making, struct local *local, c
 {
     struct clusters *made = &making->made;
     uint32_t *indices = making->level.indices + primitive->first_index, done = 0;
-    size_t most = meshopt_buildMeshletsBound(primitive->index_count, MOST_VERTICES, CLUSTERS_MAX_TRIANGLES);
+    size_t most = meshopt_buildMeshletsBound(primitive->index_count, MAX_VERTICES, CLUSTERS_MAX_TRIANGLES);
     struct meshopt_Meshlet *meshlets = mem_array(most, sizeof(*meshlets));
-    unsigned *vertices = mem_array(most * MOST_VERTICES, sizeof(*vertices));
+    unsigned *vertices = mem_array(most * MAX_VERTICES, sizeof(*vertices));
     unsigned char *triangles = mem_array(most * CLUSTERS_MAX_TRIANGLES * 3, 1);
     local->indices = mem_array(primitive->index_count, sizeof(*local->indices));
     local->vertices = mem_array(primitive->index_count, sizeof(*local->vertices));
     local->positions_m = mem_array(primitive->index_count, sizeof(*local->positions_m));
     number_locally(local, (const float(*)[3])making->positions_m, indices, primitive->index_count);
     size_t count = meshopt_buildMeshlets(meshlets, vertices, triangles, local->indices, primitive->index_count, local->positions_m[0],
-                                         local->count, sizeof(*local->positions_m), MOST_VERTICES, CLUSTERS_MAX_TRIANGLES, CONE_WEIGHT);
+                                         local->count, sizeof(*local->positions_m), MAX_VERTICES, CLUSTERS_MAX_TRIANGLES, CONE_WEIGHT);
     mem_grow(&made->at, &made->capacity, made->count + count, sizeof(*made->at));
     for (size_t m = 0; m < count; m++) {
         add_meshlet(made, local, &meshlets[m], vertices, triangles, primitive->first_index + done, indices + done);

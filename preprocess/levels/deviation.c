@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Largest distance between two surfaces, by probing one against the other. */
+/* Computes the largest distance between two surfaces by probing points of one against the other. */
 #include "preprocess/levels/deviation.h"
 
 #include <math.h>
@@ -10,10 +10,10 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define SMALL 4.0  /* expected distances: in smaller triangles the middle is probed */
-#define LARGE 16.0 /* likewise: in larger ones, twelve points inside; else the middles of the edges */
+#define SMALL 4.0  /* times the expected distance; triangles smaller than this are probed at their centre */
+#define LARGE 16.0 /* times the expected distance; triangles larger than this are probed at twelve inner points, others at edge midpoints */
 
-/* The same for every order of the corners. Never 0. */
+/* Returns a hash that does not depend on the order of the corners and is never 0. */
 static uint64_t triangle_hash(const uint32_t v[3])
 {
     uint32_t low = v[0], middle = v[1], high = v[2], swap;
@@ -43,7 +43,7 @@ static void make_room_to_know(struct deviation *surface, size_t triangle_count)
     surface->known = mem_array(surface->known_mask + 1, sizeof(*surface->known));
 }
 
-/* False: one with the same corners is known already. */
+/* Adds a triangle to the hash set. Returns false if a triangle with the same corners is already there. */
 static bool know_triangle(struct deviation *surface, const uint32_t v[3])
 {
     uint64_t hash = triangle_hash(v), *slot = &surface->known[slot_of(surface, hash)];
@@ -53,11 +53,11 @@ static bool know_triangle(struct deviation *surface, const uint32_t v[3])
 }
 
 struct deviation_part {
-    struct trimesh mesh; /* the arrays are those of all; tri_count 0: it has no triangle here */
-    struct bvh *bvh;     /* NULL: it is not measured */
+    struct trimesh mesh; /* shares the arrays of the whole surface; tri_count 0: the part has no triangle here */
+    struct bvh *bvh;     /* NULL: the part is not measured */
 };
 
-/* The triangles' numbers, part by part. Free with mem_free. */
+/* Returns the triangle indices grouped by part. The caller frees them with mem_free. */
 static size_t *sort_by_part(const struct deviation_params *params, const uint32_t *triangles, size_t count)
 {
     size_t *first = mem_array(params->part_count + 1, sizeof(*first)), *order = mem_array(count, sizeof(*order));
@@ -71,7 +71,7 @@ static size_t *sort_by_part(const struct deviation_params *params, const uint32_
     return order;
 }
 
-/* Of triangles that are there part by part. */
+/* Records the range of each part in the mesh, whose triangles are grouped by part. */
 static void list_parts(struct deviation *surface)
 {
     const struct trimesh *mesh = &surface->mesh;
@@ -162,21 +162,21 @@ static bool shares_triangle(const struct deviation *surface, const uint32_t indi
 
 struct probing {
     const struct deviation *from, *to;
-    const char *only; /* by part: it is probed; NULL: all are */
-    bool anywhere;    /* against all of `to`, or each part against itself */
+    const char *only; /* by part: whether it is probed; NULL: all */
+    bool anywhere;    /* measure against all of `to`, instead of each part against itself */
     double expected_m;
-    const float *known_m; /* of each part, from before: what is no farther is of no interest */
-    float *found_m;       /* of each point, or of each triangle */
+    const float *known_m; /* by part: known distance, which only larger ones can change */
+    float *found_m;       /* result of each point or triangle */
 };
 
 #define RECENT 4
-struct near { /* a thread's */
-    uint32_t part, tris[RECENT]; /* triangles of a part of `to` that were near to points before, the last first, or TRIMESH_NONE */
-    double known_m;              /* of the part, from before or since */
+struct near {                    /* cache of one thread */
+    uint32_t part, tris[RECENT]; /* recent nearest triangles of this part of `to`, latest first, or TRIMESH_NONE */
+    double known_m;              /* largest distance of the part known so far */
 };
 
-struct deviation_probe {   /* a point, and what it is measured against */
-    const struct bvh *bvh; /* NULL: there is nothing of its part */
+struct deviation_probe {   /* a probed point and the surface it is measured against */
+    const struct bvh *bvh; /* NULL: `to` has no triangle of the part */
     const struct trimesh *mesh;
     double point[3];
     struct near *near;
@@ -207,7 +207,8 @@ static void keep_first(struct near *near, int place, uint32_t tri)
     near->tris[0] = tri;
 }
 
-/* What is near to a point is often near to the next one. */
+/* Returns whether a recently found triangle is within the known distance of the point. Neighbouring points often have the same nearest
+ * triangle. */
 static bool is_known(const struct deviation_probe *probe)
 {
     struct near *near = probe->near;
@@ -231,7 +232,8 @@ static void forget(struct near *near)
         near->tris[i] = TRIMESH_NONE;
 }
 
-/* 0: no more than is known. Looks near by first: most points are where they should be. */
+/* Returns the point's distance, or 0 if it is not larger than the known one. Searches within the expected distance first, which is enough
+ * for most points. */
 static double distance_of(const struct deviation_probe *probe, double expected_m)
 {
     struct bvh_place place;
@@ -287,8 +289,8 @@ static double probe_at(const struct probing *probing, size_t t, const double w[3
     return distance_of(&probe, probing->expected_m);
 }
 
-/* Whether one triangle there is as near to all of a triangle as is known. The distance to a triangle is a convex function: over another one
-   it is largest at a corner. */
+/* Returns whether a single triangle is within the known distance of a whole triangle. The distance to a triangle is a convex function, so
+ * its maximum over another triangle is at a corner. */
 static bool is_covered(const struct probing *probing, size_t t, struct near *near)
 {
     const struct trimesh *mesh = &probing->from->mesh;
@@ -318,7 +320,8 @@ static double probe_inside(const struct probing *probing, size_t t, int cuts, st
     return most_m;
 }
 
-/* Corners are probed; a triangle no larger than what is expected cannot stray much farther. */
+/* Probes the inside of a triangle; its corners are probed separately. In a triangle no larger than the expected distance, inner points
+ * cannot be much farther away than the corners. */
 static void probe_triangle(const struct probing *probing, size_t t, struct near *near)
 {
     const struct deviation *from = probing->from;
@@ -365,7 +368,7 @@ static void raise_to(float *most_m, float found_m)
     *most_m = *most_m < found_m ? found_m : *most_m;
 }
 
-/* Corners first: what they are apart is known then. */
+/* Measures corners first, so that their distances are known when triangles are probed. */
 static void measure(const struct deviation *from, const struct deviation *to, const char *only, bool anywhere, double expected_m,
                     float *apart_m, struct workers *workers)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Levels from versions: each part in the coarsest version that a level's error allows. */
+/* Assembles levels from versions: each part in the coarsest version that the level's error allows. */
 #include "preprocess/levels/levels.h"
 
 #include <math.h>
@@ -10,35 +10,36 @@
 #include "base/mem.h"
 #include "preprocess/levels/levels_impl.h"
 
-#define NEAR_WORTH 0.5      /* of the triangles of the level before, at most; */
-#define FAR LEVELS_FILLING  /* of the size: of levels that err by more, */
-#define FAR_TRIANGLES 16000 /* and have no more triangles, many are drawn in one picture, so these lie closer together: */
-#define FAR_WORTH 0.9       /* likewise */
-#define STEP 1.4            /* times the error of the level before, at most, where that is worth a level; else the least that is; */
-#define STEP_SMALL 1.7      /* likewise, of levels that err by more than LEVELS_SMALL */
-#define WAIT 1.1            /* times the error of a near one, for what else comes until then; or of what was no level, before the next */
-#define MISSED 1.05f        /* times the error: what is left out may be missed by so much */
-#define MOST_TRIES 2        /* of moving faces: of all parts, then of those that do not err by more because of it */
+#define NEAR_WORTH 0.5     /* largest share of the previous level's triangles for a near level */
+#define FAR LEVELS_FILLING /* error relative to the size; a level with a larger error, */
+/* and at most this many triangles, is a far level: many are drawn in one picture, so far levels are closer together */
+#define FAR_TRIANGLES 16000
+#define FAR_WORTH 0.9  /* largest share of the previous level's triangles for a far level */
+#define STEP 1.4       /* growth of the error from level to level, at least */
+#define STEP_SMALL 1.7 /* growth of the error after levels with errors above LEVELS_SMALL, at least */
+#define WAIT 1.1     /* factor on the error: a near level waits for changes up to this much later; also the delay after a rejected level */
+#define MISSED 1.05f /* factor on the level's error: limit of the error caused by omitted parts */
+#define MAX_TRIES 2  /* attempts to move faces: all parts, then only those whose error this does not increase */
 
 struct levels_making {
     struct workers *workers;
     struct welds welds;
     struct versions versions;
     struct omission *omissions;
-    char *used;     /* vertices of the level before */
-    char *contrary; /* of each part */
-    /* so far: */
-    uint32_t *version; /* of each part; ABSENT: it is left out */
-    uint32_t *shown;   /* likewise, in the last level */
+    char *used;     /* vertices that the previous level uses */
+    char *contrary; /* by part: see levels_find_contrary() */
+    /* Current state: */
+    uint32_t *version; /* version of each part; ABSENT: the part is omitted */
+    uint32_t *shown;   /* version of each part in the last level; ABSENT: the part is omitted */
     size_t tri_count;
 };
 
 #define ABSENT VERSIONS_MAX
 
-/* --- what happens as the error grows -------------------------------------------------------------------------------------- */
+/* --- events with growing error -------------------------------------------------------------------------------------------- */
 
 struct event {
-    float error_m; /* that allows it */
+    float error_m; /* the error from which on this event is allowed */
     uint32_t part, version;
 };
 
@@ -79,7 +80,7 @@ static void let_happen(struct levels_making *making, const struct event *event)
     making->tri_count += tris_of(making, event->part);
 }
 
-/* All from events[i] on that this error allows. Returns the index of the next one. */
+/* Applies all events from events[i] on that the error allows. Returns the index of the next event. */
 static size_t let_all_happen(struct levels_making *making, const struct event *events, size_t i, size_t count, float error_m)
 {
     for (; i < count && events[i].error_m <= error_m; i++)
@@ -89,7 +90,7 @@ static size_t let_all_happen(struct levels_making *making, const struct event *e
 
 /* --- one level ------------------------------------------------------------------------------------------------------------ */
 
-/* From welds to vertices, primitive by primitive in the geometry's order. */
+/* Converts welds to vertices and writes the level, primitive by primitive in the geometry's order. */
 static void write_level(struct levels_making *making, struct level *level, const uint32_t *welds, size_t count)
 {
     const struct geometry *g = making->welds.geometry;
@@ -123,7 +124,8 @@ static void write_level(struct levels_making *making, struct level *level, const
     mem_free(fill);
 }
 
-/* What of a part that is left out lay on others is seen in their place. Raises apart_m of these parts to how far that is. */
+/* Measures the error caused by omitted parts that lay on others: the distance from the omitted surface to what is visible in its place.
+ * Raises apart_m of these parts. */
 static void measure_lost(const struct levels_making *making, const uint32_t *welds, size_t count, double expected_m, float *apart_m)
 {
     const struct welds *of = &making->welds;
@@ -145,7 +147,7 @@ static void measure_lost(const struct levels_making *making, const uint32_t *wel
     mem_free(lost);
 }
 
-/* But for what is left out and lay on others. */
+/* Returns the largest error of all parts, without the error caused by omitted parts that lay on others. */
 static float error_of_parts(const struct levels_making *making)
 {
     float most_m = 0;
@@ -157,8 +159,8 @@ static float error_of_parts(const struct levels_making *making)
     return most_m;
 }
 
-/* Moves faces that have no vertex on their side, and sets most_m to 0 for parts that this makes err by more than the limit. Returns
-   whether there is any of these. */
+/* Moves corners of flattened faces. For parts whose error then exceeds the limit, sets most_m to 0. Returns whether there is any such
+ * part. */
 static bool try_facing(const struct levels_making *making, uint32_t *welds, size_t count, float limit_m, float *most_m)
 {
     const struct welds *of = &making->welds;
@@ -182,7 +184,7 @@ static bool try_facing(const struct levels_making *making, uint32_t *welds, size
     return any;
 }
 
-/* Of parts that do not err by more than the level does already because of it. */
+/* Moves corners of flattened faces, only in parts whose error this does not raise above the level's. */
 static void face_parts(const struct levels_making *making, uint32_t *welds, size_t count, float limit_m)
 {
     float *most_m = mem_array(making->welds.part_count, sizeof(*most_m));
@@ -190,13 +192,13 @@ static void face_parts(const struct levels_making *making, uint32_t *welds, size
     memcpy(before, welds, count * sizeof(*before));
     for (uint32_t p = 0; p < making->welds.part_count; p++)
         most_m[p] = making->version[p] == ABSENT ? 0 : making->versions.at[making->version[p]].error_m[p];
-    for (int i = 0; i < MOST_TRIES && try_facing(making, welds, count, limit_m, most_m); i++)
+    for (int i = 0; i < MAX_TRIES && try_facing(making, welds, count, limit_m, most_m); i++)
         memcpy(welds, before, count * sizeof(*before));
     mem_free(most_m);
     mem_free(before);
 }
 
-/* The triangles of all parts, in the version of each. */
+/* Returns the triangles of all parts, each in its current version. */
 static uint32_t *list_welds(const struct levels_making *making, size_t *count)
 {
     uint32_t *welds = mem_array(3 * making->tri_count, sizeof(*welds));
@@ -212,7 +214,7 @@ static uint32_t *list_welds(const struct levels_making *making, size_t *count)
     return welds;
 }
 
-/* The coarsest version of a part that errs by no more; it only gets coarser from level to level. */
+/* Returns the coarsest version of a part within the error, never finer than in the last level. */
 static uint32_t version_within(const struct levels_making *making, uint32_t part, float error_m)
 {
     uint32_t best = making->shown[part];
@@ -222,8 +224,8 @@ static uint32_t version_within(const struct levels_making *making, uint32_t part
     return best;
 }
 
-/* Brings parts back, of this level, that would be missed by more than the others err: what they lie on may have moved away from them.
-   Returns whether there are any. */
+/* Restores omitted parts whose omission exceeds the error of the level, because the surface under them has moved away. Marks them in
+ * `back`. Returns whether there are any. */
 static bool bring_back(struct levels_making *making, const float *apart_m, float error_m, char *back)
 {
     bool any = false;
@@ -237,7 +239,7 @@ static bool bring_back(struct levels_making *making, const float *apart_m, float
     return any;
 }
 
-/* What the level after the last one errs by at least. */
+/* Returns the minimum error of the level after `last`. */
 static double step_m(const struct levels_making *making, const struct level *last)
 {
     double last_m = (double)last->error_m;
@@ -249,14 +251,14 @@ static bool is_far(const struct levels_making *making, const struct level *last,
     return making->tri_count <= FAR_TRIANGLES && fmax((double)error_m, step_m(making, last)) >= FAR * making->welds.whole_m;
 }
 
-/* Whether what there is so far is a level that is worth its room after the last one. */
+/* Returns whether the current state has few enough triangles to be worth a level after `last`. */
 static bool is_worth(const struct levels_making *making, const struct level *last, float error_m)
 {
     double before = (double)(last->index_count / 3), now = (double)making->tri_count;
     return now <= (is_far(making, last, error_m) ? FAR_WORTH : NEAR_WORTH) * before;
 }
 
-/* Returns false if it is no longer worth it with the parts that come back. Writes what it errs by. */
+/* Adds a level in the current state. Writes its error. Returns false without adding it if restored parts make it not worthwhile. */
 static bool add_level(struct levels_making *making, struct levels *levels, float *error_out_m)
 {
     size_t count, parts = making->welds.part_count;
@@ -305,7 +307,7 @@ static void make_coarse(struct levels_making *making, struct levels *levels)
 {
     struct event *events = mem_array(making->welds.part_count * (making->versions.count + 1), sizeof(*events));
     size_t count = list_events(making, events);
-    float error_m, waited_m = 0; /* waited_m: after one that was not worth it */
+    float error_m, waited_m = 0; /* waited_m: minimum error after a rejected level */
     making->used = mem_array(making->welds.geometry->vertex_count, 1);
     making->version = mem_array(making->welds.part_count, sizeof(*making->version));
     making->shown = mem_array(making->welds.part_count, sizeof(*making->shown));

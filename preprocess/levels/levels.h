@@ -7,39 +7,39 @@
 
 #define LEVELS_MAX 24
 
-/* Why an edge is not cut though the field errs along it: the level may not have more triangles; the pieces would be too short; the distance
-   along the surface jumps there. */
+/* Reasons why an edge stays unsplit although the field has an interpolation error along it: the level's triangle limit; pieces would be too
+ * short; the distance along the surface jumps there. */
 enum level_limit { LEVEL_LIMIT_TRIANGLES, LEVEL_LIMIT_LENGTH, LEVEL_LIMIT_JUMP, LEVEL_LIMITS };
 
-/* After splitting: edges along which the field errs by more than a step of colour, and by how many at most. Of the short edges of coarser
-   levels some are looked at, and stand for the rest. */
+/* Edges that still have a field error above one colour step after subdivision, and their largest error in steps. In coarser levels, short
+ * edges are sampled and extrapolated. */
 struct level_left {
     uint32_t edges;
     float steps;
 };
 
 struct level {
-    uint32_t *indices;                  /* vertices of the geometry */
-    struct asset_primitive *primitives; /* first_index counts from this level's first; without those that have no triangle left */
+    uint32_t *indices;                  /* vertex indices of the geometry */
+    struct asset_primitive *primitives; /* first_index is relative to this level; primitives without triangles are omitted */
     uint32_t index_count, primitive_count;
-    uint32_t whole_count; /* of indices, before splitting */
-    float error_m;        /* no point of the finest surface is farther from this one, nor the other way round; 0 for the finest */
+    uint32_t whole_count; /* index count before subdivision */
+    float error_m; /* metres; largest distance between this level's surface and the finest one, in either direction; 0 for the finest */
     struct level_left left[LEVEL_LIMITS];
 };
 
 struct levels {
     struct level at[LEVELS_MAX]; /* finest first */
     size_t count;
-    size_t given_up; /* by the splitting: they would need as many triangles as the next finer one */
-    size_t repeated; /* triangles of the finest with the same three corners as one before; 0 once they come out of the cache */
+    size_t given_up; /* levels dropped during subdivision, because they would need as many triangles as the next finer one */
+    size_t repeated; /* duplicate triangles of the finest level; 0 for levels from the build cache */
 };
 
-/* Simplifies the geometry into levels, finest first. Each has at most half of the triangles of the one before. Far levels, which many
-   instances are drawn with, lie closer together: each errs by 1.4 times as much as the one before where that allows 0.9 of its triangles or
-   fewer, else by as little as does. Borders between materials, texture seams and vertex colours stay in place within the error. Parts that
-   lie on much larger ones (bolts on a flange) are left out of levels whose error exceeds their height by a tenth, unless what they lie on
-   has moved so far that they would be missed by more than the level errs; small isolated parts, of levels whose error is no less than
-   their size. Returns false if out of memory, and then there is nothing to finish. workers may be NULL. */
+/* Simplifies the geometry into levels, finest first. Each level has at most half the triangles of the one before. Far levels, used to draw
+ * many instances, are closer together: each has 1.4 times the error of the one before if that gives at most 0.9 of its triangles, else the
+ * smallest error that does. Borders between materials, texture seams and vertex colours stay in place within the error. Parts on much
+ * larger ones (bolts on a flange) are omitted from levels whose error exceeds their height by a tenth, unless the surface under them has
+ * moved so much that the omission exceeds the error. Small isolated parts are omitted from levels whose error is at least their size.
+ * Returns false if out of memory; then levels_finish() need not be called. workers may be NULL. */
 bool levels_make(struct levels *levels, const struct geometry *geometry, struct workers *workers);
 /* Frees one level's arrays. */
 void level_finish(struct level *level);

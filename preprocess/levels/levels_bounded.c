@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Half-edge collapses in the order of how far they move the surface. Each triangle knows which places of the first surface are nearest to
-   it (Ciampalini et al., Multiresolution decimation based on global error, The Visual Computer 1997); what a collapse does to these, and
-   how far the new triangles are from the first surface, is worked out when it is the next in turn. */
+/* Performs half-edge collapses in order of how far they move the surface. Each triangle keeps a list of the original vertices ("places")
+ * nearest to it (Ciampalini et al., Multiresolution decimation based on global error, The Visual Computer 1997). A collapse's exact error
+ * is computed only when it reaches the top of the heap: the distance from those places to the new triangles, and from the new triangles to
+ * the original surface. */
 #include "preprocess/levels/levels_bounded.h"
 
 #include <string.h>
@@ -9,34 +10,34 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define RING 48      /* triangles around a point, at most: others stay */
-#define TURN 0.4     /* the cosine between a triangle's old and new normal is larger */
-#define BORDER 0.5   /* of the error: how far open borders and seams may move */
-#define STRETCH 0.05 /* of how much longer edges get: counts as an error, since the field would have to cut them */
+#define RING 48      /* maximum number of triangles around a point; points with more are not removed */
+#define TURN 0.4     /* minimum cosine between a triangle's old and new normal */
+#define BORDER 0.5   /* share of the allowed error by which open borders and seams may move */
+#define STRETCH 0.05 /* share of an edge's elongation that counts as error, because subdivision would have to split longer edges */
 #define NONE UINT32_MAX
 
 struct bounded_face {
-    uint32_t point[3], weld[3]; /* NONE, NONE, NONE: it is gone */
-    uint32_t first;             /* of its places */
-    uint32_t near;              /* a triangle of the first surface, to look at first */
-    double normal[3], length;   /* twice its area */
-    double longest_m;           /* of its edges */
+    uint32_t point[3], weld[3]; /* all NONE: the face was removed */
+    uint32_t first;             /* first place in the face's list */
+    uint32_t near;              /* triangle of the original surface to test first */
+    double normal[3], length;   /* length of `normal` is twice the area */
+    double longest_m;           /* longest edge */
 };
 
-struct removal_candidate { /* a point whose removal is in the heap */
-    float error_m; /* what it will be at least */
+struct removal_candidate { /* heap entry: a point that may be removed */
+    float error_m;         /* lower bound of the error, or the exact error if is_known */
     uint32_t point, stamp, target;
-    bool is_known; /* found out, and not only bounded */
+    bool is_known; /* error_m is exact */
 };
 
 struct bounded {
     const struct welds *welds;
     const struct bvh *first;
     double (*points)[3];
-    float *moved_m;   /* of each point: how far the borders and seams at it have moved */
-    uint32_t *corner; /* of each point: one of its corners (3 to a face), then the next of each corner */
+    float *moved_m;   /* by point: how far the borders and seams at it have moved */
+    uint32_t *corner; /* by point: one of its face corners (3 per face); next: by corner, the next corner of the same point */
     uint32_t *next;
-    uint32_t *stamp; /* of each point: changes with the triangles around it */
+    uint32_t *stamp; /* by point: changes whenever the triangles around it change */
     struct bounded_face *faces;
     size_t point_count, face_count, left;
     double (*places)[3];
@@ -75,22 +76,23 @@ static struct removal_candidate pop(struct bounded *b)
     return top;
 }
 
-/* --- the triangles around a point ------------------------------------------------------------------------------------------------ */
+/* --- triangles around a point ---------------------------------------------------------------------------------------------------- */
 
-struct ring_wedge {    /* a triangle around a point */
-    uint32_t face, at; /* which of its corners is there */
-    uint32_t weld;     /* of it, */
-    uint32_t points[2], welds[2]; /* of the others, as they follow */
+struct ring_wedge {               /* one triangle around a point */
+    uint32_t face, at;            /* at: index of the corner (0 to 2) that is at the point */
+    uint32_t weld;                /* weld of the corner at the point */
+    uint32_t points[2], welds[2]; /* the other two corners, in winding order */
 };
 
 struct point_ring {
     uint32_t point;
     struct ring_wedge wedges[RING];
-    int count; /* RING + 1: too many */
-    uint32_t ends[2 * RING], weld_here[2 * RING], weld_there[2 * RING]; /* of an edge to an end: in one of its triangles */
-    bool is_feature[2 * RING]; /* the edge to that end is a border or a seam */
+    int count; /* number of wedges; RING + 1: too many */
+    /* end points of the ring's edges; welds of both edge ends in one of the edge's triangles */
+    uint32_t ends[2 * RING], weld_here[2 * RING], weld_there[2 * RING];
+    bool is_feature[2 * RING]; /* the edge to this end is a border or a seam */
     int end_count, feature_count;
-    double longest_m; /* of all edges */
+    double longest_m; /* longest edge of all triangles */
 };
 
 static struct ring_wedge wedge_of(const struct bounded *b, uint32_t corner)
@@ -111,7 +113,7 @@ static void list_ring(struct bounded *b, uint32_t point, struct point_ring *ring
     while (*link != NONE && ring->count <= RING) {
         uint32_t corner = *link;
         const struct bounded_face *face = &b->faces[corner / 3];
-        if (face->point[corner % 3] != point) { /* gone since */
+        if (face->point[corner % 3] != point) { /* the corner was moved or removed */
             *link = b->next[corner];
             continue;
         }
@@ -173,7 +175,8 @@ static bool has_end(const struct ring_wedge *wedge, uint32_t end)
     return wedge->points[0] == end || wedge->points[1] == end;
 }
 
-/* What a corner's weld becomes where the point goes to the target: as in the triangles between them. NONE: nothing says. */
+/* Returns the new weld of a corner when its point is merged into the target: the target's weld in a triangle that contains both. NONE: no
+ * or several welds fit. */
 static uint32_t weld_after(const struct point_ring *ring, int target, uint32_t weld)
 {
     uint32_t found = NONE;
@@ -189,7 +192,7 @@ static uint32_t weld_after(const struct point_ring *ring, int target, uint32_t w
     return found;
 }
 
-/* The corners of a triangle of the ring once the point is at the target, in their order. */
+/* Writes the corner positions of a triangle of the ring after its point has moved to the target. */
 static void moved_face(const struct bounded *b, const struct ring_wedge *wedge, uint32_t target, const double *at[3])
 {
     at[wedge->at] = b->points[target];
@@ -197,7 +200,7 @@ static void moved_face(const struct bounded *b, const struct ring_wedge *wedge, 
     at[(wedge->at + 2) % 3] = b->points[wedge->points[1]];
 }
 
-/* How far it moves borders and seams; INFINITY: they would not stay. */
+/* Returns how far a collapse moves borders and seams, or INFINITY if it would break them. */
 static double border_of(const struct bounded *b, const struct point_ring *ring, int target)
 {
     int other = -1;
@@ -217,7 +220,7 @@ static double longest_edge(const double *const at[3])
     return sqrt(max_of(vec_distance2(at[0], at[1]), max_of(vec_distance2(at[1], at[2]), vec_distance2(at[2], at[0]))));
 }
 
-/* At least so far does the collapse move the surface; INFINITY: it may not be, or it is no less than most_m. */
+/* Returns a lower bound of the error of a collapse. INFINITY: the collapse is not allowed, or its error is at least most_m. */
 static double bound_of(const struct bounded *b, const struct point_ring *ring, int target, double most_m)
 {
     uint32_t to = ring->ends[target];
@@ -243,7 +246,7 @@ static double bound_of(const struct bounded *b, const struct point_ring *ring, i
     return max_of(nearest_m, border_m) + STRETCH * longer_m;
 }
 
-/* How far from the first surface a point is, if that is more. */
+/* Returns the larger of error_m and the distance of a point from the original surface. */
 static double raise(const struct bounded *b, const double point[3], double error_m, uint32_t *near)
 {
     struct bvh_place place;
@@ -253,12 +256,13 @@ static double raise(const struct bounded *b, const double point[3], double error
     return max_of(error_m, place.distance_m);
 }
 
-struct moved { /* a triangle as it will be */
+struct moved { /* a triangle after the collapse */
     const double *at[3];
     const struct ring_wedge *wedge;
 };
 
-/* From a place to the nearest of these; no nearer than is enough. Looks at the one first that was the place's own. */
+/* Returns the distance from a place to the nearest of the moved triangles, or any value below enough_m once one is that near. Tests the
+ * place's own triangle first. */
 static double distance_to_any(const double place[3], const struct moved *moved, int count, int own, double enough_m)
 {
     double nearest_m = INFINITY;
@@ -271,7 +275,8 @@ static double distance_to_any(const double place[3], const struct moved *moved, 
     return nearest_m;
 }
 
-/* How far the places around are from the triangles as they will be, and these from the first surface; no farther than is enough. */
+/* Returns the error of a collapse: the distance from the affected places to the new triangles, and from the new triangles to the original
+ * surface. Stops once it exceeds enough_m. */
 static double error_of(struct bounded *b, const struct point_ring *ring, uint32_t to, double error_m, double enough_m)
 {
     struct moved moved[RING];
@@ -286,7 +291,8 @@ static double error_of(struct bounded *b, const struct point_ring *ring, uint32_
     for (int c = 0; c < ring->count && error_m <= enough_m; c++)
         for (uint32_t s = b->faces[ring->wedges[c].face].first; s != NONE && error_m <= enough_m; s = b->next_place[s])
             error_m = max_of(error_m, distance_to_any(b->places[s], moved, count, own[c] < count ? own[c] : 0, error_m));
-    for (int f = 0; f < count && error_m <= enough_m; f++) { /* in its middle, and in that of an edge that the next one does not have */
+    /* probe the centre, and the midpoint of the edge not shared with the next triangle */
+    for (int f = 0; f < count && error_m <= enough_m; f++) {
         const double *const *at = moved[f].at;
         uint32_t m = moved[f].wedge->at, *near = &b->faces[moved[f].wedge->face].near;
         double middle[2][3];
@@ -302,7 +308,7 @@ static double error_of(struct bounded *b, const struct point_ring *ring, uint32_
 
 /* --- collapsing ------------------------------------------------------------------------------------------------------------------ */
 
-/* The cheapest collapse of a point, by what is certain of it. */
+/* Pushes the cheapest collapse of a point, by its lower bound, onto the heap. */
 static void offer(struct bounded *b, uint32_t point)
 {
     struct point_ring ring;
@@ -336,7 +342,7 @@ static void measure_face(const struct bounded *b, struct bounded_face *face)
     face->longest_m = longest_edge(at);
 }
 
-/* Gives a place to the nearest of these triangles, the first of them if several are. Returns which; `last` is looked at first. */
+/* Assigns a place to the nearest of the faces, or the first of equally near ones. Returns that face's index. Tests `last` first. */
 static int rehome(struct bounded *b, const uint32_t *faces, int count, int last, uint32_t place)
 {
     double nearest_m = INFINITY;
@@ -407,8 +413,8 @@ static int index_of(const struct point_ring *ring, uint32_t end)
     return -1;
 }
 
-/* Whether the surface would touch itself along an edge: the ends have a neighbour in common that is in no triangle with both (the link
-   condition; Dey et al., Topology preserving edge contraction, Publ. Inst. Math. 1999). */
+/* Returns whether a collapse would make the surface touch itself along an edge: its ends share a neighbour that is in no triangle with both
+ * (link condition; Dey et al., Topology preserving edge contraction, Publ. Inst. Math. 1999). */
 static bool would_touch(struct bounded *b, const struct point_ring *ring, int target)
 {
     struct point_ring there;
@@ -424,7 +430,7 @@ static bool would_touch(struct bounded *b, const struct point_ring *ring, int ta
     return common > shared;
 }
 
-/* The cheapest in the heap: done if it is known to err no more, else found out about. */
+/* Processes the cheapest heap entry: collapses it if its exact error is known to be the smallest, else computes the exact error. */
 static void take_turn(struct bounded *b, double error_m)
 {
     struct removal_candidate turn = pop(b);
@@ -460,9 +466,9 @@ static void place_of(const struct welds *welds, uint32_t weld, double place[3])
         place[axis] = (double)welds->positions_m[weld][axis];
 }
 
-/* Of each weld at a place of its own, the number of its point + 1, or 0. */
+/* By weld: the number of its point + 1, or 0. */
 struct point_numbers {
-    uint32_t *of, low, high; /* from the lowest weld to the highest */
+    uint32_t *of, low, high; /* `of` covers the welds from low to high */
 };
 
 static struct point_numbers number_points(struct bounded *b, const uint32_t *corners, size_t count)
@@ -488,7 +494,7 @@ static struct point_numbers number_points(struct bounded *b, const uint32_t *cor
     return numbers;
 }
 
-/* Lines and points, which nobody sees. */
+/* Removes degenerate triangles, which are invisible. */
 static void drop_empty(struct bounded *b)
 {
     size_t kept = 0;
@@ -519,7 +525,7 @@ static void measure_faces(struct bounded *b)
     }
 }
 
-/* Those that are no point here go to the nearest triangle. */
+/* Assigns places that are not points of this mesh to the nearest triangle. */
 static void take_far_places(struct bounded *b, const uint32_t *places, size_t count)
 {
     struct trimesh mesh = { .points = b->points, .point_count = b->point_count, .tri_count = b->face_count };

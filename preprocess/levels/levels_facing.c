@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where a thin part has lost its thickness, a face may stand on vertices of its other side only, which look away from it and carry that
-   side's light. It is moved back to its own side. */
+/* Repairs faces of thin parts that have lost their thickness: such a face may use only vertices of the opposite side, whose normals point
+ * away and give it wrong lighting. Moves its corners to vertices of its own side. */
 #include <math.h>
 #include <string.h>
 
@@ -8,17 +8,17 @@
 #include "base/mem.h"
 #include "preprocess/levels/levels_impl.h"
 
-#define AWAY (-0.5f) /* cosines: the vertex that suits a face best looks away from it; */
-#define ALONG 0.7f   /* one beside it looks its way */
-#define BESIDE 1.25f /* times the error: a slanting sheet errs by less than a thickness */
+#define AWAY (-0.5f) /* cosine; the best vertex of a weld points away from the face if below this */
+#define ALONG 0.7f   /* cosine; a neighbouring vertex faces the same way if above this */
+#define BESIDE 1.25f /* factor on the error: a slanted sheet has an error smaller than its thickness */
 #define NONE UINT32_MAX
 
-struct corner_need { /* the direction that a corner needs */
+struct corner_need { /* a corner that needs a vertex facing its side */
     size_t corner;
-    float normal[3]; /* of its face */
-    float score;     /* of the best so far */
-    uint32_t weld;   /* that one */
-    size_t next;     /* need of the same weld; SIZE_MAX: none */
+    float normal[3]; /* normal of the corner's face */
+    float score;     /* score of the best candidate so far */
+    uint32_t weld;   /* weld of the best candidate; NONE: none yet */
+    size_t next;     /* next entry with the same weld; SIZE_MAX: none */
 };
 
 struct facing_pass {
@@ -27,7 +27,7 @@ struct facing_pass {
     const float *most_m;
     struct corner_need *needs;
     size_t count, capacity;
-    size_t *first; /* need of each weld */
+    size_t *first; /* by weld: its first entry in `needs` */
 };
 
 void levels_normal(const struct welds *welds, const uint32_t corners[3], float n[3])
@@ -63,7 +63,7 @@ uint32_t levels_vertex(const struct welds *welds, const char *used, uint32_t wel
     return best;
 }
 
-/* The cosine of the vertex that suits a face best; -1: none is used. */
+/* Returns the cosine between a face normal and the best used vertex of a weld; -1: no vertex is used. */
 static float look(const struct facing_pass *facing, uint32_t weld, const float n[3], bool one_side)
 {
     uint32_t vertex = levels_vertex(facing->welds, facing->used, weld, n, one_side);
@@ -103,7 +103,8 @@ static void find_needs(struct facing_pass *facing, const uint32_t *corners, size
     }
 }
 
-/* Along an edge of the model from one weld to another: of those that look its way, the nearest. */
+/* Offers weld `to` as a replacement to all corners at weld `from`, if they share an edge in the model. The nearest weld that faces the
+ * right way wins. */
 static void offer(struct facing_pass *facing, uint32_t from, uint32_t to)
 {
     if (facing->first[from] == SIZE_MAX || facing->welds->primitive[from] != facing->welds->primitive[to])
@@ -119,7 +120,7 @@ static void offer(struct facing_pass *facing, uint32_t from, uint32_t to)
     }
 }
 
-/* Not where it would turn, or shrink to a line. */
+/* Applies the replacements, except in faces that would flip or degenerate. */
 static void move_faces(const struct facing_pass *facing, uint32_t *corners)
 {
     for (size_t i = 0; i < facing->count;) {
@@ -138,7 +139,7 @@ static void move_faces(const struct facing_pass *facing, uint32_t *corners)
     }
 }
 
-/* Coarser levels stand on welds of this one: those that no corner has any more get all of theirs back. */
+/* Coarser levels use the welds of this one. A face is restored if a weld it used before is no longer used by any face. */
 static void keep_knots(const struct facing_pass *facing, const uint32_t *before, uint32_t *corners, size_t count)
 {
     char *kept = mem_array(facing->welds->count, 1);

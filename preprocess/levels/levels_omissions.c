@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which parts far levels may leave out: bolts in a flange, and what is smaller than a pixel. */
+/* Decides which parts far levels may omit: small parts on larger ones, and groups smaller than a pixel. */
 #include <math.h>
 #include <string.h>
 
@@ -9,31 +9,33 @@
 #include "preprocess/levels/levels_impl.h"
 #include "surface/mesh/bvh.h"
 
-#define MUCH_LARGER 4.0f /* times: a part that another may lie on */
-#define MOST_PX 8.0f     /* a part that lies on another is left out once it is no larger than so many pixels */
-#define OVER 1.1f        /* times as far as it is from those, it will about err: they err, too, and what comes out is measured */
-#define SMALL 0.1        /* of the whole: larger parts are never left out */
-#define AROUND 4.0f      /* sizes: parts so near to each other are looked at together */
-#define PROBES 4         /* on each edge of a part's triangles */
+#define MUCH_LARGER 4.0f /* size ratio from which on a part may lie on another one */
+#define MAX_PX 8.0f      /* pixels; a part lying on another one is omitted when it is no larger than this */
+/* factor on the distance between the parts: the expected error of the omission, because the other parts are inexact too; the result is
+ * measured later */
+#define OVER 1.1f
+#define SMALL 0.1   /* relative to the whole; larger parts are never omitted */
+#define AROUND 4.0f /* parts nearer to each other than this many times their size are considered together */
+#define PROBES 4    /* probes on each edge of a part's triangles */
 
 #define CLASSES_MAX 20
-#define FEWER 0.75 /* of the triangles of the class before, at most: a class with more would not be worth its own tree */
+#define FEWER 0.75 /* largest share of the previous class's triangles; a class with more is not worth its own hierarchy */
 
-/* The triangles of all parts larger than than_m. A small part is looked for among those that may hide it only: in one tree of all
-   triangles its own and its neighbours' would be met first, at every probe. */
+/* The triangles of all parts larger than than_m, in their own hierarchy: a search for larger parts in a hierarchy of all triangles would
+ * first meet the small part itself and its neighbours at every probe. */
 struct size_class {
     float than_m;
-    struct trimesh mesh; /* the points are those of all */
+    struct trimesh mesh; /* shares the points of the whole mesh */
     struct bvh *bvh;
 };
 
 struct omission_search {
     const struct welds *welds;
     struct trimesh mesh;
-    struct size_class classes[CLASSES_MAX]; /* smallest parts first */
+    struct size_class classes[CLASSES_MAX]; /* by increasing than_m */
     size_t class_count;
-    uint32_t *part;         /* of each triangle */
-    uint32_t *first, *tris; /* of each part: its triangles */
+    uint32_t *part;         /* part of each triangle */
+    uint32_t *first, *tris; /* triangles grouped by part */
     struct omission *omissions;
 };
 
@@ -60,7 +62,7 @@ static void list_tris(struct omission_search *search)
         search->tris[search->first[search->part[t] + 1]++] = t;
 }
 
-/* --- on others ------------------------------------------------------------------------------------------------------------ */
+/* --- parts on larger ones ------------------------------------------------------------------------------------------------- */
 
 static bool may_lie_on_others(const struct welds *welds, size_t part)
 {
@@ -90,7 +92,7 @@ static void add_class(struct omission_search *search, float than_m, size_t count
     class->bvh = bvh_create(&class->mesh);
 }
 
-/* Each part's limit is at or above that of one class; of those the last is taken. */
+/* Builds the size classes. The class used for a part is the last whose than_m is at most the part's limit. */
 static void make_classes(struct omission_search *search)
 {
     const struct welds *welds = search->welds;
@@ -123,7 +125,7 @@ struct larger {
     const struct omission_search *search;
     const struct size_class *class;
     float than_m;
-    uint32_t near; /* a triangle of the class that was near to the probe before, or TRIMESH_NONE */
+    uint32_t near; /* triangle of the class that was near the previous probe, or TRIMESH_NONE */
 };
 
 static bool is_larger(const void *arg, uint32_t tri)
@@ -132,7 +134,7 @@ static bool is_larger(const void *arg, uint32_t tri)
     return larger->search->welds->size_m[larger->search->part[larger->class->mesh.tri_source[tri]]] > larger->than_m;
 }
 
-/* How far a triangle's edges are from larger parts, if that is more. INFINITY: beyond the limit. */
+/* Returns the larger of apart_m and the distance of a triangle's edges from larger parts. INFINITY: beyond the limit. */
 static float look_from(struct larger *larger, uint32_t tri, double limit_m, float apart_m)
 {
     const struct trimesh *mesh = &larger->search->mesh;
@@ -164,13 +166,13 @@ static void look_for_larger(void *arg, size_t begin, size_t end)
         for (uint32_t i = search->first[p]; i < search->first[p + 1] && !isinf(apart_m); i++)
             apart_m = look_from(&larger, search->tris[i], (double)size_m / 2, apart_m);
         if (!isinf(apart_m))
-            search->omissions[p].from_m = fmaxf(OVER * apart_m, size_m / MOST_PX);
+            search->omissions[p].from_m = fmaxf(OVER * apart_m, size_m / MAX_PX);
     }
 }
 
-/* --- alone ---------------------------------------------------------------------------------------------------------------- */
+/* --- isolated parts ------------------------------------------------------------------------------------------------------- */
 
-/* The small parts that no larger one hides, each with room around it. */
+/* Lists the boxes of small parts that no larger part hides, enlarged by the distance that counts as near. */
 static size_t list_boxes(const struct omission_search *search, struct part_box *boxes)
 {
     const struct welds *welds = search->welds;
@@ -189,7 +191,7 @@ static size_t list_boxes(const struct omission_search *search, struct part_box *
     return count;
 }
 
-/* Crowds of small parts: their size together says when they are no more than a pixel. */
+/* Groups neighbouring small parts. The size of the whole group determines from which error on its parts are omitted. */
 static void look_for_lonely(const struct omission_search *search)
 {
     const struct welds *welds = search->welds;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simplifies an asset step by step, and measures what that did to each part. */
+/* Simplifies an asset step by step and measures the error of each part. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
@@ -8,17 +8,17 @@
 #include "preprocess/levels/levels_bounded.h"
 #include "preprocess/levels/levels_impl.h"
 
-#define SHRINK 0.55           /* of the triangles of the version before, are asked for */
-#define STUCK 0.9             /* likewise; one with more is the last that is made so */
-#define HALVED_LEAST 40000    /* triangles: a version with more is halved as a whole, quickly; then edges are collapsed one by one, */
-#define COLLAPSED_MOST 100000 /* also where it could not be halved, but not with more than these */
-#define LEAST 0.00025         /* of the size: the error that the first version made so is allowed; */
-#define STEP 1.3              /* times that, the next one, where many instances are drawn in one picture; */
-#define STEP_ELSE 1.7         /* likewise elsewhere, since each is measured and costs as much as the others */
-#define ALIKE 0.85            /* of the triangles of the version before: one with more is not worth being measured */
-#define LEAST_TRIANGLES 60    /* fewer are not simplified */
-#define NEAR 0.01             /* of the size: versions that err less keep open borders, or hair gaps between patches would open */
-#define BEYOND 3.0            /* times the simplifier's own error, which is a mean over planes and no bound, is about what comes out */
+#define SHRINK 0.55       /* requested share of the previous version's triangles */
+#define STUCK 0.9         /* halving stops at a version with more than this share of the previous version's triangles */
+#define HALVE_ABOVE 40000 /* versions with more triangles are halved as a whole, which is fast; smaller ones are simplified edge by edge */
+#define MAX_COLLAPSED 100000 /* limit for edge-by-edge simplification, also where halving got stuck */
+#define LEAST 0.00025        /* relative to the size; allowed error of the first edge-by-edge version */
+#define STEP 1.3             /* growth of the error per version where many instances are drawn in one picture */
+#define STEP_ELSE 1.7        /* growth of the error per version elsewhere, larger because measuring each version is equally expensive */
+#define ALIKE 0.85           /* a version with more than this share of the previous version's triangles is dropped */
+#define MIN_TRIANGLES 60     /* smaller assets are not simplified */
+#define NEAR 0.01  /* relative to the size; versions with a smaller error keep open borders, else hair gaps between patches would open */
+#define BEYOND 3.0 /* factor from the simplifier's own error, a mean over planes, to the expected real error */
 
 static size_t triangles_of(const struct versions *versions)
 {
@@ -47,7 +47,7 @@ static size_t simplify(const struct welds *welds, const struct version *from, ui
                             options, error);
 }
 
-/* Halves the last version. Returns the simplifier's own error, in metres. */
+/* Halves the last version. Returns the simplifier's own error estimate in metres. */
 static double halve(struct version *to, const struct version *from, const struct welds *welds)
 {
     float error = 0;
@@ -99,15 +99,15 @@ struct collapsing {
     const struct welds *welds;
     const struct deviation *first;
     const struct version *from;
-    struct bounded **parts; /* NULL: it has no triangle left */
-    size_t *first_corner;   /* of each part, in `corners`: the triangles of `from`, part by part */
+    struct bounded **parts; /* NULL: the part has no triangle left */
+    size_t *first_corner;   /* triangles of `from` in `corners`, grouped by part */
     uint32_t *corners;
-    size_t *first_place; /* of each part, in `places`: the model's vertices, part by part */
+    size_t *first_place; /* vertices of the model in `places`, grouped by part */
     uint32_t *places;
-    double error_m; /* allowed */
+    double error_m; /* allowed error */
 };
 
-/* From counts at p + 2 to beginnings at p + 1, which filling makes those at p. */
+/* Turns counts at [p + 2] into start offsets at [p + 1]; filling then advances them to the offsets at [p]. */
 static void add_up(size_t *first, size_t parts)
 {
     for (size_t p = 2; p < parts + 2; p++)
@@ -173,7 +173,8 @@ static void read_parts(const struct collapsing *collapsing, struct version *vers
         }
 }
 
-/* From the largest error of any use down to the least, or as far as there is room. Returns how many, the least first. */
+/* Lists allowed errors from the largest useful one down to the smallest, or until `room` is used up. Returns their number; the list is
+ * ascending. */
 static size_t list_errors(double whole_m, size_t room, double errors_m[VERSIONS_MAX])
 {
     size_t count = 0;
@@ -189,7 +190,7 @@ static size_t list_errors(double whole_m, size_t room, double errors_m[VERSIONS_
     return count;
 }
 
-/* As many versions as are of any use. */
+/* Makes versions edge by edge, one for each allowed error. */
 static void make_collapsed(struct versions *versions, const struct welds *welds, struct workers *workers)
 {
     struct collapsing collapsing = { .welds = welds, .first = &versions->first, .from = &versions->at[versions->count - 1] };
@@ -222,7 +223,7 @@ static void make_collapsed(struct versions *versions, const struct welds *welds,
 
 static void make_halves(struct versions *versions, const struct welds *welds, struct workers *workers)
 {
-    while (versions->count < VERSIONS_MAX && triangles_of(versions) > HALVED_LEAST) {
+    while (versions->count < VERSIONS_MAX && triangles_of(versions) > HALVE_ABOVE) {
         const struct version *before = &versions->at[versions->count - 1];
         struct version *version = add_version(versions, welds, before->count);
         double error_m = halve(version, before, welds);
@@ -246,7 +247,7 @@ void versions_make(struct versions *versions, const struct welds *welds, struct 
     count_tris(model, welds);
     levels_surface(&versions->first, welds, NULL, model->welds, model->count);
     make_halves(versions, welds, workers);
-    if (triangles_of(versions) > LEAST_TRIANGLES && triangles_of(versions) <= COLLAPSED_MOST)
+    if (triangles_of(versions) > MIN_TRIANGLES && triangles_of(versions) <= MAX_COLLAPSED)
         make_collapsed(versions, welds, workers);
 }
 

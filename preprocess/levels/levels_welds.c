@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vertices welded for the simplifier (split normals would stall it), and the parts of a model that do not hang together. */
+/* Welds vertices for the simplifier, which split normals would block, and finds the connected parts of a model. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
@@ -10,7 +10,8 @@
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/trimesh.h"
 
-struct weld_key { /* vertices that differ here stay apart: the simplifier keeps a border of material or texture as a seam */
+/* vertices that differ in any of these stay separate: the simplifier preserves borders of materials and textures as seams */
+struct weld_key {
     float position[3], texcoord[2], second_texcoord[2];
     uint32_t primitive;
     uint8_t color[4];

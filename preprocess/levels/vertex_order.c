@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vertices by level, coarsest first. */
+/* Sorts vertices by level, coarsest first. */
 #include "preprocess/levels/vertex_order.h"
 
 #include <string.h>
@@ -8,8 +8,8 @@
 
 #define BINS (2 * LEVELS_MAX)
 
-/* bins[vertex]: coarsest level that uses it, coarsest first; twice, for the model's vertices and for added ones. BINS: an added one that
-   only levels used which were given up. */
+/* bins[vertex]: coarsest level that uses the vertex, counted from the coarsest; times two, plus one for vertices added by subdivision.
+ * BINS: an added vertex that only dropped levels used. */
 static void find_bins(const struct levels *levels, uint32_t vertex_count, uint32_t first_added, uint8_t *bins)
 {
     for (uint32_t v = 0; v < vertex_count; v++)
@@ -21,7 +21,7 @@ static void find_bins(const struct levels *levels, uint32_t vertex_count, uint32
         }
 }
 
-/* Returns how many stay. */
+/* Assigns new numbers to the vertices in order of their bins. Returns the number of vertices kept. */
 static uint32_t number_vertices(const struct levels *levels, uint32_t vertex_count, const uint8_t *bins, struct asset_level *out,
                                 uint32_t *new_of)
 {
