@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* LD_PRELOAD: the program's wall clock is CLOCK_OFF_S seconds ahead of the machine's (behind: negative); its other clocks are right.
-   With CLOCK_OFF_FILE it is ahead by what stands in that file, seconds as an int64_t, and is set whenever somebody writes to it. */
+/* LD_PRELOAD library: the program's wall clock is CLOCK_OFF_S seconds ahead of the machine's (negative: behind); its other clocks are
+   right. With CLOCK_OFF_FILE, that file gives the offset in seconds as an int64_t, and the clock follows each write to it. */
 #include <fcntl.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -13,7 +13,7 @@
 
 #define EXPORTED __attribute__((visibility("default")))
 
-static const volatile int64_t *in_file; /* NULL: the variable's */
+static const volatile int64_t *in_file; /* NULL: CLOCK_OFF_S counts */
 
 __attribute__((constructor)) static void map_file(void)
 {

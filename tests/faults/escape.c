@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A reader that an attacker has taken over: replaces plantcast-import-assimp and tries to reach the daemon and the machine. Prints a line
- * for each attempt, "NAME succeeded" or "NAME refused ERROR". Its input names the targets: a line "PID PORT SECRET STATE-FILE".
- * As escape.so it is preloaded into a program that confines itself: the attempts run in its first fopen() under confinement. Then
- * PLANTCAST_TARGETS is that line, and PLANTCAST_OWN a folder that the program may write (default: the current one), where `escaped`
- * receives the lines, or stdout if that file cannot be made. An input of the line "hang" makes it wait for ever.
- * usage: escape INPUT OUTPUT ... */
+/* A reader that an attacker has taken over: replaces plantcast-import-assimp and tries to reach the daemon and the machine. Prints a
+   line for each attempt, "NAME succeeded" or "NAME refused ERROR". Its input names the targets in a line "PID PORT SECRET STATE-FILE".
+   Built as escape.so, it is preloaded into a program that confines itself; the attempts run in that program's first fopen() under
+   confinement. Then PLANTCAST_TARGETS is that line, and PLANTCAST_OWN a folder that the program may write (default: the current one),
+   where the file `escaped` receives the output, or stdout if that file cannot be made. The input "hang" makes it wait for ever. usage:
+   escape INPUT OUTPUT ... */
 #include <arpa/inet.h>
 #include <dirent.h>
 #include <dlfcn.h>
@@ -64,7 +64,7 @@ static bool opens(const char *file, int flags)
     return good;
 }
 
-/* Of a file that is opened for reading only; a file of its own, so that nothing is lost. */
+/* Returns whether a file that is open for reading only can be truncated. Uses a file of its own, so that nothing is lost. */
 static bool empties(void)
 {
     int fd = open("emptied", O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
@@ -165,7 +165,7 @@ static void try_process(void)
     if (attached)
         ptrace(PTRACE_DETACH, pid, NULL, NULL);
     result("take-descriptor", takes_a_descriptor());
-    result("kill", kill(pid, SIGURG) == 0); /* ignored by default */
+    result("kill", kill(pid, SIGURG) == 0); /* ignored by default, so it does no harm */
     result("kill-probe", kill(pid, 0) == 0);
     result("tgkill", syscall(SYS_tgkill, pid, pid, SIGURG) == 0);
     result("tkill", syscall(SYS_tkill, pid, SIGURG) == 0);
@@ -215,7 +215,7 @@ static void try_network(void)
 
 /* --- the kernel -------------------------------------------------------------------------------------------------------------- */
 
-/* Runs an attempt that changes the process in a copy of it. Without fork there is no copy, and the attempt runs here. */
+/* Runs an attempt that changes the process in a forked child. If fork fails, the attempt runs in this process. */
 static void in_copy(const char *name, bool (*attempt)(void))
 {
     int status = 0;
@@ -316,7 +316,7 @@ static void try_kernel(void)
     in_copy("chroot", changes_root);
     in_copy("other-user", changes_user);
     in_copy("regain-ptrace", regains_capabilities);
-    result("program-for-the-loader", opens("/bin/true", O_RDONLY)); /* ld.so, which may run, maps what it can read */
+    result("program-for-the-loader", opens("/bin/true", O_RDONLY)); /* ld.so may run; it maps any program that it can read */
     in_copy("call-as-32-bit", calls_as_32_bit);
     pid_t copy = fork();
     if (copy == 0)
@@ -336,7 +336,8 @@ static void try_kernel(void)
     result("undo-hiding", prctl(PR_SET_DUMPABLE, 1) == 0);
 }
 
-/* The answer of plantcast-match and its like goes to memory, which is meant to be inherited. */
+/* Returns whether the descriptor was inherited by mistake. A memfd is inherited on purpose: plantcast-match and similar programs write
+   their answer to it. */
 static bool is_inherited(int fd)
 {
     char link[32], target[64];
@@ -360,7 +361,7 @@ static void try_inheritance(void)
     result("inherited-secret", getenv("PLANTCAST_ESCAPE") != NULL);
 }
 
-/* A model that is taken, so that the importer shows what was printed. */
+/* Writes a valid model, so that the importer succeeds and shows the printed lines. */
 static bool write_triangle(const char *glb)
 {
     static const char json[] = "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,"
@@ -401,13 +402,13 @@ static void try_all(void)
 static bool preloaded;
 static atomic_bool begun;
 
-/* The environment of a child is filtered: the targets are read before. */
+/* Child processes get a filtered environment, so the targets are read at load time. */
 __attribute__((constructor)) static void begin(void)
 {
     preloaded = take_targets(getenv("PLANTCAST_TARGETS"));
 }
 
-/* The readers' list of system calls lacks this question. */
+/* Returns whether the program is confined: the readers' filter refuses this harmless system call. */
 static bool is_confined(void)
 {
     return prctl(PR_GET_SECCOMP, 0, 0, 0, 0) < 0 && errno == EPERM;
@@ -451,7 +452,7 @@ int main(int argc, char **argv)
     try_all();
     if (argc > 2 && !write_triangle(argv[2]))
         return 3;
-    execl("/bin/sh", "sh", "-c", "echo shell succeeded", NULL); /* last: it takes this program's place */
+    execl("/bin/sh", "sh", "-c", "echo shell succeeded", NULL); /* last, because it replaces this program */
     result("shell", false);
     return 0;
 }

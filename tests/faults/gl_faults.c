@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stands before libEGL.so.1 where a test says so (LD_LIBRARY_PATH), and does what a device does that is reset, or out of memory.
-   FAULTY_EGL: the real library; FAULTS: a file of struct faults, which the test writes to while this reads it.
-   A loss destroys the real context in the middle of a picture. From then on calls do nothing, and glGetGraphicsResetStatus tells it. */
+/* A library that is found before libEGL.so.1 (LD_LIBRARY_PATH) and acts like a device that is reset, or out of memory. FAULTY_EGL: path
+   of the real library; FAULTS: a file with struct faults, which the test writes while this library reads it. A loss destroys the real
+   context in the middle of a picture. From then on GL calls do nothing, and glGetGraphicsResetStatus reports the loss. */
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <stdbool.h>
@@ -24,32 +24,32 @@ enum gl_object_kind { BUFFER, TEXTURE };
 
 struct faults {
     /* --- below: written by the test */
-    uint32_t losses;      /* as many contexts are to be lost, all in all */
-    uint32_t loss_calls;  /* a loss happens so many calls after it was wished for */
-    uint32_t refusals;    /* so many contexts more cannot be made; counts down */
-    uint32_t hardware;    /* what draws says that it is a GPU; before the first context is made */
-    uint64_t room_bytes;  /* buffers and textures may be so large together; 0: no end of it */
-    /* --- below: written here */
-    uint32_t lost, contexts;  /* so far; that are there */
+    uint32_t losses;      /* number of contexts to lose in total */
+    uint32_t loss_calls;  /* number of GL calls between a requested loss and the loss */
+    uint32_t refusals;    /* number of context creations that will fail; counts down */
+    uint32_t hardware;    /* report the renderer as a GPU; set before the first context is created */
+    uint64_t room_bytes;  /* limit on the bytes of all buffers and textures; 0: unlimited */
+    /* --- below: written by this library */
+    uint32_t lost, contexts;  /* lost: losses so far; contexts: existing contexts */
     uint64_t used_bytes, most_bytes;
-    uint32_t objects, refused; /* that are there; allocations that there was no room for */
-    uint32_t made;             /* contexts, so far */
+    uint32_t objects, refused; /* objects: existing ones; refused: allocations that exceeded the limit */
+    uint32_t made;             /* contexts created so far */
 };
 
 struct object {
     EGLContext context;
     enum gl_object_kind kind;
     GLuint name;
-    uint64_t bytes; /* 0: the place is free */
+    uint64_t bytes; /* 0: the entry is free */
 };
 
-/* GL is called by one thread at a time: a context belongs to one, and while a plant is loaded anew the other one waits. */
+/* One thread calls GL at a time: a context belongs to one thread, and during a plant reload the other thread waits. */
 static struct faults *faults;
 static struct object objects[OBJECTS];
-static EGLContext current, gone; /* the one that was lost stays the current one */
+static EGLContext current, gone; /* a lost context stays the current one */
 static EGLDisplay display;
 static uint32_t calls_left;
-static bool full; /* to be told by glGetError */
+static bool full; /* to be reported by glGetError */
 static struct {
     PFNEGLGETPROCADDRESSPROC get_proc;
     PFNEGLCREATECONTEXTPROC create_context;
@@ -75,7 +75,7 @@ static void set_up(void)
     faults = mmap(NULL, sizeof(*faults), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     if (faults == MAP_FAILED)
         stop("FAULTS cannot be mapped");
-    /* Unloaded, it would be passed over the next time: the real one goes by the same name. */
+    /* Keep this library loaded: after an unload, the next dlopen would find the real one, which has the same name. */
     if (!dladdr((void *)&faults, &self) || !dlopen(self.dli_fname, RTLD_NOW | RTLD_NODELETE))
         stop("this library cannot stay");
     close(file);
@@ -110,12 +110,12 @@ static void forget_named(enum gl_object_kind kind, GLsizei count, const GLuint *
                 forget(&objects[i]);
 }
 
-/* False: no room; glGetError says so. */
+/* Counts an allocation. Returns false if there is no room; glGetError then reports it. */
 static bool take_room(enum gl_object_kind kind, GLuint name, uint64_t bytes)
 {
     int i = 0;
     if (gone == current || !name || !bytes)
-        return true; /* whatever it does */
+        return true; /* calls on a lost context do nothing */
     if (faults->room_bytes && faults->used_bytes + bytes > faults->room_bytes) {
         faults->refused++;
         full = true;
@@ -146,7 +146,7 @@ static void lose(void)
     faults->lost++;
 }
 
-/* Before each call of those below. */
+/* Runs before each GL call below. */
 static void call(void)
 {
     if (gone == current || faults->lost >= faults->losses) {
@@ -157,7 +157,7 @@ static void call(void)
         lose();
 }
 
-/* --- what is asked of EGL ------------------------------------------------------------------------------------------------------- */
+/* --- replaced EGL functions --------------------------------------------------------------------------------------------------------- */
 
 static EGLContext EGLAPIENTRY create_context(EGLDisplay on, EGLConfig config, EGLContext share, const EGLint *attributes)
 {
@@ -196,9 +196,9 @@ static EGLContext EGLAPIENTRY get_current_context(void)
     return gone && gone == current ? gone : real.get_current_context();
 }
 
-/* --- what is asked of GL -------------------------------------------------------------------------------------------------------- */
+/* --- replaced GL functions ---------------------------------------------------------------------------------------------------------- */
 
-/* A function of GL that does what it does, once call() has been here. */
+/* Replaces a GL function by one that runs call() and then the real function. */
 #define PASS(name, type, params, args)            \
     static type(GLAD_API_PTR *real_##name) params; \
     static type GLAD_API_PTR call_##name params   \
@@ -206,7 +206,7 @@ static EGLContext EGLAPIENTRY get_current_context(void)
         call();                                   \
         return real_##name args;                  \
     }
-/* One that makes an object of so many bytes. */
+/* Replaces a GL function that allocates `bytes` bytes for an object. */
 #define TAKE(name, params, args, kind, object, bytes) \
     static void(GLAD_API_PTR *real_##name) params;     \
     static void GLAD_API_PTR call_##name params       \
@@ -280,7 +280,7 @@ static const GLubyte *GLAD_API_PTR call_glGetString(GLenum name)
 #define ENTRY(name) { #name, (GLADapiproc)call_##name, (GLADapiproc *)&real_##name }
 static const struct {
     const char *name;
-    GLADapiproc ours, *real; /* NULL: known already */
+    GLADapiproc ours, *real; /* NULL: the real function is already known */
 } functions[] = {
     { "eglCreateContext", (GLADapiproc)create_context, NULL },
     { "eglDestroyContext", (GLADapiproc)destroy_context, NULL },

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* LD_PRELOAD: before its KILL_AT_RENAME-th renaming of a file (1 is the first) the program is killed, as by kill -9. */
+/* LD_PRELOAD library: kills the program, as by kill -9, before its KILL_AT_RENAME-th rename of a file (1 is the first). */
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>

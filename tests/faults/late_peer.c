@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* LD_PRELOAD: sockets of the peer at the IPv4 address LATE_PEER can be written to only LATE_MS after poll() was first asked for it, as if
-   its network were slow. */
-#undef _FORTIFY_SOURCE /* whose poll() would be defined already */
+/* LD_PRELOAD library: sockets of the peer with the IPv4 address LATE_PEER become writable only LATE_MS after poll() was first asked for
+   that, as if the peer's network were slow. */
+#undef _FORTIFY_SOURCE /* its poll() would be defined already */
 #include <arpa/inet.h>
 #include <dlfcn.h>
 #include <netinet/in.h>
@@ -17,7 +17,7 @@
 #define EXPORTED __attribute__((visibility("default")))
 #define FDS 4096
 
-static atomic_llong asked_ms[FDS]; /* when it was first asked for since it was last written to; 0: not since */
+static atomic_llong asked_ms[FDS]; /* when writability was first asked for since the last write; 0: not asked */
 
 static long long now_ms(void)
 {
@@ -38,7 +38,7 @@ static bool is_late_peer(int fd)
         return false;
     if (address.ss_family == AF_INET)
         from = ipv4->sin_addr.s_addr;
-    else if (address.ss_family == AF_INET6) /* an IPv4 address as IPv6 writes it */
+    else if (address.ss_family == AF_INET6) /* an IPv4-mapped IPv6 address */
         memcpy(&from, ipv6->sin6_addr.s6_addr + 12, sizeof(from));
     return from == inet_addr(peer);
 }
@@ -49,7 +49,7 @@ static long long late_ms(void)
     return text ? atoll(text) : 0;
 }
 
-/* What is still to be waited for until it may be written to. */
+/* Returns the milliseconds until the socket may be reported writable. */
 static long long wait_ms(int fd)
 {
     long long now = now_ms(), none = 0;

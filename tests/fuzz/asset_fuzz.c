@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds bytes to asset_view_init: as they are, and once more with size and checksum made right, or nothing would get past these. A view
-   that is good may be read from end to end. */
+/* Feeds bytes to asset_view_init: unchanged, and with size and checksum corrected, because otherwise no input would pass these checks. A
+   valid view must be readable from end to end. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -64,7 +64,7 @@ static void check_view(const struct asset_view *view)
         for (uint32_t v = 0; v < h->vertex_count; v++)
             require(asset_distance_m(view, s, v) >= 0, "distances");
     }
-    volatile unsigned read = sum; /* so that reading is not left out */
+    volatile unsigned read = sum; /* keeps the compiler from removing the reads */
     (void)read;
 }
 
@@ -81,7 +81,8 @@ static void try_bytes(const void *bytes, size_t count)
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     void *copy;
-    if (posix_memalign(&copy, ASSET_ALIGN, count ? count : 1) != 0) /* ends where it ends, so that reading on is seen */
+    /* copied to an exactly sized buffer, so that reads beyond the end are detected */
+    if (posix_memalign(&copy, ASSET_ALIGN, count ? count : 1) != 0)
         return 0;
     char *at = memcpy(copy, bytes, count);
     try_bytes(at, count);

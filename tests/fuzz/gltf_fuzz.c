@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds bytes to gltf_load as a model file in a folder with a few others. What loads must keep its own promises, and so must what is cut
-   out of it. */
+/* Feeds bytes to gltf_load as a model file in a folder with a few others. A model that loads must satisfy the checks of promise.h, and
+   so must geometry cut from it. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -12,11 +12,11 @@
 #include "tests/support/temp.h"
 #include "tests/fuzz/promise.h"
 
-#define MOST_CUT 100000u /* corners: more would only take long */
+#define MOST_CUT 100000u /* maximum corners to cut: more would only be slow */
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
-static char *folder; /* one for all inputs */
+static char *folder; /* one folder for all inputs */
 
 static void remove_folder(void)
 {
@@ -50,7 +50,7 @@ static void check_primitive(const struct gltf_model *model, const struct gltf_pr
     require(sum <= 255ull * p->vertex_count, "colours are there");
 }
 
-/* Corners that all nodes draw together. */
+/* Returns the number of corners that all nodes draw together. */
 static uint64_t check_nodes(const struct gltf_model *model)
 {
     uint64_t corners = 0;
@@ -82,7 +82,7 @@ static void check_model(const struct gltf_model *model)
     }
 }
 
-/* Laid out as a file, an asset must be one that its reader takes. */
+/* Checks that an asset, laid out as a file, is accepted by the reader of asset files. */
 static void check_asset(const struct geometry *g)
 {
     struct asset_parts parts = {

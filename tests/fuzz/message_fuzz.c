@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds a client's messages, a line each, to a session of a small plant: the JSON, its fields and what they do. Whatever is said, the view
-   stays one that can be drawn and what is answered stays JSON. */
+/* Feeds a client's messages, one per line, to a session of a small plant. Whatever they contain, the view must stay drawable and all
+   answers must be JSON. */
 #include <jansson.h>
 #include <math.h>
 #include <stddef.h>

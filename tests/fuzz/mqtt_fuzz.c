@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds payloads to all three readers of an MQTT source, and to the follower of Sparkplug nodes: the first byte says of which kind of
-   message. Whatever comes, what the store holds is a number or Bad. */
+/* Feeds payloads to all three readers of an MQTT source, and to the follower of Sparkplug nodes; the first byte chooses. Whatever
+   arrives, the store holds only numbers or Bad. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -77,7 +77,7 @@ static struct follower *follower(void)
     return f;
 }
 
-/* Messages one after the other, each behind its length and what it is. */
+/* Feeds a sequence of messages, each preceded by its length and kind. */
 static void follow(const uint8_t *bytes, size_t count)
 {
     struct follower *f = follower();
@@ -118,7 +118,7 @@ static void read_json(const uint8_t *bytes, size_t count)
     json_decref(root);
 }
 
-/* A path, a zero byte, and a payload in which it selects. */
+/* Splits the input at a zero byte into a path and a payload from which the path selects. */
 static void select_by_path(const uint8_t *bytes, size_t count)
 {
     static const struct plant_mqtt plain = { .payload = MQTT_JSON };

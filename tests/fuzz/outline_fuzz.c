@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What `plantcast nodes` reads of a glTF file, and prints. */
+/* Feeds glTF files to the reader of `plantcast nodes`, and prints the result. */
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds bytes to plant_load: a plant file, a line of ====, a tag list. What loads must keep its own promises. */
+/* Feeds bytes to plant_load: a plant file, a line of ====, a tag list. A plant that loads must satisfy the checks of promise.h. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -17,7 +17,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
-static char *folder; /* one for all inputs */
+static char *folder; /* one folder for all inputs */
 
 static void remove_folder(void)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What of an HTTP request is ours to read. The first byte says which: a query, a host, an origin, a list, a path, a line of tokens;
-   the rest is it. */
+/* Feeds the parts of an HTTP request that this project parses itself. The first byte chooses: a query, a host, an origin, a list, a
+   path, or a line of tokens. */
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* RVM files and their attributes. The first byte says which. */
+/* Feeds RVM files or attribute files to their readers; the first byte chooses. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds tag lists to the reader of exports: the first byte chooses a text (CSV or JSON, in an encoding that is
- * detected) or a spreadsheet. Of a spreadsheet the
- * input is XML of the sheet, a zero byte, and XML of its shared strings; the container around them is whole. */
+/* Feeds tag lists to the reader of exports. The first byte chooses a text (CSV or JSON, in a detected encoding) or a spreadsheet. For a
+   spreadsheet the input is the sheet's XML, a zero byte, and the XML of the shared strings; the container around them is always valid. */
 #include <fcntl.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -37,7 +36,7 @@ static void add32(struct text *out, size_t value)
     add16(out, (unsigned)(value >> 16));
 }
 
-/* Fields that a local header and an entry of the central directory share; parts are stored, not compressed. */
+/* Appends the fields that a local header and an entry of the central directory share; parts are stored, not compressed. */
 static void add_head(struct text *out, const struct part *part)
 {
     for (int i = 0; i < 5; i++)

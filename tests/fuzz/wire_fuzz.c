@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The frame header's reader against its writer: what is read is sound, and written again it is the same bytes; what is written of any
-   struct is read as it was, or not at all. */
+/* Tests the frame header's reader against its writer: a header that was read is valid, and writes back to the same bytes; a header
+   written from any struct reads back the same, or is refused. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -27,7 +27,7 @@ static void read_then_write(const uint8_t *bytes, size_t count)
 {
     struct wire_frame frame;
     uint8_t again[WIRE_FRAME_HEADER_BYTES];
-    enum { RESERVED = 108 }; /* height_m in perspective: anything may be read, 0 is written */
+    enum { RESERVED = 108 }; /* height_m is ignored for perspective cameras: any value may be read, and 0 is written */
     if (!wire_get_frame(bytes, count, &frame))
         return;
     check_sound(&frame, count);
@@ -35,7 +35,7 @@ static void read_then_write(const uint8_t *bytes, size_t count)
     require(!memcmp(bytes, again, frame.fov_deg == 0 ? sizeof(again) : RESERVED), "read and written it is the same");
 }
 
-/* The bytes are taken as the struct itself, however senseless. */
+/* Uses the bytes as the struct itself, even if the values make no sense. */
 static void write_then_read(const uint8_t *bytes, size_t count)
 {
     struct wire_frame frame = { 0 }, again;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Boxes as glTF. */
+/* Writes models of boxes as glTF. */
 #include "tests/support/boxes.h"
 
 #include "base/mem.h"

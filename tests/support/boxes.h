@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Models of boxes, whose numbers are known. */
+/* glTF models of boxes, whose areas and volumes are known. */
 #ifndef TESTS_BOXES_H
 #define TESTS_BOXES_H
 #include "tests/support/model_maker.h"
 
-/* A closed box of 12 triangles and 8 places as a node of its own: units and axes are the model's. Returns the node's mesh. */
+/* Adds a closed box of 12 triangles and 8 vertices as a node of its own, in the model's units and axes. Returns the node's mesh. */
 int boxes_add(struct model_maker *maker, const char *node, const double low[3], const double high[3]);
-/* One more primitive in a mesh: these corners, mode as glTF numbers them (0 points, 1 lines, 4 triangles). */
+/* Adds a primitive to a mesh. mode: as glTF numbers it (0 points, 1 lines, 4 triangles). */
 void boxes_add_primitive(struct model_maker *maker, int mesh, int mode, const float (*corners)[3], size_t count);
 /* Writes FOLDER/NAME and leaves the maker empty. */
 void boxes_write(struct model_maker *maker, const char *folder, const char *name);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shapes and the faults that exports have. */
+/* Generates shapes, and copies of them with the faults that CAD exports have. */
 #include "tests/support/cad.h"
 
 #include <math.h>
@@ -66,11 +66,11 @@ static void add_quad(struct cad *cad, struct cad_random *random, uint32_t a, uin
 /* --- grids ------------------------------------------------------------------------------------------------------------------ */
 
 struct cad_grid {
-    int across, up; /* cells */
+    int across, up; /* number of cells */
     bool round_u, round_v;
     double jitter;
     int hole_first, hole_wide, hole_high;
-    double size[3]; /* what the surface needs */
+    double size[3]; /* parameters of `surface` */
     void (*surface)(const double size[3], double u, double v, double out[3]);
 };
 
@@ -126,12 +126,12 @@ static void on_torus(const double size[3], double u, double v, double out[3])
     out[2] = size[0] * sin(2 * PI * v);
 }
 
-/* The axis runs along a circle about (0, 1), then along its mirror image through the circle's end. */
+/* Pipe whose axis runs along a circle about (0, 1), then along the mirror image of that arc at its end. */
 static void on_bent_pipe(const double size[3], double u, double v, double out[3])
 {
     const double bend = 0.75 * PI;
     double s = (u < 0.5 ? u : 1 - u) * 2 * bend, x = sin(s), y = 1 - cos(s), nx = -sin(s), ny = cos(s);
-    if (u >= 0.5) { /* turned by half a turn about the end of the first bend */
+    if (u >= 0.5) { /* rotated by half a turn about the end of the first bend */
         x = 2 * sin(bend) - x;
         y = 2 * (1 - cos(bend)) - y;
     }
@@ -185,7 +185,7 @@ void cad_bent_pipe(struct cad *cad, struct cad_random *random, int along, int ar
                   .across = along, .up = around, .round_v = true, .jitter = jitter, .size = { pipe_radius }, .surface = on_bent_pipe });
 }
 
-/* --- blocks: surfaces of cells in space -------------------------------------------------------------------------------------- */
+/* --- blocks: surfaces of sets of cubic cells ------------------------------------------------------------------------------------- */
 
 struct block {
     int size[3];
@@ -208,7 +208,7 @@ static uint32_t block_vertex(struct cad *cad, const struct block *block, const i
     return *id;
 }
 
-/* The side of a cell towards the higher or lower end of an axis, wound so that it faces outwards. */
+/* Adds one side of a cell, at the higher or lower end of an axis, wound so that it faces outwards. */
 static void block_side(struct cad *cad, struct cad_random *random, const struct block *block, const int cell[3], int axis, int high,
                        uint32_t *ids)
 {
@@ -255,7 +255,7 @@ static bool in_thin_box(const int size[3], const int cell[3])
 void cad_sphere(struct cad *cad, struct cad_random *random, int cells)
 {
     make_block(cad, random, &(struct block){ { cells, cells, cells }, in_cube });
-    for (size_t v = 0; v < cad->vertex_count; v++) { /* the cube blown up, its squares spread evenly over the angle */
+    for (size_t v = 0; v < cad->vertex_count; v++) { /* projects the cube onto the sphere; its squares are spread evenly over the angle */
         double p[3], length = 0;
         for (int axis = 0; axis < 3; axis++) {
             p[axis] = tan((2 * (double)cad->positions[v][axis] / cells - 1) * PI / 4);
@@ -335,7 +335,7 @@ void cad_closed_pipe(struct cad *cad, struct cad_random *random, double radius, 
     }
 }
 
-/* From the left end (s = 0) over the middle to the right end (s = 0.5), and back. */
+/* Adds one ring of vertices of the figure eight; s goes from its left end (0) through the middle to its right end (0.5) and back. */
 static uint32_t add_eight_ring(struct cad *cad, double s, double radius, int around)
 {
     uint32_t first = (uint32_t)cad->vertex_count;
@@ -438,7 +438,7 @@ static int *choose_patches(const struct cad *from, struct cad_random *random)
     return patch;
 }
 
-/* Vertices where patches meet are drawn towards the middle of a triangle of theirs. */
+/* Moves vertices where patches meet towards the centre of one of their triangles, which opens gaps between the patches. */
 static void break_to_patches(struct cad *to, const struct cad *from, struct cad_random *random, uint32_t *vertex_of)
 {
     int *patch = choose_patches(from, random), *owner = mem_array(from->vertex_count, sizeof(*owner));

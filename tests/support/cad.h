@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shapes as CAD exporters hand them out: clean ones, random in tessellation, and the faults that exports have. */
+/* Shapes like those of CAD exporters: clean ones with random tessellation, and copies with the faults that exports have. */
 #ifndef TESTS_CAD_H
 #define TESTS_CAD_H
 #include <stddef.h>
@@ -7,48 +7,49 @@
 
 struct cad {
     float (*positions)[3];
-    uint32_t *triangles; /* 3 each */
+    uint32_t *triangles; /* three vertex indices each */
     size_t vertex_count, triangle_count, position_capacity, index_capacity;
 };
 
 struct cad_random {
     uint64_t state;
 };
-void cad_random_start(struct cad_random *random); /* from PLANTCAST_SEED, or else the clock; says which */
-double cad_random(struct cad_random *random);     /* 0 <= x < 1 */
+void cad_random_start(struct cad_random *random); /* seeds from PLANTCAST_SEED, or else from the clock; prints the seed */
+double cad_random(struct cad_random *random);     /* returns a number in 0 <= x < 1 */
 
 void cad_finish(struct cad *cad);
 
-/* Across x up vertices and a random diagonal in each cell; vertices inside are moved by up to half of `jitter` cells. */
+/* Adds a plate of across x up cells with a random diagonal in each cell; inner vertices are moved by up to half of `jitter` cells. */
 void cad_plate(struct cad *cad, struct cad_random *random, int across, int up, double width, double height, double jitter);
-/* The same with cells left out: columns first..first + wide - 1, rows below `high`; jitter 0. */
+/* The same without jitter, and with cells left out: columns first..first + wide - 1, rows below `high`. */
 void cad_slotted_plate(struct cad *cad, struct cad_random *random, int across, int up, double width, double height, int first, int wide,
                        int high);
 void cad_sphere(struct cad *cad, struct cad_random *random, int cells); /* radius 1; 6 * cells^2 + 2 vertices */
-void cad_cylinder(struct cad *cad, struct cad_random *random, int around, int along, double length, double jitter);  /* radius 1, open */
+/* radius 1, open ends */
+void cad_cylinder(struct cad *cad, struct cad_random *random, int around, int along, double length, double jitter);
 void cad_torus(struct cad *cad, struct cad_random *random, int around, int tube, double tube_radius, double jitter); /* radius 1 */
-/* Two bends of 135 degrees and radius 1, one way and the other; open. */
+/* An open pipe of two bends of 135 degrees and radius 1, in opposite directions. */
 void cad_bent_pipe(struct cad *cad, struct cad_random *random, int along, int around, double pipe_radius, double jitter);
-/* An open box of x * y * z cells outside, its walls and bottom one cell thick. */
+/* A box without lid, x * y * z cells large; its walls and bottom are one cell thick. */
 void cad_thin_box(struct cad *cad, struct cad_random *random, int x, int y, int z, double cell);
-/* A closed box of x * y * z cells, its lowest corner at the origin. */
+/* A closed box of x * y * z cells; its lowest corner is at the origin. */
 void cad_box(struct cad *cad, struct cad_random *random, int x, int y, int z, double cell);
-/* A closed tube along a lying eight that is 2 wide: it passes through itself. With half: only the ways from its left end to its right end
-   that go up (1) or down (2), closed there. */
+/* A closed tube along a horizontal figure eight that is 2 wide, so that it intersects itself. half: only its rising (1) or falling (2)
+   branch from the left end to the right end, closed there; 0: all of it. */
 void cad_eight(struct cad *cad, struct cad_random *random, int along, int around, double tube_radius, int half);
-/* A closed cylinder about an axis through `centre`, turned from z towards x. */
+/* A closed cylinder about an axis through `centre`, rotated from z towards x. */
 void cad_closed_pipe(struct cad *cad, struct cad_random *random, double radius, double length, int around, int along, int rings,
                      double turn_rad, const double centre[3]);
 
 enum cad_fault { CAD_CLEAN, CAD_SOUP, CAD_GAPS, CAD_REPEATED, CAD_HANGING, CAD_FINS, CAD_FAULTS };
 extern const char *const cad_fault_names[CAD_FAULTS];
-/* A copy of the clean shape with the fault. vertex_of[clean vertex]: a vertex of the copy at its place (or within the gap).
-   SOUP: no two triangles share a vertex. GAPS: cut into 14 patches, drawn back from each other by up to 1e-4 of the size.
-   REPEATED: a third of the triangles turned, a third repeated, turned or not. HANGING: about every seventh triangle has a side cut in two.
-   FINS: every twentieth triangle has one standing on a side of it. */
+/* Copies the clean shape and adds the fault. vertex_of[clean vertex]: a vertex of the copy at the same position (or within the gap).
+   SOUP: no two triangles share a vertex. GAPS: cut into 14 patches, drawn back from each other by up to 1e-4 of the size. REPEATED: a
+   third of the triangles reversed, a third duplicated, reversed or not. HANGING: about every seventh triangle has an edge split in two.
+   FINS: every twentieth triangle has another triangle standing on one of its edges. */
 void cad_break(struct cad *broken, const struct cad *clean, enum cad_fault fault, struct cad_random *random, uint32_t *vertex_of);
 
-/* Turned at random, scaled, moved. Both are the same motion when they are given the same place. */
+/* A random rotation, scale and translation. The same struct gives the same motion to several shapes. */
 struct cad_place {
     double rotation[9], scale, move[3];
 };

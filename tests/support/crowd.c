@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the plant's two files, prepares and loads them. */
+/* Writes the plant's two files, then prepares and loads them. */
 #include "tests/support/crowd.h"
 
 #include <errno.h>
@@ -18,18 +18,18 @@
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
-static const double GAP = 1.01;   /* between the middles of neighbours, in their sizes */
-static const double ASPECT = 1.0; /* of the ground that all stand on: fills a wide picture when seen from above and aside */
+static const double GAP = 1.01;   /* distance between the centres of neighbours, in multiples of their size */
+static const double ASPECT = 1.0; /* width to height of the ground area; fills a wide picture seen obliquely from above */
 
-struct places { /* of the sensors, in the asset frame */
+struct places { /* positions of the sensors, in the asset's frame */
     double (*at_m)[3];
     int count;
-    double size_m[3], middle_m[3]; /* of the model */
+    double size_m[3], middle_m[3]; /* size and centre of the model */
 };
 
-/* --- its files -------------------------------------------------------------------------------------------------------------- */
+/* --- the plant's files -------------------------------------------------------------------------------------------------------- */
 
-/* Nearly as wide as ASPECT says, with few places left empty. */
+/* Returns the number of columns whose ground area is closest to ASPECT with few empty places. */
 static int columns_of(int instances, const struct places *places)
 {
     double wanted = sqrt(instances * ASPECT * places->size_m[1] / places->size_m[0]), least = INFINITY;
@@ -100,9 +100,9 @@ static bool prepare(struct sensor_crowd *crowd, struct log *log, struct workers 
     return good && crowd->scene;
 }
 
-/* --- where its sensors stand ------------------------------------------------------------------------------------------------ */
+/* --- positions of the sensors ------------------------------------------------------------------------------------------------- */
 
-/* Each one at the vertex farthest from those before it. */
+/* Puts each sensor at the vertex farthest from the previous ones. */
 static void spread(struct places *places, const struct asset_view *view)
 {
     uint32_t vertices = view->header->vertex_count, next = 0;
@@ -127,7 +127,7 @@ static void spread(struct places *places, const struct asset_view *view)
     mem_free(nearest);
 }
 
-/* From the model prepared once without sensors. */
+/* Chooses sensor positions on the model, prepared once without sensors. */
 static bool find_places(struct places *places, struct log *log, struct workers *workers, const struct crowd_params *params)
 {
     struct sensor_crowd bare = { 0 };
@@ -150,7 +150,7 @@ static bool find_places(struct places *places, struct log *log, struct workers *
     return good;
 }
 
-/* --- all of it -------------------------------------------------------------------------------------------------------------- */
+/* --- everything --------------------------------------------------------------------------------------------------------------- */
 
 bool crowd_init(struct sensor_crowd *crowd, struct log *log, struct workers *workers, const struct crowd_params *params)
 {

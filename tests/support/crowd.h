@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Many instances of one model, side by side, each with its own sensors: a plant for benches, made of files and really prepared. */
+/* A plant for benchmarks: many instances of one model in a grid, each with sensors of its own. It is made of files and really prepared. */
 #ifndef TESTS_SUPPORT_CROWD_H
 #define TESTS_SUPPORT_CROWD_H
 #include <stdint.h>
@@ -9,10 +9,10 @@
 #include "value/snapshot.h"
 
 struct crowd_params {
-    const char *folder;       /* where the plant is written and prepared; what is prepared there already is used again */
+    const char *folder;       /* folder in which the plant is written and prepared; earlier results in it are reused */
     const char *model;        /* glTF or GLB file */
     const char *nodes, *up;   /* as in a plant file; nodes NULL: the whole model */
-    int instances, sensors;   /* sensors: on each instance, spread evenly over its surface */
+    int instances, sensors;   /* sensors: number on each instance, spread evenly over its surface */
 };
 
 struct sensor_crowd {
@@ -22,9 +22,9 @@ struct sensor_crowd {
     uint64_t random;
 };
 
-/* False: logged. Finish in both cases. */
+/* Returns false on failure, logged. Call crowd_finish() in both cases. */
 bool crowd_init(struct sensor_crowd *crowd, struct log *log, struct workers *workers, const struct crowd_params *params);
 void crowd_finish(struct sensor_crowd *crowd);
-void crowd_change(struct sensor_crowd *crowd, int64_t mono_ns); /* every reading becomes another one within the range */
+void crowd_change(struct sensor_crowd *crowd, int64_t mono_ns); /* changes every reading to another value within the range */
 
 #endif

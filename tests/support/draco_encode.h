@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draco's own encoder, for models to read back. */
+/* Draco's own encoder, which makes models for the importer's tests. */
 #ifndef TESTS_DRACO_ENCODE_H
 #define TESTS_DRACO_ENCODE_H
 #include <stdbool.h>
@@ -16,12 +16,12 @@ struct draco_input {
     const uint8_t (*colors)[4]; /* NULL: none */
     const uint32_t *indices;
     uint32_t vertex_count, index_count;
-    int bits;        /* of quantisation; 0: none */
-    bool sequential; /* else edgebreaker */
+    int bits;        /* bits of quantisation; 0: none */
+    bool sequential; /* true: sequential encoding; false: edgebreaker */
 };
 
-/* The compressed mesh, to be freed with mem_free; vertex_count is what it decodes to. Unique ids: 0 positions, then normals, then colours.
-   Aborts when it cannot. */
+/* Returns the compressed mesh; the caller frees it with mem_free. *vertex_count: number of vertices that it decodes to. Unique ids: 0
+   positions, then normals, then colours. Aborts on failure. */
 unsigned char *draco_encode(const struct draco_input *input, size_t *size, uint32_t *vertex_count);
 
 #ifdef __cplusplus

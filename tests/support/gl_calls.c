@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A few instructions for each function: count, and go on to the real one. */
+/* Machine code for each GL function: increments a counter and jumps to the real function. */
 #include "tests/support/gl_calls.h"
 
 #include <dlfcn.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts calls of GL, every one, by standing before each of its functions. Thread: the one of the GL context. */
+/* Counts all calls of GL by replacing each GL function with a small trampoline. Thread: that of the GL context. */
 #ifndef TESTS_SUPPORT_GL_CALLS_H
 #define TESTS_SUPPORT_GL_CALLS_H
 #include <stdbool.h>
@@ -7,8 +7,8 @@
 
 #include "gpu/gl.h"
 
-bool gl_calls_begin(const struct gl *gl); /* from now on, for good. False: not on this kind of processor */
-uint64_t gl_calls(void);                  /* so many since */
-uint64_t gl_draw_calls(void);             /* of these, of functions named glDraw* and glMultiDraw* */
+bool gl_calls_begin(const struct gl *gl); /* starts counting, permanently; returns false on other processors than x86-64 */
+uint64_t gl_calls(void);                  /* returns the number of calls since then */
+uint64_t gl_draw_calls(void);             /* returns how many of them were glDraw* and glMultiDraw* */
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A GLB file from its JSON and its binary chunk. */
+/* Builds a GLB file from its JSON and its binary chunk. */
 #include "tests/support/glb.h"
 
 #include <stdint.h>

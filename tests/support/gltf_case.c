@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One test's folder for models, and the model that was last read from it. */
+/* A test's folder for models, and the model that was read last. */
 #include "tests/support/gltf_case.h"
 
 #include <stdio.h>

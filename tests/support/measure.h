@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Times and orders of what benches and tests measure. Thread: any. */
+/* Times and sorting for benchmarks and tests. Thread: any. */
 #ifndef TESTS_SUPPORT_MEASURE_H
 #define TESTS_SUPPORT_MEASURE_H
 #include <time.h>
@@ -12,7 +12,7 @@ static inline double measure_ms(clockid_t clock)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
 }
 
-/* Orders doubles for qsort, the smallest first. */
+/* Compares doubles for qsort, smallest first. */
 static inline int by_size(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;

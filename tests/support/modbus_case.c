@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source, its device and its store. */
+/* Fixture of a Modbus source with its device and its store. */
 #include "modbus_case.h"
 
 #include <setjmp.h>
@@ -71,7 +71,7 @@ const struct reading *modbus_case_look(struct modbus_case *c, int tag)
     return &c->snapshot->readings[tag];
 }
 
-#define LOADED 4 /* times as long on a machine that does much else */
+#define LOADED 4 /* factor on timeouts, for a loaded machine */
 
 void modbus_case_expect(struct modbus_case *c, int tag, uint32_t quality, double timeout_s)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source, its device and its store, and what is expected of them. For cmocka tests. */
+/* A Modbus source with its device and its store, and assertions on them. For cmocka tests. */
 #ifndef TESTS_MODBUS_CASE_H
 #define TESTS_MODBUS_CASE_H
 #include "tests/support/modbus_device.h"
@@ -15,10 +15,10 @@ struct modbus_case {
     struct source *source;
 };
 
-int modbus_case_set_up(void **state); /* room for 300 tags */
+int modbus_case_set_up(void **state); /* the store has room for 300 tags */
 int modbus_case_tear_down(void **state);
-void modbus_case_be_impatient(struct modbus_case *c);              /* for devices that let us wait */
-void modbus_case_add_registers(struct modbus_case *c, int count);  /* holding registers 0, 1, ... as INT16 tags */
+void modbus_case_be_impatient(struct modbus_case *c);              /* shortens timeouts, for devices that let the source wait */
+void modbus_case_add_registers(struct modbus_case *c, int count);  /* adds holding registers 0, 1, ... as INT16 tags */
 void modbus_case_start(struct modbus_case *c);
 void modbus_case_assert_stops_soon(struct modbus_case *c);
 const struct reading *modbus_case_look(struct modbus_case *c, int tag);

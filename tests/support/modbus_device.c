@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus device for tests, with the bad manners that devices have. */
+/* A Modbus device for tests that can misbehave like real devices. */
 #include "modbus_device.h"
 
 #include <modbus.h>
@@ -28,13 +28,13 @@ struct device_thread {
     modbus_t *modbus;
     modbus_mapping_t *mapping, *wrong;
     int listen_fd, stop_fd;
-    int line_fd; /* the terminal's own end, so that it lives on while nobody has it open */
+    int line_fd; /* the terminal's slave end, kept open so that the terminal survives while nobody else has it open */
     int header;  /* bytes before the function code; the last of them is the unit */
     int clients[MAX_CLIENTS];
     struct {
         int64_t since_ns, heard_ns;
         int answers;
-    } of[MAX_CLIENTS]; /* by client */
+    } of[MAX_CLIENTS]; /* state of each client, by index */
     size_t client_count;
     int64_t away_until_ns;
 };
@@ -63,7 +63,7 @@ static void drop_client(struct device_thread *t, size_t index, bool reset)
     close(t->clients[index]);
     t->of[index] = t->of[--t->client_count];
     t->clients[index] = t->clients[t->client_count];
-    if (t->device->away_ms) { /* nobody listens: connections are refused */
+    if (t->device->away_ms) { /* the device stops listening, so connections are refused */
         t->away_until_ns = clock_mono_ns() + t->device->away_ms * NS_PER_MS;
         close(t->listen_fd);
         t->listen_fd = -1;
@@ -76,7 +76,7 @@ static bool stopped_within(struct device_thread *t, int ms)
     return poll(&stop, 1, ms) > 0;
 }
 
-/* The answer's bytes, as libmodbus would send them: caught in a pair of sockets. */
+/* Writes the answer that libmodbus would send into `reply`; a socket pair captures it. Returns its length. */
 static int catch_reply(struct device_thread *t, const uint8_t *request, int bytes, modbus_mapping_t *mapping, uint8_t *reply)
 {
     int pair[2], fd = modbus_get_socket(t->modbus);
@@ -99,7 +99,7 @@ static void drip(struct device_thread *t, int fd, const uint8_t *request, int by
             break;
 }
 
-/* A wrong answer numbered `behind` requests ago. */
+/* Sends a wrong answer with the transaction number of `behind` requests ago. */
 static void reply_wrong(struct device_thread *t, int fd, const uint8_t *request, int bytes, int behind)
 {
     uint8_t reply[MODBUS_TCP_MAX_ADU_LENGTH];
@@ -109,10 +109,10 @@ static void reply_wrong(struct device_thread *t, int fd, const uint8_t *request,
         reply[0] = (uint8_t)(number >> 8);
         reply[1] = (uint8_t)number;
     }
-    (void)!write(fd, reply, (size_t)count); /* the client may have had enough */
+    (void)!write(fd, reply, (size_t)count); /* the client may have closed the connection */
 }
 
-/* As if another unit had been asked: an RTU frame has a sum over that too. */
+/* Makes the answer of another unit; its RTU checksum must cover the other unit's number. */
 static int catch_foreign(struct device_thread *t, const uint8_t *request, int bytes, uint8_t *reply)
 {
     uint8_t foreign[MODBUS_TCP_MAX_ADU_LENGTH];
@@ -124,7 +124,7 @@ static int catch_foreign(struct device_thread *t, const uint8_t *request, int by
     return count;
 }
 
-/* The answer, and then some of it is wrong. */
+/* Sends the answer with a part of it spoilt. */
 static void reply_spoilt(struct device_thread *t, int fd, const uint8_t *request, int bytes, int manner)
 {
     uint8_t reply[MODBUS_TCP_MAX_ADU_LENGTH];
@@ -145,7 +145,7 @@ static void reply_spoilt(struct device_thread *t, int fd, const uint8_t *request
     (void)!write(fd, reply, (size_t)count);
 }
 
-/* How long the client has let us rest, and how much it wants. */
+/* Records the pause since the last answer and the number of registers requested. */
 static void note_request(struct device_thread *t, const uint8_t *request)
 {
     struct modbus_device *device = t->device;
@@ -183,7 +183,7 @@ static bool answers_at_its_age(struct device_thread *t, size_t index)
     return t->of[index].answers++ > 0 || !device->first_late_ms || !stopped_within(t, device->first_late_ms);
 }
 
-/* False: the connection is to be reset. */
+/* Answers a request. Returns false if the connection must be reset. */
 static bool answer(struct device_thread *t, int fd, const uint8_t *request, int bytes)
 {
     struct modbus_device *device = t->device;
@@ -258,7 +258,7 @@ static void open_socket(struct device_thread *t)
     modbus_free(listener);
 }
 
-/* Closes what is idle, and listens again. */
+/* Closes idle connections, and listens again after `away_ms`. */
 static void tend(struct device_thread *t)
 {
     int64_t now_ns = clock_mono_ns();
@@ -293,11 +293,11 @@ static void *device_main(void *arg)
     }
 }
 
-/* The terminal is the one client. */
+/* Opens the pseudo terminal, which counts as the only client. */
 static void open_line(struct device_thread *t)
 {
     struct termios raw = { 0 };
-    t->listen_fd = eventfd(0, EFD_CLOEXEC); /* never readable: nobody else comes */
+    t->listen_fd = eventfd(0, EFD_CLOEXEC); /* never readable: there are no other clients */
     cfmakeraw(&raw);
     must(openpty(&t->clients[0], &t->line_fd, t->device->line, &raw, NULL) == 0, "openpty");
     t->client_count = 1;
@@ -307,7 +307,7 @@ void device_start(struct modbus_device *device)
 {
     struct device_thread *t = mem_new(sizeof(*t));
     t->device = device;
-    signal(SIGPIPE, SIG_IGN); /* clients may have had enough of an answer */
+    signal(SIGPIPE, SIG_IGN); /* clients may close their connection before reading an answer */
     t->line_fd = -1;
     t->header = device->wire == DEVICE_TCP ? 7 : 1;
     t->modbus = device->wire == DEVICE_TCP ? modbus_new_tcp("127.0.0.1", 502) : modbus_new_rtu("/dev/null", 9600, 'N', 8, 1);
@@ -335,7 +335,7 @@ void device_stop(struct modbus_device *device)
     eventfd_write(t->stop_fd, 1);
     pthread_join(t->thread, NULL);
     while (t->client_count)
-        drop_client(t, 0, true); /* reset: no TIME_WAIT, so that the port is free at once */
+        drop_client(t, 0, true); /* with RST, which leaves no TIME_WAIT, so that the port is free at once */
     if (t->listen_fd >= 0)
         close(t->listen_fd);
     if (t->line_fd >= 0)

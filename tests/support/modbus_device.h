@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus device for tests, on TCP, RTU over TCP or a pseudo terminal: a libmodbus server on a thread, which can be told to
-   misbehave. Holding register r holds r. */
+/* A Modbus device for tests, on TCP, RTU over TCP or a pseudo terminal: a libmodbus server on a thread, which can be told to misbehave.
+   Holding register r holds the value r. */
 #ifndef TESTS_MODBUS_DEVICE_H
 #define TESTS_MODBUS_DEVICE_H
 #include <stdatomic.h>
@@ -9,50 +9,51 @@
 
 enum device_manner {
     DEVICE_GOOD,
-    DEVICE_SILENT,      /* takes requests, never answers */
-    DEVICE_DRIPPING,    /* one byte each 0.3 s */
+    DEVICE_SILENT,      /* accepts requests and never answers */
+    DEVICE_DRIPPING,    /* sends one byte every 0.3 s */
     DEVICE_LATE,        /* answers after late_ms, on the same connection */
-    DEVICE_TWICE,       /* each answer is followed, after late_ms, by one with its own number again and wrong values */
-    DEVICE_BEHIND,      /* each answer is preceded by one with the number of the request before and wrong values */
-    DEVICE_RESETTING,   /* takes a request, then resets the connection */
-    DEVICE_SHORT,       /* all but the last byte of the answer */
-    DEVICE_LONG,        /* an answer that says it has more values than were asked for */
-    DEVICE_GARBAGE,     /* random bytes */
-    DEVICE_FOREIGN,     /* the answer of another unit, with its values */
-    DEVICE_MEASURED,    /* wrong values in an answer whose header says that it is said_length long */
-    DEVICE_RENAMED,     /* the right answer, but it names said_unit */
+    DEVICE_TWICE,       /* follows each answer, after late_ms, by one with the same transaction number and wrong values */
+    DEVICE_BEHIND,      /* precedes each answer by one with the previous request's transaction number and wrong values */
+    DEVICE_RESETTING,   /* accepts a request, then resets the connection */
+    DEVICE_SHORT,       /* sends the answer without its last byte */
+    DEVICE_LONG,        /* sends an answer whose count of values exceeds the request */
+    DEVICE_GARBAGE,     /* sends random bytes */
+    DEVICE_FOREIGN,     /* sends another unit's answer, with that unit's values */
+    DEVICE_MEASURED,    /* sends wrong values in an answer whose header gives the length said_length */
+    DEVICE_RENAMED,     /* sends the right answer with the unit number said_unit */
 };
 enum device_wire { DEVICE_TCP, DEVICE_RTU_TCP, DEVICE_LINE };
 #define DEVICE_WRONG_VALUE 0x7777
 
-struct modbus_device { /* set what you like before or while it runs */
+struct modbus_device { /* members may be set before the start or while the device runs */
     _Atomic int manner, late_ms;
-    _Atomic int bad_register, bad_code;  /* a request for this register is refused with this exception; code 0: none */
-    _Atomic int bad_times;               /* so often, then no more; 0: always */
-    _Atomic int said_length;             /* of DEVICE_MEASURED */
-    _Atomic int said_unit;               /* of DEVICE_RENAMED */
-    _Atomic int answers_per_connection;  /* then closes, or with `hushes` falls silent; 0: any number */
-    _Atomic bool hushes, resets;         /* resets: in place of closing */
-    _Atomic int deaf_ms;                 /* drops what comes sooner after connecting */
-    _Atomic int first_late_ms;           /* so long for the first answer of a connection */
-    _Atomic int away_ms;                 /* refuses connections for so long after one has ended */
-    _Atomic int idle_ms;                 /* closes a connection without a request for so long; 0: never */
-    _Atomic int mute_register;           /* a request for it is never answered; 0: none */
-    _Atomic int dead_unit;               /* refused with exception 11; 0: none */
-    _Atomic int dead_late_ms;            /* after so long, in which the device answers nobody */
-    _Atomic int silent_unit;             /* not answered; 0: none */
+    _Atomic int bad_register, bad_code;  /* exception code for requests that include this register; code 0: none */
+    _Atomic int bad_times;               /* number of such exceptions; 0: unlimited */
+    _Atomic int said_length;             /* length for DEVICE_MEASURED */
+    _Atomic int said_unit;               /* unit number for DEVICE_RENAMED */
+    _Atomic int answers_per_connection;  /* answers before the connection is closed, or with `hushes` falls silent; 0: unlimited */
+    _Atomic bool hushes, resets;         /* resets: resets connections instead of closing them */
+    _Atomic int deaf_ms;                 /* ignores requests that arrive sooner after connecting */
+    _Atomic int first_late_ms;           /* delay of a connection's first answer */
+    _Atomic int away_ms;                 /* refuses connections for this long after one has ended */
+    _Atomic int idle_ms;                 /* closes a connection that was idle for this long; 0: never */
+    _Atomic int mute_register;           /* requests for this register are never answered; 0: none */
+    _Atomic int dead_unit;               /* unit whose requests get exception 11; 0: none */
+    _Atomic int dead_late_ms;            /* delay of that exception, during which the device answers nobody */
+    _Atomic int silent_unit;             /* unit that never answers; 0: none */
     _Atomic int requests, refused, connections;
-    _Atomic int functions;               /* bit f: function code f was asked for */
-    _Atomic int most;                    /* registers or bits asked for at a time */
-    _Atomic int64_t last_ns, least_gap_ns; /* between an answer and the next request; least_gap_ns 0: not yet known */
-    enum device_wire wire;               /* before it starts; RTU knows unit 1 only */
-    const char *address;                 /* to listen at; NULL: 127.0.0.1 */
-    int port;                            /* 0: device_start chooses one */
-    char line[64];                       /* out: the terminal of DEVICE_LINE */
+    _Atomic int functions;               /* bit f: function code f was requested */
+    _Atomic int most;                    /* largest number of registers or bits in one request */
+    /* last_ns: time of the last answer; least_gap_ns: shortest pause between an answer and the next request, 0: not known yet */
+    _Atomic int64_t last_ns, least_gap_ns;
+    enum device_wire wire;               /* set before the start; RTU knows unit 1 only */
+    const char *address;                 /* address to listen on; NULL: 127.0.0.1 */
+    int port;                            /* port to listen on; 0: device_start() chooses one */
+    char line[64];                       /* output: path of DEVICE_LINE's terminal */
     struct device_thread *thread;
 };
 
 void device_start(struct modbus_device *device);
-void device_stop(struct modbus_device *device); /* connections are closed; may be started again */
+void device_stop(struct modbus_device *device); /* closes all connections; the device may be started again */
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Making glTF models. */
+/* Makes glTF models. */
 #include "tests/support/model_maker.h"
 
 #include <stdlib.h>
@@ -80,7 +80,7 @@ void maker_require(struct model_maker *maker, const char *extension)
     maker_add(maker, "extensionsUsed", json_string(extension));
 }
 
-/* Roots are the nodes that are nobody's children; the loader finds them where there is no scene. */
+/* Returns the JSON of the model. Its root nodes are those that are no node's child; the loader finds them without a scene. */
 static char *json_of(struct model_maker *maker, const char *uri)
 {
     json_t *buffers = json_object_get(maker->root, "buffers"), *first = json_array_get(buffers, 0);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* glTF models made piece by piece: JSON and bytes grow together. */
+/* Makes glTF models piece by piece: JSON and binary data grow together. */
 #ifndef TESTS_MODEL_MAKER_H
 #define TESTS_MODEL_MAKER_H
 #include <jansson.h>
@@ -18,20 +18,20 @@ struct model_maker {
 void maker_init(struct model_maker *maker);
 void maker_finish(struct model_maker *maker);
 
-/* Each returns the number of what it appended. Lists of the JSON are made as they are needed. */
+/* Functions that return int return the index of what they appended. Lists in the JSON are created as needed. */
 int maker_add(struct model_maker *maker, const char *list, json_t *object);
-int maker_view(struct model_maker *maker, const void *bytes, size_t count, int stride); /* stride 0: not stated */
+int maker_view(struct model_maker *maker, const void *bytes, size_t count, int stride); /* stride 0: not written */
 int maker_accessor(struct model_maker *maker, int view, int component_type, size_t count, const char *type);
 int maker_numbers(struct model_maker *maker, const void *bytes, size_t size, int component_type, size_t count,
-                  const char *type); /* with its view */
+                  const char *type); /* appends the view as well */
 int maker_mesh(struct model_maker *maker, json_t *primitive);
-int maker_node(struct model_maker *maker, const char *name, int mesh, json_t *more); /* a root; more: further properties, or NULL */
+int maker_node(struct model_maker *maker, const char *name, int mesh, json_t *more); /* a root node; more: further properties, or NULL */
 void maker_require(struct model_maker *maker, const char *extension);
 json_t *maker_get(struct model_maker *maker, const char *list, int number);
 
-/* The file, to be freed with mem_free: a GLB, or JSON with its buffer in a data URI. */
+/* Return the file; the caller frees it with mem_free: a GLB, or JSON with its buffer in a data URI. */
 char *maker_glb(struct model_maker *maker, size_t *size);
-/* A GLB file of one node with this mesh; mem_free. */
+/* Returns a GLB file with one node that has this mesh; mem_free. */
 char *maker_glb_of(const struct cad *cad, const char *node, size_t *size);
 char *maker_gltf(struct model_maker *maker, size_t *size);
 char *maker_data_uri(const char *kind, const void *bytes, size_t count);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Making models of a rolling sheet. */
+/* Makes models of one wavy sheet in all encodings of glTF. */
 #include "tests/support/model_seeds.h"
 
 #include <math.h>
@@ -43,7 +43,7 @@ void sheet_finish(struct wavy_sheet *s)
     mem_free(s->indices);
 }
 
-/* --- pieces -------------------------------------------------------------------------------------------------------------- */
+/* --- building blocks ----------------------------------------------------------------------------------------------------- */
 
 static int positions(struct model_maker *m, const struct wavy_sheet *s)
 {
@@ -76,7 +76,7 @@ static void finish(struct model_maker *m, struct seed *seed)
     maker_finish(m);
 }
 
-/* --- ways to say it ------------------------------------------------------------------------------------------------------ */
+/* --- encodings ----------------------------------------------------------------------------------------------------------- */
 
 static void data_uri(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
@@ -106,7 +106,7 @@ static void indices16(struct model_maker *m, const struct wavy_sheet *s, struct 
     finish(m, seed);
 }
 
-/* One strip per row of squares, each a primitive over the same vertices. */
+/* One triangle strip per row of squares, each a primitive over the same vertices. */
 static void strips(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int at = positions(m, s), mesh = maker_mesh(m, json_null());
@@ -126,7 +126,7 @@ static void strips(struct model_maker *m, const struct wavy_sheet *s, struct see
     finish(m, seed);
 }
 
-/* Each square a fan of four corners, all fans by the same indices; and lines and points that are passed over. */
+/* Each square is a fan of four corners; all fans use the same index accessor. Also adds lines and points, which must be ignored. */
 static void fans(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int mesh = maker_mesh(m, json_null()), list = maker_numbers(m, (uint8_t[4]){ 0, 1, 2, 3 }, 4, UBYTE, 4, "SCALAR");
@@ -148,7 +148,7 @@ static void fans(struct model_maker *m, const struct wavy_sheet *s, struct seed 
     finish(m, seed);
 }
 
-/* Three corners per triangle, no indices; bytes interleaved. */
+/* Three vertices per triangle, without indices; attributes interleaved. */
 static void soup(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     float(*corners)[6] = mem_array(s->index_count, sizeof(*corners));
@@ -164,7 +164,7 @@ static void soup(struct model_maker *m, const struct wavy_sheet *s, struct seed 
     finish(m, seed);
 }
 
-/* Positions all zero, but for a sparse part that names every one of them. */
+/* All positions are zero, and a sparse accessor replaces every one of them. */
 static void sparse(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     uint32_t *all = mem_array(s->vertex_count, sizeof(*all));
@@ -180,7 +180,7 @@ static void sparse(struct model_maker *m, const struct wavy_sheet *s, struct see
     finish(m, seed);
 }
 
-/* 16-bit positions, stretched by the node; 8-bit normals; 16-bit texture coordinates. */
+/* 16-bit positions, scaled by the node; 8-bit normals; 16-bit texture coordinates. */
 static void quantized(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int16_t(*at)[4] = mem_array(s->vertex_count, sizeof(*at));
@@ -211,7 +211,7 @@ static void quantized(struct model_maker *m, const struct wavy_sheet *s, struct 
 
 /* --- meshopt ------------------------------------------------------------------------------------------------------------- */
 
-/* A view whose bytes lie compressed in buffer 0, and plainly nowhere: buffer 1 only says how many there would be. */
+/* Appends a buffer view that exists compressed only, in buffer 0; buffer 1 has no data and only gives the uncompressed size. */
 static int packed_view(struct model_maker *m, const void *bytes, size_t count, size_t stride, const char *mode, const char *filter)
 {
     bool list = strcmp(mode, "TRIANGLES") == 0, sequence = strcmp(mode, "INDICES") == 0;
@@ -267,7 +267,7 @@ static void meshopt_filters(struct model_maker *m, const struct wavy_sheet *s, s
     finish(m, seed);
 }
 
-/* Two instances, one turned upside down by a quaternion that went through its filter. */
+/* Two instances; one is rotated upside down by a quaternion that was encoded with meshopt's filter. */
 static void meshopt_instances(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     const float turns[2][4] = { { 0, 0, 0, 1 }, { 1, 0, 0, 0 } }, places[2][3] = { { 0, 0, 0 }, { 0, 0, 5 } };
@@ -317,7 +317,7 @@ static void draco_sequential(struct model_maker *m, const struct wavy_sheet *s, 
 
 /* --- trees, instances, materials ----------------------------------------------------------------------------------------- */
 
-/* Shared meshes: plain, mirrored, deep in a tree, by a matrix. */
+/* Shared meshes: plain, mirrored, deep in a node tree, and placed by a matrix. */
 static void tree(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int mesh = maker_mesh(m, plain_primitive(m, s));
@@ -344,7 +344,7 @@ static void instances(struct model_maker *m, const struct wavy_sheet *s, struct 
     finish(m, seed);
 }
 
-/* 2 x 2 pixels: red, green / blue, white. */
+/* PNG of 2 x 2 pixels: red, green / blue, white. */
 static const unsigned char png[] = {
     137, 80,  78,  71, 13,  10,  26,  10,  0,   0,   0,   13,  73,  72, 68, 82, 0,   0,   0,  2,   0,   0,   0,   2,  8,
     2,   0,   0,   0,  253, 212, 154, 115, 0,   0,   0,   18,  73,  68, 65, 84, 120, 218, 99, 248, 207, 192, 192, 0,  194,
@@ -382,7 +382,7 @@ static void textured_by_uri(struct model_maker *m, const struct wavy_sheet *s, s
     finish(m, seed);
 }
 
-/* On two sets of coordinates, and once more on the second in a way of its own. */
+/* Textures on two sets of texture coordinates; a second texture uses the second set with a transform of its own. */
 static void textured_twice(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int image = maker_add(m, "images", json_pack("{s:i,s:s}", "bufferView", maker_view(m, png, sizeof(png), 0), "mimeType", "image/png"));

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Models of a rolling sheet, one for each way in which glTF can say it. */
+/* Models of one wavy sheet, one for each encoding of glTF. */
 #ifndef TESTS_MODEL_SEEDS_H
 #define TESTS_MODEL_SEEDS_H
 #include <stddef.h>
 #include <stdint.h>
 
-struct wavy_sheet { /* a grid of across x up squares over 2 m x 1 m, rolling along x; every array has vertex_count or index_count items */
+struct wavy_sheet { /* a grid of across x up squares over 2 m x 1 m, wavy along x; every array has vertex_count or index_count items */
     uint32_t across, up, vertex_count, index_count;
     float (*positions)[3], (*normals)[3], (*texcoords)[2];
     uint8_t (*colors)[4];
@@ -18,14 +18,14 @@ void sheet_finish(struct wavy_sheet *sheet);
 enum { SEED_COUNT = 19 };
 
 struct seed {
-    const char *name;   /* of its file */
-    uint32_t triangles; /* of all nodes together */
-    double tolerance_m; /* of its positions */
-    char *bytes;        /* mem_free */
+    const char *name;   /* file name */
+    uint32_t triangles; /* number of triangles in all nodes together */
+    double tolerance_m; /* tolerance of the positions in metres */
+    char *bytes;        /* free with mem_free */
     size_t size;
 };
 
-/* Makes the seed of that number from a sheet of at most 65535 vertices. */
+/* Makes seed number `number` from a sheet of at most 65535 vertices. */
 void seed_make(struct seed *seed, int number, const struct wavy_sheet *sheet);
 
 #endif

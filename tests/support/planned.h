@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plans for one use: what of a view is drawn, begun or asked for once. Thread: the one of the GL context. */
+/* Plans for single use: draws a view, begins drawing it, or asks about it once. Thread: that of the GL context. */
 #ifndef TESTS_SUPPORT_PLANNED_H
 #define TESTS_SUPPORT_PLANNED_H
 #include "render/plan/frame_planner.h"
@@ -37,7 +37,7 @@ static inline struct split_view *planned_split(struct renderer *renderer, const 
     return split;
 }
 
-/* What frame->content would be now. */
+/* Returns the frame->content that drawing the view now would give. */
 static inline uint64_t planned_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     struct split_plan *plan = split_view_plan(renderer, view, snapshot, INT64_MAX);

@@ -4,12 +4,12 @@
 #define TESTS_PLANT_BY_HAND_H
 #include "plant/plant.h"
 
-/* Room for at most max_tags tags and 16 sources; none yet. */
+/* Returns an empty plant with room for max_tags tags and 16 sources. */
 struct plant *plant_by_hand_create(size_t max_tags);
 void plant_by_hand_destroy(struct plant **plant);
-/* Modbus at 127.0.0.1:port, unit 1, polled every 100 ms, timeout 2 s. */
+/* Adds a Modbus source at 127.0.0.1:port, unit 1, polled every 100 ms, timeout 2 s. */
 struct plant_source *plant_by_hand_source(struct plant *plant, const char *id, int port);
-/* Of the newest source; a whole register, not scaled, stale after 5 s; ABCD where it takes more than one register. */
+/* Adds a tag to the newest source: unscaled, stale after 5 s, byte order ABCD if it takes more than one register. */
 struct plant_tag *plant_by_hand_tag(struct plant *plant, const char *name, enum register_table table, int register_index,
                                     enum data_type type);
 

@@ -1,28 +1,28 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant file and a tag list in a folder of their own, loaded, and what must be found in them. For cmocka tests. */
+/* A plant file and a tag list in a folder of their own, loaded, and assertions on what was found in them. For cmocka tests. */
 #ifndef TESTS_PLANT_CASE_H
 #define TESTS_PLANT_CASE_H
 #include "plant/plant.h"
 
 struct plant_case {
-    char *folder, *path; /* FOLDER/plant.yaml; FOLDER/m.glb is there to be a model */
-    struct plant *plant; /* NULL: there were errors */
+    char *folder, *path; /* path: FOLDER/plant.yaml; FOLDER/m.glb exists, to be used as a model */
+    struct plant *plant; /* NULL: loading found errors */
     struct diag diag;
 };
 
 int plant_case_set_up(void **state);
 int plant_case_tear_down(void **state);
-/* Writes both files (the list as tags.csv) and loads them in place of what was loaded before. */
+/* Writes both files (the list as tags.csv) and loads them in place of those loaded before. */
 void plant_case_load(struct plant_case *c, const char *yaml, const char *csv);
 void plant_case_forget(struct plant_case *c);
 void plant_case_assert_loaded(struct plant_case *c, int warnings);
 
 struct expected_finding {
-    const char *file; /* the end of its path */
+    const char *file; /* end of the file's path */
     int line, column;
     const char *words; /* part of its text */
 };
-/* These were found and no others. */
+/* Asserts that exactly these findings were reported. */
 void plant_case_assert_found(const struct plant_case *c, const struct expected_finding *expected, size_t count);
 #define FOUND(c, ...) \
     plant_case_assert_found(c, (const struct expected_finding[]){ __VA_ARGS__ }, \

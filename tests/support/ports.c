@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Port numbers for programs that must be told theirs. */
+/* Port numbers for programs that cannot choose their own. */
 #include "tests/support/ports.h"
 
 #include <netinet/in.h>
@@ -9,7 +9,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/* As in tests/e2e/support/ports.mjs. Below the ports that the system gives away by itself (net.ipv4.ip_local_port_range begins at
+/* As in tests/e2e/support/ports.mjs. Below the system's own range for outgoing connections (net.ipv4.ip_local_port_range begins at
    32768). */
 enum { FIRST = 20000, COUNT = 1500, EACH = 4, LOCKS = FIRST + COUNT * EACH };
 
@@ -30,10 +30,11 @@ int free_port(void)
         unsigned chance = 0;
         if (getrandom(&chance, sizeof(chance), 0) != sizeof(chance))
             break;
-        int n = (int)(chance % COUNT), lock = listen_at(LOCKS + n, INADDR_LOOPBACK); /* held until the process ends, however it ends */
+        /* lock, held until the process ends, however it ends */
+        int n = (int)(chance % COUNT), lock = listen_at(LOCKS + n, INADDR_LOOPBACK);
         if (lock < 0)
             continue;
-        int probe = listen_at(FIRST + n * EACH, INADDR_ANY); /* somebody else may listen */
+        int probe = listen_at(FIRST + n * EACH, INADDR_ANY); /* another program may listen there */
         if (probe >= 0) {
             close(probe);
             return FIRST + n * EACH;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Running plantcast-prep. */
+/* Runs plantcast-prep. */
 #include "tests/support/prep_case.h"
 
 #include <dirent.h>

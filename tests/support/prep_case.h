@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A folder with a plant in it, and plantcast-prep run on that. */
+/* A folder with a plant in it, and runs of plantcast-prep on it. */
 #ifndef TESTS_PREP_CASE_H
 #define TESTS_PREP_CASE_H
 #include <jansson.h>
@@ -9,29 +9,30 @@
 
 struct prep_case {
     char *folder, *plant;  /* plant: FOLDER/plant.yaml */
-    struct text out, err;  /* of the last run */
+    struct text out, err;  /* output of the last run */
 };
 
-/* For cmocka's set-up and tear-down: *state is the case. Nothing is in the folder yet. */
+/* Set-up and tear-down for cmocka; *state is the case. The folder is empty at first. */
 int prep_case_set_up(void **state);
 int prep_case_tear_down(void **state);
 
-/* plant.yaml, tags.csv (rows after the usual header: tag, address, type, source, group, asset, node, x, y, z). */
+/* prep_case_plant() writes plant.yaml; prep_case_tags() writes tags.csv, with the usual header: tag, address, type, source, group,
+   asset, node, x, y, z. */
 void prep_case_plant(struct prep_case *c, const char *yaml);
 void prep_case_tags(struct prep_case *c, const char *rows);
 
-/* Runs plantcast-prep with these arguments in a shell, where $PLANT is the plant file and $FOLDER its folder. Skips the test if there is
-   no program. The exit status; expect fails on another one. */
+/* prep_case_run() runs plantcast-prep with these arguments in a shell, where $PLANT is the plant file and $FOLDER its folder, and
+   returns the exit status. Skips the test if the program is not built. prep_case_expect() fails if the status differs. */
 int prep_case_run(struct prep_case *c, const char *arguments);
 void prep_case_expect(struct prep_case *c, const char *arguments, int status);
-char *prep_case_program(void); /* its path; skips if there is none. mem_free */
+char *prep_case_program(void); /* returns the program's path (mem_free); skips the test if it is not built */
 
 void prep_case_read(struct prep_case *c, const char *name, struct text *to);
-/* The one file of the kind (its ending) that was prepared, and the key that it is named by; mem_free. */
+/* Returns the path (mem_free) of the only prepared file with that ending; *key: the key in its name. */
 char *prep_case_file(const struct prep_case *c, const char *ending, uint64_t *key);
 void prep_case_says(const struct text *text, const char *words);
 json_t *prep_case_json(const struct text *text);
-/* The number at a path such as "assets.0.surface.bridges"; fails where there is none. */
+/* Returns the number at a path such as "assets.0.surface.bridges"; fails if there is none. */
 double prep_case_number(const json_t *root, const char *path);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replaying seeds. */
+/* Replays the seeds of a fuzzer. */
 #include "tests/support/replay.h"
 
 #include <dirent.h>
@@ -13,7 +13,8 @@
 
 #define MAX_BYTES ((size_t)1 << 20)
 
-/* One byte, a run of them, a digit, or the end. Lengths stay as they are but for the last: what a header says of them then still fits. */
+/* Changes one byte, a run of bytes, a digit, or cuts off the end. Only the last changes the length, so that lengths in headers stay
+   valid otherwise. */
 static size_t change(uint8_t *bytes, size_t count)
 {
     if (count == 0)
@@ -46,7 +47,7 @@ static void replay(const char *path, int rounds, int (*feed)(const uint8_t *byte
         uint8_t *bytes = mem_array(count + 1, 1);
         size_t length = count;
         memcpy(bytes, seed, count);
-        srand((unsigned)round); /* one round can be repeated alone */
+        srand((unsigned)round); /* so that a single round can be repeated */
         for (int changes = rand() % 4; changes >= 0; changes--)
             length = change(bytes, length);
         feed(bytes, length);

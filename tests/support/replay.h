@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A fuzzer's seeds, and what random changes make of them, fed to its function. */
+/* Feeds a fuzzer's seeds, and random changes of them, to its function. */
 #ifndef TESTS_REPLAY_H
 #define TESTS_REPLAY_H
 #include <stddef.h>
 #include <stdint.h>
 
-/* Every file of the folder, as it is and changed in `rounds` ways, the same at every run. How many files there were; -1: no folder. */
+/* Feeds every file of the folder unchanged, and changed in `rounds` ways that are the same in each run. Returns the number of files; -1:
+   the folder does not exist. */
 int replay_folder(const char *folder, int rounds, int (*feed)(const uint8_t *bytes, size_t count));
 
 #endif

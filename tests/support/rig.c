@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contexts, stands and pixels for GL tests. */
+/* GL contexts, stands and pixels for GL tests. */
 #include "tests/support/rig.h"
 
 #include <errno.h>
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* so that the hash state can be on the stack */
 #include <xxhash.h>
 
 #include "base/mem.h"
@@ -50,7 +50,8 @@ int rig_run(struct rig *rig)
     return failed;
 }
 
-/* Where tests/run lets programs share what costs much and is the same for all: by what the file in it depends on of a toy. NULL: alone. */
+/* Returns the folder in which tests/run lets programs share expensive results: named after a hash of what they depend on. NULL: nothing
+   is shared. */
 static char *shared_folder(const struct scene *scene)
 {
     const char *shared = getenv("PLANTCAST_SHARED");
@@ -119,7 +120,7 @@ static uint32_t color_hash(uint32_t r, uint32_t g, uint32_t b)
 
 int map_index_exact(const struct colormap *map, const uint8_t *bgrx)
 {
-    enum { SLOTS = 1024 }; /* by a colour's hash, and behind one that is taken; the first of several equal colours */
+    enum { SLOTS = 1024 }; /* hash table by colour with linear probing; the first of equal colours is found */
     static const struct colormap *known;
     static int16_t places[SLOTS];
     if (known != map) {
@@ -158,7 +159,7 @@ int map_colors_off(const struct colormap *map, const uint8_t *bgrx, double place
     return -1;
 }
 
-/* Linear light as a deuteranope sees it (Machado, Oliveira, Fernandes 2009, severity 1). */
+/* Converts linear RGB to what a deuteranope sees (Machado, Oliveira, Fernandes 2009, severity 1). */
 static void see_without_green(double c[3])
 {
     double r = 0.367322 * c[0] + 0.860646 * c[1] - 0.227968 * c[2], g = 0.280085 * c[0] + 0.672501 * c[1] + 0.047413 * c[2];
@@ -168,7 +169,7 @@ static void see_without_green(double c[3])
     c[2] = fmin(fmax(b, 0), 1);
 }
 
-/* sRGB to CIELAB, D65; written apart from the palette's. */
+/* Converts sRGB to CIELAB (D65); independent of the code of the palette. */
 static void lab_of(double r, double g, double b, bool deuteranope, double lab[3])
 {
     double rgb[3] = { r / 255, g / 255, b / 255 }, f[3];
@@ -191,7 +192,7 @@ int map_index_nearest(const struct colormap *map, const uint8_t *bgrx, bool deut
     static bool known_deuteranope;
     static double labs[256][3];
     static struct {
-        uint32_t color; /* with a bit that says that there is one */
+        uint32_t color; /* colour, with a bit that marks the entry as used */
         int nearest;
     } found[1 << 16];
     double lab[3], least = INFINITY;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One session on the small scene, without socket, clock or painter. */
+/* Fixture of one session on the small scene, without socket, clock or render service. */
 #include "tests/support/session_case.h"
 
 #include "base/clock.h"

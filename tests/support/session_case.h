@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One session on the small scene, without socket, clock or painter. */
+/* Fixture of one session on the small scene, without socket, clock or render service. */
 #ifndef TESTS_SESSION_CASE_H
 #define TESTS_SESSION_CASE_H
 #include "session/session.h"
@@ -12,11 +12,11 @@ struct session_case {
     bool up[1];
     struct session *session;
     int64_t now_ns;
-    uint64_t number;               /* of the last picture */
-    char resume[RESUME_CHARS + 1]; /* of the last welcome that the test looked at */
+    uint64_t number;               /* number of the last picture */
+    char resume[RESUME_CHARS + 1]; /* resume secret of the last welcome that the test read */
 };
 
-/* For cmocka: the state is a struct session_case. */
+/* Set-up and tear-down for cmocka; the state is a struct session_case. */
 int session_case_set_up(void **state);
 int session_case_tear_down(void **state);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plates, boxes and cylinders. */
+/* Builds plates, boxes and cylinders. */
 #include "tests/support/shape.h"
 
 #include <math.h>
@@ -48,7 +48,7 @@ static void cross(const double a[3], const double b[3], double out[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* A (columns + 1) x (rows + 1) grid of vertices that were just added, row by row. */
+/* Adds the triangles of a (columns + 1) x (rows + 1) grid of vertices that were just added, row by row. */
 static void add_grid(struct test_shape *shape, uint32_t first, int columns, int rows)
 {
     for (int y = 0; y < rows; y++)
@@ -95,7 +95,7 @@ void shape_box(struct test_shape *shape, uint32_t material, const double low[3],
     end(shape);
 }
 
-struct curve_point { /* a curve around the axis: how far along, how far out, and its normal */
+struct curve_point { /* a point of a profile curve around the axis: position along the axis, radius, and normal */
     double along, out, normal_along, normal_out;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simple solids for tests: triangles in metres, Z up, each call one primitive. */
+/* Simple solids for tests: triangles in metres, Z up; each call adds one primitive. */
 #ifndef TESTS_SUPPORT_SHAPE_H
 #define TESTS_SUPPORT_SHAPE_H
 #include <stddef.h>
@@ -11,7 +11,7 @@ struct test_shape { /* zero-initialise */
     float (*positions)[3], (*normals)[3];
     uint32_t *indices;
     struct asset_primitive *primitives;
-    /* What it wears, the caller's; NULL: those of toy.h, and no textures. */
+    /* Materials and textures, owned by the caller; NULL: those of toy.h, without textures. */
     const struct asset_material *materials;
     const struct asset_texture *textures;
     const uint8_t *texels;
@@ -21,12 +21,12 @@ struct test_shape { /* zero-initialise */
     size_t position_capacity, normal_capacity, index_capacity, primitive_capacity;
 };
 
-/* A grid of n x n squares in a plane through `corner`, along u and v; its normal is u x v. */
+/* Adds a grid of n x n squares in a plane through `corner`, along u and v; its normal is u x v. */
 void shape_plate(struct test_shape *shape, uint32_t material, const double corner[3], const double u[3], const double v[3], int n);
 void shape_box(struct test_shape *shape, uint32_t material, const double low[3], const double high[3]);
-/* From a to b; the radius goes from ra to rb. Round caps where round is set, else flat. */
+/* Adds a cylinder or cone from a to b; the radius goes from ra to rb. round: not 0 for round caps, 0 for flat ones. */
 void shape_cylinder(struct test_shape *shape, uint32_t material, const double a[3], const double b[3], double ra, double rb, int round);
-/* A ball of 2 n x n squares. */
+/* Adds a sphere of 2 n x n squares. */
 void shape_sphere(struct test_shape *shape, uint32_t material, const double middle[3], double radius, int n);
 void shape_finish(struct test_shape *shape);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plants from files. */
+/* Loads whole plants from files. */
 #include "tests/support/site.h"
 
 #include <math.h>
@@ -44,7 +44,7 @@ static char *prepared(const char *path, const char *name)
     return folder;
 }
 
-/* Each within its group's range. */
+/* Fills in random readings, each within its group's range. */
 static void fill(struct site *site)
 {
     for (size_t i = 0; i < site->plant->tag_count; i++) {

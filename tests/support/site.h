@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A whole plant from its file, prepared, on a renderer, with random readings. */
+/* A whole plant from its file, prepared, with a renderer and random readings. */
 #ifndef TESTS_SUPPORT_SITE_H
 #define TESTS_SUPPORT_SITE_H
 #include "tests/support/rig.h"
 
-#define SITE_DEMO "build/demo/plant.yaml" /* `make demo` has prepared it */
+#define SITE_DEMO "build/demo/plant.yaml" /* prepared by `make demo` */
 
 struct site {
     struct rig *rig;
@@ -16,11 +16,12 @@ struct site {
     uint64_t random;
 };
 
-bool site_is_there(const char *model); /* in ../shared/data/models */
-/* name: of the folder that it is prepared into, once for all who run at a time; NULL: it is prepared already. False: failed. */
+bool site_is_there(const char *model); /* returns whether ../shared/data/models has the model */
+/* Loads the plant. name: of the folder into which it is prepared, once for all programs that run at a time; NULL: it is prepared
+   already. Returns false on failure. */
 bool site_init(struct site *site, struct rig *rig, const char *path, const char *name);
 void site_finish(struct site *site);
-/* The camera: from a random side of a random asset with a field; `away` times as far as it is large. */
+/* Sets the camera: from a random side of a random asset with a field, at `away` times the asset's size. */
 void site_look_at_some(struct site *site, double away, struct view *view);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Waits for what other threads and programs do. Thread: any. */
+/* Waits for other threads and programs. Thread: any. */
 #ifndef TESTS_SLEEP_H
 #define TESTS_SLEEP_H
 #include <errno.h>

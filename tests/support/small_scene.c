@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A scene in static memory. The protocol's vectors name its groups and its assets. */
+/* A scene in static memory. The protocol's test vectors name its groups and assets. */
 #include "tests/support/small_scene.h"
 
 #include <math.h>
@@ -81,11 +81,11 @@ static struct plant plant = {
     .source_count = 1,
     .tag_count = 3,
 };
-/* As much of an asset file as distances need: three vertices and two sensors. */
+/* The part of an asset file that distances need: three vertices and two sensors. */
 static struct asset_header header = { .vertex_count = 3, .sensor_count = 2 };
 static const float positions_m[3][3] = { { -2.5f, 0, 2.375f }, { 2.5f, 0, 2.375f }, { 0, 0, 0.5f } };
 static const struct asset_sensor file_sensors[2] = { { .surface_m = { -2.5f, 0, 2.375f } }, { .surface_m = { 2.5f, 0, 2.375f } } };
-/* 0, 7 and none from the one; 7, 0 and 4 m from the other. */
+/* Distances of the vertices: 0 m, 7 m and unreachable from the first sensor; 7 m, 0 m and 4 m from the second. */
 static const uint16_t geodesic[2 * ASSET_DISTANCE_BLOCK] = { 0, 0x8e00, ASSET_DISTANCE_NONE, [ASSET_DISTANCE_BLOCK] = 0x8e00, 0, 0x8800 };
 static struct asset file = { .view = { .header = &header, .positions_m = positions_m, .sensors = file_sensors, .geodesic = geodesic } };
 static struct scene_sensor sensors[] = {

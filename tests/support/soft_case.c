@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames drawn twice, and compared. */
+/* Draws frames in software and with GL, and compares them. */
 #include "tests/support/soft_case.h"
 
 #include <math.h>

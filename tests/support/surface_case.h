@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What tests of distances along surfaces have in common: a log of errors, threads, and chance from a seed that is printed. */
+/* Shared parts of tests of distances along surfaces: an error log, worker threads, and random numbers with a printed seed. */
 #ifndef TESTS_SURFACE_CASE_H
 #define TESTS_SURFACE_CASE_H
 #include "base/log/log.h"
@@ -10,7 +10,7 @@ extern struct log *the_log;
 extern struct workers *workers;
 extern struct cad_random chance;
 
-/* Of a group of cmocka's tests. */
+/* Set-up and tear-down of a cmocka group. */
 int surface_case_set_up(void **state);
 int surface_case_tear_down(void **state);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How far tests go through what has no end: random views, shapes, faults. In full where PLANTCAST_LONG=1 (`make test-long`). */
+/* How far tests go through endless sets of random views, shapes or faults: completely if PLANTCAST_LONG=1 (`make test-long`). */
 #ifndef TESTS_SWEEP_H
 #define TESTS_SWEEP_H
 #include <stdbool.h>
@@ -14,21 +14,21 @@ static inline bool sweep_is_whole(void)
     return value && value[0] == '1';
 }
 
-/* Returns how many to try: `whole` in full, otherwise `part`. */
+/* Returns how many items to try: `whole` in a long run, otherwise `part`. */
 static inline int sweep(int whole, int part)
 {
     return sweep_is_whole() ? whole : part;
 }
 
-/* Returns whether item i of a row is tried: in full each, otherwise every n-th, another one of them in each row, so that over n rows
-   each item has its turn. */
+/* Returns whether item i of a row is tried: every item in a long run, otherwise every n-th, with another offset in each row, so that n
+   rows together try each item. */
 static inline bool sweep_takes(int row, int i, int n)
 {
     return sweep_is_whole() || i % n == row % n;
 }
 
-/* Returns where a test's random numbers begin, and prints it: as PLANTCAST_SEED says; else by default always the same, so that what fails
-   fails again, and in full another one in each run. */
+/* Returns the seed of a test's random numbers and prints it: PLANTCAST_SEED if set; otherwise always the same by default, so that
+   failures repeat, and another one in each long run. */
 static inline uint64_t sweep_seed(void)
 {
     const char *given = getenv("PLANTCAST_SEED");

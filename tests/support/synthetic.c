@@ -11,7 +11,7 @@
 #include "protocol/asset_distance.h"
 #include "value/quality.h"
 
-uint64_t synthetic_random(uint64_t *state) /* splitmix64 */
+uint64_t synthetic_random(uint64_t *state) /* the splitmix64 generator */
 {
     uint64_t z = *state += 0x9e3779b97f4a7c15u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -32,7 +32,7 @@ static float along_axes(const float a[3], const float b[3])
 static void build_file(struct synthetic *synthetic, const struct synthetic_params *params)
 {
     static const float box_m[3] = { 10, 6, 4 };
-    static const uint32_t indices[3] = { 0, 0, 0 }; /* no area: what lies between vertices is not looked at */
+    static const uint32_t indices[3] = { 0, 0, 0 }; /* a triangle without area: only vertices are used */
     static const struct asset_primitive primitive = { .index_count = 3 };
     static const struct asset_material material = {
         .roughness = 1,

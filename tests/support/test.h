@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Declares the tests of a program. A test registers itself, so that no list can leave one out; tests run in the order of the file. */
+/* Declares the tests of a program. Each test registers itself, so that none can be forgotten; tests run in the order of the file. */
 #ifndef TESTS_SUPPORT_TEST_H
 #define TESTS_SUPPORT_TEST_H
 #include <setjmp.h>
@@ -34,7 +34,7 @@
     }                                                                                                                                      \
     static void name##_on(__attribute__((unused)) argument)
 
-/* Names the fixtures of the whole program: functions that run before its first and after its last test, or NULL. */
+/* Sets the fixtures of the whole program: functions that run before its first and after its last test, or NULL. */
 #define TEST_GROUP(set_up, tear_down)                                                                                                      \
     __attribute__((constructor)) static void group_is_registered(void)                                                                     \
     {                                                                                                                                      \
@@ -45,8 +45,8 @@
 void test_add(const struct CMUnitTest *test, int line);
 void test_group(CMFixtureFunction set_up, CMFixtureFunction tear_down);
 
-/* Runs the tests of this program and prints TAP. Returns how many failed. name: of the group, or NULL for the program's. A program without
- * a main of its own gets one that calls this with NULL. */
+/* Runs the tests of this program and prints TAP. Returns the number of failures. name: of the group, or NULL for the program's name. A
+   program without main() gets one that calls this with NULL. */
 int tests_run(const char *name);
 
 #endif

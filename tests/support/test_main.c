@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The main of a test program that has none of its own: the linker takes it from the archive then, and only then. */
+/* main() for test programs that have none: the linker takes this object from the archive only then. */
 #include "tests/support/test.h"
 
 int main(void)

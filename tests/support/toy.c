@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plants without files. */
+/* Plants made in memory, without files. */
 #include "tests/support/toy.h"
 
 #include <float.h>
@@ -143,7 +143,8 @@ static struct asset *make_file(const char *id, const struct test_shape *shape, c
     }
     file->path = mem_strdup(id);
     file->closed = mem_array(file->view.header->level_count, sizeof(*file->closed));
-    file->resolved_levels = UINT64_MAX; /* few triangles, so that tests are quick: no mark says so */
+    /* few triangles keep tests quick; claiming that all levels are resolved keeps frames free of the mark for inexact fields */
+    file->resolved_levels = UINT64_MAX;
     file->refs = 1;
     mem_free(distances);
     return file;
@@ -200,7 +201,7 @@ static void find_bounds(struct scene_asset *asset)
     }
 }
 
-/* Takes the file. */
+/* Adds an asset; takes ownership of the file. */
 static int add(struct toy *toy, const char *id, struct asset *file, const double placement[16])
 {
     int index = (int)toy->scene.asset_count++;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant made in memory, for tests of what comes after preprocessing: assets from shapes, with real asset files. */
+/* A plant made in memory, for tests of everything after preprocessing: assets from shapes, with real asset files. */
 #ifndef TESTS_SUPPORT_TOY_H
 #define TESTS_SUPPORT_TOY_H
 #include "scene/scene.h"
@@ -13,23 +13,24 @@ struct toy {
     struct scene scene;
 };
 
-/* One group, "temperature", 0..100 degC, shepard, geodesic. */
+/* Returns a plant with one group: "temperature", 0..100 degC, Shepard interpolation, distances along surfaces. */
 struct toy *toy_create(void);
 void toy_destroy(struct toy **toy);
-/* Takes the shape's content and leaves it empty. at_m: where its origin stands. Sensors: places in the shape's own frame. Tags are
-   named ASSET-1, ASSET-2, ... Distances are straight lines from the nearest vertex. Returns the asset's index. */
+/* Adds an asset; takes the shape's content and leaves it empty. at_m: position of its origin. Sensors: positions in the shape's own
+   frame. Tags are named ASSET-1, ASSET-2, ... Distances are straight lines from the nearest vertex. Returns the asset's index. */
 int toy_add(struct toy *toy, const char *id, struct test_shape *shape, const double at_m[3], const double (*sensors)[3],
             size_t sensor_count);
-/* Another one of asset `of`, with its own sensors likewise; plant_from_shape: column-major, without shear. Returns its index. */
+/* Adds another instance of asset `of`, with its own tags at the same places; plant_from_shape: column-major, without shear. Returns its
+   index. */
 int toy_add_again(struct toy *toy, const char *id, int of, const double plant_from_shape[16]);
-/* After the last asset: readings for every tag, all Bad_WaitingForInitialData. */
+/* Call it after the last asset. Returns readings for every tag, all Bad_WaitingForInitialData. */
 struct snapshot *toy_snapshot(const struct toy *toy);
 void toy_set(struct snapshot *snapshot, int tag, double value, uint32_t quality);
 
-/* Of the eight tags of toy_unit: values, one beyond the range, one that is uncertain and one that is bad; `more` is added to all. */
+/* Sets the eight tags of toy_unit(): one value is beyond the range, one is uncertain and one is bad; `more` is added to all. */
 void toy_fill(struct snapshot *snapshot, double more);
 
-/* An exchanger with 5 sensors on saddles, a tank with 3, pipes and a pump without. */
+/* Returns a plant with a heat exchanger with 5 sensors on saddles, a tank with 3, and pipes and a pump without sensors. */
 struct toy *toy_unit(void);
 
 #endif

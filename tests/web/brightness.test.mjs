@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How bright a wall is: darker within its hours, across midnight too, and never while an alarm calls.
+// Brightness of a wall: darker within its hours, also across midnight, and never while an alarm is shown.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { brightness } from '../../clients/web/core/wall.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The camera's mathematics: what must stay put stays put, the horizon stays level, and what should fit fits.
+// The camera's mathematics: fixed points stay fixed, the horizon stays level, and boxes fit into the picture.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { basis, besideLegend, home, LEAST_M, projector, same, valid } from '../../clients/web/core/camera.js';
@@ -184,13 +184,13 @@ test('a point is faced from its own side, level, a little from above', () => {
     const north = face(camera, [2, 9, 3], box, 4);
     closeTo(north.eye, [2, 9 + 4 * Math.cos(Math.PI / 9), 3 + 4 * Math.sin(Math.PI / 9)]);
     closeTo(north.target, [2, 9, 3]);
-    const side = face(camera, [8, 8, 5], box, 4); // near one end, but on the long side
+    const side = face(camera, [8, 8, 5], box, 4); // near one end of the box, but on its long side
     assert.ok(side.eye[1] - 8 > 2 * (side.eye[0] - 8));
     const above = face(camera, [2, 4, 9], box, 4);
     assert.ok(valid(above) && dot(subtract(above.eye, above.target), subtract(camera.eye, camera.target)) > 0, 'on top: from where one is');
 });
 
-// How much of the window's limiting side places take, and the rims there.
+// Returns how much of the window's limiting side the points fill, and the window's edges on that side.
 function filled(view, points, [width, height], { left = -1, right = 1, bottom = -1, top = 1 }) {
     const project = projector(view, width, height), at = points.map((point) => project(point));
     const across = at.map(([x]) => (2 * x) / width - 1), up = at.map(([, y]) => 1 - (2 * y) / height);
@@ -212,7 +212,8 @@ test('the first view: what there is fills what the legend leaves free, on any sc
 });
 
 test('a view of the plant file stays as it is where all it was made for is seen, and steps back where a legend is in the way', () => {
-    const outline = [[-10, -10, 0], [10, -10, 0], [-10, 10, 0], [10, 10, 6], [0, 0, 9], [400, 0, 0]]; // the last one is not seen in it
+    // the last point was not visible in the given view
+    const outline = [[-10, -10, 0], [10, -10, 0], [-10, 10, 0], [10, 10, 6], [0, 0, 9], [400, 0, 0]];
     const given = { eye: [-20, -30, 15], target: [0, 0, 2], up: [0, 0, 1], fov: 50, given: true }, { given: _, ...view } = given;
     const plant = { home: given, outline };
     assert.ok(same(home(plant, 1600, 900), view));

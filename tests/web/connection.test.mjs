@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The connection's states, with the clock turned by hand.
+// The connection's states, with a clock that the test advances.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { DEAD_MS, JITTER, LONGEST_WAIT_MS, QUIET_MS } from '../../clients/web/core/connection.js';
@@ -190,7 +190,7 @@ test('a display comes back after each of 200 losses, the last as soon as the fir
     connection.spreadMs = SPREAD_MS;
     connection.start();
     for (let loss = 0; loss < 200; loss++) {
-        for (let n = 0; n < loss % 5; n++) { // nobody is there yet
+        for (let n = 0; n < loss % 5; n++) { // the server does not answer yet
             sockets.at(-1).fail();
             clock.advance(waitOf(bench));
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which decoder is used, what is tried before it is believed, and what is remembered.
+// Which decoder is used, how a decoder is tried before use, and which results are remembered.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Decoding, PLAIN } from '../../clients/web/core/decoding.js';
@@ -13,7 +13,7 @@ const KEY = keyFrame(0x1f), LARGER = keyFrame(0x28);
 const DELTA = { codec: 'h264', key: false, payload: Uint8Array.of(0, 0, 0, 1, 0x41, 7, 7) };
 const JPEG = { codec: 'jpeg', key: true, payload: Uint8Array.of(0xff, 0xd8) };
 
-// A VideoDecoder that answers at once, unless told otherwise.
+// A fake VideoDecoder that answers at once, unless told otherwise.
 function fakeApi({ breaks = () => false, keepsBack = () => false } = {}) {
     const made = [];
     class VideoDecoder {
@@ -56,7 +56,7 @@ function fakeStore() {
     return { kept, getItem: (name) => kept.get(name) ?? null, setItem: (name, value) => kept.set(name, value) };
 }
 
-// tryOut: what is wrong with a decoder, by its way.
+// tryOut: returns what is wrong with a decoder, by the way of decoding.
 function bench({ api = fakeApi(), store = fakeStore(), agent = 'browser 1', wrong = {} } = {}) {
     const told = [], tried = [];
     let now = 0;

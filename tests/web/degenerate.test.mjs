@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pure functions of core/ and app/ with numbers that are not finite, sizes of 0x0 and lists that are empty: each returns, and none of
-// those that make geometry makes a number that is not finite. A wall once hung on a marker at NaN.
+// Calls the pure functions of core/ and app/ with non-finite numbers, sizes of 0x0 and empty lists. Each must return, and functions that
+// compute geometry must not return non-finite numbers. A wall once hung on a marker at NaN.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readdirSync } from 'node:fs';
@@ -8,14 +8,14 @@ import { test } from 'node:test';
 import { CASES, forgotten, modules } from './degenerate_cases.mjs';
 import { seed } from './random.mjs';
 
-const PATIENCE_MS = 120000; // all of it takes seconds: longer is a loop without end
+const PATIENCE_MS = 120000; // all cases take seconds: a longer run is an endless loop
 const MB = 512;
 // Modules without a function that takes numbers.
 const TEXTS = ['alarm_actions', 'alarm_call', 'alarms', 'asset_tree', 'blocked', 'connection', 'decode_queue', 'decoder_fallback',
     'decoding', 'h264', 'handover', 'health', 'keys', 'links', 'loop_check', 'matches', 'model', 'named_views', 'notes', 'quality',
     'references', 'refusals', 'requests', 'search', 'session', 'wake', 'words'];
 
-// Runs the cases from `first` on until one does not return; adds causes to `wrong`. Returns the index of the next case.
+// Runs the cases from `first` on until one does not return; adds failures to `wrong`. Returns the index of the next case.
 function runFrom(first, seed, wrong) {
     const args = [`--max-old-space-size=${MB}`, new URL('degenerate.mjs', import.meta.url).pathname, String(first), String(seed)];
     const options = { timeout: PATIENCE_MS, killSignal: 'SIGKILL', encoding: 'utf8' };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sound arguments of the page's pure functions, which degenerate.mjs spoils. ends: a function that only has to return, since it formats,
-// compares or calculates what its callers have checked; of all others every number in the result is finite.
+// Valid arguments for the page's pure functions, which degenerate.mjs spoils. ends: the function only has to return, because it formats,
+// compares or computes values that its callers have checked; for all other functions every number in the result must be finite.
 import * as address from '../../clients/web/core/address.js';
 import * as approach from '../../clients/web/core/approach.js';
 import * as callouts from '../../clients/web/core/callouts.js';
@@ -39,11 +39,11 @@ const MODULES = { address, approach, callouts, camera, camera_flight: cameraFlig
     declutter, format, gestures, history, instant, labels, legend, list_window: listWindow, measure, meters, nearest, patterns, query,
     scroll, section, split_view: splitView, sun, timings, vector, wall, wire,
     'app/alarm_bar': alarmBar, 'app/chart_style': chartStyle, 'app/drift': drift, 'app/toolbar': toolbar };
-globalThis.devicePixelRatio = 1; // charts are drawn in pixels of the device
+globalThis.devicePixelRatio = 1; // charts are drawn in device pixels
 export const CASES = [];
 const called = new Set();
 
-// call: what is called with args; by default the function itself.
+// call: the function to call with args; by default the named function itself.
 function add(module, name, args, { ends = false, call = MODULES[module][name] } = {}) {
     called.add(`${module}.${name}`);
     CASES.push({ name: `${module}.js: ${name}`, call, args, ends });
@@ -72,7 +72,7 @@ const sight = { origin, direction }, shown = { carried: { range: [1, 2], clip },
 const recent = [{ picture, decodeMs: 2, hereUs: 6e6 }, { picture, decodeMs: 3, hereUs: 7e6 }];
 const marks = [{ us: 1e6, priority: 2 }, { us: 2e6, priority: 1 }];
 
-// Items of an overlay: labels, call-outs, markers.
+// Items of an overlay: labels, call-outs and markers.
 add('callouts', 'placeRings', [rings, area, 1, { width: 90, height: 36 }], { call: (order, where, unit, size) =>
     callouts.placeRings(order, { area: where, unit, taken: free, measure: () => size }).map(({ box: at, slot }) => ({ at, slot })) });
 add('labels', 'placeLabels', [rings, area, 1, [{ left: 0, top: 0, right: 40, bottom: 20 }], { width: 90, height: 36 }], { call: placed });
@@ -86,7 +86,7 @@ add('nearest', 'halfAt', [{ split: {} }, 640, 100], ENDS);
 add('nearest', 'nearestMarker', [rings, 30, 30, 12], ENDS);
 add('split_view', 'halves', [{ split: {} }, 641], ENDS);
 
-// Cameras. A move that makes no camera that the server accepts leaves the camera as it was.
+// Cameras. A move that would make a camera invalid for the server leaves it unchanged.
 for (const one of [eye, flat]) {
     add('camera', 'projector', [one, 640, 360, point], { call: (c, w, h, p) => camera.projector(c, w, h)(p) });
     add('camera_moves', 'fit', [one, box, 1.5, 1.08]);
@@ -126,7 +126,7 @@ add('vector', 'mix', [point, origin, 0.5], ENDS);
 for (const name of ['length', 'unit', 'finite'])
     add('vector', name, [point], ENDS);
 
-// Sections and measuring.
+// Clipping and measuring.
 for (const one of [clip, boxed]) {
     add('clip_gizmo', 'gripsOf', [one, box]);
     add('clip_gizmo', 'wholeOf', [one]);
@@ -193,7 +193,7 @@ add('meters', 'LatencyMeter', [3000, [1, 2, 3], 5], { ends: true, call: (keep, t
 add('timings', 'timingOf', [recent, 'network'], ENDS);
 add('timings', 'kbitPerS', [recent, 100, 5000], ENDS);
 
-// Words, addresses and sizes.
+// Texts, addresses and sizes.
 for (const name of ['decimalsFor', 'ageText'])
     add('format', name, [12], ENDS);
 for (const name of ['numberText', 'shortNumberText', 'changeText'])
@@ -238,7 +238,7 @@ add('app/toolbar', 'bandsOf', [{ group: { limits: { H: 3, L: 1 }, breaks: [1, 2]
 const reading = { value: 4, quality: 'good' }, model = { readings: [reading], group: () => ({ min: 0, max: 10, unit: 'K' }) };
 add('app/alarm_bar', 'limitText', [{ model, time: { atUs: null } }, { tag: { index: 0, unit: 'K' }, value: 5, limit: 4 }, true], ENDS);
 
-// Functions that are given texts, messages or objects of the page, and classes that stand for a session.
+// Functions that take texts, messages or objects of the page, and classes that represent a session.
 const OTHERS = ['address.addressOf', 'address.readAddress', 'format.unitText', 'format.zoneOf', 'format.qualityText', 'format.title',
     'format.quantityText', 'format.worst', 'history.ask', 'history.witnesses', 'history.raised', 'instant.fieldInstant',
     'query.readNumbers', 'query.readSensors', 'sun.sunText', 'wall.readWall', 'wire.WireError', 'wire.decodeFrame', 'wire.isGivenUp',
@@ -246,7 +246,7 @@ const OTHERS = ['address.addressOf', 'address.readAddress', 'format.unitText', '
     'app/drift.driftText',
     'app/toolbar.Toolbar', 'wire.isWhole', 'wire.decodeMessage', 'wire.decodeBase64'];
 
-// Exported functions of the modules above that neither are called nor are named as those that take no numbers.
+// Exported functions of the modules above that are neither called nor listed as functions without numbers.
 export const forgotten = Object.entries(MODULES).flatMap(([module, all]) => Object.entries(all)
     .filter(([name, value]) => typeof value === 'function' && !called.has(`${module}.${name}`) && !OTHERS.includes(`${module}.${name}`))
     .map(([name]) => `${module}.js: ${name}`));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A clock that is turned by hand, and a WebSocket whose other end is the test.
+// A clock that the test advances, and a fake WebSocket whose other end is the test.
 import { readFileSync } from 'node:fs';
 import { Connection } from '../../clients/web/core/connection.js';
 import { Session } from '../../clients/web/core/session.js';
@@ -20,7 +20,7 @@ class Clock {
 
     clearTimeout = (id) => this.timers.delete(id);
 
-    // Runs what becomes due, in order, each at its own time.
+    // Runs the timers that become due, in order, each at its own time.
     advance(ms) {
         const end = this.time + ms;
         for (;;) {
@@ -65,7 +65,7 @@ export class Socket {
     }
 }
 
-// random: what the jitter gets; 0.5 is none.
+// random: source of the reconnection jitter; 0.5 means no jitter.
 export function makeConnection({ random = () => 0.5 } = {}) {
     const clock = new Clock(), sockets = [];
     const connection = new Connection({

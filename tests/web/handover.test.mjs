@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a shift hands over, from the journal: counted, sorted, and read to its end.
+// The shift handover from the alarm journal: counted, sorted, and read completely.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readJournal, sortJournal } from '../../clients/web/core/handover.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was recorded, as charts and the slider draw it: lines with their gaps and spikes, alarms, ticks; and a session in the past.
+// Recorded history in charts and the time slider: lines with gaps and spikes, alarms and ticks; and a session that shows the past.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { residuals, stretches } from '../../clients/web/app/cards/drift.js';

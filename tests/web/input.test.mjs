@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pointers, wheel and keys to camera moves.
+// Turns pointers, wheel and keys into camera moves.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { listenToInput } from '../../clients/web/app/input/input.js';

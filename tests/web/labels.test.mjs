@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Labels by the rule of protocol/LABELS.md: the vectors that the server's are tested with too, and what no picture may break.
+// Labels by the rule of protocol/LABELS.md: the same test vectors as for the server, and properties that hold for every picture.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -76,14 +76,14 @@ test('every ring is in a label or a call-out, within the picture and over no leg
         const list = [...boxes.values()];
         assert.ok(list.every((a) => a.left >= 0 && a.top >= 0 && a.right <= right && a.bottom <= bottom));
         if (bottom * 0.2 < 60 && right - 90 < 165)
-            continue; // beside the legend there is hardly room for one
+            continue; // next to the legend there is hardly room for one label
         for (const [i, a] of list.entries())
             assert.ok([legend, ...list.slice(0, i)].every((b) => a.left >= b.right || b.left >= a.right || a.top >= b.bottom ||
                 b.top >= a.bottom));
     }
 });
 
-// A camera that turns about a plant of sensors, a quarter of a degree each picture; and one that trembles by a fraction of a pixel.
+// A camera that turns by a quarter of a degree per picture around a plant of sensors, and one that trembles by a fraction of a pixel.
 const sensors = Array.from({ length: 60 }, (_, i) => {
     const away = 12 * Math.sqrt(i / 60);
     return [away * Math.cos(i * 2.4), away * Math.sin(i * 2.4), (i % 7) * 1.5];

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The files of the page, and what a module loads together with itself.
+// The files of the page, and the modules that a module imports.
 import { readdirSync, readFileSync } from 'node:fs';
 import { posix } from 'node:path';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
 
-// Paths of all files in a folder of the page and in those below it.
+// Returns the paths of all files in a folder of the page and below.
 export const filesIn = (folder) => readdirSync(new URL(folder, WEB), { withFileTypes: true })
     .flatMap((entry) => (entry.isDirectory() ? filesIn(`${folder}/${entry.name}`) : `${folder}/${entry.name}`));
 
-// Paths of a module and of all that it imports at once.
+// Returns the paths of a module and of all its static imports.
 export function graph(path, seen = new Set()) {
     if (seen.has(path))
         return seen;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Views with names: what a session is brought to, whatever it shows, and ids for titles.
+// Named views: how a session is changed to one, whatever it shows, and how ids are made from titles.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { idFor, viewOf } from '../../clients/web/core/named_views.js';

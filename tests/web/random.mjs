@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random numbers whose seed is printed: the same in each run, but PLANTCAST_SEED gives another one, and `make test-long` one of its own.
+// Random numbers with a printed seed: the same in each run; PLANTCAST_SEED sets another one, and `make test-long` uses a new one each time.
 import { seed } from '../e2e/support/sweep.mjs';
 
 console.log(`# PLANTCAST_SEED=${seed}`);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is cut away, hidden and shown alone: to the parameters and back.
+// Clipping, hiding and isolating: conversion to the server's parameters and back.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { AXES, boxAround, cut, readBox, readCut, showAll, showAsset } from '../../clients/web/core/section.js';
 
-// shown, ghost or hidden, by the server's rule.
+// Returns shown, ghost or hidden, by the server's rule.
 function assetLook({ hidden = [], ghost = [], isolate = [] }, id) {
     if (hidden.includes(id))
         return 'hidden';

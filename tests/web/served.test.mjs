@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The daemon serves the page's scripts without lines that only comment (server/net/http/site.c): no such line may be part of a text.
+// The daemon serves the page's scripts without their comment lines (server/net/http/site.c), so no such line may be part of a string.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';

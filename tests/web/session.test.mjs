@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The conversation with the server: what is said first, what is said again, what is ignored.
+// The conversation with the server: first messages, repeated messages, ignored messages.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { actionsFor, asideOf, inMessages, passes, rowActions, targetsOf } from '../../clients/web/core/alarm_actions.js';
@@ -41,7 +41,7 @@ test('what it says has the form of the vectors that the server accepts', () => {
     const shape = (message) => Object.keys(message).sort();
     const { session, socket } = greeted(WANTED);
     const full = vector('client/accepted--hello-full.json');
-    delete full.future; // the server ignores what it does not know
+    delete full.future; // the server ignores unknown fields
     assert.deepEqual(shape(socket.sent[0]), shape(full));
     assert.deepEqual(shape(socket.sent[0].camera), shape(full.camera));
     session.setCamera(orbit(session.camera, 3, 0));
@@ -274,11 +274,11 @@ test('what lies over the picture goes by the parameters that the picture shows',
     assert.deepEqual([session.shown.group, session.shown.split, news()], ['temperature', null, 0]);
     draw(1);
     assert.deepEqual([session.shown.group, session.shown.split, news()], ['pressure', null, 1]);
-    draw(3); // none was made of the second
+    draw(3); // the second parameters were never drawn
     assert.deepEqual([session.shown, news()], [session.params, 1]);
     draw(3);
     assert.equal(news(), 0);
-    socket.fail(); // and while there is no connection
+    socket.fail(); // also while there is no connection
     session.setParams({ group: 'temperature' });
     clock.advance(500);
     sockets[1].accept();
@@ -496,7 +496,7 @@ test('following another: its parameters and camera are shown, until a hand moves
 test('whoever leads no longer follows: the camera is that of what is shown then, until one is said', () => {
     const eyes = (x) => ({ camera: { eye: [x, 8, 7], target: [1, 1, 1], up: [0, 0, 1], fov: 40 }, waitUs: 0, fieldUs: 0, renderUs: 0,
         encodeUs: 0, sentTimeUs: 0 });
-    // What the server says on the way, and pictures; the last one is of the view that is ours then.
+    // Messages of the server in order; numbers stand for pictures. The last picture shows the view that is this session's own then.
     const ways = {
         'given the lead before any picture of the leader': [vector('server/following.json'), vector('server/following-nobody.json'), 5],
         'given the lead while the leader moves': [vector('server/following.json'), 3, vector('server/following-nobody.json'), 4, 5],
@@ -515,7 +515,7 @@ test('whoever leads no longer follows: the camera is that of what is shown then,
                 socket.say(step);
         });
         assert.deepEqual(session.camera.eye, [5, 8, 7], how);
-        assert.equal(events.at(-1)[0], 'camera', how); // the address says it, too
+        assert.equal(events.at(-1)[0], 'camera', how); // the page's address shows it, too
         const said = events.length, sent = socket.sent.length;
         session.flush();
         assert.equal(socket.sent.length, sent, 'the server knows it');

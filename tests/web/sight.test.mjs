@@ -11,7 +11,7 @@ const CAMERA = { eye: [30, 30, 20], target: [0, 0, 0], up: [0, 0, 1], fov: 45 };
 const TAG = { name: 'TI-1', position: [1, 0.5, 0.5] }, OWN = { id: 'own', bounds: { min: [0, 0, 0], max: [1, 1, 1] } };
 const MIDDLE = [640, 360];
 
-// A plant in which, from each side, some things stand before the tag, as `before` has it; from others what it stands on itself does.
+// A fake plant: `before` lists, for some sides, the assets that hide the tag; from the other sides the tag's own asset hides it.
 class World {
     constructor({ ghosts, before }) {
         Object.assign(this, { camera: CAMERA, params: { ghost: ghosts }, before, handlers: {}, pickSeq: 0, welcomed: true,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sheets of the page: no rule is for what the page never has.
+// The page's style sheets contain no rule for elements that the page never has.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -11,10 +11,10 @@ const files = ['app', 'core', 'wall', 'handover'].flatMap(filesIn);
 const pages = ['index.html', 'wall.html', 'handover.html'].map(read);
 const page = pages.join('\n') + files.filter((name) => /\.(js|html)$/.test(name)).map(read).join('\n');
 const words = new Set(page.match(/[\w-]+/g));
-const isNumbered = (name) => /^[a-z]\d$/.test(name) && page.includes(` ${name[0]}\${`); // p1, p2, ...
+const isNumbered = (name) => /^[a-z]\d$/.test(name) && page.includes(` ${name[0]}\${`); // class names such as p1, p2, ...
 const isTheChartsOwn = (name) => name.startsWith('u-');
 
-// Selectors of a sheet, without what stands in braces; those of @media and the like are inside of it.
+// Returns the selectors of a sheet without the declarations; rules inside of @media and the like count, too.
 const selectors = (sheet) => [...sheet.replace(/\/\*.*?\*\//gs, '').matchAll(/([^{};]+)\{/g)].map(([, text]) => text.trim())
     .filter((text) => !text.startsWith('@'));
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sun's place: to the parameters and back.
+// The sun's position: conversion to the server's parameters and back.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { sunOf, sunText, towardsSun } from '../../clients/web/core/sun.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sleep that is noticed, letters that are read from afar, distances, and links.
+// Detection of sleep, letter sizes for reading from afar, distances, and links.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { health, simulatedText } from '../../clients/web/core/health.js';
@@ -59,7 +59,7 @@ test('simulated is said on the picture, but not of the past', () => {
     assert.equal(simulatedText({ model: null, time, picture: null }), '');
 });
 
-// Height of a capital letter, 0.72 of the font's size, in minutes of arc.
+// Height of a capital letter (0.72 of the font size) in minutes of arc.
 function letterMinutes(fontPx, { inches, metres }, screen) {
     const millimetres = (0.72 * fontPx * inches * 25.4) / Math.hypot(screen.width, screen.height);
     return (Math.atan(millimetres / (metres * 1000)) * 60 * 180) / Math.PI;

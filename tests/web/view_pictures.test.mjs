@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The query for a small picture of a view with a name: of one without a camera, too.
+// The query for a small picture of a named view, also of one without a camera.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { pictureQuery } from '../../clients/web/core/named_views.js';

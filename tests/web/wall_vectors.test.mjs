@@ -27,7 +27,7 @@ test('what a view is kept as', () => {
     for (const { text, params, camera } of cases('addresses')) {
         const read = readAddress(text);
         if (read.params.baseline)
-            read.params.baseline = read.params.baseline.name; // as it is said to the server
+            read.params.baseline = read.params.baseline.name; // the form in which it is sent to the server
         assert.deepEqual(read.params, params, text);
         assert.deepEqual(read.camera && cameraMessage(read.camera), camera, text);
     }

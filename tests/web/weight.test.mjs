@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the page fetches first: all that the first picture takes is asked for at once, and it is little.
+// Files that the page fetches first: everything that the first picture needs is requested at once, and it is small.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -12,7 +12,7 @@ const all = (pattern) => [...page.matchAll(pattern)].map(([, path]) => path);
 const scripts = all(/<script type="module" src="([^"]+)"/g), sheets = all(/<link rel="stylesheet" href="([^"]+)"/g);
 const MOST_BYTES = 106000;
 
-// As the daemon serves it: scripts without lines that only comment (server/net/http/site.c).
+// The file as the daemon serves it: scripts without comment lines (server/net/http/site.c).
 const served = (path) => (path.endsWith('.js') ? read(path).replace(/(?<=\n) *\/\/.*/g, '') : read(path));
 const weigh = (files) => files.reduce((sum, path) => sum + Buffer.byteLength(served(path)), 0);
 const ours = (language) => ['index.html', `words/${language}.js`, `words/lazy.${language}.js`, ...['app', 'core'].flatMap((folder) =>

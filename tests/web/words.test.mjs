@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The words of the page: the same keys in every language, none missing, none for nothing, each in its file, and how one language is chosen.
+// The page's texts: the same keys in every language, none missing, none unused, each in its file, and how a language is chosen.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -8,7 +8,7 @@ import { filesIn, graph } from './modules.mjs';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
 const read = (...names) => names.map((name) => readFileSync(new URL(name, WEB), 'utf8')).join('\n');
-// Said at once; by parts that are loaded later; by one that only engineers of a new plant see.
+// Texts of the page at start, of parts loaded later, of the import page, and of the watchdog.
 const filesOf = (language) => ['', 'lazy.', 'import.', 'watchdog.'].map((part) => `words/${part}${language}.js`);
 const tableOf = async (file) => readWords((await import(`../../clients/web/${file}`)).default);
 const tables = Object.fromEntries(await Promise.all(LANGUAGES.map(async (language) =>
@@ -69,7 +69,8 @@ test('plurals: each form that a language has, and no other', () => {
     }
 });
 
-// Named whole, or by its beginning where the rest is a value: `kind.${kind}`, choices('side', 'top', ...).
+// Returns keys that are not used. A key is used by its whole name, or by its beginning where the rest is a value: `kind.${kind}`,
+// choices('side', 'top', ...).
 function unused(table, modules, markup) {
     const starts = [...modules.matchAll(/`([a-z]+\.)\$\{/g)].map(([, start]) => start);
     const families = [...modules.matchAll(/(?:choices|explained)\('(\w+)', ([^)]*)\)/g)].flatMap(([, kind, values]) =>
