@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-prep: from CAD models to the files that plantcastd maps. */
+/* `plantcast-prep`: converts CAD models to the files that plantcastd maps. */
 #include <getopt.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -18,8 +18,8 @@
 #include "preprocess/report/report.h"
 
 enum {
-    GRACE_S = 5,          /* what stops services and containers kills after 10 s and more */
-    ASSET_LIMIT_S = 3600, /* an asset that takes longer, or reading the models, hangs */
+    GRACE_S = 5,          /* seconds; service managers and container runtimes kill after 10 s or more */
+    ASSET_LIMIT_S = 3600, /* seconds; an asset that takes longer, or reading the models, counts as hung */
 };
 
 static const char usage[] =
@@ -52,15 +52,15 @@ static const char usage[] =
 
 struct prep_options {
     bool distances, json, all, debug_view, diff, help;
-    const char *plant, *output, *asset, *sensor, *views, *revision; /* revision: what plant is compared with */
+    const char *plant, *output, *asset, *sensor, *views, *revision; /* revision: plant to compare with */
     double tolerance_m;
-    size_t memory_bytes; /* of the machine that serves it; 0: this one's */
+    size_t memory_bytes; /* memory of the machine that will serve the plant; 0: of this machine */
 };
 
 static atomic_bool interrupted;
 
-/* What is begun is finished if it takes no longer than GRACE_S, and the next run goes on from there; a second signal ends the program at
-   once. Files come to their names whole, so that it may end anywhere. */
+/* First signal: the current asset is finished if that takes no longer than GRACE_S, and the next run continues from there. Second signal:
+ * the program ends at once, which is safe at any time because files are renamed only when complete. */
 static void on_signal(int signal)
 {
     (void)signal;
@@ -92,7 +92,7 @@ static int wrong_use(const char *what, const char *about)
     return 2;
 }
 
-/* 0, or the exit status. */
+/* Parses the options. Returns 0, or the exit status. */
 static int read_options(int argc, char **argv, struct prep_options *options)
 {
     static const struct option known[] = { { "output", required_argument, NULL, 'o' },
@@ -180,8 +180,8 @@ static bool run_distances(const struct prep_options *options, struct log *log, s
     return good;
 }
 
-/* What is wrong with models and nodes shows in their heads, long before the rest of them has been read. What is not is prepared all the
-   same; the errors come again at the end, of those assets alone that were tried. Returns false if the plant is too large. */
+/* Checks models and nodes by their headers and prints errors long before the models are read. Assets without errors are prepared all the
+ * same; errors of the assets tried are printed again at the end. Returns false if the plant is too large for the memory. */
 static bool say_early(const struct plant *plant, size_t memory_bytes)
 {
     struct diag diag = { 0 }, errors = { 0 };
@@ -239,14 +239,15 @@ static bool run_diff(const struct prep_options *options, struct diag *diag)
     return good;
 }
 
-/* Models are strangers' files. This program may read the plant's files and write the prepared ones, but not read keys and tokens. */
+/* Confines this process, because models are untrusted files: it may read the plant's files and write the prepared ones, but not read keys
+ * and tokens. */
 static bool confine_self(const struct plant *plant, const char *folder, char **argv, struct diag *diag)
 {
     static const char beside[] = ".yaml .yml .csv .glb .gltf .bin .buffer .dat .png .jpg .jpeg .webp .ktx .ktx2 .basis .dds .gif .bmp .tga "
                                  ".tif .tiff .exr .hdr";
     struct child_paths paths = { 0 };
     bool notifies = getenv("NOTIFY_SOCKET") != NULL;
-    mkdir(folder, 0777); /* a failure shows when the first file is written */
+    mkdir(folder, 0777); /* an error shows when the first file is written */
     child_paths_add(&paths, "/proc/self/exe", CONFINE_EXECUTE);
     child_paths_add_modules(&paths);
     child_paths_add(&paths, folder, CONFINE_WRITE);
@@ -260,7 +261,7 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
     for (size_t i = 0; i < plant->group_count; i++)
         child_paths_add(&paths, plant->groups[i].gp.fit, CONFINE_READ);
     if (notifies)
-        child_paths_add(&paths, "/proc", CONFINE_READ); /* service_patience asks whether processes are at work */
+        child_paths_add(&paths, "/proc", CONFINE_READ); /* service_patience checks whether other processes are active */
     int status = child_self_confine(&paths, notifies, argv);
     child_paths_finish(&paths);
     if (status != 0)
@@ -273,7 +274,8 @@ static bool run_plant(const struct prep_options *options, char **argv, struct di
     struct plant *plant = plant_load(options->plant, diag);
     if (!plant)
         return false;
-    struct service_patience *patience = service_patience_begin("preparing the plant", ASSET_LIMIT_S); /* before a unit's daemon starts */
+    /* asks the service manager for more time while a unit prepares its plant before the daemon starts */
+    struct service_patience *patience = service_patience_begin("preparing the plant", ASSET_LIMIT_S);
     char *folder = options->output ? mem_strdup(options->output) : plant_prepared_folder(plant);
     bool confined = child_self_confined(), good = confined || convert_run(plant, folder, stderr, diag);
     if (good && !confined && !options->distances && !options->debug_view) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draco behind plain C. What a header claims is held against the bytes that follow before the library makes room for it. */
+/* Wraps Draco in plain C. Checks the header's counts against the size of the data before the library allocates memory for them. */
 #include "preprocess/model/draco_shim.h"
 
 #include <draco/compression/decode.h>
@@ -17,7 +17,8 @@ struct draco_mesh {
 namespace
 {
 
-/* A regular grid shrinks to well under a bit a triangle; still, so many of them per byte is no mesh. */
+/* Limit of the triangle count. A regular grid compresses to well under a bit per triangle, but more triangles per byte than this are
+ * implausible. */
 constexpr uint64_t FREE_TRIANGLES = 1 << 16, TRIANGLES_PER_BYTE = 1024;
 
 bool read_varint(draco::DecoderBuffer *buffer, uint64_t *out)
@@ -34,7 +35,7 @@ bool read_varint(draco::DecoderBuffer *buffer, uint64_t *out)
     return false;
 }
 
-/* Version 2.2 of the bit stream, which is what every glTF exporter writes. */
+/* Checks the header's counts, for version 2.2 of the bit stream, which every glTF exporter writes. */
 bool claims_good(const char *bytes, size_t size, char *why)
 {
     draco::DecoderBuffer buffer;
@@ -55,7 +56,7 @@ bool claims_good(const char *bytes, size_t size, char *why)
     uint64_t first = 0, second = 0;
     bool edgebreaker = header.method == draco::MESH_EDGEBREAKER_ENCODING;
     if (edgebreaker)
-        buffer.Advance(1); /* kind of traversal */
+        buffer.Advance(1); /* skip the traversal type */
     if (!read_varint(&buffer, &first) || !read_varint(&buffer, &second))
         return wrong(why, "truncated at %zu bytes", size);
     uint64_t triangles = edgebreaker ? second : first, vertices = edgebreaker ? first : second,
@@ -111,7 +112,7 @@ template <typename T> bool convert(draco::DataType type, const char *from, T *to
     }
 }
 
-/* Numbers as they are: the library's own conversion trusts a flag that comes from the file. */
+/* Copies numbers without Draco's own conversion, which trusts a flag in the file. */
 template <typename T> bool copy(const draco::Mesh &mesh, const draco::PointAttribute &attribute, int width, void *out)
 {
     T *to = static_cast<T *>(out);

@@ -15,7 +15,7 @@ struct draco_mesh;
 
 /* Decodes a Draco buffer. Returns the mesh, which the caller destroys, or NULL with the reason in why. */
 struct draco_mesh *draco_mesh_decode(const void *bytes, size_t size, char why[MODEL_WHY_BYTES]);
-/* Frees the mesh. &NULL is fine; leaves NULL. */
+/* Frees the mesh and sets *mesh to NULL. *mesh may be NULL. */
 void draco_mesh_destroy(struct draco_mesh **mesh);
 
 /* Returns the number of vertices. */
@@ -25,8 +25,8 @@ uint32_t draco_mesh_triangle_count(const struct draco_mesh *mesh);
 /* Writes three vertex indices per triangle to out. */
 void draco_mesh_indices(const struct draco_mesh *mesh, uint32_t *out);
 
-/* Writes the attribute unique_id of all vertices to out, `width` components each of a glTF component type, tightly packed. Returns false if
-   there is no such attribute or it has fewer components. */
+/* Writes the attribute unique_id of all vertices to out, tightly packed: `width` components each, of a glTF component type. Returns false
+ * if there is no such attribute or it has fewer components. */
 bool draco_mesh_attribute(const struct draco_mesh *mesh, uint32_t unique_id, int component_type, int width, void *out);
 
 #ifdef __cplusplus

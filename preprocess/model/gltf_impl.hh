@@ -32,24 +32,25 @@ template <typename T> T *new_array(size_t count)
     return array;
 }
 
-struct gltf_work { /* a model in the making */
+struct gltf_work { /* a model being read */
     const model_document *document;
     tinygltf::Model parsed;
     gltf_model *model;
-    uint64_t elements_left; /* so that a small file cannot claim a great model by naming the same numbers again and again */
+    uint64_t elements_left; /* remaining elements that may be read; limits small files that refer to the same data over and over */
 };
 
-/* Where numbers lie that were checked to be there. */
+/* Location of numbers in memory, already checked to be within their buffer. */
 struct byte_span {
     const unsigned char *bytes;
     size_t stride, count;
 };
 
-/* An accessor's numbers, one element at a time. */
+/* Reads an accessor's numbers, one element at a time. */
 class accessor
 {
   public:
-    accessor(const gltf_work &w, int number, int width, const std::string &what); /* width 0: all that it has */
+    /* width: number of components to read; 0: all of the accessor's */
+    accessor(const gltf_work &w, int number, int width, const std::string &what);
     size_t count() const
     {
         return base.count;
@@ -66,39 +67,39 @@ class accessor
     {
         return normalized;
     }
-    void get(size_t element, double *out) const; /* finite, or refused */
+    void get(size_t element, double *out) const; /* throws gltf_refusal if a number is not finite */
 
   private:
     std::string what;
     int type, wanted;
     bool normalized;
     byte_span base, values;
-    std::vector<std::pair<size_t, size_t>> replaced; /* element, where in values; sorted */
+    std::vector<std::pair<size_t, size_t>> replaced; /* sparse replacements, sorted: element, and its index in `values` */
 };
 
 void take_elements(gltf_work *w, uint64_t count, const std::string &what);
 double number_in(const tinygltf::Value &value, const char *key, size_t index, double otherwise);
 
-/* How a material's textures lie on the surface (KHR_texture_transform). */
+/* How a material's textures are mapped to texture coordinates (KHR_texture_transform). */
 struct uv_transform {
     double offset[2] = { 0, 0 }, scale[2] = { 1, 1 }, rotation = 0;
-    int set = 0;          /* TEXCOORD_n */
-    bool bounded = false; /* right only inside 0..1: how it goes on beyond cannot be drawn */
+    int set = 0;          /* n of TEXCOORD_n */
+    bool bounded = false; /* the mapping is valid only inside 0..1, because the continuation cannot be drawn */
 };
-enum { BASE_COLOR, METALLIC_ROUGHNESS, NORMAL, OCCLUSION, EMISSIVE, USE_COUNT }; /* of textures, by a material */
+enum { BASE_COLOR, METALLIC_ROUGHNESS, NORMAL, OCCLUSION, EMISSIVE, USE_COUNT }; /* the uses of textures by a material */
 
-/* The ways in which a material's textures lie on the surface: a vertex keeps two places on them. */
+/* The distinct mappings of a material's textures, at most two, because a vertex stores two texture coordinates. */
 struct uv_lays {
     uv_transform at[2];
     size_t count = 0;
-    size_t of[USE_COUNT] = {}; /* for each use which of them; 2: left out. Of textures that are not there: 0 */
+    size_t of[USE_COUNT] = {}; /* by use: index of its mapping; 2: the texture is ignored; 0 also if there is no texture */
 };
 uv_lays lays_of(const tinygltf::Model &m, int material);
 
-/* Notes what is not shown. read_materials() makes room. */
+/* Records the text about ignored content. read_materials() must have allocated the list. */
 void leave_out(gltf_work *w, const std::string &text);
 void read_materials(gltf_work *w);
-/* Takes those textures out of a material that lie in this way and cannot be drawn beyond 0..1, and says so. */
+/* Removes from a material the textures of a mapping that cannot be drawn outside 0..1, and records that. */
 void leave_out_bounded(gltf_work *w, int material, size_t lay);
 void read_nodes(gltf_work *w);
 void read_meshes(gltf_work *w);

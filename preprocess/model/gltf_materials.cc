@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Materials, and which images their textures mean. */
+/* Reads materials and the images of their textures. */
 #include "preprocess/model/gltf_impl.hh"
 
 #include <array>
@@ -11,7 +11,7 @@ namespace gltf
 namespace
 {
 
-struct use { /* of a texture, by a material */
+struct use { /* the use of a texture by a material */
     int texture, set;
     const tinygltf::ExtensionMap *extensions;
 };
@@ -75,7 +75,7 @@ bool is_readable(const document_bytes &image)
     return b && image.size > 12 && (memcmp(b, "\x89PNG", 4) == 0 || memcmp(b, "\xff\xd8\xff", 3) == 0 || memcmp(b + 8, "WEBP", 4) == 0);
 }
 
-/* Returns ASSET_NO_TEXTURE with the reason in *why where there is no image that can be read. */
+/* Returns the index of the texture, or ASSET_NO_TEXTURE with the reason in *why if its image cannot be read. */
 uint32_t texture_of(gltf_work *w, int texture, bool srgb, std::string *why)
 {
     gltf_model *model = w->model;
@@ -115,7 +115,7 @@ std::string material_what(const gltf_work &w, int number)
 
 const char *const use_names[USE_COUNT] = { "base colour", "metallic-roughness", "normal", "occlusion", "emissive" };
 
-/* The place of each use of a texture in a material. */
+/* Returns a material's member for each use of a texture. */
 std::array<uint32_t *, USE_COUNT> places_of(asset_material *m)
 {
     return { &m->base_color_texture, &m->metallic_roughness_texture, &m->normal_texture, &m->occlusion_texture, &m->emissive_texture };
@@ -219,7 +219,8 @@ void read_materials(gltf_work *w)
     model->materials = new_array<asset_material>(w->parsed.materials.size() + 1);
     model->material_names = new_array<char *>(w->parsed.materials.size() + 1);
     model->textures = new_array<gltf_texture>(USE_COUNT * w->parsed.materials.size() + 1);
-    model->left_out = new_array<char *>(USE_COUNT * w->parsed.materials.size() + d->look_count + 2); /* 1: nodes in no scene */
+    /* the additional one: nodes outside the scene */
+    model->left_out = new_array<char *>(USE_COUNT * w->parsed.materials.size() + d->look_count + 2);
     for (size_t i = 0; i < d->look_count; i++)
         leave_out(w, d->looks[i]);
     for (const tinygltf::Material &material : w->parsed.materials) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Meshes: primitives as lists of triangles over just the vertices that these use. */
+/* Converts the primitives of meshes to triangle lists over just the vertices used. */
 #include "preprocess/model/gltf_impl.hh"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace gltf
 namespace
 {
 
-/* Places in the vertex accessors, three per triangle. */
+/* Returns vertex indices, three per triangle. */
 std::vector<uint32_t> read_indices(gltf_work *w, const tinygltf::Primitive &p, size_t vertex_count, const std::string &what)
 {
     std::vector<uint32_t> out;
@@ -60,7 +60,8 @@ std::vector<uint32_t> triangle_list(std::vector<uint32_t> in, int mode, const st
     return out;
 }
 
-/* The vertices that are used, in order; indices then name these. Exporters share one great buffer among many primitives. */
+/* Returns the used vertices in ascending order and renumbers the indices accordingly. Exporters often share one large buffer among many
+ * primitives. */
 std::vector<uint32_t> compact(std::vector<uint32_t> *indices)
 {
     std::vector<uint32_t> used;
@@ -68,7 +69,7 @@ std::vector<uint32_t> compact(std::vector<uint32_t> *indices)
         return used;
     auto ends = std::minmax_element(indices->begin(), indices->end());
     uint32_t low = *ends.first, range = *ends.second - low + 1;
-    if (range / 8 > indices->size()) { /* few, and far apart */
+    if (range / 8 > indices->size()) { /* few indices over a wide range: sort instead of marking */
         used = *indices;
         std::sort(used.begin(), used.end());
         used.erase(std::unique(used.begin(), used.end()), used.end());
@@ -93,7 +94,7 @@ struct attribute_reader {
     const gltf_work &w;
     const tinygltf::Primitive &primitive;
     const std::vector<uint32_t> &used;
-    size_t vertex_count; /* of POSITION */
+    size_t vertex_count; /* number of elements of POSITION */
     const std::string &what;
 
     bool has(const std::string &name) const
@@ -136,7 +137,8 @@ float (*read_vectors(const attribute_reader &reader, const std::string &name))[3
     return out;
 }
 
-/* None where the primitive has no such set. Returns whether some lie beyond 0..1 of textures that are right only inside. */
+/* Reads a set of texture coordinates; *out stays NULL if the primitive has none. Returns whether any lie outside 0..1 of a mapping that is
+ * valid only inside. */
 bool read_texcoords(const attribute_reader &reader, const uv_transform &uv, float (**out)[2])
 {
     std::string name = "TEXCOORD_" + std::to_string(uv.set);
@@ -191,7 +193,7 @@ void check_morphing(const std::vector<double> &weights, const std::string &what)
             refuse("%s: its shape is morphed, which is not supported", what.c_str());
 }
 
-/* False: nothing to draw here (lines, points, no triangle). */
+/* Reads a primitive. Returns false if it has nothing to draw: lines, points or no triangle. */
 bool read_primitive(gltf_work *w, const tinygltf::Primitive &p, gltf_primitive *out, gltf_mesh *mesh, const std::string &what)
 {
     int mode = p.mode;
@@ -237,7 +239,7 @@ void read_meshes(gltf_work *w)
         check_morphing(mesh.weights, name);
         for (size_t i = 0; i < mesh.primitives.size(); i++) {
             gltf_primitive *primitive = &model->primitives[model->primitive_count];
-            model->primitive_count++; /* counted first, so that a half-read one is freed */
+            model->primitive_count++; /* incremented first, so that a partially read primitive is freed on errors */
             if (!read_primitive(w, mesh.primitives[i], primitive, out, name + ", primitive " + std::to_string(i)))
                 model->primitive_count--;
         }

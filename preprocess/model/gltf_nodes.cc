@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Nodes of the default scene, depth first, with their places; instances as nodes of their own. */
+/* Reads the nodes of the default scene, depth first, with world transforms; instances become nodes of their own. */
 #include "preprocess/model/gltf_impl.hh"
 
 #include <cmath>
@@ -14,9 +14,10 @@ namespace
 {
 
 constexpr uint32_t MAX_NODES = 4'000'000, MAX_DEPTH = 512, ELEMENTS_PER_INSTANCE = 16;
-constexpr double ROTATION_SLACK = 0.01, LEAST_ROTATION = 1e-6; /* in bytes, of instances, a rotation is off by 0.008 */
+constexpr double ROTATION_SLACK = 0.01, LEAST_ROTATION = 1e-6; /* rotations of instances stored as bytes deviate by up to 0.008 */
 
-/* A unit quaternion, says glTF. One of another length turns as it would with length 1, as elsewhere, and is counted; rounding is not. */
+/* Checks a rotation, which glTF requires to be a unit quaternion. One of another length is normalised, as other programs do, and counted;
+ * rounding is tolerated. */
 void check_rotation(gltf_work *w, const double q[4], const std::string &what)
 {
     double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
@@ -55,7 +56,7 @@ void local_of(gltf_work *w, const tinygltf::Node &node, double out[16], const st
     check_affine(out, what);
 }
 
-struct node_order { /* nodes as they are put in order */
+struct node_order { /* nodes while they are put in order */
     gltf_work *w;
     std::vector<gltf_node> out;
     std::vector<char> seen;
@@ -82,7 +83,7 @@ void add(node_order *tree, int number, int parent, int mesh, const double world[
     tree->out.back().end = static_cast<uint32_t>(tree->out.size());
 }
 
-/* EXT_mesh_gpu_instancing: the node's mesh once for each instance, as nodes of the same name below it. */
+/* Adds the mesh of a node with EXT_mesh_gpu_instancing once for each instance, as child nodes with the same name. */
 void add_instances(node_order *tree, int number, int parent, const tinygltf::Value &extension)
 {
     const tinygltf::Node &node = tree->w->parsed.nodes[static_cast<size_t>(number)];
@@ -164,7 +165,7 @@ std::vector<int> roots_of(const tinygltf::Model &m)
     return roots;
 }
 
-/* Nodes with a mesh that the scene does not reach. */
+/* Records how many nodes with a mesh are not part of the scene. */
 void note_unreached(const node_order &tree)
 {
     size_t count = 0;

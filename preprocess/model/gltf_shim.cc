@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* tinygltf behind plain C: it parses a document that was made plain before; what it yields is decoded into plain arrays. */
+/* Wraps tinygltf in plain C: it parses a normalised document, and the result is decoded into plain arrays. */
 #include "preprocess/model/gltf_shim.h"
 
 #include <exception>
@@ -14,7 +14,7 @@ using gltf::refuse;
 
 constexpr uint64_t FREE_ELEMENTS = 1 << 22, ELEMENTS_PER_BYTE = 16;
 
-/* There are no files left to open; were there one, it would not be. */
+/* File callback of tinygltf: a normalised document refers to no files, and none is ever opened. */
 bool file_absent(const std::string &, void *)
 {
     return false;
@@ -40,7 +40,7 @@ bool file_unwritten(std::string *, const std::string &, const std::vector<unsign
     return false;
 }
 
-/* tinygltf 2.9 wants it too. */
+/* Sets a callback that exists since tinygltf 2.9. */
 template <typename Callbacks> auto set_measure(Callbacks *files, int) -> decltype(files->GetFileSizeInBytes = file_unmeasured, void())
 {
     files->GetFileSizeInBytes = file_unmeasured;
@@ -72,7 +72,7 @@ void parse(gltf::gltf_work *w)
         loader.LoadASCIIFromString(&w->parsed, &error, &warning, w->document->json, static_cast<unsigned>(w->document->json_bytes), "");
     while (!error.empty() && error.back() == '\n')
         error.pop_back();
-    if (!good || !error.empty()) /* it drops what it cannot read, and says so */
+    if (!good || !error.empty()) /* tinygltf drops what it cannot read and only reports it here */
         refuse("%s", error.empty() ? "not a glTF file" : error.c_str());
 }
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a glTF model into plain C arrays in which every number was checked. tinygltf stays behind this header. Thread: any, one per
-   model. */
+/* Reads a glTF model into plain C arrays and validates every number. Hides tinygltf. Thread: any, one per model. */
 #ifndef PREPROCESS_MODEL_GLTF_SHIM_H
 #define PREPROCESS_MODEL_GLTF_SHIM_H
 #include "preprocess/model/model_source.h"
@@ -10,30 +9,30 @@
 extern "C" {
 #endif
 
-struct gltf_primitive { /* triangles of one material; model units, the mesh's own frame */
+struct gltf_primitive { /* triangles of one material, in model units and the mesh's frame */
     uint32_t vertex_count, index_count;
     float (*positions)[3];
-    float (*normals)[3];          /* NULL: the model has none */
-    float (*texcoords)[2];        /* where its material's textures lie; NULL: none */
-    float (*second_texcoords)[2]; /* likewise those that the material's `second` names */
-    uint8_t (*colors)[4];         /* NULL: none */
-    uint32_t *indices;            /* a list of triangles, whatever it was */
-    int material;                 /* -1: none */
+    float (*normals)[3];          /* NULL: the primitive has no normals */
+    float (*texcoords)[2];        /* coordinates for the material's first texture mapping; NULL: none */
+    float (*second_texcoords)[2]; /* coordinates for the textures that the material's `second` mask names; NULL: none */
+    uint8_t (*colors)[4];         /* vertex colours; NULL: none */
+    uint32_t *indices;            /* triangle list, converted from strips and fans */
+    int material;                 /* index of the material; -1: none */
 };
 
 struct gltf_mesh {
     char *name;
-    uint32_t first_primitive, primitive_count; /* each has a triangle */
-    uint64_t index_count;                      /* of them all */
-    uint32_t skipped_lines, skipped_points;    /* primitives that are no triangles */
+    uint32_t first_primitive, primitive_count; /* every primitive has at least one triangle */
+    uint64_t index_count;                      /* sum over the mesh's primitives */
+    uint32_t skipped_lines, skipped_points;    /* primitives skipped because they are not triangles */
 };
 
-struct gltf_node {    /* depth first: a node's sub-tree are the nodes [node, end) */
-    char *name;       /* "" where it has none */
-    int parent, mesh; /* or -1 */
+struct gltf_node {    /* depth first: the subtree of node i is the range [i, end) */
+    char *name;       /* "": the node has no name */
+    int parent, mesh; /* indices; -1: none */
     uint32_t end;
-    uint32_t number;  /* in the file's list; instances below a node have its number */
-    double world[16]; /* column-major */
+    uint32_t number;  /* index in the file's list of nodes; instances below a node have that node's index */
+    double world[16]; /* column-major transform from the node's frame to the scene's */
 };
 
 struct gltf_texture {
@@ -43,28 +42,29 @@ struct gltf_texture {
 
 struct gltf_image {
     char *name;
-    unsigned char *bytes; /* as it lies in the file: PNG, JPEG */
+    unsigned char *bytes; /* encoded as in the file: PNG or JPEG */
     size_t size;
 };
 
 struct gltf_model {
     struct gltf_primitive *primitives;
     struct gltf_mesh *meshes;
-    struct gltf_node *nodes; /* of the default scene */
+    struct gltf_node *nodes; /* nodes of the default scene */
     struct asset_material *materials;
     char **material_names;
-    struct gltf_texture *textures; /* what the materials' numbers mean; one per use of an image */
+    struct gltf_texture *textures; /* one for each use of an image by a material; materials refer to these */
     struct gltf_image *images;
     uint32_t primitive_count, mesh_count, node_count, material_count, texture_count, image_count;
-    uint32_t skipped_lines, skipped_points; /* of all meshes */
-    uint32_t scaled_rotations;              /* of nodes and instances: their length is not 1 */
-    char **left_out; /* a text for each use of a texture, and each extension, that is left out */
+    uint32_t skipped_lines, skipped_points; /* sums over all meshes */
+    uint32_t scaled_rotations;              /* nodes and instances whose rotation quaternion is not of unit length */
+    char **left_out;                        /* a text for each texture use and each extension that is ignored */
     uint32_t left_out_textures;
 };
 
-/* Parses and decodes a model file. Returns false with the reason, by object name and number, in why; then there is nothing to free. */
+/* Parses and decodes a model file. Returns false with the reason in why, which names the object and the number; then gltf_free() need not
+ * be called. */
 bool gltf_load(struct gltf_model *model, const struct model_source *source, char why[MODEL_WHY_BYTES]);
-/* Frees the model. */
+/* Frees the arrays of the model. */
 void gltf_free(struct gltf_model *model);
 
 #ifdef __cplusplus

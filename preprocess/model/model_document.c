@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Making a model plain. */
+/* Normalises a glTF document. */
 #include "preprocess/model/model_document_impl.h"
 
 #include <inttypes.h>
@@ -12,7 +12,7 @@
 #include "preprocess/model/model_rules.h"
 #include "preprocess/model/model_uri.h"
 
-#define MAX_ZERO_BYTES ((uint64_t)64 << 20) /* of accessors without a buffer view, which cost a file nothing */
+#define MAX_ZERO_BYTES ((uint64_t)64 << 20) /* limit for accessors without a buffer view, which take no bytes in the file */
 
 /* --- buffers ------------------------------------------------------------------------------------------------------------- */
 
@@ -70,7 +70,7 @@ static bool views_good(const struct document_work *work)
 
 /* --- accessors ----------------------------------------------------------------------------------------------------------- */
 
-/* An accessor without a buffer view is all zeros, but for what its sparse part says. */
+/* Gives an accessor without a buffer view a buffer of zeros, as glTF defines it; its sparse part may replace some. */
 static bool fill_with_zeros(struct document_work *work, const json_t *number, uint64_t *zeros)
 {
     json_t *accessor = json_array_get(json_object_get(work->root, "accessors"), (size_t)json_integer_value(number));
@@ -158,7 +158,7 @@ static bool load_images(struct document_work *work)
 
 static const char specular[] = "KHR_materials_pbrSpecularGlossiness";
 
-/* Notes extensions that are left out: required ones that only change looks, and others of which nothing is known. */
+/* Records the ignored extensions: required ones that only affect appearance, and unknown ones. */
 static void take_left_out(struct document_work *work)
 {
     const json_t *required = json_object_get(work->root, "extensionsRequired"), *used = json_object_get(work->root, "extensionsUsed");
@@ -186,7 +186,7 @@ static void move_member(json_t *to, const char *as, json_t *from, const char *na
         json_object_set(to, as, value);
 }
 
-/* A material of the older model has a diffuse colour in place of a base colour. A base colour that the file has as well stays. */
+/* Converts the diffuse colour of specular-glossiness materials to a base colour, unless the material has one. */
 static void take_diffuse_colors(json_t *root)
 {
     const json_t *materials = json_object_get(root, "materials");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A glTF document reduced to its plain form: JSON checked and without compression, external files or data URIs; buffers and images are in
-   memory beside it. */
+/* A glTF document in normalised form: checked JSON without compression, external files or data URIs; buffers and images are held in
+ * memory. */
 #ifndef PREPROCESS_MODEL_DOCUMENT_H
 #define PREPROCESS_MODEL_DOCUMENT_H
 #include "preprocess/model/model_source.h"
@@ -10,28 +10,28 @@ extern "C" {
 #endif
 
 struct document_bytes {
-    const unsigned char *at; /* in `own`, the source's bytes, or another's */
+    const unsigned char *at; /* points into `own`, into the source's bytes, or into another buffer */
     size_t size;
-    unsigned char *own; /* NULL: somebody else's */
+    unsigned char *own; /* allocation to free; NULL: the bytes belong to something else */
 };
 
 struct document_image {
-    char *name, *missing;        /* missing: why it could not be read; NULL: it was */
-    struct document_bytes bytes; /* as it lies in the file: PNG, JPEG, WebP */
+    char *name, *missing;        /* missing: reason why the image could not be read; NULL: it was read */
+    struct document_bytes bytes; /* encoded as in the file: PNG, JPEG or WebP */
 };
 
 struct model_document {
-    char *json; /* no buffers, images, skins or animations in it; every buffer view lies inside buffers[its buffer] */
+    char *json; /* JSON text without buffers, images, skins and animations; every buffer view lies within its buffer in buffers[] */
     size_t json_bytes;
     struct document_bytes *buffers;
     struct document_image *images;
-    char **looks; /* a text for each extension that is left out */
+    char **looks; /* a text for each ignored extension */
     size_t buffer_count, image_count, look_count;
-    size_t total_bytes; /* of the buffers, but for those that are all zeros */
+    size_t total_bytes; /* size of all buffers except all-zero ones */
 };
 
-/* Builds the plain document of a source file, which must outlive it. Returns false with the reason in why, and then there is nothing to
-   finish. */
+/* Normalises a source file, which must outlive the document. Returns false with the reason in why; then model_document_finish() need not be
+ * called. */
 bool model_document_open(struct model_document *document, const struct model_source *source, char why[MODEL_WHY_BYTES]);
 /* Frees the document. */
 void model_document_finish(struct model_document *document);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Buffers of a document, the byte ranges that lie in them, and accessors over them. */
+/* Manages the buffers of a document, byte ranges within them, and accessors over them. */
 #include <inttypes.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* KHR_draco_mesh_compression: a compressed primitive gets accessors of its own, which are plain. */
+/* Decodes KHR_draco_mesh_compression: each compressed primitive gets plain accessors of its own. */
 #include <stdio.h>
 #include <string.h>
 

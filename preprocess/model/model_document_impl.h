@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the files that reduce a glTF document to its plain form (model_document*.c). */
+/* Shared by the files that normalise a glTF document (model_document*.c). */
 #ifndef PREPROCESS_MODEL_DOCUMENT_IMPL_H
 #define PREPROCESS_MODEL_DOCUMENT_IMPL_H
 #include "preprocess/model/model_document.h"
 #include "preprocess/model/model_json.h"
 
-struct document_work { /* a document in the making; root's types and references are right (model_rules.h) */
+struct document_work { /* a document being normalised; types and references in root have been checked (model_rules.h) */
     json_t *root;
     const struct model_source *source;
     struct model_bytes binary;
@@ -14,7 +14,7 @@ struct document_work { /* a document in the making; root's types and references 
     char *why;
 };
 
-/* Returns the whole number under `key` of an object; 0 if there is none. */
+/* Returns the whole number under `key` of an object, or 0 if there is none. */
 static inline uint64_t document_number(const json_t *object, const char *key)
 {
     return (uint64_t)json_integer_value(json_object_get(object, key));
@@ -22,15 +22,15 @@ static inline uint64_t document_number(const json_t *object, const char *key)
 
 /* Appends a buffer and takes ownership of bytes.own, also on failure. Returns the buffer's number. */
 size_t document_add_buffer(struct document_work *work, struct document_bytes bytes);
-/* Appends a buffer view over the whole of a buffer and makes the accessor read from it. */
+/* Appends a buffer view that covers a whole buffer and makes the accessor read from it. */
 void document_point_accessor(struct document_work *work, json_t *accessor, size_t buffer);
-/* Finds `length` bytes at `offset` of a buffer and writes where they are to *out. Returns false if the buffer is too short; `what` begins
-   the reason in work->why. */
+/* Finds `length` bytes at `offset` of a buffer and writes their position to *out. Returns false if the buffer is too short; `what` begins
+ * the error text in work->why. */
 bool document_range(const struct document_work *work, size_t buffer, uint64_t offset, uint64_t length, const char *what,
                     struct model_bytes *out);
 
-/* Returns the size in bytes of one element of an accessor, and its component type and number of components. 0: its type is not one of glTF
-   2.0. */
+/* Returns the size in bytes of one element of an accessor, and its component type and number of components. Returns 0 if its type is not
+ * one of glTF 2.0. */
 size_t document_element_bytes(const json_t *accessor, int *component_type, int *width);
 
 /* Decodes EXT_meshopt_compression: each compressed buffer view becomes a plain one over a new buffer. Returns false with the reason in

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* EXT_meshopt_compression: compressed buffer views become plain ones. */
+/* Decodes EXT_meshopt_compression: compressed buffer views become plain ones. */
 #include <inttypes.h>
 #include <meshoptimizer.h>
 #include <stdio.h>
@@ -13,11 +13,11 @@ enum meshopt_filter { NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL };
 static const char *const modes[] = { "ATTRIBUTES", "TRIANGLES", "INDICES" };
 static const char *const filters[] = { "NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL" };
 
-#define BYTES_PER_BYTE 128u /* a vertex block takes at least 1 byte for 64, an index at least a third of one */
+#define BYTES_PER_BYTE 128u /* largest plausible expansion: vertex data needs at least 1 byte for 64, an index at least a third of a byte */
 
 struct meshopt_view {
     uint64_t count, stride;
-    int mode, filter; /* -1: not of this extension */
+    int mode, filter; /* -1: unknown value */
     struct model_bytes from;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Model files, one at a time in memory. */
+/* Keeps the list of model files and parses one at a time. */
 #include "preprocess/model/model_files.h"
 
 #include <errno.h>

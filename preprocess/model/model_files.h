@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The model files that a plant names, each once: hashed at first, parsed only while assets are cut out of them. Thread: one. */
+/* The distinct model files of a plant: all are hashed first, each is parsed only while its assets are cut out. Thread: one. */
 #ifndef PREPROCESS_MODEL_FILES_H
 #define PREPROCESS_MODEL_FILES_H
 #include "plant/plant.h"
 #include "preprocess/model/gltf_shim.h"
 
 struct model_file {
-    const char *path; /* the plant's */
-    int line;         /* in the plant file, of the first asset that names it */
-    bool good;        /* it can be read; else why */
+    const char *path; /* path; belongs to the plant */
+    int line;         /* line in the plant file of the first asset with this model */
+    bool good;        /* the file can be read; if false, `why` has the reason */
     char why[MODEL_WHY_BYTES];
-    uint64_t hash;            /* with what its URIs name */
-    uint64_t file_hash;       /* of the file itself */
-    struct gltf_model parsed; /* between model_file_parse and model_file_release */
+    uint64_t hash;            /* hash of the file and of the files that its URIs name */
+    uint64_t file_hash;       /* hash of the file alone */
+    struct gltf_model parsed; /* valid between model_file_parse() and model_file_release() */
     bool is_parsed, was_parsed;
     double parse_s;
-    uint32_t skipped_lines, skipped_points, scaled_rotations, left_out_textures; /* where was_parsed */
-    char **left_out;                                                             /* a text for each of these textures */
+    uint32_t skipped_lines, skipped_points, scaled_rotations, left_out_textures; /* counts of the last parse; valid if was_parsed */
+    char **left_out;                                                             /* a text for each ignored texture use and extension */
 };
 
 struct model_files {
@@ -24,8 +24,8 @@ struct model_files {
     size_t count, capacity;
 };
 
-/* Adds the asset's model file to the list, reading and hashing it if it is new. Returns its number in the list; at[number].good says
-   whether it could be read. */
+/* Adds the asset's model file to the list; reads and hashes it if it is new. Returns its index in the list; at[index].good says whether it
+ * could be read. */
 size_t model_files_add(struct model_files *files, const struct plant_asset *asset);
 /* Releases all models and frees the list. */
 void model_files_finish(struct model_files *files);
@@ -33,7 +33,7 @@ void model_files_finish(struct model_files *files);
 /* Parses the file into file->parsed, until model_file_release(). Returns false with the reason in file->why, also if the file has changed
    since it was hashed. */
 bool model_file_parse(struct model_file *file);
-/* Frees the parsed model. One that is not parsed is fine. */
+/* Frees the parsed model. Does nothing if the file is not parsed. */
 void model_file_release(struct model_file *file);
 
 #endif

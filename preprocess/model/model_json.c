@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finding and parsing the JSON of a model file. */
+/* Finds and parses the JSON of a model file. */
 #include "preprocess/model/model_json.h"
 
 #include <string.h>
 
 #include "base/mem.h"
 
-#define MAX_LEVELS 64 /* of arrays and objects; glTF needs about ten, extras some more */
+#define MAX_LEVELS 64 /* nesting of arrays and objects; glTF needs about ten, extras a few more */
 
 static uint32_t read_u32(const unsigned char *at)
 {
@@ -27,7 +27,7 @@ static bool glb_good(struct model_bytes file, struct model_bytes *json, struct m
         return wrong(why, "GLB: the first chunk is not JSON, or is cut off");
     *json = (struct model_bytes){ b + 20, json_bytes };
     size_t at = 20 + (size_t)json_bytes;
-    while (!binary->at && size - at >= 8) { /* chunks of other kinds may lie between */
+    while (!binary->at && size - at >= 8) { /* skip chunks of other types */
         uint32_t bytes = read_u32(b + at);
         if (bytes > size - at - 8)
             return wrong(why, "GLB: the chunk at byte %zu has %u bytes, but only %zu are left", at, bytes, size - at - 8);
@@ -38,7 +38,7 @@ static bool glb_good(struct model_bytes file, struct model_bytes *json, struct m
     return true;
 }
 
-/* Parsers recurse. */
+/* Returns whether the nesting depth is within MAX_LEVELS, because JSON parsers are recursive. */
 static bool depth_good(struct model_bytes json, char *why)
 {
     int depth = 0;
@@ -72,7 +72,7 @@ json_t *model_json_load(struct model_bytes file, struct model_bytes *binary, cha
         return NULL;
     if (json.size >= 3 && memcmp(json.at, "\xEF\xBB\xBF", 3) == 0)
         json = (struct model_bytes){ json.at + 3, json.size - 3 };
-    while (is_glb && json.size > 0 && json.at[json.size - 1] == 0) /* some writers pad with 0, not with blanks */
+    while (is_glb && json.size > 0 && json.at[json.size - 1] == 0) /* some writers pad with zero bytes instead of blanks */
         json.size--;
     if (!depth_good(json, why))
         return NULL;
@@ -92,7 +92,7 @@ static const json_t *meshopt_of(const json_t *object)
     return json_object_get(json_object_get(object, "extensions"), "EXT_meshopt_compression");
 }
 
-/* The number of an object's buffer; `count` for one that is not there. */
+/* Returns the buffer index of an object, or `count` if there is no such buffer. */
 static size_t number_in(const json_t *object, size_t count)
 {
     const json_t *number = json_object_get(object, "buffer");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Table of what a glTF document's properties must be. */
+/* The table of rules for properties of a glTF document. */
 #include "preprocess/model/model_rules.h"
 
 #include <math.h>
@@ -9,14 +9,14 @@
 #include <string.h>
 
 enum rule_kind { OBJECT, LIST, TEXT, FLAG, NUMBER, NUMBERS, SIZE, COUNT, INDEX, INDICES, ATTRIBUTES };
-enum rule_need { MAY, MUST }; /* MUST: if the object that holds it is there */
+enum rule_need { MAY, MUST }; /* MUST: the property must exist if its parent object does */
 
 struct model_rule {
-    const char *list, *path; /* path: dots lead into objects, which a rule before names */
+    const char *list, *path; /* path: dots separate nested objects, which earlier rules check */
     enum rule_kind kind;
     enum rule_need need;
-    const char *target; /* INDEX, INDICES, ATTRIBUTES: the list that it points into; NULL for ATTRIBUTES: any number */
-    size_t length;      /* NUMBERS */
+    const char *target; /* INDEX, INDICES, ATTRIBUTES: the list that an index refers to; NULL for ATTRIBUTES: any number */
+    size_t length;      /* NUMBERS: length of the array */
 };
 
 #define TEXTURE(path)                                                                                                                      \
@@ -34,7 +34,8 @@ struct model_rule {
 #define INSTANCING "extensions.EXT_mesh_gpu_instancing"
 
 /* clang-format off */
-static const struct model_rule rules[] = { /* whether an accessor's views are there is checked when it is read: some are left over */
+/* accessors' buffer views are checked when they are read, because some files have unused invalid ones */
+static const struct model_rule rules[] = {
     { "buffers", "byteLength", SIZE, MUST, NULL, 0 }, { "buffers", "uri", TEXT, MAY, NULL, 0 },
     { "bufferViews", "buffer", INDEX, MUST, "buffers", 0 }, { "bufferViews", "byteOffset", SIZE, MAY, NULL, 0 },
     { "bufferViews", "byteLength", SIZE, MUST, NULL, 0 }, { "bufferViews", "byteStride", SIZE, MAY, NULL, 0 },
@@ -85,13 +86,13 @@ static const struct model_rule rules[] = { /* whether an accessor's views are th
 };
 /* clang-format on */
 
-/* Extensions that a file may require: those that are done here. */
+/* Extensions that this program implements; a file may require them. */
 static const char *const known_extensions[] = {
     "KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_texture_transform", "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
 };
 
-/* Beginnings of the names of extensions that change no shape and no place: they are left out. */
+/* Name prefixes of extensions that change neither shape nor position, and are ignored. */
 static const char *const look_extensions[] = {
     "KHR_materials_", "EXT_materials_",     "ADOBE_materials_",        "KHR_texture_", "EXT_texture_",           "MSFT_texture_",
     "KHR_lights_",    "EXT_lights_",        "KHR_xmp",                 "KHR_audio",    "KHR_techniques_webgl",   "KHR_animation_pointer",
@@ -99,11 +100,11 @@ static const char *const look_extensions[] = {
     "AGI_",           "MAXAR_image_ortho",  "CESIUM_primitive_outline", "GODOT_single_root",
 };
 
-struct rule_check { /* one object in hand */
+struct rule_check { /* the object being checked */
     json_t *root;
-    const char *list; /* NULL: the document itself */
+    const char *list; /* name of the object's list; NULL: the document itself */
     size_t number;
-    int primitive; /* of the mesh `number`, or -1 */
+    int primitive; /* primitive of mesh `number`; -1: not a primitive */
     char *why;
 };
 
@@ -142,7 +143,7 @@ static bool object_wrong(const struct rule_check *c, const char *fmt, ...)
     return wrong(c->why, "%s: %s", what, text);
 }
 
-/* A whole number, whichever way it is written. */
+/* Reads a whole number, also if it is written as 3.0. */
 static bool whole(const json_t *value, json_int_t *out)
 {
     double real = json_real_value(value);

@@ -10,12 +10,12 @@
    object. Rewrites whole numbers written as 3.0 to 3. Returns false with the reason in why. */
 bool model_rules_check(json_t *root, char why[MODEL_WHY_BYTES]);
 
-/* Writes a name for messages, such as "mesh 3 'pump', primitive 0"; without the primitive if that is negative. */
+/* Writes the name of an object for messages, such as "mesh 3 'pump', primitive 0"; without the primitive if it is negative. */
 void model_rules_name(const json_t *root, const char *list, size_t number, int primitive, char *out, size_t bytes);
 
-/* Whether an extension is done here. */
+/* Returns whether this program implements an extension. */
 bool model_rules_known(const char *name);
-/* Whether an extension only changes how a model looks, so that the model can be drawn without it. */
+/* Returns whether an extension affects only the appearance of a model, so that the model can be drawn without it. */
 bool model_rules_look(const char *name);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reading and hashing model files. */
+/* Reads and hashes model files. */
 #include "preprocess/model/model_source.h"
 
 #include <errno.h>
@@ -17,10 +17,10 @@ static bool hash_uri(const struct model_source *source, const char *what, size_t
 {
     size_t size;
     char uri_why[MODEL_WHY_BYTES];
-    if (!uri || model_uri_is_data(uri)) /* in the file, and so in the hash already */
+    if (!uri || model_uri_is_data(uri)) /* data in the file itself, which is hashed already */
         return true;
     unsigned char *bytes = model_uri_read(source->folder, uri, &size, uri_why);
-    if (!bytes && strcmp(what, "image") == 0) /* the model is drawn without it; once the image is there, the hash is another */
+    if (!bytes && strcmp(what, "image") == 0) /* the model can be drawn without the image; adding the image later changes the hash */
         return true;
     if (!bytes)
         return wrong(why, "%s %zu: %s", what, number, uri_why);

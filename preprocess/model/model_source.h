@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A model file as it lies on disk: its bytes, and one hash over it and every file that its URIs name. Thread: any, one per source. */
+/* A model file as stored on disk: its bytes, and one hash over the file and all files that its URIs name. Thread: any, one per source. */
 #ifndef PREPROCESS_MODEL_SOURCE_H
 #define PREPROCESS_MODEL_SOURCE_H
 #include <stddef.h>
@@ -12,14 +12,15 @@ extern "C" {
 #endif
 
 struct model_source {
-    char *path, *folder; /* folder: as realpath names it */
+    char *path, *folder; /* folder: the model's folder as realpath() returns it */
     unsigned char *bytes;
     size_t size;
     uint64_t hash; /* XXH3-64 over the file and the files its URIs name */
 };
 
-/* Reads the file at `path` and hashes it with the files that it names. Checks a GLB's chunk lengths, JSON syntax and depth, and that every
-   named file exists inside the model's folder. Returns false with the reason in why, and then there is nothing to finish. */
+/* Reads the file at `path` and hashes it together with the files that it names. Checks a GLB's chunk lengths, JSON syntax and nesting
+ * depth, and that every named file exists inside the model's folder. Returns false with the reason in why; then model_source_finish() need
+ * not be called. */
 bool model_source_open(struct model_source *source, const char *path, char why[MODEL_WHY_BYTES]);
 /* Frees the bytes. */
 void model_source_finish(struct model_source *source);

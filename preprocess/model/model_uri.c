@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* URIs to bytes. */
+/* Reads the bytes that URIs refer to. */
 #include "preprocess/model/model_uri.h"
 
 #include <errno.h>
@@ -19,7 +19,7 @@ static int hex_digit(char c)
     return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
-/* %20 and the like, in place. False: a byte 0 hides in it. */
+/* Decodes percent escapes such as %20 in place. Returns false if the result contains a zero byte. */
 static bool percent_decode(char *name)
 {
     char *to = name;
@@ -38,7 +38,8 @@ static bool percent_decode(char *name)
     return true;
 }
 
-/* NULL, or why the name may not be opened. Symbolic links are followed first. Free *real with free(). */
+/* Resolves a name, following symlinks, and checks that it is inside the folder. Returns NULL, or the reason why it may not be opened. The
+ * caller frees *real with free(). */
 static const char *find_inside(const char *folder, const char *name, char **real)
 {
     struct stat st;
@@ -59,8 +60,8 @@ static const char *find_inside(const char *folder, const char *name, char **real
     return NULL;
 }
 
-/* Where the name is not there as it is written, the file may have it in another form: percent signs that are no escapes, accents joined
- * with their letters or apart (macOS), or folders between backslashes. */
+/* Resolves a name. If no such file exists, tries other spellings: percent signs taken literally, composed or decomposed accents (macOS),
+ * and backslashes as separators. */
 static const char *find_any_form(const char *folder, const char *uri, const char *name, char **real)
 {
     const utf8proc_uint8_t *bytes = (const utf8proc_uint8_t *)name;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writing down why a model is refused. */
+/* Formats the reason why a model is rejected. */
 #include "preprocess/model/refusal.h"
 
 #include <stdarg.h>

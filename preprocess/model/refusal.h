@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reason why a model is refused: one line of text that names the object and the numbers. Thread: any. */
+/* Error texts for rejected models: one line that names the object and the numbers. Thread: any. */
 #ifndef PREPROCESS_MODEL_REFUSAL_H
 #define PREPROCESS_MODEL_REFUSAL_H
 #include <stdbool.h>

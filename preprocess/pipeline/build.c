@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One asset from a parsed model to the bytes of its file. */
+/* Builds one asset, from a parsed model to the bytes of its file. */
 #include "preprocess/pipeline/build.h"
 
 #include <inttypes.h>
@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* allows a hash state on the stack */
 #include <xxhash.h>
 
 #include "base/clock.h"
@@ -37,7 +37,8 @@ static bool is_alone(const struct plant *plant, const struct plant_sensor *senso
     return true;
 }
 
-/* Of a single sensor by shepard, without a reach, the field is the same all over: no distance says anything about it. */
+/* Returns whether the field is constant because each group has a single sensor, uses Shepard and has no reach: then distances do not
+ * matter. */
 static bool is_constant(const struct plant *plant, const struct plant_sensor *sensors, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -48,7 +49,7 @@ static bool is_constant(const struct plant *plant, const struct plant_sensor *se
     return true;
 }
 
-/* What `gp` takes from the plant file, and the readings that it is fitted to. */
+/* Hashes the plant file's settings of `gp` and the readings that it is fitted to. */
 static void hash_gp(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count)
 {
     for (size_t g = 0; g < plant->group_count; g++) {
@@ -61,13 +62,13 @@ static void hash_gp(XXH3_state_t *state, const struct plant *plant, const struct
         if (!has_sensor || !plant_prepares(&plant->groups[g], INTERPOLATION_GP))
             continue;
         if (gp->fit)
-            plant_model_hash(gp->fit, &readings); /* a file that cannot be read is reported where it is needed */
+            plant_model_hash(gp->fit, &readings); /* an unreadable file is reported where it is used */
         XXH3_64bits_update(state, numbers, sizeof(numbers));
         XXH3_64bits_update(state, &readings, sizeof(readings));
     }
 }
 
-/* What the splitting takes from the plant file. */
+/* Hashes the plant file's settings that subdivision depends on. */
 static void hash_field(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
     const struct plant_tag *tag = &plant->tags[sensors[sensor].tag];
@@ -140,7 +141,7 @@ static double seconds_since(int64_t *since_ns)
     return seconds;
 }
 
-/* One asset in the making. */
+/* State of building one asset. */
 struct build {
     struct log *log;
     struct workers *workers;
@@ -149,21 +150,21 @@ struct build {
     struct geometry geometry;
     struct levels levels;
     struct sensor_distances measured;
-    struct asset_level file[LEVELS_MAX]; /* the levels as the file has them */
-    struct text parts;                   /* for the geometry cache, unless it has them */
-    bool surface_kept;                   /* the surface is there for the next time */
-    struct distance_rows distances;      /* of the vertices, as they come to be numbered */
+    struct asset_level file[LEVELS_MAX]; /* levels as stored in the file */
+    struct text parts;                   /* serialised geometry and levels for the cache; empty if they came from it */
+    bool surface_kept;                   /* the surface was written to the cache */
+    struct distance_rows distances;      /* distances of the vertices in their final order */
     struct clusters_making *making[LEVELS_MAX];
     size_t making_count;
-    bool keeps; /* what splitting found out */
+    bool keeps; /* results of subdivision are kept for the next run */
     struct subdiv_cache findings;
     struct sample_cache sample_cache;
     struct build_report geometry_report;
-    struct workers_task *keeping;          /* writes what is kept for the next time */
-    struct workers_task *sending;          /* the asset's file to the disk */
-    void (*tasks[2])(struct build *build); /* side by side */
+    struct workers_task *keeping;          /* task that writes the caches */
+    struct workers_task *sending;          /* task that writes the asset's file to disk */
+    void (*tasks[2])(struct build *build); /* two tasks that run concurrently */
     bool failed[2];
-    int write_error; /* errno; 0: none */
+    int write_error; /* errno of the last write; 0: none */
     char *why;
 };
 
@@ -183,7 +184,7 @@ static bool run_both(struct build *build, void (*first)(struct build *build), vo
     return !build->failed[0] && !build->failed[1];
 }
 
-/* --- levels and distances need nothing of each other ------------------------------------------------------------------------- */
+/* --- levels and distances run in parallel ------------------------------------------------------------------------------------ */
 
 static void make_levels(struct build *build)
 {
@@ -211,9 +212,9 @@ static void assume_sensors(struct build *build)
         sensor_distances_assume(&build->measured, build->workers, build->input, &build->geometry);
 }
 
-/* --- and so do splitting and the check ----------------------------------------------------------------------------------------- */
+/* --- subdivision and the check run in parallel --------------------------------------------------------------------------------- */
 
-/* One level while the next one is split: meshoptimizer works on one core. */
+/* Starts clustering one level while the next is being subdivided, since meshoptimizer uses a single core. */
 static void begin_clusters(void *arg, const struct level *level)
 {
     struct build *build = arg;
@@ -221,7 +222,7 @@ static void begin_clusters(void *arg, const struct level *level)
     build->making[build->making_count++] = clusters_begin(build->workers, level, (const float(*)[3])g->positions_m, g->vertex_count);
 }
 
-/* Before levels are put together. */
+/* Collects the clusters of all levels, before the levels are merged. */
 static void end_clusters(struct build *build, struct clusters *clusters)
 {
     uint32_t first_index = 0;
@@ -267,7 +268,8 @@ static void split(struct build *build)
     build->output->report.split_s = seconds_since(&since_ns);
 }
 
-/* Takes longer than all else of a small asset: not where nobody sees a distance, nor where the cache has the answer. */
+/* Compares the distances with those of the heat method. For a small asset this takes longer than everything else, so it is skipped if
+ * distances do not matter or the cache has the result. */
 static void check(struct build *build)
 {
     const struct build_input *input = build->input;
@@ -287,9 +289,9 @@ static void check(struct build *build)
     }
 }
 
-/* --- what is kept for the next time ------------------------------------------------------------------------------------------ */
+/* --- cache for the next run -------------------------------------------------------------------------------------------------- */
 
-/* Splitting is going to change them. */
+/* Serialises geometry and levels before subdivision changes them. */
 static void pack_parts(struct build *build)
 {
     const struct build_input *input = build->input;
@@ -308,7 +310,7 @@ static bool write_surface(const struct build *build)
     return good;
 }
 
-/* If it cannot be written, the next time takes longer; that is all. */
+/* Writes the geometry cache. A failure is ignored: the next run only takes longer. */
 static void write_geometry(const struct build *build)
 {
     const struct build_input *input = build->input;
@@ -316,7 +318,7 @@ static void write_geometry(const struct build *build)
         geometry_cache_write(input->folder, input->geometry_key, build->parts.at, build->parts.length, &build->geometry_report);
 }
 
-/* The surface is not written before it is checked, since it keeps what came of that; by then it is while levels are split. */
+/* Checks the distances, then writes the surface to the cache with the result of the check, while levels are being subdivided. */
 static void check_and_keep(struct build *build)
 {
     check(build);
@@ -334,7 +336,7 @@ static void write_caches(void *arg)
     write_geometry(build);
 }
 
-/* Levels first, then each is split; so a level has no more vertices than it needs. */
+/* Orders the vertices by level, so that each level uses only a prefix of them. */
 static bool put_in_order(struct build *build, uint32_t own)
 {
     struct build_report *report = &build->output->report;
@@ -359,7 +361,7 @@ static bool put_in_order(struct build *build, uint32_t own)
     return good || wrong(build->why, "out of memory for the levels of %u vertices", g->vertex_count);
 }
 
-/* Needs the surface still, and the vertices as they are in the end. */
+/* Computes the influence of sensors. Needs the surface and the final order of vertices. */
 static bool make_influence(struct build *build)
 {
     const struct build_input *input = build->input;
@@ -402,7 +404,7 @@ static void send_file(void *arg)
     folder_draft_send(arg);
 }
 
-/* They are most of the file: while it is summed up and checked, it goes to the disk. */
+/* Writes the distances to disk early: they are most of the file, and the rest is hashed and checked meanwhile. */
 static void write_distances(void *arg, uint16_t *codes)
 {
     struct build *build = arg;
@@ -460,13 +462,13 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     char view_why[200];
     memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
     size_t size;
-    wrong(build->why, "out of memory for its file"); /* unless make_file says something else */
+    wrong(build->why, "out of memory for its file"); /* default error, unless a later step gives another one */
     void *bytes = asset_build(&parts, &size);
     if (bytes && build->write_error)
         return wrong(build->why, "its distances cannot be written into %s: %s", input->folder, strerror(build->write_error));
     if (!bytes)
         return false;
-    return asset_view_fresh(&output->view, bytes, size, view_why) || /* what a reader would refuse is not put in its place */
+    return asset_view_fresh(&output->view, bytes, size, view_why) || /* never write a file that a reader would reject */
            wrong(build->why, "its file would be wrong: %s", view_why);
 }
 
@@ -484,7 +486,7 @@ static bool build_file(struct build *build)
             return false;
         build->geometry_report = build->output->report;
         build->keeping = workers_begin(build->workers, write_caches, build);
-        surface_field_finish(&build->measured.field); /* it is large */
+        surface_field_finish(&build->measured.field); /* free it early, because it is large */
     }
     if (!any && input->sensor_count > 0)
         sensor_distances_even(&build->distances, input->sensor_count, own);
@@ -496,7 +498,7 @@ static bool build_file(struct build *build)
     return good;
 }
 
-/* Out of the model, or out of the geometry cache, which has levels and surface too. */
+/* Gets the geometry from the cache, which also has levels and surface, or from the model. */
 static bool begin(struct build *build)
 {
     const struct build_input *input = build->input;

@@ -6,16 +6,16 @@
 #include "base/workers.h"
 #include "preprocess/pipeline/build_io.h"
 
-#define BUILD_REVISION 54u /* grows when the same input shall give another file */
+#define BUILD_REVISION 54u /* must be incremented whenever the same input would give a different file */
 
-/* Builds the asset into output->file, a draft that the caller names (folder_put()) and closes. Spreads its work over workers. Returns false
-   with the reason in why, and then there is no file. Thread: any. */
+/* Builds the asset into output->file, a draft that the caller names (folder_put()) and closes. Uses all workers. Returns false with the
+ * reason in why; then there is no file. Thread: any. */
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES]);
 
-/* Returns a key for a model together with the parameters by which an asset is cut out of it: equal recipes give equal geometry. */
+/* Returns a key for a model and the parameters by which an asset is cut out of it: equal keys mean equal geometry. */
 uint64_t build_recipe(uint64_t model_hash, const struct geometry_params *geometry);
-/* Returns the key of everything in the asset that does not depend on sensors. hash: of the geometry (geometry_hash()). */
+/* Returns the key of everything in the asset that does not depend on sensors. geometry_hash: result of geometry_hash(). */
 uint64_t build_geometry_key(uint64_t geometry_hash, const struct geometry_params *geometry);
 /* Returns the key of the asset file that would be built from this geometry, plant and sensors. */
 uint64_t build_key(uint64_t geometry_key, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What building one asset takes and gives. */
+/* Input and output of building one asset. */
 #ifndef PREPROCESS_PIPELINE_BUILD_IO_H
 #define PREPROCESS_PIPELINE_BUILD_IO_H
 #include "plant/sensors.h"
@@ -11,44 +11,45 @@
 
 struct geometry_cache;
 struct build_input {
-    const struct gltf_model *model; /* not used where `cache` is set */
+    const struct gltf_model *model; /* parsed model; unused if `cache` is set */
     struct geometry_params geometry;
-    const struct plant *plant;          /* its groups and tags say where the field bends */
-    const struct plant_sensor *sensors; /* position_m also where it is a node's */
+    const struct plant *plant;          /* its groups and tags determine where the field needs subdivision */
+    const struct plant_sensor *sensors; /* position_m is set for all sensors, including those given by a node */
     size_t sensor_count;
     uint64_t key;
-    const struct geometry_cache *cache; /* of geometry_key; NULL: there is none */
-    const char *folder;                 /* of prepared files, with the build cache; NULL: none */
+    const struct geometry_cache *cache; /* cached geometry for geometry_key; NULL: none */
+    const char *folder;                 /* folder of prepared files and the build cache; NULL: none */
     uint64_t geometry_key, distances_key;
 };
 
 struct build_level {
-    uint32_t triangles;       /* as simplified */
-    uint32_t split_triangles; /* after splitting */
-    uint32_t vertices;        /* the prefix */
+    uint32_t triangles;       /* triangles after simplification */
+    uint32_t split_triangles; /* triangles after subdivision */
+    uint32_t vertices;        /* vertices of the prefix that the level uses */
     float error_m;
-    struct level_left left[LEVEL_LIMITS]; /* what splitting left */
+    struct level_left left[LEVEL_LIMITS]; /* edges that subdivision left with an error */
 };
 
 struct build_report {
     uint32_t nodes, triangles, vertices, primitives, materials, textures, degenerate_triangles, repeated_triangles, computed_normals;
     uint32_t turned_triangles, closed_gaps;
-    uint32_t skipped_lines, skipped_points; /* primitives that are no triangles */
-    struct surface_report surface;          /* zero where the asset has no sensor */
-    size_t unreachable_vertices;            /* no sensor's distance is finite there */
-    uint32_t stocked, kept_sensors;         /* stocked: 1 if the model need not be read; sensors whose distances were there */
+    uint32_t skipped_lines, skipped_points; /* primitives skipped because they are not triangles */
+    struct surface_report surface;          /* zero if the asset has no sensor */
+    size_t unreachable_vertices;            /* vertices without a finite distance to any sensor */
+    /* stocked: 1 if the geometry came from the cache; kept_sensors: sensors whose distances came from the cache */
+    uint32_t stocked, kept_sensors;
     struct build_level levels[LEVELS_MAX];
     size_t level_count, levels_given_up;
-    size_t split_measured, split_kept; /* findings of the splitting: of this time, and of the last that still hold */
-    struct bend_report bend;   /* of harmonic, fin and gp between corners; zero: no group asks for them */
-    struct cloud_report cloud; /* of the heat method on a point cloud; zero: no group asks for it */
-    char stray[STRAY_TEXT_BYTES]; /* pieces far from the rest (geometry/stray.h); "": none */
+    size_t split_measured, split_kept; /* samples of the field during subdivision: computed in this run, and reused from the last run */
+    struct bend_report bend;           /* bend of harmonic, fin and gp between corners; zero: no group requests them */
+    struct cloud_report cloud;         /* distances by heat on a point cloud; zero: no group requests them */
+    char stray[STRAY_TEXT_BYTES];      /* pieces far from the main part (geometry/stray.h); "": none */
     double read_s, surface_s, solve_s, levels_s, split_s;
 };
 
 struct build_output {
     struct folder_draft file;
-    struct asset_view view; /* of its bytes */
+    struct asset_view view; /* view into the bytes of `file` */
     struct build_report report;
 };
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One table says which number of a build report has which name. */
+/* One table maps each number of a build report to its JSON name. */
 #include "preprocess/pipeline/build_report_json.h"
 
 #include <math.h>
 #include <stdio.h>
 
-enum report_value_kind { COUNT32, COUNT, WHOLE, METRES /* double; not a number: null */, SHARE /* float */ };
+enum report_value_kind { COUNT32, COUNT, WHOLE, METRES /* a double; null if it is not finite */, SHARE /* float */ };
 
 struct number {
     const char *name;
@@ -178,7 +178,7 @@ bool build_report_from_json(const json_t *numbers, struct build_report *report)
     for (size_t i = 0; i < report->level_count; i++)
         if (!all_from_json(level_numbers, json_array_get(levels, i), &report->levels[i]))
             return false;
-    const json_t *cloud = json_object_get(numbers, "cloud"); /* where no group asks for it there is none */
+    const json_t *cloud = json_object_get(numbers, "cloud"); /* absent if no group requests it */
     if (cloud && !all_from_json(cloud_numbers, cloud, report))
         return false;
     const json_t *bend = json_object_get(numbers, "between_corners");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeping what does not depend on sensors. */
+/* Serialises and restores the parts of an asset that do not depend on sensors. */
 #include "preprocess/pipeline/geometry_cache.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
-/* The parts come first, and how long they are before them. */
+/* Returns the serialised geometry, which follows its 8-byte length in the file. */
 static const void *cached_parts(const struct geometry_cache *cache, size_t *size)
 {
     uint64_t bytes;
@@ -78,7 +78,7 @@ static void pack_geometry(struct text *to, const struct geometry *g)
     pack_array(to, g->names.at, g->names.length, 1);
 }
 
-/* Its numbers of elements are 32 bits wide: anything else is no good. */
+/* Converts a count to the 32 bits that geometry uses; marks the data as damaged if it does not fit. */
 static uint32_t narrow(struct unpack *from, size_t count)
 {
     from->bad |= count > UINT32_MAX;

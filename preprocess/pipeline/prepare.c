@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All assets of a plant: keys, what is there already, and building the rest, a batch of models at a time. */
+/* Prepares all assets of a plant: computes keys, checks existing files, and builds the others, a batch of models at a time. */
 #include "preprocess/influence/influence_file.h"
 #include "preprocess/pipeline/prepare.h"
 
@@ -22,27 +22,27 @@
 #include "preprocess/pipeline/sensor_distances.h"
 #include "preprocess/pipeline/build_report_json.h"
 
-#define FAR_M 0.25       /* a sensor farther from its surface than this, */
-#define FAR_OF_SIZE 0.05 /* or than this share of the asset, is worth a warning */
+#define FAR_M 0.25       /* metres; a sensor farther from its surface than this, */
+#define FAR_OF_SIZE 0.05 /* or than this share of the asset's size, causes a warning */
 
-#define BATCH_TRIANGLES 4e6 /* models are parsed until so many triangles wait, then their assets are built */
-#define ALONE_TRIANGLES 1e6 /* an asset as large has all cores for itself: two at once would take twice the memory */
-#define SENSORS_WORK 6e4    /* what an asset's first sensor costs, in triangles, for the progress: measured */
+#define BATCH_TRIANGLES 4e6 /* models are parsed until their assets have this many triangles; then the assets are built */
+#define ALONE_TRIANGLES 1e6 /* larger assets are built one at a time with all cores, because two at once would need twice the memory */
+#define SENSORS_WORK 6e4    /* progress estimate: measured cost of an asset's first sensor, in triangles */
 
 struct prepare_run {
     struct prepare *prepare;
     struct log *log;
     struct workers *workers;
     const struct prepare_params *params;
-    size_t *todo; /* assets to build, by model */
+    size_t *todo; /* indices of assets to build, grouped by model */
     size_t todo_count, batch_begin, batch_end;
-    struct model_cache known, cuts; /* of the last time, and of this one */
-    double parsed_triangles;        /* of models that were parsed for their keys and wait for their assets to be built */
+    struct model_cache known, cuts; /* model caches of the last run and of this run */
+    double parsed_triangles; /* triangles of models that were parsed for their keys and stay in memory until their assets are built */
     pthread_mutex_t lock;
-    /* --- below: under lock */
+    /* --- members protected by `lock` */
     struct diag *diag;
     struct progress progress;
-    bool failed, unusable; /* unusable: also what is not to blame on a model */
+    bool failed, unusable; /* failed: any error; unusable: an error other than of a model */
 };
 
 struct geometry_params prepare_geometry(const struct plant_asset *asset)
@@ -72,7 +72,7 @@ static void fail_asset(struct prepare_run *run, const struct prepare_asset *asse
     fail(run, run->prepare->plant->path, asset->plant->line, "asset %s: %s: %s", asset->plant->id, asset->plant->model, why);
 }
 
-/* Its model is no good, or has not what the plant asks of it. */
+/* Marks an asset as failed because its model is invalid or lacks something the plant refers to. */
 static void lose(struct prepare_asset *asset, const char *why)
 {
     asset->state = PREPARE_FAILED;
@@ -100,7 +100,7 @@ static size_t first_with_key(const struct prepare_run *run, size_t i)
     return i;
 }
 
-/* Of an asset whose model was read before, with the nodes that its sensors stand on. False: it is to be read. */
+/* Gets an asset's geometry hash and sensor positions from the cache of models. Returns false if the model must be parsed. */
 static bool recall_cut(struct prepare_run *run, struct prepare_asset *asset, uint64_t *geometry)
 {
     bool known = model_cache_find(&run->known, asset->recipe, geometry);
@@ -118,7 +118,7 @@ static double all_triangles(const struct gltf_model *model)
     return corners / 3;
 }
 
-/* False: the model cannot be parsed, which is said once. */
+/* Ensures that the model is parsed. Returns false if it cannot be parsed; the error is reported once. */
 static bool have_parsed(struct prepare_run *run, struct model_file *model)
 {
     if (model->is_parsed || !model->good)
@@ -168,7 +168,8 @@ static void take_cut(struct prepare_run *run, struct prepare_asset *asset, uint6
             model_cache_add_node(&run->cuts, asset->recipe, asset->sensors[s].node_hash, asset->sensors[s].position_m);
 }
 
-/* Of the wanted assets of one model. What it takes to parse it is not spent twice unless its triangles take too much room. */
+/* Computes the keys of all wanted assets of one model. Keeps the parsed model for building, unless too many triangles are in memory
+ * already. */
 static void find_keys_of_model(struct prepare_run *run, size_t number)
 {
     struct model_file *model = &run->prepare->models.at[number];
@@ -219,7 +220,7 @@ static void find_keys(struct prepare_run *run)
 
 /* --- what is in the folder -------------------------------------------------------------------------------------------------- */
 
-/* Takes from a checked file what the report and the warnings need. */
+/* Copies from an existing, checked file what the report and the warnings need. */
 static void take_file(struct prepare_asset *asset, const struct asset_view *view)
 {
     const struct asset_level *finest = &view->levels[0];
@@ -275,7 +276,7 @@ static void look_at_some(void *arg, size_t begin, size_t end)
     }
 }
 
-/* What is there already, and what is to be built: the assets of one model one after another. */
+/* Separates assets that are up to date from those to build; groups the latter by model. */
 static void sort_out(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -305,7 +306,7 @@ static int write_file(const struct prepare_run *run, const struct prepare_asset 
     return status;
 }
 
-/* False: failed, and said so. Under lock. */
+/* Reports the result of building an asset; returns false if it failed. The caller holds the lock. */
 static bool is_built(struct prepare_run *run, const struct prepare_asset *asset, bool good, int status, const char *why)
 {
     if (!good)
@@ -316,7 +317,7 @@ static bool is_built(struct prepare_run *run, const struct prepare_asset *asset,
     return good && status == 0;
 }
 
-/* Under lock. */
+/* Sends the status line to the service manager. The caller holds the lock. */
 static void say_status(struct prepare_run *run)
 {
     const struct progress *progress = &run->progress;
@@ -376,7 +377,7 @@ static int heavier_first(const void *a, const void *b, void *arg)
     return p == q ? (i < j ? -1 : 1) : p > q ? -1 : 1;
 }
 
-/* False: its model has to be read. */
+/* Opens the geometry cache of an asset. Returns false if the model must be parsed instead. */
 static bool find_stock(const struct prepare_run *run, struct prepare_asset *asset)
 {
     return asset->sensor_count > 0 && geometry_cache_open(&asset->cache, run->params->folder, asset->geometry_key);
@@ -388,8 +389,7 @@ static double own_triangles(const struct prepare_asset *asset, const struct mode
     return asset->cache.parts.bytes ? asset->cache.report.triangles : (double)geometry_triangles(&model->parsed, &geometry);
 }
 
-/* Parses the models of todo from batch_begin on, and weighs their assets, until there is enough to do. What cannot be parsed is left:
-   its assets fail. */
+/* Parses models of todo from batch_begin on until there is enough work for a batch. Assets whose model cannot be parsed fail. */
 static void parse_batch(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -415,7 +415,7 @@ static void parse_batch(struct prepare_run *run)
     }
 }
 
-/* Leaves those out whose model is no good; those that are heavy are built one after the other, the rest side by side. */
+/* Builds the assets of a batch, except those whose model is invalid: large assets one after the other, small ones in parallel. */
 static void build_batch(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -469,7 +469,7 @@ static void share(struct prepare_run *run)
         asset->reported = first->reported;
         asset->report = first->report;
         asset->surface_distances_m = mem_array(asset->sensor_count, sizeof(*asset->surface_distances_m));
-        for (size_t s = 0; s < asset->sensor_count; s++) /* equal keys: equal sensors */
+        for (size_t s = 0; s < asset->sensor_count; s++) /* equal keys imply equal sensors */
             asset->surface_distances_m[s] = first->surface_distances_m[s];
     }
 }
@@ -489,7 +489,7 @@ static void warn(struct prepare_run *run, const struct prepare_asset *asset)
     }
 }
 
-/* Those of other assets are kept where these were not asked for. If it cannot be written, the next time takes longer; that is all. */
+/* Writes the cache of models. Entries of assets not prepared in this run are kept. A failure is ignored: the next run only takes longer. */
 static void write_cuts(struct prepare_run *run)
 {
     bool all = !run->params->only && !run->prepare->interrupted;
@@ -513,7 +513,7 @@ static void write_manifest(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
     struct folder_entry *entries = mem_array(prepare->asset_count, sizeof(*entries));
-    const char **tags = mem_array(prepare->plant->tag_count, sizeof(*tags)), **next = tags; /* a tag is a sensor of one asset at most */
+    const char **tags = mem_array(prepare->plant->tag_count, sizeof(*tags)), **next = tags; /* each tag is a sensor of at most one asset */
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
         for (size_t s = 0; s < asset->sensor_count; s++)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prepares all assets of a plant: files that are up to date stay, the rest is built. Each finished asset is on disk at once, so an
-   interrupted run is continued by the next one. Thread: one. */
+/* Prepares all assets of a plant: keeps files that are up to date and builds the others. Each finished asset is written to disk at once, so
+ * that the next run continues after an interruption. Thread: one. */
 #ifndef PREPROCESS_PIPELINE_PREPARE_H
 #define PREPROCESS_PIPELINE_PREPARE_H
 #include <stdatomic.h>
@@ -11,25 +11,25 @@
 #include "preprocess/model/model_files.h"
 #include "preprocess/pipeline/geometry_cache.h"
 
-enum prepare_state { PREPARE_LEFT /* not begun: interrupted */, PREPARE_FAILED, PREPARE_UNCHANGED, PREPARE_SHARED, PREPARE_BUILT };
+enum prepare_state { PREPARE_LEFT /* not started: interrupted */, PREPARE_FAILED, PREPARE_UNCHANGED, PREPARE_SHARED, PREPARE_BUILT };
 
 struct prepare_asset {
     const struct plant_asset *plant;
-    bool wanted;  /* else nothing below is set */
-    size_t model; /* in prepare->models */
+    bool wanted;  /* the asset is to be prepared; if false, no member below is set */
+    size_t model; /* index in prepare.models */
     struct plant_sensor *sensors;
     size_t sensor_count;
-    float *surface_distances_m;                        /* of each sensor; NULL: failed */
-    double size_m[3];                                  /* in the asset frame, the last is the height; 0: not known */
-    double far_m;                                      /* a sensor farther from its surface than this is worth a warning */
-    uint64_t recipe, key, geometry_key, distances_key; /* recipe: build_recipe */
-    char *missing;               /* failed because of the model: why it, or a sensor's node, cannot be found there; else NULL */
-    struct geometry_cache cache; /* while it is built; parts.bytes NULL: none */
-    size_t same_as;              /* the first asset with this key, which has the file */
+    float *surface_distances_m;                        /* distance of each sensor from the surface; NULL: preparing failed */
+    double size_m[3];                                  /* in the asset frame, the last is the height; 0: unknown */
+    double far_m;                                      /* distance of a sensor from its surface above which a warning is due */
+    uint64_t recipe, key, geometry_key, distances_key; /* recipe: result of build_recipe() */
+    char *missing;               /* reason why the model, or the node of a sensor, cannot be used; NULL: no such failure */
+    struct geometry_cache cache; /* open while the asset is built; parts.bytes NULL: not open */
+    size_t same_as;              /* index of the first asset with the same key, which owns the file */
     enum prepare_state state;
-    char *rebuilt_because; /* what was wrong with the file that was there, or NULL */
+    char *rebuilt_because; /* defect of the existing file; NULL: none */
     uint32_t triangles, vertices;
-    bool reported; /* report is set: always where it was built, else where the file's report was kept */
+    bool reported; /* `report` is set: always after a build, otherwise if the file's report was kept */
     struct build_report report;
     double seconds, work;
 };
@@ -46,24 +46,25 @@ struct prepare {
 
 struct prepare_params {
     const char *folder;
-    const char *only;                  /* this asset alone; the manifest is left as it is. NULL: all */
-    FILE *progress;                    /* NULL: silent */
-    struct service_patience *patience; /* gets the status after each asset; NULL: nobody waits */
-    const atomic_bool *stop;           /* no asset is begun any more once it is true. NULL: never */
+    const char *only;                  /* id of the only asset to prepare, with the manifest unchanged; NULL: all assets */
+    FILE *progress;                    /* stream for progress lines; NULL: silent */
+    struct service_patience *patience; /* receives the status after each asset; NULL: not reported */
+    const atomic_bool *stop;           /* no further asset is started once true; NULL: never stops */
 };
 
 /* Prepares the plant's assets into params->folder, one process at a time per folder. Errors go to diag, by line of the plant file or tag
-   list. Returns false if something failed or was interrupted; what is good was written. The manifest stays as it was, unless only models
-   are to blame: then it lists what is good and says why the rest is missing. Call prepare_finish() in both cases. */
+ * list. Returns false if something failed or the run was interrupted; good assets have been written. On failure the manifest is left
+ * unchanged, unless only models are the cause: then the manifest lists the good assets and the reasons for the missing ones. Call
+ * prepare_finish() in both cases. */
 bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant,
                  const struct prepare_params *params, struct diag *diag);
 /* Frees the results. */
 void prepare_finish(struct prepare *prepare);
 
-/* Returns the parameters by which this asset is cut out of its model. */
+/* Returns the parameters by which an asset is cut out of its model. */
 struct geometry_params prepare_geometry(const struct plant_asset *asset);
-/* Returns the distance from the surface, in metres, beyond which a sensor is worth a warning, for an asset whose bounding box has this
-   diagonal. */
+/* Returns the distance of a sensor from the surface, in metres, above which a warning is due, for an asset whose bounding box has this
+ * diagonal. */
 double prepare_far_m(double diagonal_m);
 
 #endif

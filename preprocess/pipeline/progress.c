@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Progress and the time that is left. */
+/* Computes and prints progress and remaining time. */
 #include "preprocess/pipeline/progress.h"
 
 #include <unistd.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints how far preparing has come and how long it will still take: one line that is rewritten on a terminal, else a line now and then.
-   Time is passed in. Thread: one at a time. */
+/* Prints the progress and the estimated remaining time: one line that is rewritten on a terminal, otherwise a line from time to time. The
+ * caller passes the time. Thread: one at a time. */
 #ifndef PREPROCESS_PIPELINE_PROGRESS_H
 #define PREPROCESS_PIPELINE_PROGRESS_H
 #include <stdbool.h>
@@ -10,25 +10,25 @@
 #define PROGRESS_TERMINAL_NS 200000000LL
 #define PROGRESS_LINE_NS 5000000000LL
 
-struct progress { /* zero-initialise; out NULL: silent */
+struct progress { /* zero-initialise; out NULL: prints nothing */
     FILE *out;
     bool terminal;
     int64_t began_ns, said_ns;
-    size_t total, there, done; /* assets: all; those that need no work; those of the rest that are finished */
-    size_t known;              /* of the rest: those whose work is known */
+    size_t total, there, done; /* numbers of assets: all; those that need no work; finished ones of the rest */
+    size_t known;              /* assets of the rest whose amount of work is known */
     double work_known, work_done;
 };
 
 /* Starts counting: `total` assets, of which `there` need no work. out NULL: prints nothing. */
 void progress_begin(struct progress *progress, FILE *out, size_t total, size_t there, int64_t now_ns);
-/* Adds an asset's amount of work, in any unit, as soon as it is known and before it is done. */
+/* Adds an asset's amount of work, in any unit, before the asset is finished. */
 void progress_expect(struct progress *progress, double work);
-/* Counts an asset of this amount of work as finished, and prints if it is time to. */
+/* Counts an asset with this amount of work as finished. Prints a line if one is due. */
 void progress_step(struct progress *progress, double work, int64_t now_ns);
-/* Clears the terminal's line. */
+/* Clears the progress line on a terminal. */
 void progress_end(struct progress *progress);
 
-/* Returns the estimated seconds for the rest at the rate so far; negative if nothing is done yet. */
+/* Returns the estimated remaining seconds at the rate so far, or a negative number if nothing is finished yet. */
 double progress_left_s(const struct progress *progress, int64_t now_ns);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dropping sensors onto an asset's surface, and finding their distances there. */
+/* Projects sensors onto an asset's surface and computes their distances. */
 #include "preprocess/pipeline/sensor_distances.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ bool build_sensor_place(const struct gltf_model *model, const struct geometry_pa
     return !sensor->node || geometry_node_place(model, geometry, sensor->node, place_m, why);
 }
 
-/* Where each sensor is, less the origin. */
+/* Computes the position of each sensor relative to the geometry's origin. */
 static void place_sensors(struct sensor_distances *measured, const struct build_input *input, const struct geometry *geometry)
 {
     measured->places_m = mem_array(input->sensor_count, sizeof(*measured->places_m));
@@ -67,7 +67,7 @@ static void drop_sensors(const struct sensor_distances *measured, struct workers
         drop_some(&drop, 0, input->sensor_count);
 }
 
-/* Vertices without a finite distance. */
+/* Returns the number of vertices without a finite distance to any sensor. */
 static size_t unreachable(const struct sensor_distances *measured, size_t vertex_count)
 {
     size_t count = 0, sensors = measured->field.source_count;
@@ -83,7 +83,7 @@ static size_t unreachable(const struct sensor_distances *measured, size_t vertex
     return count;
 }
 
-/* Distances of sensors that stand where some stood before are fetched. */
+/* Computes the distances, reusing cached ones of sensors whose position has not changed. */
 static bool solve(struct sensor_distances *measured, const struct build_input *input, uint32_t triangles, uint32_t *kept)
 {
     const double(*places_m)[3] = (const double(*)[3])measured->places_m;
@@ -119,7 +119,7 @@ bool sensor_distances_find(struct sensor_distances *measured, struct log *log, s
     return true;
 }
 
-/* --- where all places are assumed --------------------------------------------------------------------------------------------- */
+/* --- all positions assumed ---------------------------------------------------------------------------------------------------- */
 
 bool sensor_distances_matter(const struct plant *plant, const struct plant_sensor *sensors, size_t count)
 {
