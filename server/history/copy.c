@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Copies of files that must be whole. */
+/* Copies of files, checked to be complete. */
 #include "history/copy.h"
 
 #include <errno.h>
@@ -34,9 +34,9 @@ static bool sync_file(struct log *log, const char *path)
     return good || failed(log, path, "cannot be brought to the disk", strerror(cause));
 }
 
-/* --- whose a file is ---------------------------------------------------------------------------------------------------------- */
+/* --- owner of a file --------------------------------------------------------------------------------------------------------- */
 
-/* The folder that a file lies in; mem_free. */
+/* Returns the folder of a file; free with mem_free(). */
 static char *folder_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -51,7 +51,7 @@ static bool stat_folder(const char *path, struct stat *st)
     return good;
 }
 
-/* What may be read: who owns a folder can put a link there to what only we may read. NULL: nothing is wrong. */
+/* Returns why a file must not be copied, or NULL. The owner of a folder could place a link in it to a file that only we may read. */
 static const char *fault_of(const char *path, const struct stat *st)
 {
     struct stat folder;
@@ -64,7 +64,7 @@ static const char *fault_of(const char *path, const struct stat *st)
     return st->st_nlink > 1 && st->st_uid != folder.st_uid ? "it has another name elsewhere" : NULL;
 }
 
-/* -1: logged. */
+/* Opens a file for reading. Returns -1 on failure (logged). */
 static int open_source(struct log *log, const char *path)
 {
     struct stat st;
@@ -80,7 +80,8 @@ static int open_source(struct log *log, const char *path)
     return -1;
 }
 
-/* A new file, for us and its folder's group to read at most; it belongs to whom the folder belongs to. -1: logged. */
+/* Creates a file that only its owner and group can read; if root creates it, it gets the owner of its folder. Returns -1 on failure
+   (logged). */
 static int create_target(struct log *log, const char *path)
 {
     struct stat folder;
@@ -96,7 +97,7 @@ static int create_target(struct log *log, const char *path)
     return -1;
 }
 
-/* "ok", or the first thing that is wrong. */
+/* Returns whether SQLite's integrity check of a database finds no fault; logs the first fault. */
 static bool is_whole(struct log *log, sqlite3 *db, const char *path)
 {
     sqlite3_stmt *check = NULL;
@@ -109,7 +110,7 @@ static bool is_whole(struct log *log, sqlite3 *db, const char *path)
     return good;
 }
 
-/* All pages in one step: whoever writes goes on in its log meanwhile. */
+/* Copies all pages in one step: a writer meanwhile continues in the write-ahead log. */
 static int copy_pages(sqlite3 *from, sqlite3 *to)
 {
     sqlite3_backup *backup = sqlite3_backup_init(to, "main", from, "main");
@@ -119,7 +120,8 @@ static int copy_pages(sqlite3 *from, sqlite3 *to)
     return code == SQLITE_DONE ? end : code;
 }
 
-/* Its path without links on the way, which SQLite wants where it is to follow none; free. NULL: logged. */
+/* Returns the path with symbolic links resolved, as SQLITE_OPEN_NOFOLLOW requires; free with free(). NULL: the file must not be copied
+   (logged). */
 static char *path_of_database(struct log *log, const char *path)
 {
     int fd = open_source(log, path);
@@ -139,7 +141,7 @@ static bool copy_state(struct log *log, const char *from_path, const char *to_pa
     if (code == SQLITE_OK)
         code = copy_pages(from, to);
     if (code == SQLITE_OK)
-        code = sqlite3_exec(to, "PRAGMA journal_mode = DELETE", NULL, NULL, NULL); /* one file, without its log */
+        code = sqlite3_exec(to, "PRAGMA journal_mode = DELETE", NULL, NULL, NULL); /* one file, without a write-ahead log */
     bool good = code == SQLITE_OK ? is_whole(log, to, to_path) : failed(log, from_path, "cannot be copied", sqlite3_errstr(code));
     sqlite3_close(to);
     sqlite3_close(from);

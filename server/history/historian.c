@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The historian's thread: takes what the store told, keeps what must be kept, writes it once a second. */
+/* The historian's thread: takes the samples from the store, selects the points to record, and writes them once a second. */
 #include "history/historian.h"
 
 #include <errno.h>
@@ -24,18 +24,18 @@
 #include "value/quality.h"
 
 enum {
-    QUEUE_MAX = 4000000,   /* samples that one second may bring */
-    WAITING_MAX = 4000000, /* rows that wait for a disk that takes them again */
+    QUEUE_MAX = 4000000,   /* maximum number of samples in one second */
+    WAITING_MAX = 4000000, /* maximum number of rows in memory while the disk cannot be written */
     TIDY_ROWS = 200000,
-    TAG_LEADS = -1,   /* in place of a tag: from here on the samples are the store's */
-    TAG_FOLLOWS = -2, /* likewise: what comes is of another connection to the daemon that leads */
+    TAG_LEADS = -1,   /* used instead of a tag: the following samples are from the store */
+    TAG_FOLLOWS = -2, /* used instead of a tag: the following samples are from a new connection to the leading daemon */
     RETRY_MAX_S = 30,
 };
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
                      LOOK_NS = 20 * NS_PER_MS;
 
 struct historian_queue {
-    struct sample_event *at; /* samples as they came */
+    struct sample_event *at; /* samples in order of arrival */
     size_t count, capacity, lost;
 };
 struct now {
@@ -50,26 +50,26 @@ struct historian {
     struct {
         counter *samples, *points, *lost, *waiting, *good, *bytes, *free, *backup;
     } counters;
-    struct postgres *postgres; /* NULL: history is sent nowhere */
-    atomic_bool restored;      /* it has put points of the past into the files */
-    /* --- below: of the thread */
+    struct postgres *postgres; /* NULL: history is not sent to a database */
+    atomic_bool restored;      /* older points have been read from the database into the files */
+    /* --- below: used by the historian's thread only */
     struct history_tag *tags;
     struct recorder *recorder;
     struct snapshot *snapshot;
     struct recorder_rows waiting, held;
-    struct spool_rows spooled; /* of the last run; written before anything else */
-    char *spool_path;          /* where they are; NULL: nowhere */
+    struct spool_rows spooled; /* rows spooled by the last run; written before all others */
+    char *spool_path;          /* path of the last run's spool; NULL: none */
     struct month_file *file;
     struct historian_queue taken;
     bool recovered, failing, stands_by, fills;
-    int64_t fill_us;     /* fills: from when on points are to be read from the database */
-    int64_t mirrored_us; /* when the newest sample was taken that was mirrored; 0: none was */
+    int64_t fill_us;     /* with `fills`: time from which points must be read from the database */
+    int64_t mirrored_us; /* time of the newest mirrored sample; 0: none */
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
     struct thread thread;
     /* --- below: under thread.lock */
     struct historian_queue queue;
-    const struct plant *next; /* whose historian follows; NULL: none */
-    struct postgres_owed *owed; /* becomes what is still to be read, for that one; NULL: there is none */
+    const struct plant *next;   /* plant of the historian that continues; NULL: none */
+    struct postgres_owed *owed; /* receives the spans that the next historian must still read from the database; NULL: not wanted */
 };
 
 /* --- from the store ----------------------------------------------------------------------------------------------------------- */
@@ -138,7 +138,7 @@ static void put(struct historian *historian, int tag, const struct history_point
     counter_inc(historian->counters.points, (int64_t)(historian->waiting.count - before));
 }
 
-/* Whether stale or cut off: the store knows without being told by anyone. */
+/* Records quality changes caused by time alone, such as a reading that goes stale: the store makes no sample event for them. */
 static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
 {
     store_snapshot(historian->store, mono_ns, utc_ns, historian->snapshot);
@@ -151,7 +151,7 @@ static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t
     }
 }
 
-/* The clock was set forward: nothing is known of the time that it left out. */
+/* Ends all lines after last_us, because the values after that time are unknown. */
 static void leave_out(struct historian *historian, int64_t last_us)
 {
     for (size_t i = 0; i < historian->plant->tag_count; i++)
@@ -159,7 +159,8 @@ static void leave_out(struct historian *historian, int64_t last_us)
             put(historian, (int)i, &(struct history_point){ last_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION });
 }
 
-/* It has recorded meanwhile what is not known here. */
+/* A new connection to the leading daemon begins: samples it recorded since the last one mirrored are missing here, and are read from the
+   database. */
 static void begin_to_follow(struct historian *historian)
 {
     if (historian->mirrored_us)
@@ -177,7 +178,7 @@ static void take_mirrored(struct historian *historian, int64_t t_us)
         historian->mirrored_us = t_us;
 }
 
-/* Whoever led is gone. What it recorded after it was heard last, behind a cut, it may have sent to the database. */
+/* This daemon takes the lead. The former leader may have recorded more after the connection was lost, and sent that to the database. */
 static void begin_to_lead(struct historian *historian, int64_t t_us)
 {
     if (historian->mirrored_us)
@@ -187,14 +188,14 @@ static void begin_to_lead(struct historian *historian, int64_t t_us)
         postgres_lead(historian->postgres, historian->mirrored_us, t_us);
 }
 
-/* By the clock as it is now, and not as it was before. */
+/* Returns whether a sample has the time of the clock after a step, rather than before it. */
 static bool is_after_step(const struct sample_event *event, int64_t ahead_ns, int64_t step_ns)
 {
     int64_t off_ns = event->utc_ns - event->mono_ns - ahead_ns;
     return llabs(off_ns) < llabs(off_ns + step_ns);
 }
 
-/* step_ns: by which the wall clock was set since the last time; 0: it was not. */
+/* Records the queued samples. step_ns: how far the wall clock was set since the last call; 0: not at all. */
 static void take_events(struct historian *historian, const struct now *now, int64_t step_ns)
 {
     pthread_mutex_lock(&historian->thread.lock);
@@ -256,7 +257,7 @@ static void say_gap(struct historian *historian, struct month_file *file, int64_
     mem_free(text);
 }
 
-/* The lines of whoever recorded before end where it ended. */
+/* Ends the lines of a daemon that was killed, at its newest samples, and notes the gap. */
 static int recover(struct historian *historian)
 {
     size_t count;
@@ -282,7 +283,7 @@ static int recover(struct historian *historian)
     return error;
 }
 
-/* Before a month's file is left nothing is held in it. */
+/* Closes the file of a month that is over; its newest samples are all recorded. */
 static int leave_month(struct historian *historian)
 {
     int error = month_file_tidy(historian->file);
@@ -305,7 +306,7 @@ static int enter_month(struct historian *historian, int month)
     return error;
 }
 
-/* Rows of one month that follow each other, from `begin` on. */
+/* Returns the end of the run of rows from `begin` on that are in the same month. */
 static size_t same_month(const struct recorder_rows *rows, size_t begin)
 {
     int month = month_of(rows->at[begin].point.t_us);
@@ -316,7 +317,7 @@ static size_t same_month(const struct recorder_rows *rows, size_t begin)
     return end;
 }
 
-/* Writes rows month by month; what is written leaves `rows`. */
+/* Writes rows month by month; written rows are removed from `rows`. */
 static int write_rows(struct historian *historian, struct recorder_rows *rows, bool held)
 {
     size_t done = 0;
@@ -336,7 +337,7 @@ static int write_rows(struct historian *historian, struct recorder_rows *rows, b
     return error;
 }
 
-/* The usual second: everything in one month, in one transaction. */
+/* Writes the rows of one second: usually all in one month, in one transaction. */
 static int write_second(struct historian *historian)
 {
     struct recorder_rows *rows = &historian->waiting, *held = &historian->held;
@@ -364,7 +365,7 @@ static void measure_free(struct historian *historian)
         counter_set(historian->counters.free, (int64_t)(disk.f_bavail * disk.f_frsize));
 }
 
-/* Notes when `plantcast backup` last ran, and fills up a reserve that was used. */
+/* Updates the metric of the last `plantcast backup`, and renews the spool reserve if it was used. */
 static void look_around(struct historian *historian)
 {
     struct stat backup;
@@ -397,7 +398,7 @@ static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t
     return error;
 }
 
-/* As somebody who did not end properly: what is held stays, for recover(). */
+/* Closes the file without recording the newest samples (held rows), so that recover() handles them as after a crash. */
 static int leave_file(struct historian *historian)
 {
     int error = month_file_tidy(historian->file);
@@ -406,7 +407,7 @@ static int leave_file(struct historian *historian)
     return error;
 }
 
-/* What the last run could not write goes where it belongs, before anybody looks where that run ended. */
+/* Writes the rows that the last run spooled to their month's file, before recover() looks for the end of that run. */
 static int write_spooled(struct historian *historian)
 {
     if (!historian->spool_path)
@@ -429,7 +430,7 @@ static int write_all(struct historian *historian, int64_t mono_ns, int64_t utc_n
     int error = write_spooled(historian);
     if (!error && !historian->file) {
         if (!historian->waiting.count)
-            return 0; /* an empty folder is no history */
+            return 0; /* do not create an empty history folder */
         make_folder(historian);
     }
     if (!error && !historian->recovered)
@@ -467,7 +468,7 @@ static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t u
 
 /* --- life --------------------------------------------------------------------------------------------------------------------- */
 
-/* Both at one moment: a thread may stand still between two looks. */
+/* Reads both clocks at nearly the same moment: repeats if the thread was interrupted between the readings. */
 static struct now look_at_clocks(void)
 {
     struct now now;
@@ -481,7 +482,7 @@ static struct now look_at_clocks(void)
     return now;
 }
 
-/* By how much the wall clock was set since the last time, 0: it was not. */
+/* Returns how far the wall clock was set since the last call; 0: not at all. */
 static int64_t watch_clock(struct historian *historian, const struct now *now)
 {
     int64_t ahead_ns = now->utc_ns - now->mono_ns, step_ns = historian->utc_ahead_ns ? ahead_ns - historian->utc_ahead_ns : 0;
@@ -489,7 +490,7 @@ static int64_t watch_clock(struct historian *historian, const struct now *now)
     return llabs(step_ns) > STEP_NS ? step_ns : 0;
 }
 
-/* What follows is not told apart from what was by its time alone, so it is noted. */
+/* Notes a step of the clock in the history, since the times of points alone do not show it. */
 static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_ns)
 {
     char *text = mem_printf(step_ns > 0 ? HISTORY_FORWARD_TEXT : HISTORY_BACK_TEXT, fabs((double)step_ns) / 1e9);
@@ -499,7 +500,7 @@ static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_
     mem_free(text);
 }
 
-/* Every line ends at its newest sample, kept as such; what nobody will record any more has no value from now on. */
+/* Ends every line at its newest sample, which is recorded. Tags that the next plant lacks get a point without a value. */
 static void end_lines(struct historian *historian, int64_t utc_ns)
 {
     if (!historian->next)
@@ -514,14 +515,14 @@ static void tick(struct historian *historian, bool last)
 {
     const struct now now = look_at_clocks();
     int64_t mono_ns = now.mono_ns, utc_ns = now.utc_ns, step_ns = watch_clock(historian, &now);
-    step_ns = historian->stands_by ? 0 : step_ns; /* times are the other daemon's */
+    step_ns = historian->stands_by ? 0 : step_ns; /* times are the leading daemon's */
     take_events(historian, &now, step_ns);
     if (!historian->stands_by)
         take_qualities(historian, mono_ns, utc_ns);
     if (step_ns)
         note_step(historian, utc_ns, step_ns);
     if (historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000))
-        recorder_end(historian->recorder, &historian->waiting); /* no line is held over the border */
+        recorder_end(historian->recorder, &historian->waiting); /* no line continues in memory across the end of a month */
     if (last)
         end_lines(historian, utc_ns);
     try_to_write(historian, mono_ns, utc_ns, last);
@@ -529,7 +530,7 @@ static void tick(struct historian *historian, bool last)
     measure_free(historian);
 }
 
-/* A run between two that could not be written ended there. */
+/* Ends the lines of an earlier run whose spooled rows could not be written. */
 static void end_spooled_lines(struct spool_rows *rows)
 {
     struct recorder_rows *kept = &rows->kept;
@@ -542,11 +543,11 @@ static void end_spooled_lines(struct spool_rows *rows)
     rows->held.count = 0;
 }
 
-/* The disk does not take what waits: another place may, for the next start. */
+/* Spools the rows that cannot be written, in the first place that accepts them, for the next start. */
 static void spool(struct historian *historian)
 {
     char **places = spool_places(historian->folder);
-    struct spool_rows *rows = &historian->spooled; /* those of the run before first, if they are still there */
+    struct spool_rows *rows = &historian->spooled; /* rows of the earlier run come first, if it could not be written either */
     end_spooled_lines(rows);
     size_t before = rows->kept.count;
     mem_grow(&rows->kept.at, &rows->kept.capacity, before + historian->waiting.count + 1, sizeof(*rows->kept.at));
@@ -567,7 +568,7 @@ static void spool(struct historian *historian)
                   "history: %zu points could not be written; they are in %s until the next start", rows->kept.count + rows->held.count,
                   *place);
     if (!error && historian->spool_path && strcmp(historian->spool_path, *place) != 0)
-        unlink(historian->spool_path); /* it is in the new one */
+        unlink(historian->spool_path); /* its rows are in the new file too */
     spool_places_free(places);
 }
 

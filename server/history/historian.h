@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Records all samples of the store, on a thread of its own. It writes once a second, so a crash loses at most the last second; neither the
-   store nor live pictures wait for it. What cannot be written (disk full, read-only) stays in memory up to a limit and is written later. */
+/* Records all samples of the store, on a thread of its own. It writes once a second, so that a crash loses at most the last second;
+   neither the store nor live pictures wait for it. Rows that cannot be written (disk full, read-only) stay in memory up to a limit and
+   are written later. */
 #ifndef HISTORY_HISTORIAN_H
 #define HISTORY_HISTORIAN_H
 #include "base/log/log.h"
@@ -14,31 +15,34 @@ struct historian_params {
     struct counters *counters;
     const struct plant *plant;
     struct store *store; /* must outlive the historian */
-    const char *folder;  /* made where it is missing */
-    bool stands_by;      /* it is told of samples by another daemon (historian_mirror), and not by the store, until historian_lead() */
-    bool follows;        /* it continues for one that historian_end() ended: lines go on, and no gap is recorded */
-    const struct postgres_owed *owed; /* likewise, by that one; read by the call. NULL: nothing */
+    const char *folder;  /* created if it is missing */
+    bool stands_by;      /* samples come from another daemon (historian_mirror()) instead of the store, until historian_lead() */
+    bool follows;        /* continues after a historian that ended with historian_end(): lines continue, and no gap is recorded */
+    const struct postgres_owed *owed; /* from historian_end(), copied by the call; NULL: nothing */
 };
 
 struct historian;
-/* Starts recording. Returns NULL if there is no thread (logged). */
+/* Starts recording. Returns NULL if the thread cannot be started (logged). */
 struct historian *historian_start(const struct historian_params *params);
-/* Another daemon's samples come from now on. What it recorded before, and is not known here, is read from the database. */
+/* Announces a new connection to the leading daemon. Points that it recorded before, and which are missing here, are read from the
+   database. */
 void historian_follow(struct historian *historian);
-/* Records samples that another daemon recorded, in their order. Only while it stands by. Thread: one. */
+/* Records samples that another daemon recorded, in their order. Only while this daemon stands by. Thread: one. */
 void historian_mirror(struct historian *historian, const struct sample_event *samples, size_t count);
-/* Records the store's samples from now on. Of the time since the last one that was mirrored nothing is known. */
+/* Records the store's samples from now on. Values between the last mirrored sample and now are unknown. */
 void historian_lead(struct historian *historian);
-/* The one that led before may be back, and have sent the database what was left: it is read from there. */
+/* Call it when a standby connects: it may be the former leader, and may since have sent its remaining points to the database, which are
+   then read from there. */
 void historian_on_standby(struct historian *historian);
-/* The leader has sent the database all that it had recorded so long ago: it need not be sent from here. */
+/* Tells that the leader has sent the database everything recorded until age_ns ago, which this daemon then need not send. */
 void historian_sent_elsewhere(struct historian *historian, int64_t age_ns);
-/* Returns how long ago all that was recorded until then had been sent to the database; INT64_MAX: never, or there is none. */
+/* Returns the age in nanoseconds of the time until which all recorded points have been sent to the database; INT64_MAX: never, or no
+   database. */
 int64_t historian_sent_age_ns(struct historian *historian);
-/* Writes what is pending and ends, so that the historian of the next plant can continue. Tags that are not in it have no value from now on.
-   *owed becomes what was still to be read from the database. Leaves NULL. */
+/* Writes pending points and ends, so that the historian of the next plant can continue. Tags missing in that plant have no value from
+   now on. *owed receives the time spans that must still be read from the database. Leaves NULL. */
 void historian_end(struct historian **historian, const struct plant *next, struct postgres_owed *owed);
-/* Writes what is pending and ends. &NULL is fine; leaves NULL. */
+/* Writes pending points and ends. &NULL is fine; leaves NULL. */
 void historian_stop(struct historian **historian);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads over the borders of months, and makes long times short. */
+/* Reads series across months, and reduces long series to buckets. */
 #include "history/history.h"
 
 #include <errno.h>
@@ -14,9 +14,9 @@ enum { OPEN_MONTHS = 4 };
 struct history_reader {
     struct log *log;
     char *folder;
-    const struct plant *plant; /* or NULL */
+    const struct plant *plant; /* converts values to its units; may be NULL */
     struct month_file *files[OPEN_MONTHS];
-    int next; /* to be closed for another */
+    int next; /* index of the file to close next */
 };
 
 struct history_reader *history_reader_create(struct log *log, const char *folder)
@@ -43,7 +43,8 @@ void history_reader_destroy(struct history_reader **reader)
     *reader = NULL;
 }
 
-/* What the reader sees of a month until it is asked for another. NULL: nothing (*error 0), or it cannot be read. */
+/* Opens the file of a month, valid until another month is opened. Returns NULL if the month has no file (*error 0), or if it cannot be
+   read. */
 static struct month_file *open_month(struct history_reader *reader, int month, int *error)
 {
     struct month_file **place = &reader->files[reader->next];
@@ -52,7 +53,7 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
         if (reader->files[i] && month_file_month(reader->files[i]) == month) {
             if (month_file_is_there(reader->files[i]))
                 return reader->files[i];
-            place = &reader->files[i]; /* deleted or set aside */
+            place = &reader->files[i]; /* deleted or set aside since it was opened */
         }
     if (place == &reader->files[reader->next])
         reader->next = (reader->next + 1) % OPEN_MONTHS;
@@ -67,7 +68,7 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
 
 /* --- lines -------------------------------------------------------------------------------------------------------------------- */
 
-/* The longest rollup that is not longer than two of the stretches that are wanted. -1: the points themselves. */
+/* Returns the longest rollup level that is at most twice the wanted bucket length. -1: use the points themselves. */
 static int level_for(int64_t stretch_us)
 {
     int level = -1;
@@ -84,10 +85,10 @@ static int64_t bucket_length(int64_t stretch_us, int level)
     return count > 1 ? count * unit_us : unit_us;
 }
 
-/* Where buckets of one length become those of `out`. */
+/* Merges buckets of one length into the longer buckets of `out`. */
 struct gather {
     struct history_series *out;
-    int64_t length_us;           /* of what is put in */
+    int64_t length_us; /* length of the input buckets */
     bool has_last;
     struct history_bucket last;
 };
@@ -103,7 +104,7 @@ static struct history_bucket *bucket_of(struct history_series *out, int64_t t_us
     return bucket;
 }
 
-/* The line between two buckets goes on in the longer ones that they belong to. */
+/* Adds a bucket. The line from the previous bucket also counts in the longer buckets that it crosses. */
 static void put_bucket(struct gather *gather, const struct history_bucket *bucket)
 {
     struct history_series *out = gather->out;
@@ -121,7 +122,7 @@ static void put_bucket(struct gather *gather, const struct history_bucket *bucke
     gather->has_last = true;
 }
 
-/* Points that no rollup has yet. Those up to done_us lead to them only. */
+/* Adds points that are not in a rollup yet. Points up to done_us only provide the start of the line. */
 static void put_points(struct gather *gather, const struct history_points *points, int64_t done_us)
 {
     struct rollup rollup = { .length_us = gather->length_us, .step = points->step };
@@ -151,7 +152,7 @@ static int add_month(struct month_file *file, const char *tag, int level, int64_
     return error;
 }
 
-/* Points of months that follow each other: one before and one after are enough. */
+/* Drops points outside the range except one before and one after: each month contributed its own. */
 static void drop_edges(struct history_points *points, int64_t from_us, int64_t to_us)
 {
     size_t first = 0, last = points->count;
@@ -201,7 +202,8 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
     *out = (struct history_series){ .bucket_us = level < 0 ? 0 : bucket_length(stretch_us, level) };
     struct gather gather = { .out = out, .length_us = level < 0 ? 0 : history_level_us[level] };
     for (size_t i = 0; i < count && !error; i++) {
-        bool leads = i + 1 < count && months[i] < first && months[i + 1] >= first; /* the line may begin before */
+        /* the line that enters the range may begin in this month */
+        bool leads = i + 1 < count && months[i] < first && months[i + 1] >= first;
         bool follows = i > 0 && months[i] > last && months[i - 1] <= last;
         if ((months[i] >= first && months[i] <= last) || (level < 0 && (leads || follows)))
             error = read_month(reader, months[i], tag, level, from_us, to_us, &gather);
@@ -223,8 +225,8 @@ void history_series_finish(struct history_series *series)
 
 /* --- one instant -------------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether the tag has no value at t_us because its newest sample is older than its Stale s: a daemon that was still running would
-   have recorded a newer point. */
+/* Returns whether the tag has no value at t_us because its newest sample is older than its Stale s: a running daemon would have recorded
+   a newer point. */
 static bool has_ended(const struct history_pair *pair, int64_t t_us, int64_t stale_us)
 {
     return pair->after.t_us == INT64_MIN && history_point_usable(&pair->before) && stale_us < INT64_MAX - HISTORY_SETTLED_US &&
@@ -267,7 +269,7 @@ int history_at(struct history_reader *reader, const struct history_tag *tags, in
     int month = month_of(t_us), error = 0;
     for (size_t i = 0; i < into->count; i++)
         pairs[i].before.t_us = pairs[i].after.t_us = INT64_MIN;
-    for (int i = 0; i < 3 && !error; i++) /* lines cross the borders */
+    for (int i = 0; i < 3 && !error; i++) /* lines cross the ends of months */
         error = at_month(reader, month + (int[]){ 0, -1, 1 }[i], tags, t_us, into->count, pairs);
     for (size_t i = 0; i < into->count; i++)
         read_pair(&pairs[i], t_us, tags[i].stale_us, &into->readings[i]);
@@ -298,7 +300,7 @@ bool history_span(struct history_reader *reader, int64_t *first_us, int64_t *las
     return first && last;
 }
 
-/* --- when nothing was recorded ------------------------------------------------------------------------------------------------ */
+/* --- gaps in recording --------------------------------------------------------------------------------------------------------- */
 
 static int by_beginning(const void *a, const void *b)
 {
@@ -306,7 +308,7 @@ static int by_beginning(const void *a, const void *b)
     return (x->from_us > y->from_us) - (x->from_us < y->from_us);
 }
 
-/* Those that overlap from..to, ascending, joined where they meet. */
+/* Sorts gaps, keeps those that overlap from..to, and joins overlapping ones. */
 static void tidy_gaps(struct history_gaps *gaps, int64_t from_us, int64_t to_us)
 {
     size_t kept = 0;
@@ -324,7 +326,7 @@ static void tidy_gaps(struct history_gaps *gaps, int64_t from_us, int64_t to_us)
     gaps->count = kept;
 }
 
-/* One that began before from..to is told by the newest file from before. */
+/* Also reads the newest earlier file, for a gap that began before from_us. */
 int history_gaps(struct history_reader *reader, int64_t from_us, int64_t to_us, struct history_gaps *out)
 {
     size_t count;

@@ -6,7 +6,7 @@
 
 static const int64_t HOUR_US = 3600 * US_PER_S;
 
-/* Hours between two buckets have no recorded point: the line goes straight on. */
+/* Fills the hours between two buckets, which have no recorded point: the line between the buckets is straight. */
 static void fill_between(const struct history_series *series, const struct history_bucket *a, const struct history_bucket *b,
                          int64_t from_us, int hours, double *means)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a CSV file twice: first to find all errors and the spacing of each series, then to record the samples in the months' files. */
+/* Reads a CSV file twice: first to find all errors and the sample spacing of each series, then to record the samples in the months'
+   files. */
 #include "history/import.h"
 
 #include <ctype.h>
@@ -22,29 +23,29 @@
 #include "value/quality.h"
 #include "value/state_word.h"
 
-enum { FLUSH_ROWS = 500000, MAX_ERRORS = 50, MEDIANS = 10 /* a gap is longer than so many median spacings */ };
+enum { FLUSH_ROWS = 500000, MAX_ERRORS = 50, MEDIANS = 10 /* a gap is longer than this many median spacings */ };
 
 /* The samples of one tag. */
 struct import_series {
-    bool has_row;                  /* in this pass */
-    int64_t row_us;                /* time of its newest row in this pass */
-    bool seen;                     /* in the first pass */
+    bool has_row;   /* a row of the current pass had this tag */
+    int64_t row_us; /* time of its newest row in this pass */
+    bool seen;      /* the first pass found samples of this tag */
     int64_t first_us, last_us;
     struct spacing spacing;
-    int64_t longest_us;            /* a longer time between two samples has no data */
-    bool has_pending;              /* second pass: the newest sample, until the next one has another time */
+    int64_t longest_us; /* longest time between two samples that is not a gap */
+    bool has_pending;   /* second pass: newest sample, pending until the next one has a later time */
     struct history_point pending;
-    struct history_points before;  /* points of this time that history had before the import */
-    size_t next;                   /* in `before` */
+    struct history_points before; /* points that history had in this time before the import */
+    size_t next;                  /* index of the next one in `before` */
 };
 
 struct history_import {
     const struct import_params *params;
     struct csv csv;
-    int time, tag, value, quality, unit; /* columns; tag -1: wide */
-    int *tags;                           /* wide: of each column; -1: passed over */
-    struct import_series *series;        /* by tag */
-    int64_t row_us; /* wide: of the last row; else INT64_MIN */
+    int time, tag, value, quality, unit; /* indices of columns; tag -1: wide form */
+    int *tags;                           /* wide form: tag of each column; -1: ignored */
+    struct import_series *series;        /* array by tag */
+    int64_t row_us;                      /* wide form: time of the last row; otherwise INT64_MIN */
     struct import_counts *counts;
 };
 
@@ -58,7 +59,8 @@ static int find_time(struct history_import *import)
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
         if (csv_find(&import->csv, names[i]) >= 0)
             return csv_find(&import->csv, names[i]);
-    return plant_find_tag(import->params->plant, import->csv.header.cells[0].text) < 0 ? 0 : -1; /* whatever it is called */
+    /* the first column is the time, whatever its name */
+    return plant_find_tag(import->params->plant, import->csv.header.cells[0].text) < 0 ? 0 : -1;
 }
 
 static bool find_wide(struct history_import *import)
@@ -92,7 +94,7 @@ static bool find_columns(struct history_import *import)
     if (import->tag >= 0 && import->value >= 0) {
         import->unit = csv_find(&import->csv, "Unit");
         import->counts->exported = import->csv.header.count == 5 && import->tag == 0 && import->time == 1 && import->value == 2 &&
-                                   import->quality == 3 && import->unit == 4; /* as series_text_csv_head() writes them */
+                                   import->quality == 3 && import->unit == 4; /* the columns that series_text_csv_head() writes */
         return true;
     }
     import->tag = -1;
@@ -101,7 +103,8 @@ static bool find_columns(struct history_import *import)
 
 /* --- rows ----------------------------------------------------------------------------------------------------------------------- */
 
-/* In the hour that occurs twice when clocks are set back, a row that is not later than the row before belongs to the second one. */
+/* Reads the time of a row. In the hour that occurs twice when clocks are set back, a row that is not later than the previous row belongs
+   to the second occurrence. */
 static bool take_time(struct history_import *import, int64_t after_us, int64_t *t_us)
 {
     const char *text = csv_text(&import->csv, import->time);
@@ -151,7 +154,7 @@ static bool take_quality(struct history_import *import, uint32_t *quality)
     return false;
 }
 
-/* From the unit that the row says, else the tag's own. */
+/* Converts a value from the unit that the row states, else from the tag's own unit. */
 static bool take_unit(struct history_import *import, int tag, double *value)
 {
     const struct plant_tag *of = &import->params->plant->tags[tag];
@@ -165,7 +168,7 @@ static bool take_unit(struct history_import *import, int tag, double *value)
     return true;
 }
 
-/* One cell: a number, or a word that says that there is none. */
+/* Reads one cell: a number, or a state word that means no value. */
 static bool take_cell(struct history_import *import, take_sample *take, void *arg, int tag, int column, int64_t t_us, uint32_t quality)
 {
     const char *text = csv_text(&import->csv, column);
@@ -214,7 +217,7 @@ static bool take_row(struct history_import *import, take_sample *take, void *arg
     return good;
 }
 
-/* Gives every sample to `take`. Returns false if there were errors, or `take` failed. */
+/* Passes every sample to `take`. Returns false if there were errors, or `take` failed. */
 static bool read_file(const struct import_params *params, struct diag *diag, struct import_counts *counts, struct import_series *series,
                       take_sample *take, void *arg)
 {
@@ -282,9 +285,9 @@ static int64_t typical_spacing(struct import_series *series, size_t count)
     return typical_us;
 }
 
-/* The longest time between two samples that has data. A stated Stale s is for live readings: it does not fit a slower series. Two samples
-   have no rhythm: the time between them may itself be the gap, so they take that of a typical series. If no series has one, the longest
-   time between two points of our own history counts. */
+/* Returns the longest time between two samples that is not a gap. A stated Stale s is meant for live readings and does not fit a slower
+   series. A series of two samples has no rhythm, since the time between them may itself be the gap; it gets the value of a typical
+   series. If no series has a rhythm, the longest time between two points of our own history is used. */
 static int64_t longest_gap(const struct import_params *params, const struct plant_tag *tag, struct spacing *spacing, int64_t typical_us,
                            bool exported)
 {
@@ -303,7 +306,7 @@ static int64_t longest_gap(const struct import_params *params, const struct plan
     return is_least && longest_us < override_us ? override_us : longest_us;
 }
 
-/* Between the passes: the next one reads the same rows again. */
+/* Runs between the passes: sets the longest gap of each series, and resets the state for the second pass. */
 static void judge_series(const struct import_params *params, struct import_series *series, struct import_counts *counts)
 {
     int64_t typical_us = typical_spacing(series, params->plant->tag_count);
@@ -342,7 +345,7 @@ static int by_month_tag_time(const void *a, const void *b)
     return (x->point.t_us > y->point.t_us) - (x->point.t_us < y->point.t_us);
 }
 
-/* Rows of one month: those of one tag at a time. */
+/* Imports the rows of one month, one tag at a time. */
 static bool fill_month(struct filling *filling, const struct history_row *rows, size_t count)
 {
     struct history_point *points = mem_array(count, sizeof(*points));
@@ -388,13 +391,13 @@ static void add_row(struct filling *filling, int tag, int64_t t_us, double value
     rows->at[rows->count++] = (struct history_row){ tag, { t_us, value, quality } };
 }
 
-/* The point that ends a line: nothing is known after the sample before it. */
+/* Returns whether a point ends a line: values after the preceding sample are unknown. */
 static bool is_end_of_line(const struct history_point *point)
 {
     return point->quality == QUALITY_BAD_NO_COMMUNICATION && isnan(point->value);
 }
 
-/* Whether an earlier import, or a daemon that was stopped, ended the line at that time. Times ascend from call to call. */
+/* Returns whether an earlier import, or a stopped daemon, ended the line at that time. Call it with ascending times. */
 static bool was_end_of_line(struct import_series *series, int64_t t_us)
 {
     while (series->next < series->before.count && series->before.at[series->next].t_us < t_us)
@@ -403,8 +406,7 @@ static bool was_end_of_line(struct import_series *series, int64_t t_us)
            is_end_of_line(&series->before.at[series->next]);
 }
 
-/* Records the pending sample, and the end of its line if the next sample is too far away. next_us: time of the next sample; INT64_MAX:
-   none. */
+/* Records the pending sample, and ends its line if the next sample is too far away. next_us: time of the next sample; INT64_MAX: none. */
 static void record_pending(struct filling *filling, int tag, int64_t next_us)
 {
     struct import_series *series = &filling->series[tag];
@@ -416,7 +418,7 @@ static void record_pending(struct filling *filling, int tag, int64_t next_us)
     if (ends) {
         const struct history_point end = { sample->t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION };
         recorder_put(filling->recorder, tag, &end, &filling->rows);
-    } else if (usable && was_end_of_line(series, sample->t_us + 1)) { /* the line goes on: a value takes the place of the end */
+    } else if (usable && was_end_of_line(series, sample->t_us + 1)) { /* the line continues: a value replaces its end */
         recorder_end_tag(filling->recorder, tag, &filling->rows);
         add_row(filling, tag, sample->t_us + 1, sample->value, sample->quality);
     }
@@ -437,7 +439,7 @@ static bool fill_sample(struct history_import *import, void *arg, int tag, const
 
 /* --- what was recorded before -------------------------------------------------------------------------------------------------------- */
 
-/* Ends the recorded line that leads to the first sample of a series, or removes its end if the gap counts as data now. */
+/* Ends the recorded line that leads to the first sample of a series, or removes its end if the gap now counts as data. */
 static void join_before(struct filling *filling, struct history_reader *reader, int tag)
 {
     struct import_series *series = &filling->series[tag];
@@ -457,7 +459,7 @@ static void join_before(struct filling *filling, struct history_reader *reader, 
     history_series_finish(&earlier);
 }
 
-/* Reads what history has of the time of each series. */
+/* Reads the existing history in the time span of each series. */
 static bool read_before(struct filling *filling)
 {
     const struct plant *plant = filling->params->plant;
@@ -480,7 +482,7 @@ static bool read_before(struct filling *filling)
     return good;
 }
 
-/* Records the last sample of each series, joined to the recorded point that follows it. */
+/* Records the last sample of each series and joins it to the recorded point that follows. */
 static void record_last(struct filling *filling)
 {
     for (size_t i = 0; i < filling->params->plant->tag_count; i++) {
@@ -506,8 +508,8 @@ static bool fill(const struct import_params *params, struct import_series *serie
         .series = series,
         .counts = counts,
     };
-    struct diag again = { 0 };   /* finds what diag has already */
-    mkdir(params->folder, 0777); /* if this fails, opening a month says why */
+    struct diag again = { 0 };   /* repeats findings that `diag` already has */
+    mkdir(params->folder, 0777); /* if this fails, opening a month reports the error */
     bool good = read_before(&filling) && read_file(params, &again, counts, series, fill_sample, &filling);
     diag_finish(&again);
     if (good)

@@ -11,31 +11,31 @@ struct import_params {
     struct log *log;
     const struct plant *plant;
     const char *folder, *path;
-    const char *encoding; /* of the file; NULL: found from its bytes */
-    int64_t start_us; /* times are numbers that count from here; INT64_MIN: they are timestamps */
-    int64_t unit_us;  /* of such numbers */
-    int64_t longest_gap_us; /* a longer time between two samples of a tag has no data; 0: derived from each series */
+    const char *encoding;   /* encoding of the file; NULL: detected from its bytes */
+    int64_t start_us;       /* times are numbers that count from here; INT64_MIN: times are timestamps */
+    int64_t unit_us;        /* microseconds per unit of such numbers */
+    int64_t longest_gap_us; /* longest time between two samples of a tag that is not a gap; 0: derived from each series */
 };
 
 struct import_counts {
-    long long samples, points; /* that were read; of these, recorded */
-    long long bad, duplicates, gaps; /* samples without a usable value; replaced by a later row of the same time; times without data */
+    long long samples, points;       /* samples read; points recorded */
+    long long bad, duplicates, gaps; /* samples without a usable value; samples replaced by a later row of the same time; gaps */
     int tags;
     struct charset_choice encoding;
-    bool exported;            /* the columns are those of `plantcast history export` */
+    bool exported; /* the file has the columns of `plantcast history export` */
     int64_t from_us, to_us;
-    int64_t longest_us[2]; /* the longest gap that counts as data: the smallest and the largest of all series */
+    int64_t longest_us[2]; /* smallest and largest, over all series, of the longest time that is not a gap */
 };
 
 /* Imports a file in one of two forms. Long: columns Tag, Time, Value and perhaps Quality (0x80050000, Good, Uncertain, Bad) and Unit;
-   without a unit, values are in the unit of the tag's row in the tag list (own_unit), as a device sends them. Wide: Time, then one column
-   for each tag. A blank cell and a state word (value/state_word.h) are Bad samples. The rows of each tag ascend in time; of rows with equal
-   times the last one counts. After the last sample before a gap, and after the end of a series that nothing follows, a point without a
-   value (Bad_NoCommunication) is recorded. The longest time that is no gap is longest_gap_us; else the tag's Stale s, if its row states it
-   and the series is not slower than that; else ten times the median spacing of the series. A series of two samples takes the median over
-   all other series; if there are none, the tag's Stale s or twice override_s. In an exported file, where lines replace
-   samples, twice override_s is never a gap, and for a tag that is never stale nothing is. Findings go to diag; an error imports nothing.
-   Returns false on errors, or if the folder cannot be written (logged). */
+   without a unit, values are in the unit of the tag's row in the tag list (own_unit), as a device sends them. Wide: Time, then one
+   column per tag. A blank cell and a state word (value/state_word.h) are Bad samples. The rows of each tag ascend in time; of rows with
+   equal times the last one counts. After the last sample before a gap, and after the end of a series that no recorded point follows, a
+   point without a value (Bad_NoCommunication) is recorded. The longest time that is not a gap is longest_gap_us; if that is 0, the tag's
+   Stale s, if its row states it and the series is not slower than that; else ten times the median spacing of the series. A series of two
+   samples uses the median over all other series; if there are none, the tag's Stale s or twice override_s. In an exported file, where
+   lines replace samples, twice override_s is never a gap, and for a tag that is never stale no time is a gap. Findings go to diag; after
+   any error nothing is imported. Returns false on errors, or if the folder cannot be written (logged). */
 bool history_import(const struct import_params *params, struct diag *diag, struct import_counts *counts);
 
 #endif

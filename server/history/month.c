@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Months of UTC and the names of their files. */
+/* UTC months and the names of their files. */
 #include "history/month.h"
 
 #include <dirent.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Months of UTC and the names of their history files, such as history-2026-11.sqlite. Thread: any. */
+/* UTC months and the names of their history files, such as history-2026-11.sqlite. Thread: any. */
 #ifndef HISTORY_MONTH_H
 #define HISTORY_MONTH_H
 #include <stdbool.h>
@@ -8,13 +8,13 @@
 
 #define US_PER_S 1000000LL
 
-/* Returns the number of months from January 1970 to the month of a time; negative before. */
+/* Returns the number of months from January 1970 to the month of a time; negative before 1970. */
 int month_of(int64_t t_us);
-int64_t month_begin_us(int month); /* returns the first instant of a month */
+int64_t month_begin_us(int month); /* Returns the first instant of a month. */
 enum { MONTH_NAME_BYTES = 32 };
-void month_name(int month, char name[MONTH_NAME_BYTES]); /* writes the name of its file */
-bool month_parse(const char *name, int *month); /* returns false if it is not the name of such a file */
-/* Lists the months that a folder has files of, ascending; none if it cannot be read. Free with mem_free(). */
+void month_name(int month, char name[MONTH_NAME_BYTES]); /* Writes the name of the month's file. */
+bool month_parse(const char *name, int *month);          /* Parses a file name. Returns false if it is not the name of a month's file. */
+/* Lists the months for which a folder has files, ascending; none if the folder cannot be read. Free with mem_free(). */
 int *month_list(const char *folder, size_t *count);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the files month_file*.c share. Private to them. */
+/* Shared by the files month_file*.c. Private to them. */
 #ifndef HISTORY_MONTH_FILE_IMPL_H
 #define HISTORY_MONTH_FILE_IMPL_H
 #include <sys/types.h>
@@ -25,23 +25,23 @@ struct month_rollups {
 struct month_file {
     struct database db;
     int month;
-    bool has_outbox; /* points that are recorded are put into the outbox as well */
+    bool has_outbox; /* recorded points are copied to the outbox */
     ino_t inode;
-    const struct plant *shown_by; /* values are converted to its units; NULL: not converted */
+    const struct plant *shown_by; /* values are converted to this plant's units; NULL: not converted */
     const struct history_tag *tags;
     size_t tag_count, waiting;
-    int64_t *ids;                  /* of tags; 0: not known yet */
-    struct month_rollups *rollups; /* of tags */
+    int64_t *ids;                  /* id of each tag in the file; 0: not known yet */
+    struct month_rollups *rollups; /* rollups in progress, by tag */
 };
 
 /* Returns one of the statements above, ready to bind and step (base/files/database.h). */
 sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which);
-/* Steps to the end, and logs what fails. Returns 0 or -errno. */
+/* Steps a statement to its end, and logs errors. Returns 0 or -errno. */
 int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doing);
-/* Finds whether the file has an outbox, whether or not this handle puts anything there. */
+/* Finds whether the file has an outbox, even if this handle does not use it. */
 int month_has_outbox(struct month_file *file, bool *has);
-struct history_point month_point(sqlite3_stmt *statement, int first_column);   /* t, v, q */
-/* The row of SQL_BEFORE or SQL_AFTER; t_us INT64_MIN: there is none. 0 or -errno. */
+struct history_point month_point(sqlite3_stmt *statement, int first_column); /* Reads a point from columns t, v, q. */
+/* Reads the row of SQL_BEFORE or SQL_AFTER; t_us INT64_MIN: no row. Returns 0 or -errno. */
 int month_one_point(struct month_file *file, enum month_statement which, int64_t id, int64_t t_us, struct history_point *out);
 void history_points_add(struct history_points *points, const struct history_point *point);
 

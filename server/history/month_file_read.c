@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reading a month's file. */
+/* Reads a month's file. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,14 +24,14 @@ void month_file_show_by(struct month_file *file, const struct plant *plant)
     file->shown_by = plant;
 }
 
-/* In which the plant shows the tag now. NULL: as the file has it. */
+/* Returns the unit in which the plant shows the tag now. NULL: keep the file's unit. */
 static const char *unit_shown(const struct month_file *file, const char *name)
 {
     int tag = file->shown_by ? plant_find_tag(file->shown_by, name) : -1;
     return tag >= 0 ? file->shown_by->tags[tag].unit : NULL;
 }
 
-/* 0: the file does not know the tag. *change: from the unit that it had then to that which is wanted (NULL: the same). */
+/* Returns the id of a tag; 0: the file does not have it. *change: conversion from the file's unit to `wanted` (NULL: none). */
 static int64_t find_tag(struct month_file *file, const char *name, const char *wanted, bool *step, struct unit_change *change)
 {
     *change = (struct unit_change){ 0 };
@@ -78,7 +78,7 @@ static int by_time(const void *a, const void *b)
     return (x->t_us > y->t_us) - (x->t_us < y->t_us);
 }
 
-/* Rows that are not in the order of tags yet: those inside, the last before, the first after. */
+/* Adds rows that are not sorted by tag yet: those within the range, the last before it and the first after it. */
 static int add_recent(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     struct history_points recent = { 0 };
@@ -120,7 +120,7 @@ static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int
     return error;
 }
 
-/* Of several points before from_us the last stays, of several after to_us the first; of equal times the newer row. */
+/* Keeps the last of several points before from_us, the first of several after to_us, and the newer row of equal times. */
 static void trim(struct history_points *points, size_t begin, int64_t from_us, int64_t to_us)
 {
     size_t kept = begin;
@@ -202,7 +202,7 @@ static void take(struct history_pair *pair, const struct history_point *there, i
         pair->after = point;
 }
 
-/* By id of the file, as -1 or an index of tags. NULL: the file has none of them. */
+/* Returns an array that maps ids of the file to indices of tags, or -1. NULL: the file has none of the tags. */
 static int *index_by_id(struct month_file *file, const struct history_tag *tags, size_t count, struct history_pair *pairs, int64_t *most)
 {
     int64_t *ids = mem_array(count ? count : 1, sizeof(*ids));
@@ -267,7 +267,7 @@ int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us
     return database_fail(&file->db, code, "cannot be read");
 }
 
-/* The texts that the historian notes, read back. */
+/* Parses the text of an event that the historian noted for a gap. */
 static bool read_gap(const char *kind, const char *text, int64_t t_us, struct history_gap *out)
 {
     double seconds;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writing to a month's file: first in the order of time, then tidied into the order of tags and rolled up. */
+/* Writes a month's file: rows are first written in order of time, later sorted by tag and rolled up. */
 #include <errno.h>
 #include <string.h>
 
@@ -15,7 +15,7 @@ static int begin(struct month_file *file)
     return month_run(file, month_sql(file, SQL_BEGIN), "cannot begin to write");
 }
 
-/* Commits if `error` is 0, else undoes. What was rolled up in memory is then not what lies on disk any more. */
+/* Commits if `error` is 0, otherwise rolls back. After a rollback, ids and rollups in memory differ from the file and are reset. */
 static int end(struct month_file *file, int error)
 {
     if (!error)
@@ -29,7 +29,7 @@ static int end(struct month_file *file, int error)
     return error;
 }
 
-/* Where the plant shows the tag in another unit than when this file was begun, all that the file has of it is converted. */
+/* Converts all values of a tag in this file, if the plant now shows the tag in another unit than when the file was created. */
 static int convert_unit(struct month_file *file, const struct history_tag *of)
 {
     sqlite3_stmt *find = month_sql(file, SQL_FIND_TAG);
@@ -46,7 +46,7 @@ static int convert_unit(struct month_file *file, const struct history_tag *of)
     static const char *const columns[][2] = { { "sample", "v" },    { "recent", "v" },    { "held", "v" },       { "rollup", "low" },
                                               { "rollup", "high" }, { "rollup", "mean" }, { "rollup", "first" }, { "rollup", "last" },
                                               { "outbox", "v" } };
-    bool has_outbox; /* of one who sent what was recorded, before this handle */
+    bool has_outbox; /* another run, with a database configured, may have created an outbox */
     int error = month_has_outbox(file, &has_outbox);
     size_t count = sizeof(columns) / sizeof(columns[0]) - !has_outbox;
     for (size_t i = 0; i < count && !error; i++) {
@@ -90,7 +90,7 @@ static int put(struct month_file *file, enum month_statement which, int64_t id, 
     return month_run(file, statement, "cannot write");
 }
 
-/* Of what is new, unlike put(), which moves what was recorded before as well. */
+/* Writes a new point, also to the outbox; put() is for moving points that were recorded before. */
 static int record(struct month_file *file, enum month_statement which, int64_t id, const struct history_point *point)
 {
     int error = put(file, which, id, point);
@@ -171,7 +171,7 @@ void month_file_forget_rollups(struct month_file *file)
     memset(file->rollups, 0, file->tag_count * sizeof(*file->rollups));
 }
 
-/* Rolls up what is in the table of samples from the hour of from_us on, and the point before. Buckets go to disk if `store`. */
+/* Rolls up the samples from the hour of from_us on, including the point before. Writes the buckets to disk if `store`. */
 static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struct month_rollups *rollups, bool store)
 {
     sqlite3_stmt *samples = month_sql(file, SQL_SAMPLES_FROM);
@@ -190,7 +190,7 @@ static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struc
     return error ? error : database_fail(&file->db, code, "cannot read samples");
 }
 
-/* As they were left by whoever wrote the file before. */
+/* Restores the rollups in progress from the samples that the previous writer left. */
 static int load_rollups(struct month_file *file, int tag, int64_t id)
 {
     struct month_rollups *rollups = &file->rollups[tag];
@@ -235,7 +235,7 @@ static int move_row(struct month_file *file, int tag, int64_t id, const struct h
 {
     int error = 0;
     if (tag >= 0 && !file->rollups[tag].loaded)
-        error = load_rollups(file, tag, id); /* before the table has more */
+        error = load_rollups(file, tag, id); /* before the table gets more samples */
     if (!error)
         error = put(file, SQL_ADD_SAMPLE, id, point);
     return error || tag < 0 ? error : roll_point(file, tag, id, point);
@@ -284,7 +284,7 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
     struct month_rollups rollups;
     struct history_point before;
     int error = month_one_point(file, SQL_BEFORE, id, from_us - 1, &before);
-    if (before.t_us != INT64_MIN) /* the line from there leads elsewhere now */
+    if (before.t_us != INT64_MIN) /* the line from that point ends at a new point now */
         from_us = before.t_us;
     from_us -= from_us % history_level_us[LEVEL_1_H];
     for (int level = 0; level < LEVEL_COUNT && !error; level++) {
@@ -337,13 +337,13 @@ int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_
     error = forget(file, SQL_FORGET_GAPS, from_us, to_us, gap_quality);
     if (!error)
         error = forget(file, SQL_FORGET_GAP_NOTES, from_us, to_us, gap_quality);
-    if (!error && has_outbox) /* the other database knows better, too */
+    if (!error && has_outbox) /* so that the gap is not sent to the other database */
         error = forget(file, SQL_FORGET_OUTBOX_GAPS, from_us, to_us, gap_quality);
     return end(file, error);
 }
 
-/* The held points become rows, each with one behind it that says that nobody recorded. Of who led last the other database has the
-   line's end; somebody else goes on with it there. */
+/* Records the held points, each followed by a point that marks a gap. Without sends_gaps the gap points are not sent to the other
+   database, where another daemon continues the lines. */
 static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)
 {
     sqlite3_stmt *held = month_sql(file, SQL_ALL_HELD);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and deletes the points that are yet to be sent. */
+/* Reads and deletes points in the outbox. */
 #include "history/month_outbox.h"
 
 #include <errno.h>
@@ -9,7 +9,7 @@
 #include "history/month.h"
 #include "history/month_file.h"
 
-enum { DELETE_ROWS = 20000 }; /* at once: the historian waits meanwhile */
+enum { DELETE_ROWS = 20000 }; /* rows deleted per transaction: the historian has to wait meanwhile */
 enum statement { BEGIN, COMMIT, THERE, SPAN, ROWS, HELD, TAGS, EVENTS, DELETE, STATEMENT_COUNT };
 
 static const char *const sql[STATEMENT_COUNT] = {

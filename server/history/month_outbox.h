@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Outbox: the points in a month's file that another database has yet to be sent. The historian puts them there with the points themselves
-   (month_file_use_outbox); whoever sends them reads and deletes them through a handle of its own. Thread: one per handle. Functions that
-   return int return 0 or -errno, already logged. */
+/* Outbox: the points in a month's file that must still be sent to another database. The historian writes them in the same transaction as
+   the points themselves (month_file_use_outbox()); the sender reads and deletes them through a handle of its own. Thread: one per
+   handle. Functions that return int return 0 or -errno, already logged. */
 #ifndef HISTORY_MONTH_OUTBOX_H
 #define HISTORY_MONTH_OUTBOX_H
 #include <stddef.h>
@@ -14,7 +14,7 @@
     " q INTEGER NOT NULL)"
 
 struct month_outbox_row {
-    int64_t seq, tag; /* tag: its id in this file */
+    int64_t seq, tag; /* seq: number in the outbox; tag: its id in this file */
     struct history_point point;
 };
 struct month_outbox_tag {
@@ -26,28 +26,28 @@ struct month_outbox_event {
     int64_t t_us;
     char *kind, *text;
 };
-/* What is read at one moment; zero-initialise, free with month_outbox_batch_finish(). */
+/* One consistent read of the outbox; zero-initialise, free with month_outbox_batch_finish(). */
 struct month_outbox_batch {
-    struct month_outbox_row *rows, *held; /* in the order in which they were put; newest samples that are not recorded yet */
-    struct month_outbox_tag *tags;        /* all of the file */
-    struct month_outbox_event *events;    /* likewise */
+    struct month_outbox_row *rows, *held; /* rows in order of insertion; held: newest samples that are not recorded yet */
+    struct month_outbox_tag *tags;        /* all tags of the file */
+    struct month_outbox_event *events;    /* all events of the file */
     size_t row_count, row_capacity, held_count, held_capacity, tag_count, tag_capacity, event_count, event_capacity;
 };
 
 struct month_outbox;
-/* Returns NULL on failure, with *error; -ENOENT, not logged: there is no such file, or it has no outbox. */
+/* Opens the outbox of a month. Returns NULL on failure, with *error; -ENOENT, not logged: no such file, or it has no outbox. */
 struct month_outbox *month_outbox_open(struct log *log, const char *folder, int month, int *error);
-void month_outbox_close(struct month_outbox **outbox); /* &NULL is fine; leaves NULL */
-/* Finds how many points there are, by their numbers. */
+void month_outbox_close(struct month_outbox **outbox); /* Closes the outbox. &NULL is fine; leaves NULL. */
+/* Finds the number of points, as the difference of sequence numbers. */
 int month_outbox_count(struct month_outbox *outbox, int64_t *count);
-/* Finds the number of the newest point, 0: there is none. */
+/* Finds the sequence number of the newest point; 0: the outbox is empty. */
 int month_outbox_last(struct month_outbox *outbox, int64_t *seq);
-/* Reads the oldest points, at most `most`, and all else that the batch has; what it had before is freed. */
+/* Reads the oldest points, at most `most`, and the other members of the batch; frees the batch's previous content. */
 int month_outbox_read(struct month_outbox *outbox, size_t most, struct month_outbox_batch *batch);
 void month_outbox_batch_finish(struct month_outbox_batch *batch);
-/* Deletes the points up to a number. */
+/* Deletes the points up to a sequence number. */
 int month_outbox_delete(struct month_outbox *outbox, int64_t seq);
-/* Deletes the oldest points, so that at most `keep` are left. */
+/* Deletes the oldest points so that at most `keep` remain. */
 int month_outbox_shorten(struct month_outbox *outbox, int64_t keep);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A recorded point of a tag. Points are joined by straight lines, or by steps where the tag is a switch. Pure functions. Thread: any. */
+/* A recorded point of a tag. Points are joined by straight lines, or by steps if the tag is a switch. Pure functions. Thread: any. */
 #ifndef HISTORY_POINT_H
 #define HISTORY_POINT_H
 #include <math.h>
@@ -8,8 +8,8 @@
 
 struct history_point {
     int64_t t_us;     /* UTC, since 1970 */
-    double value;     /* engineering units; NaN: none */
-    uint32_t quality; /* OPC UA; from here until the next point */
+    double value;     /* engineering units; NaN: no value */
+    uint32_t quality; /* OPC UA quality from this point until the next */
 };
 
 /* Returns whether the point has a value that may be drawn. */
@@ -17,12 +17,12 @@ static inline bool history_point_usable(const struct history_point *p)
 {
     return (p->quality >> 30) < 2 && !isnan(p->value);
 }
-/* Returns the value at t_us on the line between two usable points that follow each other. */
+/* Returns the value at t_us on the line between two consecutive usable points. */
 static inline double history_point_between(const struct history_point *a, const struct history_point *b, int64_t t_us)
 {
     return a->value + (b->value - a->value) * ((double)(t_us - a->t_us) / (double)(b->t_us - a->t_us));
 }
-/* Returns whether a line joins a to b; else the value of a holds until b. */
+/* Returns whether a line joins `a` to `b`; otherwise the value of `a` holds until `b`. */
 static inline bool history_point_joined(const struct history_point *a, const struct history_point *b, bool step)
 {
     return !step && history_point_usable(a) && history_point_usable(b) && a->quality == b->quality;

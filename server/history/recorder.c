@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One door for each tag. */
+/* One swinging-door filter for each tag. */
 #include "history/recorder.h"
 
 #include "base/mem.h"
@@ -12,7 +12,7 @@ struct recorder_lane {
     struct swinging_door door;
     struct swinging_door_params params;
     uint32_t quality;
-    bool touched; /* is in recorder->touched */
+    bool touched; /* in recorder->touched */
 };
 
 struct recorder {
@@ -22,7 +22,7 @@ struct recorder {
     int *touched;
 };
 
-/* What the values move within: the instrument's own range, else what the group shows. */
+/* Returns the span of a tag's values: the instrument's range, else its group's range. */
 static double span_of(const struct plant *plant, const struct plant_tag *tag)
 {
     if (tag->has_range)
@@ -57,7 +57,7 @@ struct recorder *recorder_create(const struct plant *plant)
         const struct history_tag *tag = &recorder->tags[i];
         recorder->lanes[i].quality = QUALITY_BAD_WAITING;
         recorder->lanes[i].params = (struct swinging_door_params){
-            .deadband = tag->step ? 0 : tag->within / 4, /* 2 * 1/4 + 1/2: door.h */
+            .deadband = tag->step ? 0 : tag->within / 4, /* 2 * 1/4 + 1/2 = 1: bound of swinging_door.h */
             .deviation = tag->step ? 0 : tag->within / 2,
             .override_us = (int64_t)(plant->history.override_s * US_PER_S),
             .step = tag->step,
@@ -116,7 +116,7 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
     for (size_t i = 0; i < recorder->touched_count; i++) {
         struct recorder_lane *lane = &recorder->lanes[recorder->touched[i]];
         lane->touched = false;
-        /* What was kept just now is held too: where the last writer ended must be known. */
+        /* A point that was just recorded is held too, so that the end of a killed writer is known. */
         if (!swinging_door_held(&lane->door, &point))
             point = lane->door.anchor;
         add(held, recorder->touched[i], &point, 1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deletes months by age and size, and the oldest part of what is left where that suffices. */
+/* Deletes months by age and size, or only the oldest part of a month where that suffices. */
 #include "history/retention.h"
 
 #include <errno.h>
@@ -14,9 +14,9 @@
 #include "history/month_outbox.h"
 
 static const char *const parts[] = { "", "-wal", "-shm" };
-enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 /* at once: whoever records waits */ };
-static const int64_t NEWEST_US = 600 * US_PER_S; /* is never cut off */
-#define CUT_BELOW 0.01                           /* of the limit, so that it is not reached again at once */
+enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 /* CUT_BYTES: at once, because the recording thread waits */ };
+static const int64_t NEWEST_US = 600 * US_PER_S; /* minutes that are never cut off */
+#define CUT_BELOW 0.01 /* fraction of the limit freed in addition, so that the limit is not reached again at once */
 
 static char *path_of(const char *folder, int month, int part)
 {
@@ -50,7 +50,7 @@ static bool delete_month(struct log *log, const char *folder, int month, const c
     return gone;
 }
 
-/* Returns how many bytes of it hold something; room for what comes next is in the file of the newest month. */
+/* Returns the used bytes of a month's file; only the newest month's file has free space for new points. */
 static int64_t used_bytes(struct log *log, const char *folder, int month, bool newest)
 {
     struct month_file_size size = { 0 };
@@ -62,18 +62,18 @@ static int64_t used_bytes(struct log *log, const char *folder, int month, bool n
     return size.bytes - size.free_bytes;
 }
 
-/* Deletes the oldest part of a month, some of the bytes that are too many. Returns false if this cannot be done. */
+/* Deletes the oldest part of a month, at most CUT_BYTES. Returns false if the month cannot be cut. */
 static bool cut_month(struct log *log, const char *folder, int month, bool newest, int64_t too_many, int64_t *unsent)
 {
     struct month_file_size size;
     int64_t first_us = INT64_MAX, last_us = INT64_MIN;
     int error;
-    struct month_file *file = month_file_read(log, folder, month, &error); /* which leaves alone what is damaged */
+    struct month_file *file = month_file_read(log, folder, month, &error); /* opening for reading does not set a damaged file aside */
     bool can = file && !month_file_size(file, &size) && !month_file_span(file, &first_us, &last_us) && (size.shrinks || newest);
     month_file_close(&file);
     if (!can || first_us > last_us || !(file = month_file_open(log, folder, month, NULL, 0, &error)))
         return false;
-    if (!newest) /* the disk gets that back in any case */
+    if (!newest) /* the file's free space is returned to the disk in any case */
         too_many = too_many > size.free_bytes ? too_many - size.free_bytes : 0;
     double share = (double)(too_many < CUT_BYTES ? too_many : CUT_BYTES) / (double)(size.bytes - size.free_bytes);
     int64_t until_us = first_us + (int64_t)((double)(last_us - first_us) * share), latest_us = last_us - NEWEST_US;
@@ -82,7 +82,7 @@ static bool cut_month(struct log *log, const char *folder, int month, bool newes
     return good;
 }
 
-/* A file that cannot be read now may hold some: only what is known to hold none goes for its age. */
+/* Returns the number of waiting points in a month's outbox; 1 if it cannot be read, so that the month is not deleted for its age. */
 static int64_t waiting_in(struct log *log, const char *folder, int month)
 {
     int error;
@@ -94,7 +94,7 @@ static int64_t waiting_in(struct log *log, const char *folder, int month)
     return count;
 }
 
-/* The size of all months without what SQLite keeps beside them, which is bounded. */
+/* Returns the used size of all months, without SQLite's companion files, whose size is bounded. */
 static int64_t all_used(struct log *log, const char *folder, const int *months, size_t count)
 {
     int64_t bytes = 0;
@@ -103,7 +103,7 @@ static int64_t all_used(struct log *log, const char *folder, const int *months, 
     return bytes;
 }
 
-/* Deletes a month as a whole. Returns false if it is still there. */
+/* Deletes a whole month. Returns false if its file could not be deleted. */
 static bool drop_month(struct log *log, const char *folder, int month, const char *why, int64_t waiting, int64_t *unsent)
 {
     bool gone = delete_month(log, folder, month, why);
@@ -138,7 +138,7 @@ int64_t retention_apply(struct log *log, const char *folder, const struct retent
         mem_free(why);
     }
     if (!limits->sends)
-        *unsent = 0; /* nobody waits for what another configuration left there */
+        *unsent = 0; /* points in an outbox left by another configuration are not wanted any more */
     if (*unsent)
         log_event(log, LOG_ERROR, EVENT_HISTORY_LOST,
                   "history: %lld of the oldest points were deleted for keep_gb before PostgreSQL had taken them", (long long)*unsent);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Retention of history: deletes the oldest, whole months where they are too old or more is too much, else the oldest part of a month. The
-   last minutes always stay. Thread: that of whoever records. */
+/* Retention of history: deletes whole months that are too old or exceed the size limit, or only the oldest part of a month. The last
+   minutes are always kept. Thread: the recording thread. */
 #ifndef HISTORY_RETENTION_H
 #define HISTORY_RETENTION_H
 #include <stdbool.h>
@@ -9,11 +9,12 @@
 #include "base/log/log.h"
 
 struct retention_limits {
-    double days, bytes; /* 0: no limit */
-    bool sends;         /* points wait in the files for another database (month_outbox.h): they keep a month from being too old */
+    double days, bytes; /* limits of age and size; 0: no limit */
+    /* the files' outboxes are sent to another database (month_outbox.h): a month with waiting points is not deleted for its age */
+    bool sends;
 };
-/* Deletes what is beyond the limits: whole months (logged), and 16 MB at a time of a month. To be called every minute. Returns the size on
-   disk of what is left, in bytes. *unsent: how many points were deleted that waited for another database, logged. */
+/* Deletes what exceeds the limits: whole months (logged), or up to 16 MB of a month per call. Call it every minute. Returns the
+   remaining size on disk in bytes. *unsent: number of deleted points that waited for another database (logged). */
 int64_t retention_apply(struct log *log, const char *folder, const struct retention_limits *limits, int64_t now_us, int64_t *unsent);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Integrates the line through the points of one tag, stretch by stretch. */
+/* Integrates the line through the points of one tag, segment by segment. */
 #include "history/rollup.h"
 
 static int64_t floor_to(int64_t t_us, int64_t length_us)
@@ -21,11 +21,11 @@ static void open_bucket(struct rollup *rollup, int64_t t_us)
 
 static void take_value(struct history_bucket *bucket, double value)
 {
-    bucket->low = fmin(bucket->low, value); /* NaN gives way */
+    bucket->low = fmin(bucket->low, value); /* fmin and fmax ignore NaN */
     bucket->high = fmax(bucket->high, value);
 }
 
-/* The part from t0 to t1, inside the bucket, of what follows `last`; next NULL: it holds. */
+/* Adds the part from t0 to t1, inside the bucket, of the line from `last` to `next`; next NULL: the last value holds. */
 static void take_part(struct rollup *rollup, const struct history_point *next, int64_t t0_us, int64_t t1_us)
 {
     struct history_bucket *bucket = &rollup->bucket;
@@ -98,7 +98,7 @@ bool rollup_rest(const struct rollup *rollup, struct history_bucket *out)
     return rollup->open;
 }
 
-/* `good_us` more of time, with this mean. */
+/* Adds `good_us` of time with this mean value. */
 static void add_time(struct history_bucket *bucket, double mean, int64_t good_us)
 {
     if (good_us <= 0)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes lines and buckets as text: large ones, so without a tree in between. */
+/* Writes lines and buckets as text directly, without a JSON tree, because they are large. */
 #include "history/series_text.h"
 
 #include <stdio.h>
@@ -8,16 +8,16 @@
 #include "history/month.h"
 #include "base/text/timestamp.h"
 
-/* ten digits: more than any transmitter has */
+/* Appends a number with ten digits: more than any transmitter has. */
 static void add_number(struct text *out, double value, const char *none)
 {
     if (isnan(value))
         text_add(out, "%s", none);
     else
-        text_add(out, "%.10g", value + 0.0); /* of -0.0 it makes 0.0 */
+        text_add(out, "%.10g", value + 0.0); /* adding 0.0 turns -0.0 into 0.0 */
 }
 
-/* In quotes, as JSON has it. */
+/* Appends a JSON string in quotes. */
 static void add_string(struct text *out, const char *string)
 {
     text_add(out, "\"");
@@ -68,7 +68,7 @@ void series_text_json(struct text *out, const char *tag, const char *unit, const
     text_add(out, "]}");
 }
 
-static const char SPECIAL[] = ",;\t\"\r\n "; /* what makes a cell of CSV a quoted one */
+static const char SPECIAL[] = ",;\t\"\r\n "; /* characters that require quotes around a CSV cell */
 
 static void begin_row(struct text *out, const char *tag, int64_t t_us)
 {

@@ -5,7 +5,7 @@
 #include "base/text/text.h"
 #include "history/history.h"
 
-/* Appends one object: {"tag":...,"unit":...,"step":...,"bucket_s":...,"points":[...]} */
+/* Appends one JSON object: {"tag":...,"unit":...,"step":...,"bucket_s":...,"points":[...]} */
 void series_text_json(struct text *out, const char *tag, const char *unit, const struct history_series *series);
 /* Append the header line, for points or for buckets, and the rows of a series. */
 void series_text_csv_head(struct text *out, bool buckets);

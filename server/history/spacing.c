@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeps at most MOST_SPACINGS: of a longer series every second one, then every fourth, and so on. */
+/* Stores at most MOST_SPACINGS spacings: of a longer series every second one, then every fourth, and so on. */
 #include "history/spacing.h"
 
 #include <stdlib.h>

@@ -9,19 +9,19 @@
 struct spacing { /* zero-initialise */
     bool has_last, last_usable;
     int64_t last_us;
-    int64_t *at;          /* every stride-th spacing */
+    int64_t *at; /* every stride-th spacing */
     size_t count, capacity, stride, passed;
-    size_t between; /* times between two samples, usable or not */
+    size_t between; /* number of times between two samples, usable or not */
 };
 
 /* Adds the next sample in order of time. Only times between two usable samples count. */
 void spacing_put(struct spacing *spacing, const struct history_point *sample);
-/* Returns whether the series has a spacing and three samples or more: two alone do not tell how often the series has samples. */
+/* Returns whether the series has a spacing and at least three samples: two alone do not show how often the series has samples. */
 static inline bool spacing_has_rhythm(const struct spacing *spacing)
 {
     return spacing->passed > 0 && spacing->between > 1;
 }
-/* Returns the median (the lower one of two) in microseconds, 0 if there is no spacing. Sorts the spacings. */
+/* Returns the median (the lower one of two) in microseconds; 0 if there is no spacing. Sorts the spacings. */
 int64_t spacing_median(struct spacing *spacing);
 void spacing_finish(struct spacing *spacing);
 

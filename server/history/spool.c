@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A line for each row: kept or held, time, value, quality, name of the tag. */
+/* Spool file: one line for each row: kept or held, time, value, quality, name of the tag. */
 #include "history/spool.h"
 
 #include <errno.h>
@@ -18,7 +18,7 @@
 #include "base/text/text.h"
 
 static const char HEAD[] = "plantcast spool 1\n";
-enum { PLACES = 3, RESERVE_BYTES = 8 << 20, PLENTY = 10 /* times the reserve */ };
+enum { PLACES = 3, RESERVE_BYTES = 8 << 20, PLENTY = 10 /* PLENTY: free disk space required, in multiples of the reserve */ };
 
 char **spool_places(const char *folder)
 {
@@ -46,7 +46,7 @@ static char *reserve_of(const char *folder, int length)
     return mem_printf("%.*s/spool.reserve", length, folder);
 }
 
-/* It gets its name once it has all its blocks: what a kill leaves behind is none. */
+/* Creates the reserve file. It is renamed once all its blocks are allocated, so that a killed program leaves no partial reserve. */
 static int make_reserve(const char *path)
 {
     char *made = mem_printf("%s.new", path);
@@ -75,7 +75,7 @@ int spool_reserve(const char *folder)
     return error;
 }
 
-/* In the blocks that the file of the reserve has already; then it gets the spool's name. */
+/* Writes the spool into the blocks of the reserve file, then renames that file to the spool's name. */
 static int write_into_reserve(const char *path, const struct text *text)
 {
     const char *slash = strrchr(path, '/');
@@ -147,7 +147,7 @@ static void add_line(const char *line, const struct plant *plant, struct spool_r
     to->at[to->count++] = (struct history_row){ tag, point };
 }
 
-/* NULL: errno says why. */
+/* Returns NULL with errno on failure. */
 static char *read_own(const char *path)
 {
     struct stat st;

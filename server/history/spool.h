@@ -1,24 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Spool: rows that could not be written to history when the daemon ended, in a file elsewhere, for the next start. Thread: one. */
+/* Spool: rows that could not be written to history when the daemon ended, stored in another file for the next start. Thread: one. */
 #ifndef HISTORY_SPOOL_H
 #define HISTORY_SPOOL_H
 #include "history/recorder.h"
 
 struct spool_rows {
-    struct recorder_rows kept, held; /* as month_file_write() takes them */
+    struct recorder_rows kept, held; /* recorded and held rows, as for month_file_write() */
 };
 
-/* Returns the places for the spool of that history folder, best first: the folder itself, RUNTIME_DIRECTORY, /var/tmp. NULL ends them; free
-   with spool_places_free. */
+/* Returns possible paths for the spool of a history folder, best first: in the folder itself, RUNTIME_DIRECTORY, /var/tmp. The list ends
+   with NULL; free with spool_places_free(). */
 char **spool_places(const char *folder);
 void spool_places_free(char **places);
-/* Reserves room in the folder while the disk has plenty, so that even a full disk takes a spool, which then outlives a reboot. Does nothing
-   where there is a reserve. Returns 0 or -errno; -ENOSPC: there is not plenty. */
+/* Reserves space in the folder while the disk has plenty, so that even a full disk can take a spool, which then survives a reboot. No-op
+   if the reserve exists. Returns 0 or -errno; -ENOSPC: the disk does not have plenty. */
 int spool_reserve(const char *folder);
-/* Writes all rows to the file, for its owner only; where the disk is full, into what was reserved beside it. Returns 0 or -errno. */
+/* Writes all rows to the file, readable by its owner only; if the disk is full, into the reserve in the same folder. Returns 0 or
+   -errno. */
 int spool_write(const char *path, const struct plant *plant, const struct spool_rows *rows);
-/* Appends what the file holds of tags that are still in the plant, and says of how many rows the tags are not. A file of somebody else is
-   refused. Returns 0 or -errno; -ENOENT: there is none. */
+/* Appends the rows of the file whose tags are still in the plant; *foreign receives the number of the others. A file of another user is
+   refused. Returns 0 or -errno; -ENOENT: no such file. */
 int spool_read(const char *path, const struct plant *plant, struct spool_rows *rows, size_t *foreign);
 
 #endif

@@ -25,7 +25,7 @@ static bool passes(const struct swinging_door *door, const struct history_point 
     return slope >= door->slope_low && slope <= door->slope_high;
 }
 
-/* A sample that passed the deadband; it has the anchor's quality and is newer than what is held. */
+/* Processes a sample that passed the deadband, has the anchor's quality and is newer than the held point. */
 static int swing(struct swinging_door *door, const struct swinging_door_params *params, const struct history_point *sample,
                  struct history_point *kept, int count)
 {
@@ -41,7 +41,7 @@ static int swing(struct swinging_door *door, const struct swinging_door_params *
     return count;
 }
 
-/* Of the newest there is. */
+/* Returns the newest sample. */
 static const struct history_point *last(const struct swinging_door *door)
 {
     return door->has_skipped ? &door->skipped : door->has_held ? &door->held : &door->anchor;
@@ -75,7 +75,8 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
     bool usable = history_point_usable(sample), due = sample->t_us - door->anchor.t_us >= params->override_us;
     const struct history_point *passed = door->has_held ? &door->held : &door->anchor;
     if (!usable || fabs(sample->value - passed->value) <= params->deadband) {
-        if (usable && door->has_held && !passes(door, sample)) { /* else whoever reads now sees a ramp where there was a step */
+        /* otherwise a reader of the current state would see a ramp instead of a step */
+        if (usable && door->has_held && !passes(door, sample)) {
             struct history_point held = door->held;
             count = keep(door, &held, kept, count);
         }

@@ -1,29 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Swinging-door filter: decides which samples of a tag are recorded. A deadband, then a swinging door, with an override period. Pure; times
-   come with the samples. At the time of every sample, the line through the recorded points is within `2 deadband + deviation` of it; every
-   change of quality is recorded, and a spike beyond that bound is recorded exactly. Source: E. H. Bristol, Swinging door trending, ISA
-   1990; here the line is checked against all samples it passes, so that the bound is not doubled. */
+/* Swinging-door filter: decides which samples of a tag are recorded. A deadband, then a swinging door, with an override period. Pure;
+   the samples carry the times. At the time of every sample, the line through the recorded points is within `2 deadband + deviation` of
+   the sample; every change of quality is recorded, and a spike beyond that bound is recorded exactly. Source: E. H. Bristol, Swinging
+   door trending, ISA 1990; here the line is checked against all samples it passes, so that the bound is not doubled. */
 #ifndef HISTORY_SWINGING_DOOR_H
 #define HISTORY_SWINGING_DOOR_H
 #include "history/point.h"
 
 struct swinging_door_params {
     double deadband, deviation; /* engineering units, >= 0 */
-    int64_t override_us;        /* a point is recorded at least this often, while samples come */
-    bool step;                  /* values hold until the next: every change beyond the deadband is recorded */
+    int64_t override_us;        /* maximum time between two recorded points while samples arrive */
+    bool step;                  /* a switch: values hold until the next point, and every change beyond the deadband is recorded */
 };
 
 struct swinging_door { /* zero-initialise */
     bool open, has_skipped, has_held;
-    struct history_point anchor;  /* recorded last */
+    struct history_point anchor;  /* point recorded last */
     struct history_point held;    /* passed the deadband; recorded when the door closes */
-    struct history_point skipped; /* the newest, within the deadband of what passed before it */
-    double slope_low, slope_high; /* per microsecond: lines from the anchor that pass all samples since */
+    struct history_point skipped; /* newest sample, within the deadband of the sample that passed before it */
+    double slope_low, slope_high; /* per microsecond: range of slopes from the anchor that pass within the deviation of all samples since */
 };
 
 enum { SWINGING_DOOR_MAX_POINTS = 3 };
-/* Adds a sample. Puts the points that must be recorded because of it into `kept`, oldest first, and returns their number. A sample that is
-   not newer than the last one (the clock was set back) is recorded, and the filter starts again from it. */
+/* Adds a sample. Puts the points that must be recorded because of it into `kept`, oldest first, and returns their number. A sample that
+   is not newer than the last one (the clock was set back) is recorded, and the filter restarts from it. */
 int swinging_door_put(struct swinging_door *door, const struct swinging_door_params *params, const struct history_point *sample,
              struct history_point kept[SWINGING_DOOR_MAX_POINTS]);
 /* Records the newest sample now, as if the override period were over. Returns the number of points in `kept`. */

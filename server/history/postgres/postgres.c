@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that empties the outboxes. */
+/* The thread that sends the outboxes of the months to PostgreSQL. */
 #include "history/postgres/postgres.h"
 
 #include <errno.h>
@@ -20,8 +20,10 @@
 
 enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
 enum { NOTES = 128, SPANS = POSTGRES_SPANS };
-static const int64_t SLOW_US = 60 * INT64_C(1000000); /* by so much may the lines of tags end before the last of them */
-static const int64_t TWICE_NS = 10 * NS_PER_S; /* longer than points take from a sample to the files: so long both keep them */
+/* tolerated difference between the ends of the tags' lines and the end of the newest one */
+static const int64_t SLOW_US = 60 * INT64_C(1000000);
+/* longer than a point takes from sample to file; leader and standby both keep points for this long */
+static const int64_t TWICE_NS = 10 * NS_PER_S;
 static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
 
 struct waiting_month {
@@ -29,7 +31,7 @@ struct waiting_month {
     int64_t count;
 };
 
-/* A standby's: what was in the outbox of a month at a time. */
+/* For a standby: newest sequence number in a month's outbox at a time. */
 struct outbox_note {
     int64_t at_ns, seq;
     int month;
@@ -38,30 +40,30 @@ struct outbox_note {
 struct postgres {
     struct postgres_params params;
     char *folder;
-    int64_t ended_us; /* where the files ended at the start */
+    int64_t ended_us; /* time of the last point in the files at the start */
     struct history_tag *tags;
     struct {
         counter *up, *points, *waiting, *lost, *restored;
     } counters;
     pthread_t thread;
     bool started;
-    int stop_fd; /* readable: end */
+    int stop_fd; /* eventfd; readable: the thread must end */
     pthread_mutex_t lock;
-    /* --- below: under lock */
+    /* --- below: under `lock` */
     bool leads, ends_lines;
-    int64_t sent_ns;       /* monotonic: what was recorded before is in the database, by whoever leads; INT64_MIN: not known */
+    int64_t sent_ns; /* monotonic; points recorded before this time are in the database, sent by the leader; INT64_MIN: unknown */
     struct postgres_owed owed;
-    /* --- below: of the thread */
-    struct postgres_link *link; /* NULL: there is none */
+    /* --- below: used by this thread only */
+    struct postgres_link *link; /* connection; NULL: none */
     struct postgres_tables tables;
     struct postgres_restore restore;
     struct backoff backoff;
     struct waiting_month *months;
     size_t month_count;
     int64_t looked_ns, newest_ns, retry_ns, say_lost_ns;
-    int64_t lost; /* and not said yet */
-    char said[POSTGRES_WHY_BYTES]; /* in the log; empty: all is well */
-    bool alone, flushed;           /* nobody else writes there; what was left of an earlier run is sent */
+    int64_t lost;                  /* lost points that are not logged yet */
+    char said[POSTGRES_WHY_BYTES]; /* last error that was logged; "": no error */
+    bool alone, flushed;           /* alone: only this daemon writes to the database; flushed: points left by an earlier run are sent */
     struct outbox_note notes[NOTES];
     size_t note_count;
 };
@@ -79,7 +81,7 @@ static bool ends(const struct postgres *postgres)
 
 /* --- the server --------------------------------------------------------------------------------------------------------------- */
 
-/* Repeated only when the cause is another one. */
+/* Closes the connection after an error, and sets the time of the next attempt. Logs the error only if its cause has changed. */
 static void give_up(struct postgres *postgres, const char *why)
 {
     char cause[POSTGRES_WHY_BYTES];
@@ -113,7 +115,7 @@ static void connect_now(struct postgres *postgres)
     postgres->newest_ns = 0;
 }
 
-/* Once something was written: a server whose disk is full can be connected to. */
+/* Called after a successful write: a mere connection proves nothing, since a server with a full disk accepts connections. */
 static void is_well(struct postgres *postgres)
 {
     postgres->backoff = (struct backoff){ 0 };
@@ -138,7 +140,7 @@ static void restore(struct postgres *postgres)
         postgres->params.restored(postgres->params.arg);
 }
 
-/* It leads now: nobody else may write there, and lines that nobody goes on with end. */
+/* Reconnects as the only writer after this daemon has become the leader, and ends lines that no daemon continues. */
 static void take_lead(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -162,13 +164,14 @@ static void take_lead(struct postgres *postgres)
     pthread_mutex_unlock(&postgres->lock);
 }
 
-/* Under the lock. */
+/* Call with the lock held. */
 static bool is_due(const struct postgres *postgres, const struct postgres_span *span)
 {
     return clock_mono_ns() >= span->at_ns + TWICE_NS && postgres->sent_ns >= span->at_ns;
 }
 
-/* What led before may have gone on behind a cut, and sent what it recorded: then its line ends later than the one here. */
+/* Reads a span that another daemon recorded. A former leader may have continued after the connection was lost and sent later points:
+   then its line in the database ends later than the mark written here. */
 static bool fill_span(struct postgres *postgres, const struct postgres_span *span, bool leads, int64_t *points,
                       char why[POSTGRES_WHY_BYTES])
 {
@@ -176,7 +179,7 @@ static bool fill_span(struct postgres *postgres, const struct postgres_span *spa
            postgres_restore_span(&postgres->restore, &postgres->tables, span->from_us, span->to_us, points, why);
 }
 
-/* Once whoever led then has had the time to send it, and what was recorded here is sent. */
+/* Reads the oldest owed span from the database, once its recorder has had time to send it and our own points are sent. */
 static void fill(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -212,7 +215,8 @@ static void count_month(struct postgres *postgres, struct waiting_month *month)
     month_outbox_close(&outbox);
 }
 
-/* The newest month each time, the others seldom: only imports and clocks that are set bring something there. */
+/* Counts the waiting points. Checks the newest month each time, other months rarely: only imports and changes of the clock add points
+   there. */
 static void look_for_points(struct postgres *postgres)
 {
     size_t count;
@@ -240,7 +244,7 @@ static int64_t waiting(const struct postgres *postgres)
     return sum;
 }
 
-/* The oldest points go, when too many wait; history itself keeps them. */
+/* Deletes the oldest points from the outboxes if too many wait; the history files still have them. */
 static void drop_oldest(struct postgres *postgres)
 {
     int64_t over = waiting(postgres) - (int64_t)postgres->params.plant->history.postgres.spool_points, lost = 0;
@@ -270,7 +274,7 @@ static void drop_oldest(struct postgres *postgres)
 
 /* --- sending ------------------------------------------------------------------------------------------------------------------ */
 
-/* One batch. *more: there is another. False: no more can be sent now. */
+/* Sends one batch. *more: another one follows. Returns false if no more can be sent now. */
 static bool send_batch(struct postgres *postgres, struct month_outbox *outbox, struct waiting_month *month, bool newest, bool *more)
 {
     struct month_outbox_batch batch = { 0 };
@@ -306,7 +310,7 @@ static bool send_month(struct postgres *postgres, struct waiting_month *month, b
     return good;
 }
 
-/* What the other has sent need not be sent from here; for a while both keep it. */
+/* Deletes points that the leader has sent. Both daemons keep points for TWICE_NS first. */
 static void forget_sent(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -327,7 +331,7 @@ static void forget_sent(struct postgres *postgres)
     }
 }
 
-/* Of the newest month: at its border the older one's are sent twice. */
+/* Notes the newest sequence number of the newest month. Points of an older month may be sent twice at the turn of the month. */
 static void note_outbox(struct postgres *postgres)
 {
     int error, month = postgres->month_count ? postgres->months[postgres->month_count - 1].month : 0;
@@ -339,7 +343,7 @@ static void note_outbox(struct postgres *postgres)
     month_outbox_close(&outbox);
 }
 
-/* The newest samples go with the newest month, now and then, and when the program ends. */
+/* Sends all outboxes. The newest samples are sent with the newest month every few seconds, and when the program ends. */
 static void send_all(struct postgres *postgres)
 {
     int64_t now_ns = clock_mono_ns();
@@ -353,7 +357,7 @@ static void send_all(struct postgres *postgres)
     postgres->flushed = true;
     if (postgres->alone) {
         pthread_mutex_lock(&postgres->lock);
-        postgres->sent_ns = now_ns - ROUND_MS * NS_PER_MS; /* the historian may have put some meanwhile */
+        postgres->sent_ns = now_ns - ROUND_MS * NS_PER_MS; /* subtracted because the historian may have added points meanwhile */
         pthread_mutex_unlock(&postgres->lock);
     }
 }
@@ -364,7 +368,7 @@ static void *run(void *arg)
     struct pollfd fd = { .fd = postgres->stop_fd, .events = POLLIN };
     bool last;
     do {
-        last = poll(&fd, 1, ROUND_MS) > 0; /* what came before the end is sent yet */
+        last = poll(&fd, 1, ROUND_MS) > 0; /* points written before the end are still sent */
         if (!last || !*postgres->said)
             connect_now(postgres);
         take_lead(postgres);
@@ -376,7 +380,7 @@ static void *run(void *arg)
         drop_oldest(postgres);
         counter_set(postgres->counters.waiting, waiting(postgres));
         if (postgres->alone || !postgres->flushed) {
-            if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX) /* the lines there have ended */
+            if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX) /* once the earlier lines in the database are ended */
                 send_all(postgres);
         } else {
             forget_sent(postgres);
@@ -420,7 +424,7 @@ int64_t postgres_sent_age_ns(struct postgres *postgres)
     return sent_ns == INT64_MIN ? INT64_MAX : clock_mono_ns() - sent_ns;
 }
 
-/* From when the files end, or from so long before today as is kept. */
+/* Returns the time of the last point in the files; without files, the oldest time that retention keeps. */
 static int64_t end_of_files_us(struct postgres *postgres)
 {
     const int64_t day_us = INT64_C(86400000000);
@@ -437,11 +441,11 @@ static int64_t end_of_files_us(struct postgres *postgres)
     return last_us;
 }
 
-/* Under the lock. */
+/* Call with the lock held. */
 static void add_span(struct postgres *postgres, const struct postgres_span *span)
 {
     struct postgres_span *last = &postgres->owed.spans[SPANS - 1];
-    if (postgres->owed.span_count == SPANS) /* a connection that never lasts: as one */
+    if (postgres->owed.span_count == SPANS) /* queue full, as with an unstable connection: extend the last span */
         *last = (struct postgres_span){ last->from_us, span->to_us, span->at_ns };
     else
         postgres->owed.spans[postgres->owed.span_count++] = *span;
@@ -471,8 +475,8 @@ void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us)
     pthread_mutex_unlock(&postgres->lock);
 }
 
-/* Of a standby that comes again and again, the time before waits twice at most: the first one's turn comes however often it
-   does, and the other is read once what the newest connection can bring is there. */
+/* Queues the time before this daemon led once more, at most twice in total: the first entry keeps its turn however often a standby
+   reconnects; the second one is read after the newest connection's points have arrived. */
 void postgres_fill_again(struct postgres *postgres)
 {
     struct postgres_span *newest = NULL;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends recorded history to PostgreSQL, on a thread of its own: what the outboxes of the months have, in batches, once. While the server is
-   away the points stay there, up to a limit. Neither the historian nor live pictures wait for it. */
+/* Sends recorded history to PostgreSQL, on a thread of its own: the points in the outboxes of the months, in batches, once each. While
+   the server is unreachable the points stay there, up to a limit. Neither the historian nor live pictures wait for it. */
 #ifndef HISTORY_POSTGRES_POSTGRES_H
 #define HISTORY_POSTGRES_POSTGRES_H
 #include "base/log/log.h"
@@ -8,47 +8,48 @@
 #include "plant/plant.h"
 
 enum { POSTGRES_SPANS = 16 };
-/* When another daemon led: what it recorded is to be read, if it was sent at at_ns (monotonic) or later. */
+/* A time when another daemon led: its points are to be read from the database, if they were sent there at at_ns (monotonic) or later. */
 struct postgres_span {
     int64_t from_us, to_us, at_ns;
 };
-struct postgres_owed { /* what is still to be read */
+struct postgres_owed { /* spans that must still be read */
     struct postgres_span spans[POSTGRES_SPANS];
     size_t span_count;
-    struct postgres_span led; /* the time before this daemon led; to_us 0: it did not begin to */
+    struct postgres_span led; /* the time before this daemon led; to_us 0: it has not become the leader */
 };
 
 struct postgres_params {
     struct log *log;
     struct counters *counters;
-    const struct plant *plant; /* outlives it */
-    const char *folder;        /* of the months */
-    bool stands_by;            /* another daemon writes there, until postgres_lead(): only what is left of an earlier run is sent */
-    const struct postgres_owed *owed; /* by the one before, of the same folder; read by the call. NULL: nothing */
-    /* Called from its thread when points of the past have been put into the files (of a machine that had none). */
+    const struct plant *plant; /* must outlive it */
+    const char *folder;        /* folder of the months' files */
+    bool stands_by; /* another daemon writes to the database, until postgres_lead(): only points left by an earlier run are sent */
+    /* from postgres_stop() of the previous instance for the same folder, copied by the call; NULL: nothing */
+    const struct postgres_owed *owed;
+    /* Called from its thread after older points have been read into the files of a machine that lacked them. */
     void (*restored)(void *arg);
     void *arg;
 };
 
 struct postgres;
-/* Starts before anything is recorded in the folder. Returns NULL if there is no thread (logged). */
+/* Starts the thread. Call it before anything is recorded in the folder. Returns NULL if the thread cannot be started (logged). */
 struct postgres *postgres_start(const struct postgres_params *params);
 /* Counts points that were deleted from the files before they were sent. Thread: any. */
 void postgres_count_lost(struct postgres *postgres, int64_t points);
-/* This daemon writes there from to_us on. What led before was followed until from_us, 0: it was not, so that its lines end where it ended.
-   What it recorded later is filled in, as below. Any thread. */
+/* Makes this daemon the only writer from to_us on. from_us: time of the last sample mirrored from the former leader; 0: none, so its
+   lines are ended at their last points. Its later points are read as by postgres_fill(). Any thread. */
 void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us);
-/* Likewise once more: there may be more of it now. Any thread. */
+/* Reads the time before this daemon led once more, since the former leader may have sent more of it. Any thread. */
 void postgres_fill_again(struct postgres *postgres);
-/* While it stands by: the other has sent all that was recorded so long ago. Any thread. */
+/* For a standby: the leader has sent everything recorded until age_ns ago. Any thread. */
 void postgres_sent_elsewhere(struct postgres *postgres, int64_t age_ns);
-/* Returns how long ago all that had been recorded was sent; INT64_MAX: never yet. Any thread. */
+/* Returns the age in nanoseconds of the time until which all points are sent; INT64_MAX: never yet. Any thread. */
 int64_t postgres_sent_age_ns(struct postgres *postgres);
-/* Has the points between two times, that another daemon recorded, put into the files in place of the gap that is there: once that one has
-   sent them. from_us 0: since the last point in the files. Any thread. */
+/* Replaces a gap in the files by the points that another daemon recorded between two times, once that daemon has sent them. from_us 0:
+   from the last point in the files. Any thread. */
 void postgres_fill(struct postgres *postgres, int64_t from_us, int64_t to_us);
-/* Sends what is pending, for two seconds at most, and ends. owed: becomes what was still to be read; NULL: nobody wants it. &NULL is fine,
-   and leaves *owed; leaves NULL. */
+/* Sends pending points for at most two seconds, and ends. owed: receives the spans that must still be read; NULL: not wanted. &NULL is
+   fine and leaves *owed unchanged; leaves NULL. */
 void postgres_stop(struct postgres **postgres, struct postgres_owed *owed);
 
 #endif

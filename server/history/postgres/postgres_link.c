@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* libpq without its blocking calls: whatever waits does so on the socket, for a time. */
+/* libpq without its blocking calls: all waiting is on the socket, with a timeout. */
 #include "history/postgres/postgres_link.h"
 
 #include <endian.h>
@@ -15,16 +15,16 @@
 #include "base/mem.h"
 
 static const int64_t CONNECT_NS = 10 * NS_PER_S, ANSWER_NS = 60 * NS_PER_S, STOP_NS = 2 * NS_PER_S;
-static const int64_t EPOCH_US = 946684800000000; /* PostgreSQL counts from 2000 */
-/* A server that does not hear of us any more gives up our lock within half a minute. */
+static const int64_t EPOCH_US = 946684800000000; /* PostgreSQL's time counts from 2000 */
+/* Keepalive settings: a server that no longer hears from us releases our lock within half a minute. */
 static const char set_up[] = "SET client_min_messages = warning; SET synchronous_commit = on; SET tcp_keepalives_idle = 10;"
                              "SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3";
 
 struct postgres_link {
     PGconn *library;
     int stop_fd;
-    int64_t stop_by_ns; /* 0: nobody ends the program */
-    int64_t connect_ns, answer_ns; /* how long what takes at most */
+    int64_t stop_by_ns;            /* 0: the program is not ending */
+    int64_t connect_ns, answer_ns; /* time limits for connecting and for an answer */
     struct {
         char *at;
         size_t length, capacity;
@@ -45,7 +45,7 @@ static bool fail_as_library(struct postgres_link *link)
     return fail(link, PQerrorMessage(link->library));
 }
 
-/* False: nothing happened by then. */
+/* Waits for the socket. Returns false on timeout. */
 static bool wait_for(struct postgres_link *link, short events, int64_t until_ns)
 {
     for (;;) {
@@ -73,7 +73,7 @@ static bool flush(struct postgres_link *link)
     return true;
 }
 
-/* NULL, with *good: there are no more. */
+/* Returns the next result. NULL with *good: there are no more. */
 static PGresult *next_result(struct postgres_link *link, bool *good)
 {
     const int64_t until_ns = clock_mono_ns() + link->answer_ns;
@@ -92,7 +92,7 @@ static bool is_good(const PGresult *result)
     return status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK || status == PGRES_COPY_IN || status == PGRES_EMPTY_QUERY;
 }
 
-/* All results of what was sent: the last one, if all are good. */
+/* Reads all results of a query. Returns the last one if all are good. */
 static PGresult *last_result(struct postgres_link *link)
 {
     PGresult *last = NULL;
@@ -236,7 +236,7 @@ static void put_int64(struct postgres_link *link, int64_t value)
 
 bool postgres_copy_begin(struct postgres_link *link, const char *table)
 {
-    static const char head[19] = "PGCOPY\n\377\r\n\0"; /* then flags and the length of an extension, both 0 */
+    static const char head[19] = "PGCOPY\n\377\r\n\0"; /* followed by flags and the length of an extension, both 0 */
     link->copy.length = 0;
     put(link, head, sizeof(head));
     return postgres_link_runf(link, "COPY %s FROM STDIN (FORMAT binary)", table);

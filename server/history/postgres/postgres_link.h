@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A connection to a PostgreSQL server on which nothing waits longer than it says: statements, and COPY of binary rows. After a failure only
-   postgres_link_why() and postgres_link_close() are called. Thread: one. */
+/* A connection to a PostgreSQL server with time limits for all operations: statements, and COPY of binary rows. After a failure only
+   postgres_link_why() and postgres_link_close() may be called. Thread: one. */
 #ifndef HISTORY_POSTGRES_POSTGRES_LINK_H
 #define HISTORY_POSTGRES_POSTGRES_LINK_H
 #include <libpq-fe.h>
@@ -13,38 +13,38 @@
 enum { POSTGRES_WHY_BYTES = 300 };
 
 struct postgres_link;
-/* Connects. stop_fd gets readable when the program ends: then nothing waits longer than two seconds. Returns NULL on failure, and says in
-   why what it was. */
+/* Connects. stop_fd becomes readable when the program ends: from then on no call waits longer than two seconds. Returns NULL with the
+   reason in `why` on failure. */
 struct postgres_link *postgres_link_open(const struct plant_postgres *postgres, int stop_fd, char why[POSTGRES_WHY_BYTES]);
-/* Likewise; neither connecting nor an answer takes longer than that. */
+/* Does the same with a time limit for connecting and for each answer. */
 struct postgres_link *postgres_link_open_within(const struct plant_postgres *postgres, int stop_fd, int64_t patience_ns,
                                                 char why[POSTGRES_WHY_BYTES]);
-void postgres_link_set_patience(struct postgres_link *link, int64_t patience_ns); /* that the next answers may take */
-void postgres_link_close(struct postgres_link **link); /* &NULL is fine; leaves NULL */
-const char *postgres_link_why(const struct postgres_link *link); /* returns what failed last */
+void postgres_link_set_patience(struct postgres_link *link, int64_t patience_ns); /* Sets the time limit for the following answers. */
+void postgres_link_close(struct postgres_link **link);                            /* Closes the connection. &NULL is fine; leaves NULL. */
+const char *postgres_link_why(const struct postgres_link *link);                  /* Returns the reason of the last failure. */
 
 /* Runs statements. Returns false on failure. */
 bool postgres_link_run(struct postgres_link *link, const char *sql);
-/* Likewise, of a format. */
+/* Runs statements given as a format. Returns false on failure. */
 bool postgres_link_runf(struct postgres_link *link, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
-/* Runs one statement with parameters as text. Returns its rows, in the binary format, for PQclear(); NULL on failure. */
+/* Runs one statement with parameters as text. Returns its rows in binary format, for PQclear(); NULL on failure. */
 PGresult *postgres_link_ask(struct postgres_link *link, const char *sql, int count, const char *const *parameters);
 
-/* COPY ... FROM STDIN (FORMAT binary): begins, takes rows column by column, and ends. */
+/* COPY ... FROM STDIN (FORMAT binary): begin, add rows column by column, end. */
 bool postgres_copy_begin(struct postgres_link *link, const char *table);
 void postgres_copy_row(struct postgres_link *link, int columns);
 void postgres_copy_int32(struct postgres_link *link, int32_t value);
 void postgres_copy_int64(struct postgres_link *link, int64_t value);
-void postgres_copy_time(struct postgres_link *link, int64_t t_us); /* of UTC, since 1970 */
-void postgres_copy_double(struct postgres_link *link, double value); /* NaN: NULL */
+void postgres_copy_time(struct postgres_link *link, int64_t t_us);   /* microseconds UTC since 1970 */
+void postgres_copy_double(struct postgres_link *link, double value); /* NaN becomes NULL */
 void postgres_copy_text(struct postgres_link *link, const char *text);
 void postgres_copy_bool(struct postgres_link *link, bool value);
-bool postgres_copy_end(struct postgres_link *link); /* sends all that was taken */
+bool postgres_copy_end(struct postgres_link *link); /* Sends all rows. */
 
 /* Read columns of binary rows. */
 int32_t postgres_int32(const PGresult *result, int row, int column);
 int64_t postgres_int64(const PGresult *result, int row, int column);
 int64_t postgres_time(const PGresult *result, int row, int column);
-double postgres_double(const PGresult *result, int row, int column); /* NULL: NaN */
+double postgres_double(const PGresult *result, int row, int column); /* NULL becomes NaN */
 
 #endif

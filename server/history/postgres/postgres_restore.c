@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What another machine recorded becomes this one's past. */
+/* Restores the history of another machine from PostgreSQL into the files of this machine. */
 #include "history/postgres/postgres_restore.h"
 
 #include <errno.h>
@@ -71,8 +71,8 @@ static void end(struct postgres_restore *restore)
 
 /* --- there -------------------------------------------------------------------------------------------------------------------- */
 
-/* The lines of whoever recorded before end where it ended, as month_file_recover() ends them. What it had newest is kept though there is
-   later than that: a standby may have sent the first of its own already. */
+/* Ends the lines in the database at their last points, as month_file_recover() does. The newest samples are recorded even if later
+   points exist: a standby may have sent its first points already. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
 {
     static const char sql[] =
@@ -89,7 +89,8 @@ bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
     return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)(now_us / US_PER_S));
 }
 
-/* A mark that we put right behind what was heard last, or was the last there, may be within a line that it went on with. */
+/* Corrects the ends of lines within a span. A gap mark that we wrote right after the last received point, or after the last point in the
+   database, is deleted if the former leader continued the line; the line then gets its mark after its true end. */
 bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, int64_t to_us)
 {
 #define AT(US) "('epoch'::timestamptz + " US " * interval '1 microsecond')"
@@ -107,7 +108,7 @@ bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, 
     return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)from_us, (long long)to_us);
 }
 
-/* The months that it has points of, 0 in *count: none. */
+/* Finds the first and last month with points; *any is false if there are none. Returns false on failure. */
 static bool find_months(struct postgres_tables *tables, int *first, int *last, bool *any)
 {
     char plant[NUMBER_BYTES];
@@ -133,7 +134,7 @@ static bool find_months(struct postgres_tables *tables, int *first, int *last, b
 
 struct tag_there {
     int32_t id;
-    int tag; /* of the plant */
+    int tag; /* index in the plant */
     struct unit_change change;
 };
 
@@ -143,7 +144,7 @@ static bool fail(char why[POSTGRES_WHY_BYTES], int error)
     return false;
 }
 
-/* Points of one tag, up to the end of a month; so many at once that memory is bounded. */
+/* Reads the points of one tag up to the end of a month, in portions of POINTS_AT_ONCE to bound the memory. */
 static bool restore_tag(struct postgres_tables *tables, const struct tag_there *there, struct month_file *file, int64_t after_us,
                         int64_t end_us, int64_t *points, char why[POSTGRES_WHY_BYTES])
 {
@@ -195,7 +196,7 @@ static bool restore_events(struct postgres_tables *tables, struct month_file *fi
     return rows && (!error || fail(why, error));
 }
 
-/* The tags that this plant has as well, by their names; NULL: the server did not say. */
+/* Finds the tags in the database that this plant also has, by name. Returns NULL if the query failed. */
 static struct tag_there *find_tags(const struct postgres_restore *restore, struct postgres_tables *tables, size_t *count)
 {
     char plant[NUMBER_BYTES];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the past of a plant from PostgreSQL into the files of months of a machine that has none: the newest month first, a month at a time.
-   Where it stands is in a file of the folder, so it goes on after a restart. Thread: one. */
+/* Restores the history of a plant from PostgreSQL on a machine that has none, one month at a time, the newest first. Its progress is
+   stored in a file of the folder, so that it continues after a restart. Thread: one. */
 #ifndef HISTORY_POSTGRES_POSTGRES_RESTORE_H
 #define HISTORY_POSTGRES_POSTGRES_RESTORE_H
 #include "history/month_file.h"
@@ -9,27 +9,27 @@
 struct postgres_restore {
     struct log *log;
     const struct plant *plant;
-    const struct history_tag *tags; /* of the plant */
+    const struct history_tag *tags; /* tags of the plant */
     const char *folder;
-    bool wanted;    /* there is something to do */
-    int next_month; /* INT_MAX: not begun */
-    int64_t points; /* so far */
-    bool begins;    /* the lines of whoever recorded there before have ended, or are another's who goes on */
+    bool wanted;    /* a restore is in progress */
+    int next_month; /* month to restore next; INT_MAX: not begun */
+    int64_t points; /* points restored so far */
+    bool begins;    /* the lines of earlier recordings have been ended, or another daemon continues them */
 };
 
-/* Finds out whether the folder needs its past: there is no month in it, or an earlier run has not finished. Makes the folder. */
+/* Finds whether the folder needs a restore: it has no months, or an earlier restore is unfinished. Creates the folder. */
 void postgres_restore_init(struct postgres_restore *restore, struct log *log, const struct plant *plant, const struct history_tag *tags,
                            const char *folder);
-/* Ends the lines of whoever recorded there before, where it ended. Returns false on failure of the server. */
+/* Ends the lines in the database at their last points. Returns false if the server fails. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us);
-/* Of the time between the last sample that was heard of whoever led, and our own first: lines that it went on with behind a cut end where
-   it ended, and not where it was heard last. Returns false on failure of the server. */
+/* Corrects line ends between the last sample received from the former leader and our own first sample: lines that it continued after the
+   connection was lost end at their last points. Returns false if the server fails. */
 bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, int64_t to_us);
-/* Reads the points between two times, of all tags, in place of the gap that the files have there. Returns false on failure, as below. */
+/* Reads the points of all tags between two times, replacing the gap in the files. Returns false on failure, as postgres_restore_step(). */
 bool postgres_restore_span(struct postgres_restore *restore, struct postgres_tables *tables, int64_t from_us, int64_t to_us,
                            int64_t *points, char why[POSTGRES_WHY_BYTES]);
-/* Reads one more month; *points: how many came. Returns false on failure of the server, or of the files (logged, and why says so). The
-   first call ends the lines of whoever recorded there before, and comes before anything is written there. */
+/* Restores one more month; *points: number of points. Returns false if the server fails, or the files cannot be written (logged, reason
+   in `why`). The first call ends the lines of earlier recordings; make it before anything is written to the database. */
 bool postgres_restore_step(struct postgres_restore *restore, struct postgres_tables *tables, int64_t now_us, int64_t *points,
                            char why[POSTGRES_WHY_BYTES]);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* SQL of whoever writes. A batch is copied into temporary tables first, so that a point that comes twice is there once. */
+/* SQL for writing. A batch is first copied into temporary tables, so that a point that is sent twice is stored once. */
 #include "history/postgres/postgres_tables.h"
 
 #include <stdio.h>
@@ -30,7 +30,7 @@ static const char make_temporary[] =
 
 /* --- opening ------------------------------------------------------------------------------------------------------------------ */
 
-/* -1: the server said no. */
+/* Runs a query that returns a number. Returns -1 if the server fails. */
 static int64_t ask_number(struct postgres_link *link, const char *sql, const char *parameter)
 {
     PGresult *result = postgres_link_ask(link, sql, parameter != NULL, &parameter);
@@ -39,7 +39,7 @@ static int64_t ask_number(struct postgres_link *link, const char *sql, const cha
     return number;
 }
 
-/* A server with TimescaleDB cuts the table into weeks. */
+/* Creates the tables. With TimescaleDB the table of samples is partitioned into weeks. */
 static bool make_tables(struct postgres_link *link, const char *schema)
 {
     int64_t timescale = ask_number(link, "SELECT count(*) FROM pg_extension WHERE extname = 'timescaledb'", NULL);
@@ -47,7 +47,7 @@ static bool make_tables(struct postgres_link *link, const char *schema)
            (!timescale || postgres_link_run(link, "SELECT create_hypertable('sample', 't', chunk_time_interval => interval '7 days')"));
 }
 
-/* A core that makes the table of its lease first leaves a schema without ours. */
+/* Checks the version of the tables. A schema with only the lease table, which a core may have created first, counts as empty. */
 static bool check_version(struct postgres_link *link, const char *schema, char why[POSTGRES_WHY_BYTES])
 {
     int64_t there = ask_number(link, "SELECT count(*) FROM pg_tables WHERE schemaname = $1 AND tablename = 'version'", schema);
@@ -148,7 +148,7 @@ static void note_tags(struct postgres_tables *tables, const struct month_outbox_
         tables->tags[postgres_int32(ids, row, 0)].id = postgres_int32(ids, row, 1);
 }
 
-/* A tag that is shown in another unit from now on is another tag there. */
+/* Writes the tags of a batch. A tag whose unit has changed becomes a new tag in the database. */
 static bool write_tags(struct postgres_tables *tables, int month, const struct month_outbox_batch *batch)
 {
     if (knows_tags(tables, month, batch))
@@ -184,7 +184,7 @@ static bool copy_points(struct postgres_tables *tables, const char *table, const
     for (size_t i = 0; i < count; i++) {
         const struct month_outbox_row *row = &rows[i];
         if (row->tag < 0 || (size_t)row->tag >= tables->tag_capacity || !tables->tags[row->tag].id)
-            continue; /* the file does not know it either */
+            continue; /* the file does not describe this tag either */
         postgres_copy_row(link, 5);
         postgres_copy_int32(link, (int32_t)i);
         postgres_copy_int32(link, tables->tags[row->tag].id);
