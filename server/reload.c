@@ -135,7 +135,7 @@ static void refuse(struct reload *reload, const struct diag *diag, const char *w
     }
     if (why)
         json_array_append_new(errors, json_string(why));
-    log_event(log, LOG_ERROR, EVENT_RELOAD_REFUSED, "reload: the configuration %s stays in force%s%s", (*reload->runtime)->plant->hash,
+    log_event(log, LOG_ERROR, EVENT_RELOAD_REFUSED, "reload: keeping the configuration %s%s%s", (*reload->runtime)->plant->hash,
               why ? ": " : "", why ? why : "");
     answer(reload, false,
            json_pack("{s:b,s:s,s:o}", "reloaded", false, "configuration", (*reload->runtime)->plant->hash, "errors", errors));
@@ -220,7 +220,7 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
         reload_count(reload->context->counters, after->plant->hash, true);
         say_difference(reload, diff, hash, (double)(clock_mono_ns() - begun_ns) / 1e9);
     } else {
-        log_err(reload->context->log, "reload: the new plant cannot be put in force; the daemon ends, and has it when it starts again");
+        log_err(reload->context->log, "reload: the new plant cannot be activated; the daemon ends, and loads it at its next start");
         net_stop(reload->net);
         plant_runtime_destroy(&after);
     }
@@ -328,7 +328,7 @@ static void save_now(struct reload *reload, const struct tag_save *save)
         refuse(reload, &none, text);
     } else {
         reload->kept = kept;
-        log_info(log, "tag list: %s by %s; as it was: %s", save->path, save->who, kept);
+        log_info(log, "tag list: %s by %s; previous list: %s", save->path, save->who, kept);
         if (!prepare(reload)) {
             put_back(reload, save, kept);
             refuse(reload, &none, "plantcast-prep could not prepare it; the log says why");

@@ -162,7 +162,7 @@ static unsigned find_codecs(const struct server *server)
     if (strcmp(library, "off") != 0 && encoder_works(server->log, "h264", library))
         codecs |= 1u << WIRE_CODEC_H264;
     else if (server->params.h264 && strcmp(library, "off") != 0)
-        log_warn(server->log, "h264 by %s does not work here: clients get JPEG", library);
+        log_warn(server->log, "H.264 encoder %s does not work on this machine: clients get JPEG", library);
     return codecs;
 }
 
@@ -218,7 +218,7 @@ static bool start_net(struct server *server)
         .reload_arg = server,
     };
     if (!server->web)
-        log_warn(server->log, "no web client was found beside the program; --web FOLDER names it");
+        log_warn(server->log, "no web client found next to the program; give its folder with --web");
     struct net *net = net_create(&params);
     pthread_mutex_lock(&server->wake_lock);
     server->net = net;
@@ -234,11 +234,11 @@ static bool start_import(struct server *server)
     if (confine_lacks(lacks))
         log_warn(server->log, "--import: this kernel has %s", lacks);
     if (!server->divided)
-        log_info(server->log, "--import: limits of memory hold for each process that reads files; together they are limited only where "
-                              "systemd delegates a cgroup (Delegate=memory pids)");
+        log_info(server->log, "--import: memory limits hold for each process that reads files; a limit for all together needs a "
+                              "cgroup delegated by systemd (Delegate=memory pids)");
     server->import = plant_import_create(server->params.plant_path);
     if (!server->import)
-        log_err(server->log, "%s: no folder for exports can be made beside it: %s", server->params.plant_path, strerror(errno));
+        log_err(server->log, "%s: the folder `exports` next to it cannot be created: %s", server->params.plant_path, strerror(errno));
     return server->import != NULL;
 }
 
@@ -281,7 +281,7 @@ static bool prepare(struct server *server)
     char *folder = plant ? plant_runtime_prepared_folder(&server->params, plant) : NULL, *why = NULL;
     bool good = folder && access(folder, F_OK) == 0;
     if (good) {
-        log_warn(server->log, "%s: the plant is prepared now, as it is not what was prepared before", server->params.plant_path);
+        log_warn(server->log, "%s: preparing the plant: prepared files are missing or outdated", server->params.plant_path);
         supervision_starting(server->supervision, "preparing the plant");
         atomic_store(&preparing, true);
         why = sibling_prepare(&(struct sibling_params){ .stop = is_told_to_end, .notifies = true }, folder, server->params.plant_path,
@@ -289,7 +289,7 @@ static bool prepare(struct server *server)
         atomic_store(&preparing, false);
         good = !why && !atomic_load(&told_to_end);
         if (atomic_load(&told_to_end))
-            log_event(server->log, LOG_INFO, EVENT_STOPPING, "stopping; the next start goes on with preparing");
+            log_event(server->log, LOG_INFO, EVENT_STOPPING, "stopping; the next start continues preparing");
         else if (why)
             log_err(server->log, "%s: the plant cannot be prepared: %s", server->params.plant_path, why);
     }
@@ -308,9 +308,9 @@ static bool settle_folder(struct server *server)
     bool settled =
         plant_folder_settle(&(struct plant_folder_params){ .folder = folder, .wait_ms = SETTLE_MS, .finished = &finished }, &why);
     if (finished)
-        log_warn(server->log, "%s: %s that was killed is finished: the plant is the one after it", server->params.plant_path, finished);
+        log_warn(server->log, "%s: completed %s that had been interrupted", server->params.plant_path, finished);
     if (!settled)
-        log_err(server->log, "%s: what lies in its folder is neither the plant before an import nor the one after it: %s",
+        log_err(server->log, "%s: an import was interrupted and can neither be completed nor undone: %s",
                 server->params.plant_path, why);
     mem_free(why);
     mem_free(folder);
@@ -416,7 +416,7 @@ static bool make_keeper(struct server *server)
     if (server->params.role != SERVER_CORE || !server->params.core_count)
         return true;
     if (!plant->history.postgres.url || plant->history.off) {
-        log_err(server->log, "%s: two cores need `postgres` of `history`: which of them leads stands there", server->params.plant_path);
+        log_err(server->log, "%s: two cores require `postgres` in `history`, where the lease is kept", server->params.plant_path);
         return false;
     }
     if (!take_seat(server, name))

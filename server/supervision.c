@@ -99,7 +99,7 @@ static void look(struct supervision *supervision, struct render_service *render_
 {
     bool stuck = render_service_is_stuck(render_service, now_ns);
     if (stuck && !supervision->stuck)
-        log_err(supervision->log, "render thread: no sign of life%s",
+        log_err(supervision->log, "render thread: no progress%s",
                 supervision->watchdog_ns ? "; the service manager will start the daemon again" : "");
     supervision->stuck = stuck;
     if (!stuck && supervision->watchdog_ns)

@@ -58,7 +58,7 @@ int folder_lock(const char *folder, struct log *log, const atomic_bool *stop)
     char *path = mem_printf("%s/" LOCK, folder), own[32];
     int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666), status = fd < 0 ? -1 : flock(fd, LOCK_EX | LOCK_NB);
     if (fd >= 0 && status != 0 && errno == EWOULDBLOCK)
-        log_warn(log, "%s: process %ld prepares into it; waiting until it is done", folder, holder_of(fd));
+        log_warn(log, "%s: process %ld is preparing this folder; waiting for it", folder, holder_of(fd));
     while (fd >= 0 && status != 0 && errno == EWOULDBLOCK && !(stop && atomic_load(stop))) {
         usleep(AGAIN_US);
         status = flock(fd, LOCK_EX | LOCK_NB);

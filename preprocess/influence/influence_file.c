@@ -89,7 +89,8 @@ static bool find_params(struct influence_making *making, int group, const double
     *gp = (struct gaussian_params){ of->gp.range_m, of->gp.noise, of->gp.deviation };
     if (gp->range_m > LONGEST * size)
         log_warn(making->log,
-                 "asset %s, group %s: gp's range_m %g is far longer than the asset (%.3g m): %.3g m is taken, which looks the same", asset,
+                 "asset %s, group %s: gp's range_m %g is far longer than the asset (%.3g m): using %.3g m, which gives the same field",
+                 asset,
                  of->id, gp->range_m, size, LONGEST * size);
     if (!isnan(gp->range_m) && !isnan(gp->noise) && !isnan(gp->deviation))
         return true;

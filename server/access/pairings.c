@@ -204,7 +204,7 @@ static bool make_room(struct pairings *pairings, size_t from)
     }
     if (victim == pairings->count)
         return false;
-    log_info(pairings->kept.log, "pairing: all %d places are taken; %s, which has %zu of them, loses one", PAIRINGS,
+    log_info(pairings->kept.log, "pairing: all %d codes are in use; dropped the oldest of %s, which held %zu", PAIRINGS,
              pairings->waiting[victim].from, most);
     forget(pairings, victim);
     return true;
@@ -223,7 +223,7 @@ static struct pending_pairing *begin(struct pairings *pairings, const uint8_t ha
     memcpy(waiting.hash, hash, TOKEN_HASH_BYTES);
     memcpy(waiting.address, request->address, sizeof(waiting.address));
     snprintf(waiting.from, sizeof(waiting.from), "%s", request->from);
-    log_info(pairings->kept.log, "pairing: %s wants to be display %d of wall %s", waiting.from, waiting.place.display, waiting.place.wall);
+    log_info(pairings->kept.log, "pairing: %s asks to be display %d of wall %s", waiting.from, waiting.place.display, waiting.place.wall);
     pairings->waiting[pairings->count] = waiting;
     pairings->number++;
     return &pairings->waiting[pairings->count++];

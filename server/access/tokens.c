@@ -235,7 +235,7 @@ static void take_line(struct tokens *tokens, const char *line, int number)
     const char *why;
     int found = tokens_parse_line(line, &holder, &why);
     if (found < 0)
-        log_err(tokens->log, "%s:%d: %s; that token is not let in", tokens->path, number, why);
+        log_err(tokens->log, "%s:%d: %s; this token is refused", tokens->path, number, why);
     if (found <= 0)
         return;
     mem_grow(&tokens->holders, &tokens->capacity, tokens->count + 1, sizeof(*tokens->holders));
@@ -265,7 +265,7 @@ static bool read_file(struct tokens *tokens)
         take_lines(tokens, text);
         mem_free(text);
     } else {
-        log_err(tokens->log, "tokens %s: %s; nobody's token is let in", tokens->path, fault);
+        log_err(tokens->log, "tokens %s: %s; all tokens are refused", tokens->path, fault);
     }
     if (fd >= 0)
         close(fd);

@@ -91,7 +91,7 @@ static void take_events(struct alarm_service *service)
     service->taken = taken;
     if (taken.lost) {
         counter_inc(service->counters.lost, (int64_t)taken.lost);
-        log_err(service->params.log, "alarms: %zu samples in a tenth of a second were too many and are lost", taken.lost);
+        log_err(service->params.log, "alarms: %zu samples lost: queue full", taken.lost);
     }
 }
 

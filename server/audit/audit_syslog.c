@@ -57,10 +57,10 @@ static void disconnect(struct audit_syslog *syslog)
 static void say(struct audit_syslog *syslog, const char *why)
 {
     if (why && !syslog->failing)
-        log_event(syslog->params.log, LOG_ERROR, EVENT_AUDIT_NOT_SENT, "audit: %s cannot be told: %s; lines wait and are tried again",
+        log_event(syslog->params.log, LOG_ERROR, EVENT_AUDIT_NOT_SENT, "audit: %s cannot be reached: %s; lines wait, and are sent again",
                   syslog->params.syslog, why);
     else if (!why && syslog->failing)
-        log_info(syslog->params.log, "audit: %s is told again", syslog->params.syslog);
+        log_info(syslog->params.log, "audit: %s accepts lines again", syslog->params.syslog);
     syslog->failing = why != NULL;
     counter_set(syslog->good, !syslog->failing);
 }
@@ -209,7 +209,7 @@ struct audit_syslog *audit_syslog_start(const struct audit_params *params)
     clock_cond_init(&syslog->wake);
     if (curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK && pthread_create(&syslog->thread, NULL, run, syslog) == 0)
         return syslog;
-    log_err(params->log, "audit: no thread, or libcurl cannot be used");
+    log_err(params->log, "audit: libcurl or a thread could not be started");
     mem_free(syslog->url);
     mem_free(syslog);
     return NULL;

@@ -25,7 +25,7 @@ struct core_history *core_history_create(struct log *log, struct core_link *link
     struct core_history *history = mem_new(sizeof(*history));
     *history = (struct core_history){ .log = log, .link = link, .stop = stop, .request = { .stop = stop } };
     if (!http_request_make(&history->request, "plantcastd", NULL)) {
-        log_err(log, "history: no client for HTTP");
+        log_err(log, "history: the HTTP client could not be started");
         core_history_destroy(&history);
         return NULL;
     }

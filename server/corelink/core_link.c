@@ -281,7 +281,7 @@ static void on_told(struct core_link *link, const json_t *message)
     const char *kept = json_string_value(json_object_get(message, "kept"));
     int error = kept && link->params.keeper && link->params.folder ? notifier_put_kept(link->params.folder, kept) : 0;
     if (error)
-        log_err(link->params.log, "notify: what was told cannot be kept (%s); alarms may be told twice", strerror(-error));
+        log_err(link->params.log, "notify: the record of sent alarms cannot be written (%s); alarms may be sent twice", strerror(-error));
 }
 
 static void on_text(struct core_link *link)
@@ -338,7 +338,7 @@ static void set_up(struct core_link *link)
     counter_set(link->up, 1 + link->turn.index);
     counter_inc(link->connects, 1);
     host_turn_succeeded(&link->turn);
-    log_info(link->params.log, "core: %s: readings come", link->params.urls[link->turn.index]);
+    log_info(link->params.log, "core: %s: receiving readings", link->params.urls[link->turn.index]);
     for (int i = 0; i < CORE_URLS; i++)
         for (int k = 0; k < ADDRESSES; k++)
             link->hosts[i].said[k][0] = 0;
@@ -729,7 +729,7 @@ struct core_link *core_link_start(const struct core_link_params *params)
     link->params = *params;
     link->last_arrival = &link->arrivals;
     link->readings = mem_array(params->plant->tag_count + 1, sizeof(*link->readings));
-    link->up = counters_add(c, "plantcast_core_up", "gauge", "Which of its cores readings come from, 1: the first; 0: from none.");
+    link->up = counters_add(c, "plantcast_core_up", "gauge", "Which of its cores receiving readings from, 1: the first; 0: from none.");
     link->connects = counters_add(c, "plantcast_core_connects_total", "counter", "Connections to cores that brought readings.");
     link->refused = counters_add(c, "plantcast_core_refused_total", "counter", "Connections to cores that do not belong to this renderer.");
     link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge", "By so much the core's clock is ahead of ours.");

@@ -210,7 +210,7 @@ static void look_for_namesake(struct lease_keeper *keeper, const struct lease_ro
     if (!same || !keeper->namesake_beat) {
         keeper->namesake_beat = same ? row->beat : 0;
     } else if (keeper->namesake_beat > 0 && row->beat != keeper->namesake_beat) {
-        log_err(keeper->params.log, "lease: another core has the name %.*s, and leads: this one does not take its place; --node names them",
+        log_err(keeper->params.log, "lease: another core with the name %.*s leads: this one stays standby; give each core its own --node",
                 own, keeper->node);
         keeper->namesake_beat = -1;
     }
@@ -307,7 +307,7 @@ static void tell(struct lease_keeper *keeper)
     }
     if (ends && !keeper->told_lost) {
         keeper->told_lost = true;
-        log_err(keeper->params.log, "lease: it is lost (%s); this core ends now, and polls nothing more",
+        log_err(keeper->params.log, "lease: lost (%s); this core ends now, and stops polling",
                 lost ? "another leads, or the row was set by somebody" : "neither PostgreSQL nor a standby has confirmed it");
         keeper->params.lost(keeper->params.arg);
     }
@@ -427,7 +427,7 @@ static bool make_timer(struct lease_keeper *keeper)
     struct sigevent event = { .sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGKILL };
     keeper->has_timer = timer_create(CLOCK_BOOTTIME, &event, &keeper->timer) == 0;
     if (!keeper->has_timer)
-        log_err(keeper->params.log, "lease: no timer of the kernel that ends this core: %s", strerror(errno));
+        log_err(keeper->params.log, "lease: the watchdog timer cannot be created: %s", strerror(errno));
     return keeper->has_timer;
 }
 
@@ -464,7 +464,7 @@ static void give_back(struct lease_keeper *keeper)
 {
     if (keeper->link && lease_keeper_leads(keeper) &&
         change_row(keeper, sql_give_back, &keeper->lease.row, "", keeper->lease.instance) == 1)
-        log_info(keeper->params.log, "lease: given back");
+        log_info(keeper->params.log, "lease: released");
 }
 
 void lease_keeper_destroy(struct lease_keeper **pointer)

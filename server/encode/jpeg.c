@@ -33,7 +33,7 @@ static struct encoder *jpeg_create(struct log *log, const char *library)
     jpeg->base = (struct encoder){ .impl = &jpeg_impl, .log = log };
     jpeg->writer = jpeg_writer_create();
     if (!jpeg->writer) {
-        log_err(log, "jpeg: no memory for it");
+        log_err(log, "jpeg: out of memory");
         jpeg_destroy(&jpeg->base);
         return NULL;
     }
@@ -82,7 +82,7 @@ static size_t compress_halved(struct jpeg_encoder *jpeg, const uint8_t *from, in
     size_t luma = (size_t)width * (size_t)height;
     struct yuv_planes planes = { from, stride_bytes, part->width_px, part->height_px, { 0 }, { width, width / 2, width / 2 } };
     if (!reserve(&jpeg->planes, &jpeg->planes_capacity, luma * 3 / 2)) {
-        *why = "no memory for it";
+        *why = "out of memory";
         return 0;
     }
     for (int i = 0; i < 3; i++)
@@ -126,7 +126,7 @@ static int jpeg_send(struct encoder *encoder, struct frame *frame, const struct 
     int part_count = count ? count : 1;
     size_t end = 0;
     if (!reserve_for(jpeg, from, part_count)) {
-        log_err(encoder->log, "jpeg %dx%d: no memory for it", frame->width_px, frame->height_px);
+        log_err(encoder->log, "jpeg %dx%d: out of memory", frame->width_px, frame->height_px);
         return -ENOMEM;
     }
     for (int i = 0; i < part_count; i++) {

@@ -16,7 +16,7 @@ GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *
     glNamedBufferStorage(buffer, (GLsizeiptr)bytes, data, flags);
     if (gl_no_errors())
         return buffer;
-    log_err(log, "%s: the GPU has no room for %zu bytes", name, bytes);
+    log_err(log, "%s: out of GPU memory for %zu bytes", name, bytes);
     glDeleteBuffers(1, &buffer);
     return 0;
 }

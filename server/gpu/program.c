@@ -36,7 +36,7 @@ static bool expand_include(struct expansion *x, const char *from, int line, cons
             mem_free(name);
             return expand(x, file->name, file->text);
         }
-    log_err(x->log, "shader %s:%d: there is no %s", from, line, name);
+    log_err(x->log, "shader %s:%d: %s not found", from, line, name);
     mem_free(name);
     return false;
 }

@@ -227,7 +227,7 @@ static void take_events(struct historian *historian, const struct now *now, int6
     counter_inc(historian->counters.samples, (int64_t)taken.count);
     counter_inc(historian->counters.lost, (int64_t)taken.lost);
     if (taken.lost)
-        log_err(historian->log, "history: %zu samples in one second were too many and are lost", taken.lost);
+        log_err(historian->log, "history: %zu samples lost: queue full", taken.lost);
     taken.count = taken.lost = 0;
     historian->taken = taken;
 }
@@ -418,7 +418,7 @@ static int write_spooled(struct historian *historian)
         error = write_rows(historian, &historian->spooled.held, true);
     if (error)
         return error;
-    log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN, "history: %s is written, and deleted", historian->spool_path);
+    log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN, "history: the spool %s was recorded and deleted", historian->spool_path);
     unlink(historian->spool_path);
     mem_free(historian->spool_path);
     historian->spool_path = NULL;
@@ -456,10 +456,11 @@ static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t u
         historian->retry_after_ns = wait_ns < NS_PER_S ? NS_PER_S : wait_ns > RETRY_MAX_S * NS_PER_S ? RETRY_MAX_S * NS_PER_S : wait_ns;
         historian->retry_ns = mono_ns + historian->retry_after_ns;
         if (!historian->failing)
-            log_event(historian->log, LOG_ERROR, EVENT_HISTORY_UNWRITABLE, "history: cannot be written (%s); what comes is kept in memory",
+            log_event(historian->log, LOG_ERROR, EVENT_HISTORY_UNWRITABLE,
+                      "history: cannot be written (%s); new samples are kept in memory",
                       strerror(-error));
     } else if (historian->failing) {
-        log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN, "history: is written again");
+        log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN, "history: can be written again");
         historian->retry_after_ns = 0;
     }
     historian->failing = error != 0;
@@ -561,11 +562,11 @@ static void spool(struct historian *historian)
         place++;
     if (error)
         log_event(historian->log, LOG_ERROR, EVENT_HISTORY_LOST,
-                  "history: %zu points could not be written and are lost, nor could a spool (%s)", rows->kept.count + rows->held.count,
+                  "history: %zu points lost: neither the database nor the spool could be written (%s)", rows->kept.count + rows->held.count,
                   strerror(-error));
     else
         log_event(historian->log, LOG_WARN, EVENT_HISTORY_UNWRITABLE,
-                  "history: %zu points could not be written; they are in %s until the next start", rows->kept.count + rows->held.count,
+                  "history: %zu points could not be written; they wait in %s for the next start", rows->kept.count + rows->held.count,
                   *place);
     if (!error && historian->spool_path && strcmp(historian->spool_path, *place) != 0)
         unlink(historian->spool_path); /* its rows are in the new file too */
@@ -579,9 +580,9 @@ static void take_spool(struct historian *historian)
         size_t foreign = 0;
         int error = spool_read(*place, historian->plant, &historian->spooled, &foreign);
         if (error && error != -ENOENT && error != -ENOTDIR)
-            log_err(historian->log, "history: %s is left there: %s", *place, strerror(-error));
+            log_err(historian->log, "history: the spool %s is kept: %s", *place, strerror(-error));
         if (foreign)
-            log_warn(historian->log, "history: %s: %zu points are of tags that are not in the list any more; they are left out", *place,
+            log_warn(historian->log, "history: %s: %zu points dropped: their tags are no longer in the tag list", *place,
                      foreign);
         if (!error)
             historian->spool_path = mem_strdup(*place);

@@ -141,7 +141,7 @@ int64_t retention_apply(struct log *log, const char *folder, const struct retent
         *unsent = 0; /* points in an outbox left by another configuration are not wanted any more */
     if (*unsent)
         log_event(log, LOG_ERROR, EVENT_HISTORY_LOST,
-                  "history: %lld of the oldest points were deleted for keep_gb before PostgreSQL had taken them", (long long)*unsent);
+                  "history: keep_gb: deleted %lld of the oldest points before PostgreSQL had received them", (long long)*unsent);
     for (size_t i = 0; i < count; i++)
         for (int part = 0; part < PARTS; part++)
             left += part_bytes(folder, months[i], part);

@@ -241,7 +241,7 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
     int failures = login_throttle_failures(server->login_throttle, connection->client->address, clock_mono_ns());
     record_login(server, connection, way, holder, login);
     if (login == LOGIN_NONE || login == LOGIN_GOOD_NEW)
-        log_info(log, "login from %s by %s: token %s, role %s: let in", connection->address, way, name, role);
+        log_info(log, "login from %s by %s: token %s, role %s: accepted", connection->address, way, name, role);
     if (login == LOGIN_HELD)
         counter_inc(server->counters.logins_held, 1);
     if (login != LOGIN_WRONG && login != LOGIN_WRONG_SLOWS)
@@ -250,7 +250,7 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
     log_event(log, LOG_WARN, EVENT_LOGIN_REFUSED, "login from %s by %s: token %s, role %s: refused, %s (%d within a minute)",
               connection->address, way, known ? holder->name : "(unknown)", role, known ? "its time is over" : "nobody's", failures);
     if (login == LOGIN_WRONG_SLOWS)
-        log_warn(log, "login from %s: slowed, to one token in %d s, until there was no wrong one for a minute", connection->address,
+        log_warn(log, "login from %s: slowed to one token in %d s until a minute passes without a wrong one", connection->address,
                  LOGIN_WAIT_S);
 }
 

@@ -46,7 +46,7 @@ static void take_lists(struct server_context *server, const json_t *lists)
         !wall_remote_mirror(plant->wall_remote, json_object_get(lists, "walls")) ||
         !wall_remote_mirror_pointers(plant->wall_remote, json_object_get(lists, "pointed")) ||
         !pairings_mirror(plant->pairings, json_object_get(lists, "pairings"), clock_mono_ns()))
-        log_err(server->params.log, "core: lists that cannot be such");
+        log_err(server->params.log, "core: malformed lists");
     streams_on_alarms(server);
 }
 

@@ -38,7 +38,7 @@ bool handed_socket_listen(struct net *net)
     bool good = fcntl(fd, F_SETFL, O_NONBLOCK) == 0 &&
                 lws_adopt_descriptor_vhost(net->vhost, LWS_ADOPT_RAW_FILE_DESC, file, HANDED_PROTOCOL, NULL) != NULL;
     if (!good)
-        log_err(net->server.params.log, "the socket of the service manager cannot be used: %s", strerror(errno));
+        log_err(net->server.params.log, "the socket passed by the service manager cannot be used: %s", strerror(errno));
     return good;
 }
 

@@ -139,7 +139,7 @@ static void tick(struct net *net, int64_t now_ns)
     time_start(&net->server, now_ns);
     if (atomic_load(&net->drain) && !net->server.drain_ns) {
         net->server.drain_ns = now_ns;
-        log_info(net->server.params.log, "drained: %d sessions are sent elsewhere within 12 s", net->server.stream_count);
+        log_info(net->server.params.log, "drained: moving %d sessions to other nodes within 12 s", net->server.stream_count);
     }
     look_at_files(net, now_ns);
     look_around(net, now_ns);
@@ -313,13 +313,13 @@ static void raise_file_limit(struct log *log, const struct quotas *quotas)
     if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
         return;
     if (limit.rlim_max != RLIM_INFINITY && limit.rlim_max < wanted) {
-        log_warn(log, "files: this process may open %llu, and %llu are wanted for --limit connections=%lld; ulimit -n, or LimitNOFILE=",
-                 (unsigned long long)limit.rlim_max, (unsigned long long)wanted, (long long)quotas->at[QUOTA_CONNECTIONS]);
+        log_warn(log, "files: this process may open %llu files, and --limit connections=%lld needs %llu; raise ulimit -n or LimitNOFILE=",
+                 (unsigned long long)limit.rlim_max, (long long)quotas->at[QUOTA_CONNECTIONS], (unsigned long long)wanted);
         wanted = limit.rlim_max;
     }
     limit.rlim_cur = wanted;
     if (setrlimit(RLIMIT_NOFILE, &limit) != 0)
-        log_warn(log, "files: the limit stays as it is: %s", strerror(errno));
+        log_warn(log, "files: the limit cannot be raised: %s", strerror(errno));
 }
 
 /* Checks that the port can be bound, because libwebsockets does not report why it cannot listen. */

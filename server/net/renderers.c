@@ -360,7 +360,8 @@ static bool send_samples(const struct server_context *server, struct renderer_pe
     int count = core_samples_write(renderer->samples, &renderer->out);
     renderer->samples_sent = count < CORE_SAMPLES_AT_ONCE;
     if (count < 0)
-        log_err(server->params.log, "standby %s: ended: it took its samples too slowly; it reads them from PostgreSQL", renderer->name);
+        log_err(server->params.log, "standby %s: disconnected: it read samples too slowly; it reads them from PostgreSQL instead",
+                renderer->name);
     return count < 0 ? false : count == 0 || send_out(renderer, LWS_WRITE_BINARY);
 }
 
@@ -625,7 +626,7 @@ static int on_receive(struct server_context *server, struct renderer_peer *rende
         lws_callback_on_writable(renderer->wsi);
     }
     if (why)
-        log_err(server->params.log, "renderer %s: ended: %s", renderer->name, why);
+        log_err(server->params.log, "renderer %s: disconnected: %s", renderer->name, why);
     return why ? -1 : 0;
 }
 
@@ -637,7 +638,7 @@ static int on_beat(struct server_context *server, struct renderer_peer *renderer
     int64_t now_ns = clock_mono_ns();
     const struct token_holder *holder = &connection_of(renderer->wsi)->holder;
     if (server->tokens && holder->name[0] && tokens_role(server->tokens, holder, clock_utc_ns()) != holder->role) {
-        log_warn(server->params.log, "renderer %s: ended: its token is no longer one of a %s", renderer->name,
+        log_warn(server->params.log, "renderer %s: disconnected: its token no longer has the role %s", renderer->name,
                  name_of(names_role, (int)holder->role));
         return -1;
     }
@@ -648,7 +649,7 @@ static int on_beat(struct server_context *server, struct renderer_peer *renderer
     lws_set_timer_usecs(renderer->wsi, TICK_US);
     if (now_ns - renderer->since_ns < SEND_TIMEOUT_S * NS_PER_S)
         return 0;
-    log_warn(server->params.log, "renderer %s: ended: it took nothing for %d s", renderer->name, SEND_TIMEOUT_S);
+    log_warn(server->params.log, "renderer %s: disconnected: it read nothing for %d s", renderer->name, SEND_TIMEOUT_S);
     return -1;
 }
 

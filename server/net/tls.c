@@ -65,9 +65,9 @@ static void warn_of_end(struct tls *tls, time_t now_s)
     int64_t left_s = tls_ends_s(tls) - (int64_t)now_s;
     tls->warned_s = now_s;
     if (left_s <= 0)
-        log_event(tls->log, LOG_ERROR, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate's time is over", tls->cert_path);
+        log_event(tls->log, LOG_ERROR, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate has expired", tls->cert_path);
     else if (left_s < SOON_S)
-        log_event(tls->log, LOG_WARN, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate's time is over within 14 days, in %.1f %s",
+        log_event(tls->log, LOG_WARN, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate expires within 14 days, in %.1f %s",
                   tls->cert_path, (double)left_s / (left_s < DAY_S ? HOUR_S : DAY_S), left_s < DAY_S ? "hours" : "days");
 }
 
@@ -83,7 +83,7 @@ static void warn(struct tls *tls)
 {
     struct stat st;
     if (stat(tls->key_path, &st) == 0 && (st.st_mode & S_IROTH))
-        log_warn(tls->log, "%s: everyone on this machine may read the private key: chmod 640 or less", tls->key_path);
+        log_warn(tls->log, "%s: all users of this machine can read the private key: chmod 640 or stricter", tls->key_path);
     warn_of_end(tls, time(NULL));
 }
 
@@ -145,7 +145,7 @@ void tls_look(struct tls *tls)
     if ((!cert && !key) || !check(tls) || !tls->served)
         return;
     if (load(tls->served, tls, &at))
-        log_info(tls->log, "TLS: %s: a new certificate is served", tls->cert_path);
+        log_info(tls->log, "TLS: %s: serving the new certificate", tls->cert_path);
     else
         log_err(tls->log, "TLS: %s: %s", at, why(text));
 }

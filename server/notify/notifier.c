@@ -103,7 +103,7 @@ static void save(struct notifier *notifier)
     int error = put_file(notifier->path, text, true);
     mem_free(text);
     if (error)
-        log_err(notifier->params.log, "notify: %s cannot be written (%s): after a restart, alarms may be told twice or not at all",
+        log_err(notifier->params.log, "notify: %s cannot be written (%s): after a restart, alarms may be sent twice or not at all",
                 notifier->path, strerror(-error));
     counter_set(notifier->spool_good, !error);
     notifier->unsaved = error != 0;
@@ -115,7 +115,7 @@ static void restore(struct notifier *notifier)
     char *text = text_read_file(notifier->path, FILE_BYTES, &bytes);
     json_t *saved = text ? json_loadb(text, bytes, 0, NULL) : NULL;
     if ((!text && errno != ENOENT) || (text && !(saved && outbox_restore(notifier->outbox, saved))))
-        log_warn(notifier->params.log, "notify: %s cannot be used and is begun anew; alarms that stand are told again", notifier->path);
+        log_warn(notifier->params.log, "notify: %s cannot be read and is replaced; active alarms are sent again", notifier->path);
     json_decref(saved);
     mem_free(text);
 }
@@ -136,13 +136,13 @@ static void on_end(void *arg, int recipient, const char *why)
         outbox_failed(notifier->outbox, recipient, now_us());
         counter_inc(notifier->counters[recipient].failed, 1);
         if (!notifier->failing[recipient])
-            log_err(log, "notify: %s cannot be told: %s; messages are kept and tried again", id, why);
+            log_err(log, "notify: %s cannot be reached: %s; messages wait, and are sent again", id, why);
     } else {
         outbox_sent(notifier->outbox, recipient, now_us());
         save(notifier); /* save at once: a daemon killed before would send the message again */
         counter_inc(notifier->counters[recipient].sent, 1);
         if (notifier->failing[recipient])
-            log_info(log, "notify: %s is told again", id);
+            log_info(log, "notify: %s accepts messages again", id);
     }
     notifier->failing[recipient] = why != NULL;
 }
@@ -200,7 +200,7 @@ static void count(struct notifier *notifier)
         counter_set(notifier->counters[i].waiting, outbox_counts(notifier->outbox, i).waiting);
     int64_t lost = outbox_counts(notifier->outbox, 0).lost;
     if (lost > notifier->lost_before) {
-        log_err(notifier->params.log, "notify: %lld alarms could not be kept, or not be delivered within a day, and are lost",
+        log_err(notifier->params.log, "notify: %lld messages lost: not stored, or not delivered within a day",
                 (long long)(lost - notifier->lost_before));
         counter_inc(notifier->lost, lost - notifier->lost_before);
     }

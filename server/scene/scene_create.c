@@ -48,7 +48,7 @@ static bool sensors_fit(struct log *log, const struct plant *plant, const struct
     for (size_t i = 0; i < count; i++) {
         if (same_place(view->header, &view->sensors[i], &sensors[i]))
             continue;
-        log_err(log, "asset %s: sensor %s stands elsewhere in %s than in the tag list; run plantcast-prep %s", asset->plant->id,
+        log_err(log, "asset %s: the place of sensor %s in %s differs from the tag list; run plantcast-prep %s", asset->plant->id,
                 plant->tags[sensors[i].tag].name, asset->file->path, plant->path);
         return false;
     }
@@ -187,7 +187,7 @@ static void place_sensor(const struct scene_asset *asset, int column, int tag, s
 /* Not drawn, not measured, no part of the plant's box: what is left is that it is known, and why it is not there. */
 static bool create_missing(struct log *log, const struct scene *scene, struct scene_asset *asset, const struct manifest_entry *entry)
 {
-    log_warn(log, "asset %s is missing: %s; mend it and run plantcast-prep %s", asset->plant->id, entry->missing, scene->plant->path);
+    log_warn(log, "asset %s is missing: %s; repair it and run plantcast-prep %s", asset->plant->id, entry->missing, scene->plant->path);
     asset->missing = mem_strdup(entry->missing);
     asset->file = asset_stand_in();
     if (asset->file)

@@ -409,14 +409,14 @@ static bool gl_begin(struct render_thread *thread, enum gl_kind kind, bool hardw
     unsigned shortages = gl_out_of_memory_count();
     thread->gl = gl_create(params->log, kind, params->gl_device);
     if (thread->gl && hardware && thread->gl->software) {
-        log_warn(params->log, "gl: the GPU is not back yet");
+        log_warn(params->log, "gl: the GPU is still lost");
         return false;
     }
     if (thread->gl)
         thread->renderer = renderer_create(params->log, thread->gl, params->scene, thread->field);
     bool complete = gl_out_of_memory_count() == shortages;
     if (!complete)
-        log_err(params->log, "gl: the GPU has no room for the plant");
+        log_err(params->log, "gl: out of GPU memory for the plant");
     if (!thread->renderer || !complete)
         return false;
     renderer_set_per_fragment(thread->renderer, params->per_fragment);
@@ -519,7 +519,7 @@ static void rebuild(struct render_thread *thread)
     }
     renderer_bake_idle(thread->renderer, INT64_MAX); /* bake lights completely, so that frames look as before */
     set_lost(service, false);
-    log_info(service->params.log, "gl: a new context draws after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
+    log_info(service->params.log, "gl: drawing with a new context after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
 }
 
 static void turn(struct render_thread *thread, struct scheduler *scheduler, struct request_group *group)

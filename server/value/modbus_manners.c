@@ -93,8 +93,8 @@ static void learn_rtu_delay(struct modbus_source *modbus)
     bool found = manners->silent_connections > 0 && manners->connect_delay_ns > modbus->base.config->connect_delay_ms * NS_PER_MS;
     if (found && modbus->base.config->transport == TRANSPORT_RTU_TCP)
         log_info(modbus->base.log,
-                 "source %s: device %s answers once there are %lld ms between connecting and the first request: `connect_delay_ms` says so "
-                 "from the start",
+                 "source %s: device %s needs %lld ms between connecting and the first request; set `connect_delay_ms` to apply this from "
+                 "the start",
                  modbus->base.config->id, modbus_link_name(modbus->link), (long long)(manners->connect_delay_ns / NS_PER_MS));
 }
 
@@ -103,7 +103,8 @@ static void note_unit(struct modbus_source *modbus, int asked)
     int answered = modbus_link_answered_unit(modbus->link);
     char more[LOG_PACE_BYTES];
     if (modbus->base.config->transport == TRANSPORT_TCP && answered != asked && log_pace_take(&modbus->unit_pace, clock_mono_ns(), more))
-        log_info(modbus->base.log, "source %s: device %s answers as unit %d to requests for unit %d: taken, since only one unit is read%s",
+        log_info(modbus->base.log, "source %s: device %s answers as unit %d to requests for unit %d: accepted, because only one unit is "
+                 "read%s",
                  modbus->base.config->id, modbus_link_name(modbus->link), answered, asked, more);
 }
 
@@ -138,7 +139,7 @@ static void learn_end(struct modbus_source *modbus, int answers)
                           "`close_between_polls: yes` says so from the start");
     } else if (answers > 1 && !manners->ends_said) {
         manners->ends_said = true;
-        log_info(modbus->base.log, "source %s: device %s closes connections that it has answered on: connecting again when that happens",
+        log_info(modbus->base.log, "source %s: device %s closes connections after some answers: reconnecting each time",
                  modbus->base.config->id, modbus_link_name(modbus->link));
     }
 }

@@ -119,7 +119,7 @@ static void replay_run(struct source *source)
         return;
     }
     set_up(replay, true);
-    log_info(replay->base.log, "source %s: replays %s at %g times its speed", replay->base.config->id, replay->base.config->file,
+    log_info(replay->base.log, "source %s: replaying %s at %g times its speed", replay->base.config->id, replay->base.config->file,
              replay->base.config->speed);
     replay->start_mono_ns = clock_mono_ns();
     do {

@@ -25,7 +25,7 @@ static void read_file(struct kept_list *kept)
     json_t *list = json_object_get(file, kept->kind->key);
     kept->unreadable = !kept->kind->good(list);
     if (kept->unreadable)
-        log_err(kept->log, "%s:%d: %s%s%s%s; nothing is read from it, and it stays as it is", kept->path, file ? 1 : error.line,
+        log_err(kept->log, "%s:%d: %s%s%s%s; the file is ignored and not changed", kept->path, file ? 1 : error.line,
                 file ? "not a list of " : error.text, file ? kept->kind->key : "", file ? " with " : "", file ? kept->kind->members : "");
     else
         json_array_extend(kept->list, list);

@@ -167,7 +167,7 @@ static void note_picture(struct other_plants *others, struct other *other, const
     pthread_mutex_unlock(&others->lock);
     other->request.answer = (struct text){ 0 };
     if (other->failing)
-        log_info(others->log, "plant %s: pictures come again", other->plant->id);
+        log_info(others->log, "plant %s: receiving pictures again", other->plant->id);
     other->failing = false;
 }
 
@@ -338,7 +338,7 @@ struct other_plants *other_plants_start(struct log *log, const struct plant *pla
     bool usable = curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK && (others->multi = curl_multi_init());
     others->started = usable && pthread_create(&others->thread, NULL, run, others) == 0;
     if (!others->started) {
-        log_err(log, "pictures of other plants cannot be asked for: %s", usable ? "no thread" : "libcurl cannot be used");
+        log_err(log, "pictures of other plants cannot be requested: %s", usable ? "no thread" : "libcurl cannot be used");
         other_plants_stop(&others);
     }
     return others;

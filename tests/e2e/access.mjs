@@ -417,7 +417,7 @@ test('TLS: pictures over wss, no old versions, and a new certificate while it ru
     assert.equal(runProgram('plantcast', ['tags', url]).code, 1, 'a certificate that nobody vouches for');
     for (const end of ['pem', 'key'])
         copyFileSync(path(`second.${end}`), path(`served.${end}`));
-    await plant.daemon.line(/a new certificate is served/);
+    await plant.daemon.line(/serving the new certificate/);
     assert.equal((await subject())[0], 'other.example');
     copyFileSync(plant.file, path('served.pem'));
     await plant.daemon.line(/error TLS: /);

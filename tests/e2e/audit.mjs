@@ -250,7 +250,7 @@ test('a disk that is full is said, in the log and the metrics, and nothing is lo
     assert.equal(lines().length, count);
     assert.equal(verify().code, 0);
     limit('unlimited:unlimited');
-    await plant.daemon.line(/audit: .*audit\.log is written again/);
+    await plant.daemon.line(/audit: .*audit\.log can be written again/);
     await found('what waited', (line) => line.from === '127.0.0.20');
     assert.match((await ask('/metrics', tokens.viewer)).body.toString(), /^plantcast_audit_good 1$/m);
     assert.equal(verify().code, 0);
@@ -281,7 +281,7 @@ test('a small disk that is full is alarmed, no line on it is torn, and a read-on
     assert.equal((await ask('/api/v1/tags', tokens.viewer)).status, 200, 'the plant stays in sight');
     assert.equal(verify().code, 0, verify().err);
     rmSync(full);
-    await plant.daemon.line(/audit: .*audit\.log is written again/);
+    await plant.daemon.line(/audit: .*audit\.log can be written again/);
     await found('what waited', (line) => line.from === '127.0.3.1');
     assert.equal(verify().code, 0, verify().err);
     await plant.daemon.stop();
@@ -304,13 +304,13 @@ test('syslog by TLS: each line as RFC 5424, after an outage too, and only to who
     await syslog.close();
     await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.0.21' });
     await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.0.22' });
-    await plant.daemon.line(/audit: localhost:\d+ cannot be told/);
+    await plant.daemon.line(/audit: localhost:\d+ cannot be reached/);
     syslog = new SyslogServer(key, cert);
     await syslog.listen(port);
     for (const address of ['127.0.0.21', '127.0.0.22'])
         assert.match(await syslog.until(address, (text) => text.includes(`"from":"${address}"`)), /^<108>1 /);
     await start('--audit-syslog', `localhost:${syslog.port}`);
-    await plant.daemon.line(/audit: localhost:\d+ cannot be told: SSL/);
+    await plant.daemon.line(/audit: localhost:\d+ cannot be reached: SSL/);
     const wrong = runProgram('plantcastd', [plant.file, '--audit-syslog', 'localhost']);
     assert.equal(wrong.code, 1);
     assert.match(wrong.err, /needs --audit/);

@@ -114,7 +114,7 @@ exec '${bin}/real-prep' "$@"
             writeFileSync(join(plant.folder, 'box.gltf'), readFileSync(join(plant.folder, 'box.gltf'), 'utf8').replace('box', 'box2'));
             plant.bin = bin;
             await plant.startDaemon('--port', String(port));
-            assert.match(plant.daemon.said, /the plant is prepared now/);
+            assert.match(plant.daemon.said, /preparing the plant: /);
             heldBack('plantcast-prep', readFileSync(join(own, 'escaped'), 'utf8'));
             assert.equal(readFileSync(secret, 'utf8'), 'secret');
         } finally {

@@ -224,7 +224,7 @@ test('`plantcast drain` sends the sessions of a daemon elsewhere; no other progr
     assert.equal(runProgram('plantcast', ['drain', pid, '--wait', '0']).code, 0);
     assert.ok(performance.now() - began < 5000);
     await client.until('its end', ({ closed }) => closed);
-    assert.match(c.program.said, /drained: 1 sessions are sent elsewhere/);
+    assert.match(c.program.said, /drained: moving 1 sessions to other nodes/);
     await c.stop();
     assert.equal(runProgram('plantcast', ['drain', pid]).code, 1);
 });
@@ -244,7 +244,7 @@ test('each address of a core\'s name is tried, and each that fails is named once
     };
     const host = await nodes.core(0, '--history', join(nodes.plant.folder, 'h4'), '--host', 'core.test');
     const good = start(`ws://core.test:${host.port}`);
-    await good.line(/readings come/);
+    await good.line(/receiving readings/);
     await good.stop();
     await host.stop();
     const bad = start('ws://core.test:9', dead, `ws://core.test:${nodes.plant.modbusPort}`);
@@ -272,11 +272,11 @@ test('over TLS: a core whose certificate is not trusted is refused by name; one 
         [renderer('core.pem', '127.0.0.1'), /error core: .*no readings: .*is its certificate trusted/]];
     for (const [program, said] of wrong) {
         await program.line(said);
-        assert.doesNotMatch(program.said, /readings come/);
+        assert.doesNotMatch(program.said, /receiving readings/);
         await program.stop();
     }
     const trusted = renderer('core.pem', 'localhost');
-    await trusted.line(/readings come/);
+    await trusted.line(/receiving readings/);
     await trusted.stop();
     await secure.stop();
 });

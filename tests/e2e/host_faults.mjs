@@ -115,8 +115,8 @@ test('a certificate that ends while it is served: said when it ends; the next on
         copyFileSync(at('old.pem'), at('cert.pem'));
         copyFileSync(at('old.key'), at('key.pem'));
         await plant.startDaemon('--tls-cert', at('cert.pem'), '--tls-key', at('key.pem'));
-        await plant.daemon.line(/warn .*cert\.pem: this certificate's time is over within 14 days, in 0\.0 hours/);
-        await plant.daemon.line(/error .*cert\.pem: this certificate's time is over$/m, 60000);
+        await plant.daemon.line(/warn .*cert\.pem: this certificate expires within 14 days, in 0\.0 hours/);
+        await plant.daemon.line(/error .*cert\.pem: this certificate has expired$/m, 60000);
         assert.ok(Date.now() > ends - 2000, 'not before');
         const curl = (...args) => spawnSync('curl', ['-s', '--max-time', '10', ...args, `https://127.0.0.1:${plant.port}/metrics`],
             { encoding: 'utf8' });
@@ -126,7 +126,7 @@ test('a certificate that ends while it is served: said when it ends; the next on
         assert.ok(left < 0 && left > -100e3, String(left));
         for (const [from, to] of [['new.pem', 'cert.pem'], ['new.key', 'key.pem']])
             copyFileSync(at(from), at(to));
-        await plant.daemon.line(/cert\.pem: a new certificate is served/);
+        await plant.daemon.line(/cert\.pem: serving the new certificate/);
         assert.equal(curl('--cacert', at('new.pem')).status, 0);
     } finally {
         await plant.destroy();

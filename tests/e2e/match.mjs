@@ -289,8 +289,8 @@ async function startsWhole(folder, whole, filesOf, what) {
     const daemon = new Program('plantcastd', ['--port', '0', '--gl', 'osmesa', '--h264', 'off', join(folder, 'plant.yaml')]);
     try {
         await daemon.line(/ready http/);
-        assert.equal(daemon.said.match(/that was killed is finished/g)?.length, 1, daemon.said);
-        assert.match(daemon.said, new RegExp(`${what} that was killed is finished`));
+        assert.equal(daemon.said.match(/that had been interrupted/g)?.length, 1, daemon.said);
+        assert.match(daemon.said, new RegExp(`completed ${what} that had been interrupted`));
         assert.deepEqual(filesOf(folder), whole);
         assert.deepEqual(readdirSync(folder).filter((name) => /^\.(import|revision\.)/.test(name)), []);
     } finally {

@@ -105,7 +105,7 @@ test('a certificate that nobody trusts gets no mail, and no password', options, 
         await set(plant, 'TI-1', limits.high);
         await plant.startDaemon();
         await until('it fails', async () => await metric(plant, 'plantcast_notify_failed_total{recipient="ops"}') >= 1);
-        await plant.daemon.line(/ops cannot be told: .*certificate/i);
+        await plant.daemon.line(/ops cannot be reached: .*certificate/i);
         assert.equal(mail.mails.length, 0);
         assert.ok(!plant.daemon.said.includes('sesame'));
     } finally {

@@ -212,7 +212,7 @@ test('nothing is lost while the server is killed, nor while it is frozen; live r
     await sleep(AWAY_MS);
     const waited = await metric('postgres_waiting_points');
     await server.restart();
-    await plant.daemon.line(/PostgreSQL is written again/, 60000);
+    await plant.daemon.line(/PostgreSQL can be written again/, 60000);
     server.freeze();
     const age = async () => Math.max(...(await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags?count=10`)).json()).tags
         .map((tag) => tag.age_ms));
@@ -280,7 +280,7 @@ test('a disk of the server that is full', options, async (t) => {
     await plant.daemon.line(/PostgreSQL cannot be written \(.*No space left on device\)/, 90000);
     await until('it is counted', async () => await metric('postgres_up') === 0);
     rmSync(join(disk, 'filler'));
-    await plant.daemon.line(/PostgreSQL is written again/, 60000);
+    await plant.daemon.line(/PostgreSQL can be written again/, 60000);
     await sent(200);
     assert.ok(await assertSame(from) > 100);
     await plant.daemon.stop();
@@ -298,7 +298,7 @@ test('too many points that wait: the oldest are dropped, and it says so; the fil
     const imported = runProgram('plantcast', ['history', 'import', plant.file, csv]);
     assert.equal(imported.code, 0, imported.err);
     await plant.startDaemon();
-    await plant.daemon.line(/\d+ points that waited for PostgreSQL were too many; only the files here have them/);
+    await plant.daemon.line(/the queue for PostgreSQL is full: \d+ points are only in the local files/);
     await until('the rest waits', async () => await metric('postgres_lost_total') >= 2000
         && await metric('postgres_waiting_points') <= 1000);
     const url = `http://127.0.0.1:${plant.port}/api/v1/history?tags=TI-1&from=${from}&to=${from + 5990}&points=20000`;
@@ -357,7 +357,7 @@ test('a machine that is replaced gets the past of its plant, and goes on with it
     await plant.daemon.stop('SIGKILL');
     configure({ keep: true, folder: 'replaced' });
     await plant.startDaemon();
-    await plant.daemon.line(/\d+ points of the past are restored from PostgreSQL/, 30000);
+    await plant.daemon.line(/restored \d+ points from PostgreSQL/, 30000);
     assert.ok(await metric('postgres_restored_total') > 100);
     feed();
     const has = await (await fetch(url(to))).json(), inside = (series) => series.points.filter(([us]) => us >= from && us <= to * 1e6);

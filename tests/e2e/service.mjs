@@ -94,7 +94,7 @@ test('a start that prepares the plant asks for time as long as it does, and ends
         const service = serve(['--port', '0']);
         await service.said(/(notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing the plant\n[^]*){2}/); // plantcast-prep
         assert.equal(await service.stop(), 0, service.err);
-        assert.match(service.err, /stopping; the next start goes on with preparing/);
+        assert.match(service.err, /stopping; the next start continues preparing/);
     } finally {
         plant = was;
         await tiny.destroy();
@@ -116,7 +116,7 @@ test('as the first process of a container, it ends when it is told to while it p
         const [first] = readFileSync(`/proc/${child.pid}/task/${child.pid}/children`, 'utf8').split(' ');
         process.kill(Number(first), 'SIGTERM');
         assert.equal(await ended, 0, said);
-        assert.match(said, /stopping; the next start goes on with preparing/);
+        assert.match(said, /stopping; the next start continues preparing/);
     } finally {
         await tiny.destroy();
     }
@@ -135,7 +135,7 @@ for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 't
         console.log(`# ${what}: ended after ${(took_ms / 1000).toFixed(1)} s`);
         promise(t, 'until it ended', took_ms, 1000 * WITHIN_S);
         if (thread === 'render')
-            assert.match(service.err, /render thread: no sign of life; the service manager will start the daemon again/);
+            assert.match(service.err, /render thread: no progress; the service manager will start the daemon again/);
     });
 
 test('connections wait in the socket of the manager while the daemon is started again; it says when it will be back',
@@ -223,7 +223,7 @@ test('`plantcast reload` fails after a refused reload, and says why; metrics and
     try {
         const { code, err } = reload();
         assert.equal(code, 1);
-        assert.match(err, /plant\.yaml:\d+:\d+: .*\n.*not reloaded: configuration \w+ stays in force/);
+        assert.match(err, /plant\.yaml:\d+:\d+: .*\n.*not reloaded: the daemon keeps configuration \w+/);
     } finally {
         writeFileSync(plant.file, good);
     }
@@ -258,7 +258,7 @@ test('metrics: build, process and certificate; no old name of one that was renam
     assert.doesNotMatch(text, /_us_total|per_10_minutes/);
     writeFileSync(join(runtime, 'metrics'), text);
     await service.stop();
-    assert.match(service.err, /warn .*cert\.pem: this certificate's time is over within 14 days, in 3\.0 days/);
+    assert.match(service.err, /warn .*cert\.pem: this certificate expires within 14 days, in 3\.0 days/);
 });
 
 test('promtool has nothing to say about them', {

@@ -132,7 +132,7 @@ test('a lost message leaves no value Good; the node is asked for its birth only 
         if (rebirth === 'no')
             for (const [name, value] of [['TI-2', -7.5], ['PI-1', 5], ['XS-1', 1]])
                 await until(name, { quality_name: 'Uncertain_LastUsableValue', value });
-        await plant.daemon.line(/U100\/edge: messages are missing: number 5 came, 2 was next/);
+        await plant.daemon.line(/U100\/edge: messages lost: received number 5, expected 2/);
         for (const end = performance.now() + 20000; rebirth === 'yes' && node.births === births; await sleep(100))
             assert.ok(performance.now() < end, 'asked for its birth');
         await until('TI-1', { ...good, value: rebirth === 'no' ? 30 : 20.5 });
@@ -155,7 +155,7 @@ test('who was born before we came is read once its birth is known', options, asy
     await stranger.leave();
     await sleep(200);
     node.publishNodeData({ timestamp: Date.now(), metrics: [{ name: 'Inlet/Temperature', type: 'Double', value: 30 }] });
-    await plant.daemon.line(/U100\/edge: its birth certificate is not known, so its values are not read; rebirth: yes would ask for it/);
+    await plant.daemon.line(/U100\/edge: values ignored: no birth certificate yet; rebirth: yes would ask for it/);
     await until('TI-1', { quality_name: 'Bad_WaitingForInitialData' });
     await plant.daemon.stop();
     await plant.run('payload: sparkplug, rebirth: yes', ROWS);

@@ -233,7 +233,7 @@ test('a leader that is ended in good order gives the lease back, and the other l
     const core = await two.leader();
     await two.followed(core);
     const { pause_ms } = await two.takeOver(t, core, kill(core, 'SIGTERM'));
-    assert.match(core.program.said, /lease: given back/);
+    assert.match(core.program.said, /lease: released/);
     await two.restart(core);
 });
 

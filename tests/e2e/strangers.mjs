@@ -231,8 +231,8 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
     assert.equal(lines(/login from 127\.0\.0\.1 by HTTP: token \(unknown\), role none: refused, nobody's \(\d within/g).length, 6);
     assert.equal(lines(/by HTTP: token operator-1, role operator: refused, its time is over/g).length, 1);
     assert.equal(lines(/by stream: token \(unknown\), role none: refused/g).length, 1);
-    assert.equal(lines(/by stream: token engineer-1, role engineer: let in/g).length, 1);
-    assert.equal(lines(/by HTTP: token viewer-1, role viewer: let in/g).length, 1);
+    assert.equal(lines(/by stream: token engineer-1, role engineer: accepted/g).length, 1);
+    assert.equal(lines(/by HTTP: token viewer-1, role viewer: accepted/g).length, 1);
     assert.equal(await metric('plantcast_sessions_refused_total') - before, 8);
     assert.equal(await metric('plantcast_logins_wrong_total'), 8);
     assert.equal(await metric('plantcast_logins_slowed_addresses'), 0);

@@ -249,7 +249,7 @@ CASE(who_waits_says_for_whom_and_can_be_stopped)
         execl(program, program, s->plant, (char *)NULL);
         _exit(99);
     }
-    snprintf(words, sizeof(words), "process %ld prepares into it", (long)getpid());
+    snprintf(words, sizeof(words), "process %ld is preparing this folder", (long)getpid());
     for (int tries = 0; tries < 1000 && (!s->err.at || !strstr(s->err.at, words)); tries++) {
         usleep(10000);
         prep_case_read(s, "err", &s->err);

@@ -209,9 +209,9 @@ CASE(other_sensors_are_refused)
     assert_non_null(scene);
     scene_destroy(&scene);
     write_asset(f, "1.asset", 1.0003, "TI-2", 2);
-    assert_refused(f, "asset A: sensor a1 stands elsewhere");
+    assert_refused(f, "asset A: the place of sensor a1 in");
     write_asset(f, "1.asset", 1, "TI-3", 2);
-    assert_refused(f, "asset B: sensor b2 stands elsewhere");
+    assert_refused(f, "asset B: the place of sensor b2 in");
     write_asset(f, "1.asset", 1, "TI-2", 1);
     assert_refused(f, "1.asset has 1 sensors, the tag list has 2");
 }

@@ -54,7 +54,7 @@ static int say(const json_t *result)
     if (good)
         printf("reloaded: configuration %s\n", configuration);
     else
-        fprintf(stderr, "plantcast: not reloaded: configuration %s stays in force\n", configuration);
+        fprintf(stderr, "plantcast: not reloaded: the daemon keeps configuration %s\n", configuration);
     return good ? 0 : 1;
 }
 

@@ -16,7 +16,7 @@ void openid_say(struct openid *openid, const char *why)
 {
     bool was_failing = atomic_exchange(&openid->failing, why != NULL);
     if (why && !was_failing)
-        log_event(openid->params.log, LOG_ERROR, EVENT_OPENID_FAILS, "openid: %s: %s; nobody can sign in, and who is signed in stays so",
+        log_event(openid->params.log, LOG_ERROR, EVENT_OPENID_FAILS, "openid: %s: %s; nobody can sign in; signed-in users stay signed in",
                   openid->config->issuer, why);
     else if (!why && was_failing)
         log_info(openid->params.log, "openid: %s answers again", openid->config->issuer);

@@ -113,7 +113,8 @@ void openid_revoke_later(struct openid *openid, const char *refresh_token)
         return;
     if (openid->revocations.count >= PEOPLE) {
         free_job(take_job(&openid->revocations));
-        log_warn(openid->params.log, "openid: over %d refresh tokens wait to be revoked; the oldest is left to its end", PEOPLE);
+        log_warn(openid->params.log,
+                 "openid: more than %d refresh tokens wait for revocation; the oldest is dropped, and stays valid to its end", PEOPLE);
     }
     openid_add_job(openid, &openid->revocations, &(struct openid_job){ .revoke = mem_strdup(refresh_token) });
 }
@@ -137,7 +138,7 @@ static void let_in(struct openid *openid, const struct openid_job *job, struct p
     mem_free(person);
     openid_say(openid, NULL);
     if (good) {
-        log_info(openid->params.log, "login from %s by OpenID Connect: %s, role %s: let in", job->from, holder.name,
+        log_info(openid->params.log, "login from %s by OpenID Connect: %s, role %s: accepted", job->from, holder.name,
                  name_of(names_role, (int)holder.role));
         openid_record(openid, "login", "done", &holder, job->from, sub, NULL);
     }

@@ -151,7 +151,8 @@ static bool is_newer(struct database *database, int version)
 {
     int known = database->format->version;
     if (version > known)
-        log_err(database->log, "%s: version %d is a newer Plantcast's; this program knows version %d", database->path, version, known);
+        log_err(database->log, "%s: version %d was written by a newer Plantcast; this program supports version %d", database->path,
+                version, known);
     return version > known;
 }
 
@@ -277,9 +278,9 @@ bool database_set_aside(struct database *database)
         if (i == 0) {
             moved = good;
             if (good)
-                log_err(database->log, "%s: is damaged; it was set aside as %s and a new one is begun", database->path, to);
+                log_err(database->log, "%s: is damaged; renamed to %s, starting a new one", database->path, to);
             else
-                log_err(database->log, "%s: is damaged and cannot be set aside: %s", database->path, strerror(errno));
+                log_err(database->log, "%s: is damaged and cannot be renamed: %s", database->path, strerror(errno));
         }
         mem_free(from);
         mem_free(to);

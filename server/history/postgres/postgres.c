@@ -121,7 +121,7 @@ static void is_well(struct postgres *postgres)
     postgres->backoff = (struct backoff){ 0 };
     counter_set(postgres->counters.up, 1);
     if (*postgres->said)
-        log_event(log_of(postgres), LOG_INFO, EVENT_HISTORY_WRITTEN, "history: PostgreSQL is written again");
+        log_event(log_of(postgres), LOG_INFO, EVENT_HISTORY_WRITTEN, "history: PostgreSQL can be written again");
     *postgres->said = 0;
 }
 
@@ -265,7 +265,7 @@ static void drop_oldest(struct postgres *postgres)
     postgres->lost += lost;
     if (postgres->lost && clock_mono_ns() >= postgres->say_lost_ns) {
         log_event(log_of(postgres), LOG_ERROR, EVENT_HISTORY_LOST,
-                  "history: %lld points that waited for PostgreSQL were too many; only the files here have them",
+                  "history: the queue for PostgreSQL is full: %lld points are only in the local files",
                   (long long)postgres->lost);
         postgres->say_lost_ns = clock_mono_ns() + SAY_LOST_NS;
         postgres->lost = 0;

@@ -66,7 +66,7 @@ static void end(struct postgres_restore *restore)
     mem_free(path);
     restore->wanted = false;
     if (restore->points)
-        log_info(restore->log, "history: %lld points of the past are restored from PostgreSQL", (long long)restore->points);
+        log_info(restore->log, "history: restored %lld points from PostgreSQL", (long long)restore->points);
 }
 
 /* --- there -------------------------------------------------------------------------------------------------------------------- */

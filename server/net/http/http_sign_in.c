@@ -108,8 +108,8 @@ static void count_refused(struct server_context *server, const struct openid_ans
         return;
     counter_inc(server->counters.logins_wrong, 1);
     if (login_throttle_fail(server->login_throttle, answer->address, clock_mono_ns()) == LOGIN_WRONG_SLOWS)
-        log_warn(server->params.log, "login by OpenID Connect: that address is slowed, to one answer in %d s, until there was no wrong one "
-                                     "for a minute", LOGIN_WAIT_S);
+        log_warn(server->params.log, "login by OpenID Connect: address slowed to one answer in %d s until a minute passes without a "
+                                     "wrong one", LOGIN_WAIT_S);
 }
 
 static void answer_sign_in(struct server_context *server, struct http_exchange *request, const struct openid_answer *answer)

@@ -29,7 +29,7 @@ struct frame_in_flight *frames_in_flight_take(struct frames_in_flight *frames_in
             frames_in_flight->at[i].taken = true;
             return &frames_in_flight->at[i];
         }
-    log_err(log, "%d pictures are under way: no room for one more", FRAMES_IN_FLIGHT);
+    log_err(log, "all %d frames in flight are in use", FRAMES_IN_FLIGHT);
     return NULL;
 }
 

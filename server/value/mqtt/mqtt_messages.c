@@ -36,7 +36,7 @@ void mqtt_log_left_out(struct mqtt_source *mqtt, int64_t now_ns)
     if (log_pace_flush(&mqtt->refusals, now_ns, more))
         log_warn(mqtt->base.log, "source %s: %s%s", mqtt->base.config->id, mqtt->last_refused, more);
     if (log_pace_flush(&mqtt->absences, now_ns, more))
-        log_warn(mqtt->base.log, "source %s: messages without a tag's value%s", mqtt->base.config->id, more);
+        log_warn(mqtt->base.log, "source %s: messages without a value for any tag%s", mqtt->base.config->id, more);
 }
 
 static void report_skew(struct mqtt_source *mqtt, const char *topic)

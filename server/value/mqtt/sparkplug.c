@@ -129,7 +129,7 @@ static void ask(struct sparkplug *sparkplug, struct sparkplug_node *node, int64_
         return;
     node->is_wanted = false;
     node->asked_ns = now_ns;
-    log_info(sparkplug->params.log, "source %s: %s/%s is asked for its birth certificate", sparkplug->params.source, node->group,
+    log_info(sparkplug->params.log, "source %s: %s/%s: requesting the birth certificate", sparkplug->params.source, node->group,
              node->name);
     sparkplug->params.ask(sparkplug->params.arg, node->group, node->name);
 }
@@ -347,7 +347,7 @@ static void follow(struct sparkplug *sparkplug, struct sparkplug_node *node, con
         return;
     if (sparkplug->params.gaps)
         counter_inc(sparkplug->params.gaps, 1);
-    log_warn(sparkplug->params.log, "source %s: %s/%s: messages are missing: number %d came, %d was next", sparkplug->params.source,
+    log_warn(sparkplug->params.log, "source %s: %s/%s: messages lost: received number %d, expected %d", sparkplug->params.source,
              node->group, node->name, seq, wanted);
     doubt_all(sparkplug, node);
     ask(sparkplug, node, sparkplug->params.writer->mono_ns);
@@ -395,7 +395,7 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *no
 {
     ask(sparkplug, node, sparkplug->params.writer->mono_ns);
     if (!node->told)
-        log_warn(sparkplug->params.log, "source %s: %s/%s: its birth certificate is not known, so its values are not read%s",
+        log_warn(sparkplug->params.log, "source %s: %s/%s: values ignored: no birth certificate yet%s",
                  sparkplug->params.source, node->group, node->name, sparkplug->params.rebirth ? "" : "; rebirth: yes would ask for it");
     node->told = true;
     snprintf(why, 200, "before its birth certificate");
@@ -410,7 +410,8 @@ static bool take_node_birth(struct sparkplug *sparkplug, const struct said *said
     node->told = node->is_wanted = false;
     node->bd_seq = sparkplug_bd_seq(payload);
     node->next_seq = (payload->seq + 1) % 256;
-    log_info(sparkplug->params.log, "source %s: %s/%s is born", sparkplug->params.source, node->group, node->name);
+    log_info(sparkplug->params.log, "source %s: %s/%s: online (birth certificate received)", sparkplug->params.source,
+             node->group, node->name);
     return said->topic == SIZE_MAX || take_birth(sparkplug, node, said->topic, payload, why);
 }
 
@@ -424,7 +425,8 @@ static bool take_node_death(struct sparkplug *sparkplug, struct sparkplug_node *
                  sparkplug->params.source, node->group, node->name, (long long)bd_seq, (long long)node->bd_seq);
         return true;
     }
-    log_warn(sparkplug->params.log, "source %s: %s/%s is dead", sparkplug->params.source, node->group, node->name);
+    log_warn(sparkplug->params.log, "source %s: %s/%s: offline (death certificate received)", sparkplug->params.source,
+             node->group, node->name);
     node_dies(sparkplug, node, SIZE_MAX);
     return true;
 }
@@ -438,7 +440,7 @@ static bool take_in_order(struct sparkplug *sparkplug, const struct said *said, 
     if (said->verb == DBIRTH)
         return take_birth(sparkplug, said->node, said->topic, payload, why);
     if (said->verb == DDEATH) {
-        log_warn(sparkplug->params.log, "source %s: %s is dead", sparkplug->params.source,
+        log_warn(sparkplug->params.log, "source %s: %s: offline (death certificate received)", sparkplug->params.source,
                  sparkplug->params.topics->at[said->topic].name);
         topic_dies(sparkplug, said->topic);
         return true;

@@ -109,7 +109,7 @@ static void link_up(struct opcua_source *opcua, const struct opcua_client *clien
     log_info(opcua->base.log, "source %s: %s:%d: reading %zu nodes, %zu refused", config->id, config->hosts[opcua->turn.index],
              config->port, opcua->nodes.count - opcua_client_refused(client), opcua_client_refused(client));
     if (opcua_client_publishing_ms(client) > 0)
-        log_warn(opcua->base.log, "source %s: the server tells what has changed every %.0f ms, instead of every %d ms", config->id,
+        log_warn(opcua->base.log, "source %s: the server publishes changes every %.0f ms instead of every %d ms", config->id,
                  opcua_client_publishing_ms(client), config->poll_ms);
 }
 

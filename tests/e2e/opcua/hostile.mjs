@@ -109,7 +109,7 @@ test('of a name with several addresses, each is tried', named, async () => {
 test('a server that tells rarely says so, and is missed soon all the same', options, async () => {
     await server.restart({ publishing_ms: 60000 });
     await plant.run('security: none', ROWS);
-    await plant.said(/the server tells what has changed every 60000 ms, instead of every 100 ms/);
+    await plant.said(/the server publishes changes every 60000 ms instead of every 100 ms/);
     server.freeze();
     const frozen = performance.now();
     await plant.said(/no readings \(the subscription has ended \(the server is silent\)\)/, 30000);

@@ -18,7 +18,7 @@ test('a plant that was changed and not prepared since is prepared when the daemo
         writeFileSync(tiny.file, text.replace('groups:', '  - { id: NEW, model: box.gltf, placement: { translate: [9, 0, 0] } }\ngroups:'));
         await tiny.startSim();
         await tiny.startDaemon();
-        assert.match(tiny.daemon.said, /the plant is prepared now, as it is not what was prepared before/);
+        assert.match(tiny.daemon.said, /preparing the plant: prepared files are missing or outdated/);
         const { assets } = await (await fetch(`http://127.0.0.1:${tiny.port}/api/v1/plant`)).json();
         assert.ok(assets.some(({ id }) => id === 'NEW'));
         // What cannot be prepared is one line, and no daemon.
