@@ -10,7 +10,7 @@
 
 struct sim_unit;
 struct sim_image {               /* zero-initialise */
-    struct sim_unit *units[256]; /* by unit identifier; NULL: no such unit */
+    struct sim_unit *units[256]; /* registers of each unit, by unit identifier; NULL: the device lacks the unit */
 };
 
 void sim_image_finish(struct sim_image *image);

@@ -19,7 +19,7 @@ enum { KEEPALIVE_S = 10, MOST_ITEMS = 1000 };
 struct sim_mqtt {
     const struct plant *plant;
     struct mosquitto *library;
-    struct mqtt_topics *topics; /* by source; empty for sources that are not simulated */
+    struct mqtt_topics *topics; /* topics of each source; empty for sources that are not simulated */
     int64_t *due_ns;            /* by source */
     size_t tag_count;
 };

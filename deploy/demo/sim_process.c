@@ -14,7 +14,7 @@ static const double MAX_STEP_S = 1.0, TAU = 6.283185307179586;
 #define T PROCESS_TEMPERATURE
 #define P PROCESS_PRESSURE
 #define V PROCESS_VIBRATION
-#define MACHINE "machine" /* one machine in each cycle, in turn */
+#define MACHINE "machine" /* pseudo loop name: the effect applies to one machine per cycle, each in turn */
 
 struct effect {
     const char *word; /* word in the name of the loop */

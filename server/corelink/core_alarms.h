@@ -12,7 +12,8 @@ json_t *core_alarms_message(struct alarm_service *service, uint64_t since, int64
 /* Adds to the message of core_alarms_message(), for a standby core's journal, the alarm changes after row *row and after a time. Sets
    *row to the last one. Call it after core_alarms_message(). */
 void core_alarms_add_rows(json_t *message, struct alarm_service *service, uint64_t *row, int64_t after_utc_ns);
-/* Applies such a message to a mirroring alarm service. Returns NULL, or what is wrong with the message (static); then nothing changed. */
+/* Applies the message of core_alarms_message() to a mirroring alarm service. Returns NULL, or what is wrong with the message (static);
+   then nothing changed. */
 const char *core_alarms_take(struct alarm_service *service, const json_t *message);
 
 #endif

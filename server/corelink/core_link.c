@@ -25,10 +25,11 @@
 #include "value/backoff.h"
 #include "value/lookup.h"
 
-enum { CORE_ACT_BYTES = 200 * 1024 /* below the maximum that a core accepts */ };
+enum { CORE_ACT_BYTES = 200 * 1024 /* maximum length of an act; less than a core accepts */ };
 enum { MOST_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
-static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* maximum difference of the clocks that is not logged */;
-static const int64_t STEP_NS = 500 * NS_PER_MS; /* smaller differences are not corrected, so that the clock which pages use does not step */
+static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* clock difference above which a warning is logged */;
+/* smaller clock differences are not corrected, so that the clock which pages use does not step */
+static const int64_t STEP_NS = 500 * NS_PER_MS;
 static const int64_t QUICK_NS = 100 * NS_PER_MS; /* maximum delay of a message whose clock is used */
 
 struct pending_request {
@@ -66,7 +67,7 @@ struct core_link {
     struct core_arrival *arrivals, **last_arrival;
 };
 
-/* --- for the loop ----------------------------------------------------------------------------------------------------------- */
+/* --- called from the loop --------------------------------------------------------------------------------------------------- */
 
 static void arrive(struct core_link *link, uint64_t client, char *text)
 {
@@ -160,7 +161,7 @@ bool core_link_tell(struct core_link *link, const char *text)
     return up;
 }
 
-/* --- what comes --------------------------------------------------------------------------------------------------------------- */
+/* --- messages from the core --------------------------------------------------------------------------------------------------- */
 
 static void end(struct core_link *link, const char *why)
 {
@@ -397,7 +398,7 @@ static void on_receive(struct core_link *link, const void *bytes, size_t count)
     link->in.length = 0;
 }
 
-/* --- lws ---------------------------------------------------------------------------------------------------------------------- */
+/* --- libwebsockets callbacks -------------------------------------------------------------------------------------------------- */
 
 static int send_next(struct core_link *link)
 {

@@ -19,7 +19,7 @@ struct core_link_params {
     struct counters *counters;
     const struct plant *plant;
     struct store *store;
-    struct alarm_service *alarm_service; /* must mirror; plant, store and alarm service must outlive the link */
+    struct alarm_service *alarm_service; /* alarm service in mirror mode; plant, store and alarm service must outlive the link */
     const char *urls[CORE_URLS];         /* ws://HOST:PORT or wss://, tried in turn: one of them is the core */
     int url_count;
     const char *token_path, *ca_path; /* token file, NULL: none; trusted certificates, NULL: the system's */
@@ -67,7 +67,7 @@ bool core_link_tell(struct core_link *link, const char *text);
 /* A message for the loop. */
 struct core_arrival {
     struct core_arrival *next;
-    uint64_t client; /* client whose answer it is; 0: a message `core` or `lists` of the core itself */
+    uint64_t client; /* id of the client that gets this answer; 0: a message `core` or `lists` of the core itself */
     char *text;
 };
 /* Returns the messages since the last call, in order; free each with core_arrival_free(). */

@@ -27,9 +27,9 @@ void core_readings_write(struct text *out, const struct snapshot *snapshot, stru
 
 struct core_readings {
     int64_t utc_ns; /* the core's clock when it took the readings */
-    /* kept between messages: smallest difference of our monotonic clock to the core's so far; INT64_MAX for a new connection */
+    /* smallest difference of our monotonic clock to the core's in this connection; set to INT64_MAX for a new one */
     int64_t least_ns;
-    int64_t at_ns;   /* kept between messages: arrival time of the last message; 0 for a new connection */
+    int64_t at_ns;   /* arrival time of the last message of this connection; set to 0 for a new one */
     int64_t late_ns; /* delay of this message compared with the fastest of the connection; included in the ages */
     size_t count;
     struct mirrored *at; /* buffer for one reading of each tag */

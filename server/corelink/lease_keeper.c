@@ -97,7 +97,7 @@ static bool is_well(struct lease_keeper *keeper)
     return true;
 }
 
-/* Returns the timeout of database requests: what remains of a leader's lease. */
+/* Returns the time limit of database requests: for a leader the rest of its lease, within bounds. */
 static int64_t patience(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);
@@ -188,7 +188,7 @@ static const char sql_renew[] = "UPDATE lease SET beat = beat + 1, standby = $5,
 static const char sql_give_back[] = "UPDATE lease SET beat = beat + 1, leader = $5, standby = '', renewed = now()" SEEN
                                     " AND instance = $4::bigint RETURNING 1";
 
-/* --- others of our name --------------------------------------------------------------------------------------------------------- */
+/* --- cores with our name -------------------------------------------------------------------------------------------------------- */
 
 bool lease_name(char out[LEASE_NODE_BYTES], const char *node, const char *id)
 {
@@ -216,7 +216,7 @@ static void look_for_namesake(struct lease_keeper *keeper, const struct lease_ro
     }
 }
 
-/* --- turns ---------------------------------------------------------------------------------------------------------------------- */
+/* --- periodic work -------------------------------------------------------------------------------------------------------------- */
 
 static void look(struct lease_keeper *keeper)
 {
@@ -313,7 +313,7 @@ static void tell(struct lease_keeper *keeper)
     }
 }
 
-/* Does what is due: connects, reads the row, renews or bids. Returns when to call it again. */
+/* Does the periodic work: connects, reads the row, renews or bids. Returns the time of the next call. */
 static int64_t take_turn(struct lease_keeper *keeper)
 {
     int64_t began_ns = now_of_lease();
@@ -354,7 +354,7 @@ static void *run(void *arg)
     return NULL;
 }
 
-/* --- from outside --------------------------------------------------------------------------------------------------------------- */
+/* --- called from other threads -------------------------------------------------------------------------------------------------- */
 
 bool lease_keeper_leads(struct lease_keeper *keeper)
 {
@@ -407,7 +407,7 @@ bool lease_keeper_promise(struct lease_keeper *keeper)
     return good;
 }
 
-/* --- life ----------------------------------------------------------------------------------------------------------------------- */
+/* --- start and stop ------------------------------------------------------------------------------------------------------------- */
 
 static void add_counters(struct lease_keeper *keeper)
 {

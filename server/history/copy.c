@@ -141,7 +141,7 @@ static bool copy_state(struct log *log, const char *from_path, const char *to_pa
     if (code == SQLITE_OK)
         code = copy_pages(from, to);
     if (code == SQLITE_OK)
-        code = sqlite3_exec(to, "PRAGMA journal_mode = DELETE", NULL, NULL, NULL); /* one file, without a write-ahead log */
+        code = sqlite3_exec(to, "PRAGMA journal_mode = DELETE", NULL, NULL, NULL); /* makes the copy one file, without a write-ahead log */
     bool good = code == SQLITE_OK ? is_whole(log, to, to_path) : failed(log, from_path, "cannot be copied", sqlite3_errstr(code));
     sqlite3_close(to);
     sqlite3_close(from);

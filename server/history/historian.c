@@ -72,7 +72,7 @@ struct historian {
     struct postgres_owed *owed; /* receives the spans that the next historian must still read from the database; NULL: not wanted */
 };
 
-/* --- from the store ----------------------------------------------------------------------------------------------------------- */
+/* --- samples from the store --------------------------------------------------------------------------------------------------- */
 
 static void queue_samples(struct historian *historian, const struct sample_event *samples, size_t count)
 {
@@ -232,7 +232,7 @@ static void take_events(struct historian *historian, const struct now *now, int6
     historian->taken = taken;
 }
 
-/* --- to the disk -------------------------------------------------------------------------------------------------------------- */
+/* --- writing to disk ---------------------------------------------------------------------------------------------------------- */
 
 static void make_folder(struct historian *historian)
 {
@@ -467,7 +467,7 @@ static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t u
     counter_set(historian->counters.good, !error);
 }
 
-/* --- life --------------------------------------------------------------------------------------------------------------------- */
+/* --- start and stop ----------------------------------------------------------------------------------------------------------- */
 
 /* Reads both clocks at nearly the same moment: repeats if the thread was interrupted between the readings. */
 static struct now look_at_clocks(void)
@@ -569,7 +569,7 @@ static void spool(struct historian *historian)
                   "history: %zu points could not be written; they wait in %s for the next start", rows->kept.count + rows->held.count,
                   *place);
     if (!error && historian->spool_path && strcmp(historian->spool_path, *place) != 0)
-        unlink(historian->spool_path); /* its rows are in the new file too */
+        unlink(historian->spool_path); /* the new spool file has the rows of the old one too */
     spool_places_free(places);
 }
 

@@ -66,7 +66,7 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
     return *place;
 }
 
-/* --- lines -------------------------------------------------------------------------------------------------------------------- */
+/* --- series ------------------------------------------------------------------------------------------------------------------- */
 
 /* Returns the longest rollup level that is at most twice the wanted bucket length. -1: use the points themselves. */
 static int level_for(int64_t stretch_us)
@@ -243,7 +243,7 @@ static void read_pair(const struct history_pair *pair, int64_t t_us, int64_t sta
     out->value = isnan(before->value) ? 0 : before->value;
     out->received_utc_ns = t_us * 1000;
     out->age_ns = 0;
-    if (!quality_is_good(out->quality)) { /* no Good reading arrived since then */
+    if (!quality_is_good(out->quality)) { /* no Good reading has arrived since `before`, so the value is as old as that point */
         out->received_utc_ns = before->t_us * 1000;
         out->age_ns = (t_us - before->t_us) * 1000;
     } else if (pair->after.t_us != INT64_MIN && history_point_joined(before, &pair->after, pair->step)) {

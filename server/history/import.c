@@ -35,7 +35,7 @@ struct import_series {
     int64_t longest_us; /* longest time between two samples that is not a gap */
     bool has_pending;   /* second pass: newest sample, pending until the next one has a later time */
     struct history_point pending;
-    struct history_points before; /* points that history had in this time before the import */
+    struct history_points before; /* points that history had in the series' time span before the import */
     size_t next;                  /* index of the next one in `before` */
 };
 
@@ -51,7 +51,7 @@ struct history_import {
 
 typedef bool take_sample(struct history_import *import, void *arg, int tag, const struct history_point *point, int column);
 
-/* --- what the columns are ------------------------------------------------------------------------------------------------------- */
+/* --- columns -------------------------------------------------------------------------------------------------------------------- */
 
 static int find_time(struct history_import *import)
 {
@@ -437,7 +437,7 @@ static bool fill_sample(struct history_import *import, void *arg, int tag, const
     return filling->rows.count < FLUSH_ROWS || flush(filling);
 }
 
-/* --- what was recorded before -------------------------------------------------------------------------------------------------------- */
+/* --- joining existing history -------------------------------------------------------------------------------------------------------- */
 
 /* Ends the recorded line that leads to the first sample of a series, or removes its end if the gap now counts as data. */
 static void join_before(struct filling *filling, struct history_reader *reader, int tag)
@@ -509,7 +509,7 @@ static bool fill(const struct import_params *params, struct import_series *serie
         .counts = counts,
     };
     struct diag again = { 0 };   /* repeats findings that `diag` already has */
-    mkdir(params->folder, 0777); /* if this fails, opening a month reports the error */
+    mkdir(params->folder, 0777); /* if the folder cannot be created, opening a month reports the error */
     bool good = read_before(&filling) && read_file(params, &again, counts, series, fill_sample, &filling);
     diag_finish(&again);
     if (good)

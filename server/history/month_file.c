@@ -93,7 +93,7 @@ static const struct database_format format = {
     SQL_COUNT,
 };
 
-/* --- for the other files ------------------------------------------------------------------------------------------------------ */
+/* --- shared with month_file_*.c ----------------------------------------------------------------------------------------------- */
 
 sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which)
 {

@@ -235,7 +235,7 @@ static int move_row(struct month_file *file, int tag, int64_t id, const struct h
 {
     int error = 0;
     if (tag >= 0 && !file->rollups[tag].loaded)
-        error = load_rollups(file, tag, id); /* before the table gets more samples */
+        error = load_rollups(file, tag, id); /* must precede adding the sample to the table */
     if (!error)
         error = put(file, SQL_ADD_SAMPLE, id, point);
     return error || tag < 0 ? error : roll_point(file, tag, id, point);
@@ -277,7 +277,7 @@ int month_file_tidy(struct month_file *file)
     return error;
 }
 
-/* --- what was written in other ways ------------------------------------------------------------------------------------------- */
+/* --- imports and recovery ----------------------------------------------------------------------------------------------------- */
 
 static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from_us)
 {
@@ -337,7 +337,7 @@ int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_
     error = forget(file, SQL_FORGET_GAPS, from_us, to_us, gap_quality);
     if (!error)
         error = forget(file, SQL_FORGET_GAP_NOTES, from_us, to_us, gap_quality);
-    if (!error && has_outbox) /* so that the gap is not sent to the other database */
+    if (!error && has_outbox) /* the gap must not be sent to the other database either */
         error = forget(file, SQL_FORGET_OUTBOX_GAPS, from_us, to_us, gap_quality);
     return end(file, error);
 }

@@ -16,9 +16,10 @@ struct swinging_door_params {
 struct swinging_door { /* zero-initialise */
     bool open, has_skipped, has_held;
     struct history_point anchor;  /* point recorded last */
-    struct history_point held;    /* passed the deadband; recorded when the door closes */
+    struct history_point held;    /* sample that passed the deadband; recorded when the door closes */
     struct history_point skipped; /* newest sample, within the deadband of the sample that passed before it */
-    double slope_low, slope_high; /* per microsecond: range of slopes from the anchor that pass within the deviation of all samples since */
+    /* range of slopes, per microsecond, of lines from the anchor that pass all later samples within the deviation */
+    double slope_low, slope_high;
 };
 
 enum { SWINGING_DOOR_MAX_POINTS = 3 };

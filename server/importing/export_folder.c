@@ -123,7 +123,7 @@ int export_folder_remove(const char *folder, const char *name)
     return error;
 }
 
-/* --- a file on its way ------------------------------------------------------------------------------------------------- */
+/* --- uploads ----------------------------------------------------------------------------------------------------------- */
 
 struct export_upload *export_upload_begin(const char *folder, const char *name, int *error)
 {

@@ -89,7 +89,7 @@ void plant_import_destroy(struct plant_import **pointer)
     *pointer = NULL;
 }
 
-/* --- for the loop ------------------------------------------------------------------------------------------------------- */
+/* --- called from the loop ----------------------------------------------------------------------------------------------- */
 
 const char *plant_import_exports(const struct plant_import *import)
 {
@@ -133,7 +133,8 @@ bool plant_import_order(struct plant_import *import, const struct import_order *
     bool taken = !import->busy;
     if (taken) {
         import->order = *order;
-        if (order->decides || *order->source.host) /* such orders state no encoding: keep the one with which the list was read */
+        /* these two kinds of orders state no encoding: keep the one with which the list was read */
+        if (order->decides || *order->source.host)
             strcpy(import->order.encoding, import->read.encoding);
         import->ordered = import->busy = true;
         import->cancelled = false;
@@ -188,7 +189,7 @@ char *plant_import_text(struct plant_import *import, const struct import_source 
     return json_text(object, 0);
 }
 
-/* --- for the reload thread ---------------------------------------------------------------------------------------------- */
+/* --- called from the reload thread -------------------------------------------------------------------------------------- */
 
 /* Appends the output of a program, which may contain arbitrary bytes in names of files and tags. */
 static void add_printable(struct text *out, const char *text)

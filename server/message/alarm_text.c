@@ -26,7 +26,7 @@ static json_t *instant(int64_t utc_ns)
     return utc_ns ? json_integer(utc_ns / 1000) : json_null();
 }
 
-/* --- to sessions ------------------------------------------------------------------------------------------------------------- */
+/* --- messages to sessions ---------------------------------------------------------------------------------------------------- */
 
 static void add_row(void *arg, const struct alarm *alarm)
 {
@@ -73,7 +73,7 @@ void alarm_text_cache_finish(struct alarm_text_cache *cache)
     *cache = (struct alarm_text_cache){ 0 };
 }
 
-/* --- to programs: what is asked --------------------------------------------------------------------------------------------- */
+/* --- parsing queries -------------------------------------------------------------------------------------------------------- */
 
 static bool take_count(const char *name, const char *text, int64_t low, int64_t high, int64_t *out, struct message_error *error)
 {
@@ -147,7 +147,7 @@ bool alarm_query_parse(const struct plant *plant, bool journal, const char *cons
     return true;
 }
 
-/* --- to programs: what there is --------------------------------------------------------------------------------------------- */
+/* --- answers to queries ----------------------------------------------------------------------------------------------------- */
 
 struct listing {
     const struct plant *plant;

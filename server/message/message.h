@@ -53,7 +53,7 @@ enum message_type {
 
 enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL }; /* which frames of a session are signed */
 
-enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 /* longer when it contains a view */ };
+enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 /* maximum length of a resume token that contains a view */ };
 
 enum params_given { /* bit mask of the members in a params message */
                     GIVEN_GROUP = 1 << 0,
@@ -93,7 +93,7 @@ enum baseline_change { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_N
 struct params_change {
     uint32_t seq;
     unsigned given;            /* bit mask of enum params_given */
-    struct field_params field; /* only the members that were given are set, here and below */
+    struct field_params field; /* here and below only the members in `given` are set */
     int colormap;
     double ramp_interval;
     struct color_scale color_scale;
@@ -203,7 +203,7 @@ struct message {
     char named[NAMED_VIEW_ID_BYTES]; /* hello, look: id of a view in the plant file; hello: "": none */
     bool has_camera, has_params;     /* hello */
     struct camera camera;            /* camera, hello */
-    uint32_t seq;                    /* camera (hello: of the camera), ack, fit, pick, look */
+    uint32_t seq;                    /* sequence number in camera (hello: of its camera), ack, fit, pick, look */
     struct params_change params;     /* params, hello */
     struct split_change split;       /* params, hello; applied after `params` */
     struct fit_message fit;

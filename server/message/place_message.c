@@ -21,7 +21,7 @@ static const char *list_path(const struct plant *plant, char real[PATH_MAX])
     return path ? path : plant->tags_path ? plant->tags_path : "";
 }
 
-/* --- what is said -------------------------------------------------------------------------------------------------------------- */
+/* --- parsing messages ---------------------------------------------------------------------------------------------------------- */
 
 static bool take_move(const struct plant *plant, const json_t *o, struct place_move *out, struct message_error *error)
 {
@@ -119,7 +119,7 @@ bool restore_tags_parse(const struct plant *plant, const json_t *o, struct messa
     return false;
 }
 
-/* --- what is answered ---------------------------------------------------------------------------------------------------------- */
+/* --- answers ------------------------------------------------------------------------------------------------------------------- */
 
 char *placed_text(const struct plant *plant, const struct place_set *set, uint32_t seq)
 {

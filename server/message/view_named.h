@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Named views, given by addresses: what each shows, and what it names that this plant lacks. Pure. */
+/* Turns the address of a named view into a view, and finds items in it that this plant lacks. Pure. */
 #ifndef MESSAGE_VIEW_NAMED_H
 #define MESSAGE_VIEW_NAMED_H
 #include "message/message.h"

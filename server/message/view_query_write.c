@@ -56,7 +56,7 @@ static bool put_list(struct view_address *out, const char *name, const double *v
     return count > 0 ? put_numbers(out, name, values, (size_t)count) : view_address_add(out, name, "none");
 }
 
-/* --- what one half shows ------------------------------------------------------------------------------------------------------- */
+/* --- parameters of one half ---------------------------------------------------------------------------------------------------- */
 
 static bool put_overrides(struct view_address *out, const struct plant *plant, const struct field_params *field)
 {
@@ -185,7 +185,7 @@ static bool put_common(struct view_address *out, const struct plant *plant, cons
            put_set(out, plant, "ghost", &view->visibility.ghosts) && put_clip(out, &view->visibility.clip);
 }
 
-/* --- all of it ------------------------------------------------------------------------------------------------------------------ */
+/* --- the whole query ------------------------------------------------------------------------------------------------------------ */
 
 static void round_alike(double *to, const double *from, size_t count)
 {

@@ -73,7 +73,7 @@ bool delivery_is_idle(const struct delivery *delivery, int recipient)
     return !delivery->transfers[recipient].handle;
 }
 
-/* --- what is sent ----------------------------------------------------------------------------------------------------------- */
+/* --- requests --------------------------------------------------------------------------------------------------------------- */
 
 static size_t give_body(char *buffer, size_t size, size_t count, void *arg)
 {
@@ -203,7 +203,7 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
     return why;
 }
 
-/* --- the wait --------------------------------------------------------------------------------------------------------------- */
+/* --- waiting for results ---------------------------------------------------------------------------------------------------- */
 
 /* Returns NULL, or why an ended transfer did not reach its recipient (mem_free). A redirection counts as failure: it may lead to a login
    page. */

@@ -225,7 +225,7 @@ static void *run(void *arg)
     return NULL;
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------------- */
+/* --- start and stop --------------------------------------------------------------------------------------------------------- */
 
 static counter *add_counter(const struct notifier *notifier, const char *name, const char *recipient, const char *type, const char *help)
 {

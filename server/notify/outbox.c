@@ -93,7 +93,7 @@ static void remove_episode(struct outbox *outbox, size_t index)
     outbox->dirty = true;
 }
 
-/* --- who is told ------------------------------------------------------------------------------------------------------------ */
+/* --- recipients ------------------------------------------------------------------------------------------------------------- */
 
 static void queue_item(struct outbox *outbox, int recipient, const struct episode *episode, int step, int64_t now_us)
 {
@@ -240,7 +240,7 @@ void outbox_end_unseen(struct outbox *outbox, int64_t now_us)
     }
 }
 
-/* --- time ------------------------------------------------------------------------------------------------------------------- */
+/* --- passing of time -------------------------------------------------------------------------------------------------------- */
 
 static void give_up(struct outbox *outbox, struct recipient_box *box)
 {

@@ -45,7 +45,7 @@ struct recipient_box { /* messages queued for one recipient */
     int last_priority; /* highest priority in the last message */
     int attempts;
     int64_t left_out; /* alarms left out since the last message */
-    bool changed;     /* for Alertmanager: some changes have not been sent yet */
+    bool changed;     /* for Alertmanager: some changes of alarms have not been sent yet */
 };
 
 struct outbox {

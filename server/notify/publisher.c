@@ -46,7 +46,7 @@ struct publisher {
     char said[200]; /* last problem that was logged; "": no problem */
 };
 
-/* --- what is published -------------------------------------------------------------------------------------------------------- */
+/* --- published messages ------------------------------------------------------------------------------------------------------- */
 
 /* Appends a name as one level of a topic: characters that separate levels or are wildcards are escaped as in URLs. */
 static void add_level(struct text *text, const char *name)

@@ -6,8 +6,8 @@
 #include "plant/plant.h"
 
 #define PLANT_DISC_M 0.05       /* radius in metres of the surface that a clamped or welded sensor touches */
-#define PLANT_CONDUCTIVITY 50.0 /* W/(m K): carbon steel, EN 1993-1-2, 3.4.1.3: 54 - 0.0333 T, at about 100 deg C */
-#define PLANT_HEAT_TRANSFER 9.0 /* W/(m2 K): still air with radiation, EN 1991-1-2, 3.1(6) */
+#define PLANT_CONDUCTIVITY 50.0 /* default conductivity, W/(m K): carbon steel, EN 1993-1-2, 3.4.1.3: 54 - 0.0333 T, at about 100 deg C */
+#define PLANT_HEAT_TRANSFER 9.0 /* default heat transfer coefficient, W/(m2 K): still air with radiation, EN 1991-1-2, 3.1(6) */
 
 #define PLANT_GP_DEVIATION 0.25 /* assumed standard deviation of the field, as a fraction of the group's range */
 #define PLANT_GP_NOISE 0.005    /* assumed standard deviation of a reading's noise, as a fraction of the group's range */

@@ -203,7 +203,7 @@ struct plant_source {
 
 /* The broker to which readings and alarms are published. */
 struct plant_publish {
-    struct plant_source broker; /* only the members for its address and our identity are used */
+    struct plant_source broker; /* connection settings; only the broker's address and our identity are used */
     char *prefix;               /* prefix of all topics; begins with plantcast/ */
     double every_s;
 };
@@ -256,7 +256,7 @@ struct plant_tag {
     int element;     /* index in an OPC UA array; -1: the value is no array */
     int modbus_unit; /* Modbus unit identifier; -1: the source's */
     enum register_table table;
-    int register_index; /* from 0, as on the wire */
+    int register_index; /* register number, from 0, as on the wire */
     int bit;            /* bit of a register; -1: the whole register */
     enum data_type type;
     enum byte_order byte_order; /* resolved for 32 and 64 bits. 16 bits: as the row states, else NONE (the standard); bits: NONE */
@@ -346,7 +346,7 @@ struct plant {
 
 /* Loads a plant file and its tag list. Findings go to diag. Returns NULL if there was any error. */
 struct plant *plant_load(const char *path, struct diag *diag);
-struct plant *plant_load_or_print(const char *path); /* the same, printing findings to standard error */
+struct plant *plant_load_or_print(const char *path); /* like plant_load(), but prints findings to standard error */
 /* Does the same as plant_load_or_print(), but a missing model is no error: for programs that need no models. */
 struct plant *plant_load_without_models(const char *path);
 /* Does the same as plant_load(), but accepts tags whose asset does not exist: they have no asset, and lost_asset is set. */

@@ -121,7 +121,7 @@ static void diff_tags(struct plant_diff *diff, const struct plant *before, const
     }
 }
 
-/* --- the rest --------------------------------------------------------------------------------------------------------------- */
+/* --- assets, groups, sources ------------------------------------------------------------------------------------------------ */
 
 static void diff_assets(struct plant_diff *diff, const struct plant *before, const struct plant *after)
 {

@@ -20,7 +20,8 @@
 #include "base/text/text.h"
 
 enum { LOOK_MS = 50 };
-static const char undone[] = ".import-undone"; /* the next program that locks the folder removes what is left of it */
+/* record of an undone revision; the next program that locks the folder removes its remains */
+static const char undone[] = ".import-undone";
 static const size_t max_text_bytes = (size_t)64 << 20;
 
 char *plant_folder_file(const char *folder, const char *name)
@@ -62,7 +63,7 @@ static void remove_tree(const char *path)
     nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-/* --- the record ----------------------------------------------------------------------------------------------------------------- */
+/* --- record of a revision ------------------------------------------------------------------------------------------------------- */
 
 int revision_record_read(struct revision_record *record, const char *folder, const char *name)
 {
@@ -91,7 +92,7 @@ void revision_record_finish(struct revision_record *record)
     mem_free(record->path);
 }
 
-/* --- going on ------------------------------------------------------------------------------------------------------------------- */
+/* --- continuing a revision ------------------------------------------------------------------------------------------------------ */
 
 /* Replaces a file of another folder, perhaps on another file system, by a copy with the same owner and permissions. */
 static int put_elsewhere(const char *from, const char *to)
@@ -192,7 +193,7 @@ static bool remove_left(const char *folder, const char *own, bool now)
     return any;
 }
 
-/* --- whose it is ---------------------------------------------------------------------------------------------------------------- */
+/* --- locking -------------------------------------------------------------------------------------------------------------------- */
 
 /* Returns the id of the process that has locked the folder; 0: the kernel does not tell (in a container, on a network file system). */
 static int holder_of(int fd)
@@ -277,7 +278,7 @@ int plant_folder_lock(const struct plant_folder_params *params, char **why)
             usleep(LOOK_MS * 1000);
         /* folders cannot be locked here (NFS): continue without a lock */
         else if (errno == EBADF || errno == ENOLCK || errno == EOPNOTSUPP)
-            return fd; /* leave what is there: another program may be using it */
+            return fd; /* without a lock, leave work folders alone: another program may be using them */
         else if (errno != EINTR)
             status = -errno;
     if (status == 0) {

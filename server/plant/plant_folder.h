@@ -18,10 +18,11 @@
 
 struct plant_folder_params {
     const char *folder;
-    const char *own;       /* path of a work folder inside it that must not be removed; NULL: none */
-    int lent;              /* descriptor with which the parent process has locked the folder; 0: none */
-    int wait_ms;           /* milliseconds to wait for another program to finish; 0: no waiting */
-    const char **finished; /* receives what was finished after a kill: "an import", "the undoing of an import"; NULL: not wanted */
+    const char *own; /* path of a work folder inside it that must not be removed; NULL: none */
+    int lent;        /* descriptor with which the parent process has locked the folder; 0: none */
+    int wait_ms;     /* milliseconds to wait for another program to finish; 0: no waiting */
+    /* receives the name of a killed program's revision that was finished: "an import", "the undoing of an import"; NULL: not wanted */
+    const char **finished;
 };
 
 /* Locks the folder until the descriptor is closed, removes what killed programs left in it, and finishes their revisions. Returns the

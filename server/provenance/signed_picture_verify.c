@@ -117,7 +117,7 @@ json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png,
     return statement;
 }
 
-/* --- what it tells ------------------------------------------------------------------------------------------------------------- */
+/* --- contents of a statement --------------------------------------------------------------------------------------------------- */
 
 /* Reads the readings of all tags of the plant, each exactly once. unproven: receives a flag by tag; NULL: not wanted. */
 static bool read_readings(const json_t *told, const struct plant *plant, struct snapshot *out, bool *unproven,

@@ -11,11 +11,11 @@
 
 enum { RUNS = 5, FINDER_CELLS = 7, GREY = 128 };
 static const double SLACK = 0.6;      /* tolerance of a finder's runs, as a fraction of a cell */
-static const double STRANGE = 7;      /* CIELAB distance beyond which a colour is none of the legend's */
+static const double STRANGE = 7;      /* CIELAB distance beyond which a colour is not in the legend */
 static const double INDISTINCT = 1.2; /* CIELAB distance within which two colours cannot be told apart; noise adds to it */
 static const double NOISES = 1.5;
 
-/* --- finding ------------------------------------------------------------------------------------------------------------------ */
+/* --- finding the strip -------------------------------------------------------------------------------------------------------- */
 
 static const uint8_t *pixel(const struct strip_picture *picture, int x, int y)
 {

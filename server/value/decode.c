@@ -144,7 +144,7 @@ static void fail(struct sample *out)
 /* `bits`: the bits of `raw` on the wire. */
 static void decode_analog(const struct plant_tag *tag, uint64_t bits, double raw, struct sample *out)
 {
-    if (!isfinite(raw) || is_sentinel(tag, bits, raw)) { /* must precede scaling, which would hide the special value */
+    if (!isfinite(raw) || is_sentinel(tag, bits, raw)) { /* checked before scaling, which would hide a special value */
         fail(out);
         return;
     }

@@ -55,7 +55,7 @@ struct modbus_source {
     struct log_pace pace;      /* rate limit of the log line "no readings" */
     bool loss_said;            /* the log says that there are no readings, and not yet that readings are back */
     struct log_pace unit_pace; /* rate limit of the log line about answers that name another unit */
-    bool *refused;             /* by index in plant->tags: the device refuses to read this tag */
+    bool *refused;             /* flag by index in plant->tags: the device refuses to read this tag */
     struct sample *samples;    /* buffer for one sample of each tag */
     int *lost;                 /* buffer for the indices of all tags */
 };

@@ -315,7 +315,7 @@ static int ask_framed(struct modbus_link *link, const struct modbus_question *qu
     return status;
 }
 
-/* Returns 0, an exception code, or -errno. */
+/* Sends a request and reads its response. Returns 0, a Modbus exception code, or -errno. */
 static int ask(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     enum register_table table = question->table;

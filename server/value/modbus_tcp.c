@@ -10,7 +10,7 @@
 #include "value/read_plan.h"
 
 enum {
-    HEADER_BYTES = 7, /* transaction identifier, protocol, length of what follows, unit */
+    HEADER_BYTES = 7, /* transaction identifier, protocol, length of the rest, unit */
     REFUSED = 0x80,   /* flag in the function code of an exception response */
     LAST_EXCEPTION = 11,
     MOST_VALUE_BYTES = 2 * READ_PLAN_MAX_REGISTERS, /* READ_PLAN_MAX_BITS take as many bytes */

@@ -99,7 +99,7 @@ void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit,
     lose_tags_of(modbus, unit);
 }
 
-/* --- one block, or the whole unit ------------------------------------------------------------------------------------------- */
+/* --- is a block or its unit to blame ---------------------------------------------------------------------------------------- */
 
 /* Returns the block of the same unit that is due next, other than `block`; NULL if there is none. */
 static struct read_plan_block *other_block(struct modbus_source *modbus, const struct read_plan_block *block)

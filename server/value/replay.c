@@ -14,7 +14,7 @@
 #include "value/series.h"
 
 static const int64_t ROUND_NS = 50 * NS_PER_MS;
-static const int64_t LATEST_NS = 10 * NS_PER_S; /* after a sleep of the machine, samples older than this are skipped */
+static const int64_t LATEST_NS = 10 * NS_PER_S; /* samples older than this are skipped, for example after the machine slept */
 
 struct replay_lane { /* a tag and its series */
     int tag;

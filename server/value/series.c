@@ -110,7 +110,7 @@ static void add(struct series *series, double time_s, double value)
     series->value[series->count++] = value;
 }
 
-struct clock {     /* converts the time column of one file to seconds */
+struct clock {     /* state for converting the time column of one file to seconds */
     bool instants; /* the column has dates and times; otherwise numbers */
     bool begun;    /* first or first_us is set */
     double unit_s, first, last_s;
@@ -372,7 +372,7 @@ double series_at(const struct series *series, double time_s, bool loop)
     return series->value[low];
 }
 
-/* --- what is there -------------------------------------------------------------------------------------------------------------- */
+/* --- listing series ------------------------------------------------------------------------------------------------------------- */
 
 enum { HEAD_BYTES = 32 << 20, HEAD_LINES = 200000 };
 

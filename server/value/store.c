@@ -335,7 +335,7 @@ static void lose(struct store *store, size_t tag, bool dead, int64_t now_mono_ns
     struct held *held = &store->tags[tag];
     if (now_mono_ns < held->sampled_mono_ns)
         return;
-    if (!held->lost || (dead && !held->dead)) /* even if its own quality stays, that of tags which depend on it may change */
+    if (!held->lost || (dead && !held->dead)) /* even if this tag's quality stays, the quality of tags that depend on it may change */
         tell_watch(store);
     held->lost = true;
     held->dead |= dead;

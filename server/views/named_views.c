@@ -128,7 +128,7 @@ enum refusal_code named_views_remove(struct named_views *views, const char *id)
     return kept_list_put(&views->kept, list);
 }
 
-/* --- what there is ---------------------------------------------------------------------------------------------------------- */
+/* --- messages --------------------------------------------------------------------------------------------------------------- */
 
 uint64_t named_views_number(const struct named_views *views)
 {

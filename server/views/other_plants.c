@@ -118,7 +118,7 @@ static enum why why_of_status(long status)
                                             : WHY_NO_PICTURE;
 }
 
-/* Checks a complete answer. Returns what is wrong with it, with a description for the log. */
+/* Checks a complete answer. Returns the reason to reject it, with a description for the log, or WHY_NONE. */
 static enum why judge(struct other *other, struct other_picture *about, char said[160])
 {
     const struct other_plant *plant = other->plant;
@@ -272,7 +272,7 @@ static void *run(void *arg)
     return NULL;
 }
 
-/* --- what displays are told ---------------------------------------------------------------------------------------------------- */
+/* --- messages to displays ------------------------------------------------------------------------------------------------------ */
 
 static bool is_shown(const struct other *other, int64_t now_ns)
 {
@@ -324,7 +324,7 @@ char *other_plants_picture(struct other_plants *others, int which, int64_t numbe
     return copy;
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------------- */
+/* --- start and stop --------------------------------------------------------------------------------------------------------- */
 
 struct other_plants *other_plants_start(struct log *log, const struct plant *plant)
 {

@@ -9,7 +9,7 @@
 #include "base/text/json_text.h"
 #include "views/kept_list.h"
 
-enum { SEEN = 256 }; /* maximum number of displays in the plant file */
+enum { SEEN = 256 }; /* maximum number of displays in a plant file */
 
 struct pointer {
     struct wall_place place;
@@ -178,7 +178,7 @@ bool wall_remote_mirror_pointers(struct wall_remote *remote, const json_t *point
     return good;
 }
 
-/* --- who is there ----------------------------------------------------------------------------------------------------------- */
+/* --- connected displays ----------------------------------------------------------------------------------------------------- */
 
 void wall_remote_see(struct wall_remote *remote, const char *wall, int display, bool there)
 {
@@ -197,7 +197,7 @@ void wall_remote_see(struct wall_remote *remote, const char *wall, int display, 
     remote->kept.number++;
 }
 
-/* --- what is said of it ----------------------------------------------------------------------------------------------------- */
+/* --- messages --------------------------------------------------------------------------------------------------------------- */
 
 uint64_t wall_remote_number(const struct wall_remote *remote)
 {

@@ -20,7 +20,7 @@ struct wall_place {
 
 struct wall_order {
     struct wall_place place;
-    const char *view, *title; /* as in a named view; view "": the pane's own */
+    const char *view, *title; /* address and title as in a named view; view "": the pane's own views */
     bool held;                /* the pane stops changing. Neither `view` nor `held`: the pane is released */
     const char *desk;
 };

@@ -187,7 +187,7 @@ static int open_to_write(struct database *database, int *version)
     /* FULL: a committed transaction survives a loss of power. */
     static const char set_up[] = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL";
     int code = open_handle(database, database->path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
-    if (code == SQLITE_OK) /* must come first: some settings apply only to a file without pages */
+    if (code == SQLITE_OK) /* the format's pragmas must come first: some apply only to a file without pages */
         code = sqlite3_exec(database->handle, database->format->set_up, NULL, NULL, NULL);
     if (code == SQLITE_OK)
         code = sqlite3_exec(database->handle, set_up, NULL, NULL, NULL);

@@ -13,11 +13,11 @@ extern "C" {
 #define IMAGE_WHY_BYTES 200
 
 struct image {
-    uint8_t *rgba; /* rows from the top; sRGB, or as in the file; alpha not premultiplied; free with mem_free() */
+    uint8_t *rgba; /* pixels in rows from the top; sRGB, or as in the file; alpha not premultiplied; free with mem_free() */
     uint32_t width_px, height_px;
 };
 struct image_float {
-    float *rgba; /* rows from the top, linear light, converted if the file has sRGB; free with mem_free() */
+    float *rgba; /* pixels in rows from the top; linear light, converted if the file has sRGB; free with mem_free() */
     uint32_t width_px, height_px;
 };
 

@@ -20,7 +20,7 @@ static const int64_t REPEAT_NS = 1000000000;
 struct log {
     enum log_level level;
     enum log_format format;
-    char *plant, *journal_socket; /* NULL: no plant name; NULL: the system journal's own socket */
+    char *plant, *journal_socket; /* plant's name, NULL: none; path of the journal's socket, NULL: the system's */
     pthread_mutex_t lock;
     /* --- below: under `lock` */
     char last[LINE_BYTES];

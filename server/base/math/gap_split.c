@@ -9,10 +9,10 @@
 #include "base/math/vec.h"
 
 enum { BINS = 256, SPLITS_MOST = 64 };
-static const double SMALL_SHARE = 0.02; /* fraction of the area that all small stray pieces have together at most */
-/* in sizes of the main part: gap length beyond which small pieces, and pieces of any size, are stray */
+static const double SMALL_SHARE = 0.02; /* maximum fraction of the area that all small stray pieces have together */
+/* stray: small pieces beyond a gap of SMALL_GAP main-part sizes, all pieces beyond a gap of LARGE_GAP */
 static const double SMALL_GAP = 1, LARGE_GAP = 100;
-static const double ONE_PLACE = 1e-3; /* in sizes of the main part: corners farther apart are at different places */
+static const double ONE_PLACE = 1e-3; /* corners farther apart than this fraction of the main part's size are at different places */
 
 struct tri_range {
     struct gap_tri *tris;

@@ -6,7 +6,7 @@
 #define BASE_MATH_SIMD_H
 #include <stdbool.h>
 
-enum simd_level { SIMD_PLAIN, SIMD_HAS_AVX2, SIMD_HAS_AVX512 }; /* AVX-512: F, VL, BW and DQ */
+enum simd_level { SIMD_PLAIN, SIMD_HAS_AVX2, SIMD_HAS_AVX512 }; /* SIMD_HAS_AVX512: the processor has AVX-512 F, VL, BW and DQ */
 
 /* Write the loop as a SIMD_BODY function, and call it from a plain function and from a function marked SIMD_AVX2. */
 #define SIMD_BODY static inline __attribute__((always_inline))

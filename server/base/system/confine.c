@@ -191,7 +191,7 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
     static const struct {
         int abi;
         const char *missing;
-    } parts[] = { /* what seccomp does not cover: it covers TCP and devices for both roles, and the rest for readers */
+    } parts[] = { /* access left open without that Landlock ABI; seccomp still blocks TCP and devices, and for readers the rest too */
         { ABI_RENAME, "read and write all files of this user" },
         { ABI_TRUNCATE, "empty all files that this user may write" },
         { ABI_SCOPES, "signal other processes of this user" },

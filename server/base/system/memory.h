@@ -11,7 +11,7 @@ size_t memory_machine_bytes(void);
 size_t memory_default_bytes(void);
 
 struct memory_use {             /* all in bytes */
-    size_t resident, anonymous; /* in RAM; the part of it that is not mapped from files */
+    size_t resident, anonymous; /* resident: bytes in RAM; anonymous: resident bytes that are not mapped from files */
     size_t allocated;           /* allocated by malloc */
 };
 void memory_measure(struct memory_use *use); /* Fills *use with the current numbers. */

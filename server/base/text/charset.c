@@ -157,7 +157,7 @@ bool charset_fits(const char *bytes, size_t count, const char *encoding)
     return damaged == 0;
 }
 
-/* --- finding it ------------------------------------------------------------------------------------------------------------- */
+/* --- detection -------------------------------------------------------------------------------------------------------------- */
 
 /* Returns the number of valid UTF-8 characters beyond ASCII, and sets *invalid to the number of bytes that are not valid UTF-8. */
 static size_t count_utf8(const char *bytes, size_t count, size_t *invalid)

@@ -14,7 +14,7 @@
 
 enum { SAMPLE_BYTES = 1 << 16, MOST_LINE = 512 };
 
-/* --- models of encodings with two bytes a character ------------------------------------------------------------------------- */
+/* --- models of two-byte encodings ------------------------------------------------------------------------------------------- */
 
 /* Frequent characters in texts about process plants: simplified and traditional Chinese, Japanese, Korean. The models assume that they
    make up half of a text. */
@@ -148,12 +148,12 @@ static const struct wide_model wide_models[] = {
     { "Big5", traditional, -2, rate_big5 }, { "EUC-JP", japanese, -2, rate_eucjp },
 };
 
-/* --- models of encodings with one byte a character -------------------------------------------------------------------------- */
+/* --- models of one-byte encodings ------------------------------------------------------------------------------------------- */
 
 struct narrow_model {
     const char *name, *lower, *upper, *rare; /* letters, the most frequent first; rare letters */
     double prior;
-    bool latin; /* its letters are mixed with ASCII letters */
+    bool latin; /* words in this encoding mix its letters with ASCII letters */
 };
 
 static const char signs[] = "°³²µ«»–—·±№§“”„…’™®½×Ø";
@@ -322,7 +322,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
         if (length == 2 && set->pairs[pair / 64] >> pair % 64 & 1)
             rate = frequent;
         if (length == 2 && second < 0x80)
-            rate += 3; /* one-byte models do not count this byte */
+            rate += 3; /* an ASCII second byte, which the one-byte models do not score */
         if (length == 1 && rate >= 0 && model->rate == rate_gb && in(second, 0x30, 0x39) && at + 3 < to && in(at[3], 0x30, 0x39)) {
             length = 4; /* a four-byte character of GB 18030 that GBK lacks */
             rate = -14;
@@ -335,7 +335,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
     return score;
 }
 
-/* --- the choice --------------------------------------------------------------------------------------------------------------- */
+/* --- choosing an encoding ----------------------------------------------------------------------------------------------------- */
 
 /* Copies the parts of lines that have high bytes. */
 static size_t take_sample(const char *bytes, size_t count, char sample[SAMPLE_BYTES])

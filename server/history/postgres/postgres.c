@@ -203,7 +203,7 @@ static void fill(struct postgres *postgres)
     postgres->params.restored(postgres->params.arg);
 }
 
-/* --- what waits --------------------------------------------------------------------------------------------------------------- */
+/* --- waiting points ----------------------------------------------------------------------------------------------------------- */
 
 static void count_month(struct postgres *postgres, struct waiting_month *month)
 {

@@ -24,7 +24,7 @@ struct postgres_link {
     PGconn *library;
     int stop_fd;
     int64_t stop_by_ns;            /* 0: the program is not ending */
-    int64_t connect_ns, answer_ns; /* time limits for connecting and for an answer */
+    int64_t connect_ns, answer_ns; /* nanoseconds; time limits for connecting and for an answer */
     struct {
         char *at;
         size_t length, capacity;

@@ -19,7 +19,7 @@
 
 enum { POINTS_AT_ONCE = 100000, NUMBER_BYTES = 24, MARK_BYTES = 100 };
 
-/* --- where it stands ---------------------------------------------------------------------------------------------------------- */
+/* --- progress ----------------------------------------------------------------------------------------------------------------- */
 
 static char *mark_path(const struct postgres_restore *restore)
 {
@@ -69,7 +69,7 @@ static void end(struct postgres_restore *restore)
         log_info(restore->log, "history: restored %lld points from PostgreSQL", (long long)restore->points);
 }
 
-/* --- there -------------------------------------------------------------------------------------------------------------------- */
+/* --- in the database ---------------------------------------------------------------------------------------------------------- */
 
 /* Ends the lines in the database at their last points, as month_file_recover() does. The newest samples are recorded even if later
    points exist: a standby may have sent its first points already. */

@@ -15,7 +15,7 @@ struct postgres_tables { /* state of one connection; zero-initialise, free with 
     struct postgres_tag {
         int32_t id; /* id in the database; 0: not known */
         char *unit;
-    } *tags;        /* array by id in the month's file */
+    } *tags;        /* tags of the month, by their id in the month's file */
     size_t tag_capacity;
 };
 

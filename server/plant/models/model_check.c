@@ -22,8 +22,8 @@ struct plant_models_check {
     const struct plant *plant;
     struct diag *diag;
     struct model_header header; /* header of the model being checked */
-    bool *taken;                /* by node: belongs to the asset being checked */
-    bool *counted;              /* by node: belongs to any asset checked so far */
+    bool *taken;                /* flag by node: the node belongs to the asset being checked */
+    bool *counted;              /* flag by node: the node belongs to an asset checked so far */
     uint64_t triangles;         /* triangles of all models; a model that several assets share counts once */
     uint32_t *found;
 };

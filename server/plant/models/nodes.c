@@ -130,7 +130,7 @@ static bool matches(const struct pattern *pattern, const struct model_node *node
     return false;
 }
 
-/* --- what does not match ------------------------------------------------------------------------------------------------------ */
+/* --- patterns without a match ------------------------------------------------------------------------------------------------- */
 
 static const char *near_mesh(const char *text, const struct node_list *model)
 {
@@ -177,7 +177,7 @@ static void say_none(const struct pattern *pattern, const char *text, const stru
     snprintf(why, bytes, forms[pattern->kind], text, near);
 }
 
-/* --- taking ------------------------------------------------------------------------------------------------------------------- */
+/* --- applying patterns -------------------------------------------------------------------------------------------------------- */
 
 /* Returns false if no node matches. */
 static bool mark(const struct pattern *pattern, const struct node_list *model, bool *marks, bool value)

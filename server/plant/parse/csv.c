@@ -162,7 +162,7 @@ static void check_header(struct csv *csv)
 
 static const char WANTED[] = "a table (CSV)";
 
-/* Begins reading `text`, whose ownership it takes. text NULL: the file could not be read. */
+/* Takes ownership of `text` and reads the header row. text NULL: the file could not be read. */
 static bool begin(struct csv *csv, const char *path, char *text, struct diag *diag)
 {
     if (!text)

@@ -100,7 +100,7 @@ void plant_alarms_read_row(struct tag_columns *columns, struct plant *plant, str
         cell_warning(columns, COL_MIRRORS, "Mirrors has no effect, since the plant file does not say `alarms: mirror`");
 }
 
-/* --- the list as a whole ---------------------------------------------------------------------------------------------------- */
+/* --- references between rows ------------------------------------------------------------------------------------------------ */
 
 #define reference_error(r, ...) diag_error(diag, plant->tags_path, (r)->line, (r)->at_column, __VA_ARGS__)
 

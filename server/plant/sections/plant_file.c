@@ -92,7 +92,7 @@ static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *reco
                    "time_zone: unknown time zone '%.60s'; expected an IANA name such as Europe/Berlin or UTC", plant->time_zone);
 }
 
-/* --- lists of things with an id --------------------------------------------------------------------------------------------- */
+/* --- lists of records with ids ---------------------------------------------------------------------------------------------- */
 
 void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,
                          size_t stride, size_t line_offset)

@@ -11,7 +11,7 @@
 
 enum { MIN_PER_DAY = 24 * 60, DAYS = 7, ALL_DAYS = (1 << DAYS) - 1 };
 
-/* --- addresses -------------------------------------------------------------------------------------------------------------- */
+/* --- mail addresses --------------------------------------------------------------------------------------------------------- */
 
 /* Returns whether the text is a mail address that a header line can hold unquoted. */
 static bool is_mail_address(const char *text)
@@ -327,7 +327,7 @@ static void read_rules(struct yaml_reader *reader, yaml_node_t *node, void *reco
         read_rule(reader, yaml_list_item(reader, node, i), notify, &notify->rules[notify->rule_count++]);
 }
 
-/* --- the whole -------------------------------------------------------------------------------------------------------------- */
+/* --- the key `notify` ------------------------------------------------------------------------------------------------------- */
 
 static yaml_node_t *value_of(struct yaml_reader *reader, const yaml_node_t *map, const char *key)
 {

@@ -32,7 +32,7 @@ struct tag_text {
     size_t width;             /* number of columns in the header */
 };
 
-/* --- reading: as plant/parse/csv.c, but where things stand -------------------------------------------------------------------------- */
+/* --- reading cell positions --------------------------------------------------------------------------------------------------------- */
 
 static bool ends(char c)
 {
@@ -270,7 +270,7 @@ char *tag_edit(const char *text, const struct tag_edit *edits, size_t count, str
     return out;
 }
 
-/* --- what differs ------------------------------------------------------------------------------------------------------------- */
+/* --- differences -------------------------------------------------------------------------------------------------------------- */
 
 struct text_lines {
     struct cell_span *at;

@@ -23,7 +23,7 @@ struct tag_list {
     struct alarm_references references;
 };
 
-/* --- what the tag belongs to ------------------------------------------------------------------------------------------------ */
+/* --- source, group, asset --------------------------------------------------------------------------------------------------- */
 
 static void read_source(struct tag_list *list)
 {
@@ -103,7 +103,7 @@ static void read_place(struct tag_list *list)
                    "'%.60s' has a group and an asset but no place: expected Node, or X, Y and Z, or Place: equipment", tag->name);
 }
 
-/* --- meaning ---------------------------------------------------------------------------------------------------------------- */
+/* --- unit, limits, timing --------------------------------------------------------------------------------------------------- */
 
 /* Reports why the unit of a row cannot be converted to its group's unit. */
 static void report_unit(struct tag_list *list, enum unit_match match, const char *text)
@@ -228,7 +228,7 @@ static void read_row(struct tag_list *list)
     plant_alarms_read_row(&list->columns, plant, list->tag, &list->references);
 }
 
-/* --- the list as a whole ---------------------------------------------------------------------------------------------------- */
+/* --- the whole list --------------------------------------------------------------------------------------------------------- */
 
 static int by_name(const void *pa, const void *pb, void *tags_ptr)
 {

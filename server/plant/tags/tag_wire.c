@@ -207,7 +207,7 @@ static void read_scaling(struct tag_wire *wire)
             cell_warning(wire->columns, clamp, "%s has no effect: what is beyond the range is shown as such", tag_column_name(clamp));
 }
 
-/* --- what tells that there is no sensor ------------------------------------------------------------------------------------- */
+/* --- values that mean "no sensor" ------------------------------------------------------------------------------------------- */
 
 static void read_ne43(struct tag_wire *wire)
 {

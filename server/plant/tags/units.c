@@ -71,7 +71,7 @@ static const char *const kind_names[] = {
 struct unit_entry {
     const char *names; /* normalised names separated by |; the first one is for messages */
     enum quantity_kind kind;
-    double factor, offset; /* SI = value * factor + offset */
+    double factor, offset; /* conversion: SI value = value * factor + offset */
 };
 
 static const struct unit_entry units[] = {
@@ -363,7 +363,7 @@ static bool find(const char *name, struct unit_entry *out)
     return unit || find_pressure(name, out) || find_difference(name, out);
 }
 
-/* --- for others ------------------------------------------------------------------------------------------------------------- */
+/* --- interface -------------------------------------------------------------------------------------------------------------- */
 
 /* Compares unknown units: case-insensitive except for the first letter, since prefixes such as M and m, P and p differ. */
 static bool written_alike(const char *a, const char *b)

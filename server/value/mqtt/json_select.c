@@ -16,7 +16,7 @@ static const json_t *item_at(const json_t *array, long index)
     return (size_t)-index <= count ? json_array_get(array, count - (size_t)-index) : NULL;
 }
 
-/* --- items that name themselves --------------------------------------------------------------------------------------------- */
+/* --- items with a name ------------------------------------------------------------------------------------------------------ */
 
 static bool names_its_object(const char *key)
 {
@@ -100,7 +100,7 @@ static bool all_hold(const json_t *item, const struct json_path_step *step)
     return true;
 }
 
-/* --- walking ---------------------------------------------------------------------------------------------------------------- */
+/* --- walking a path --------------------------------------------------------------------------------------------------------- */
 
 static void walk(const json_t *value, const json_t *holder, const char *at, const char *tag, struct json_selected *out);
 

@@ -58,7 +58,7 @@ static void client_unref(struct mqtt_client *client)
     mem_free(client);
 }
 
-/* --- what the library calls ------------------------------------------------------------------------------------------------- */
+/* --- library callbacks ------------------------------------------------------------------------------------------------------ */
 
 static void on_log(struct mosquitto *library, void *arg, int level, const char *line)
 {
@@ -110,7 +110,7 @@ static void on_subscribe(struct mosquitto *library, void *arg, int id, int count
         client->events->subscribed(client->events->arg);
 }
 
-/* --- making one ------------------------------------------------------------------------------------------------------------- */
+/* --- creating a client ------------------------------------------------------------------------------------------------------ */
 
 static void init_library(void)
 {

@@ -28,7 +28,7 @@ struct mqtt_source {
     struct log_pace refusals; /* rate limit of the log line about refused messages */
     char last_refused[300];   /* topic and reason of the last refused message, for the log */
     struct log_pace absences; /* rate limit of the log line about messages without the value of a tag that no message has held yet */
-    bool *matched;            /* by index in plant->tags: a JSON message has held this tag's value */
+    bool *matched;            /* flag by index in plant->tags: a JSON message has held this tag's value */
     int64_t skew_said_ns[2];  /* monotonic time of the last log line about sender clocks that are [0] behind, [1] ahead */
 };
 

@@ -114,7 +114,8 @@ static struct json_selected value_of(const json_t *root, const struct mqtt_reade
     return json_select(root, json_is_object(root) ? "value" : "$", reader->tag);
 }
 
-/* Returns what a path selects, if it is one value. A path that begins with `@` starts in the object that contains the tag's value. */
+/* Returns the value that a path selects, or NULL if it does not select exactly one. A path that begins with `@` starts in the object
+   that contains the tag's value. */
 static const json_t *beside(const json_t *root, const struct json_selected *value, const char *path, const char *tag)
 {
     struct json_selected found = json_select(*path == '@' ? value->holder : root, path, tag);

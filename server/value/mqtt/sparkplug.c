@@ -39,8 +39,8 @@ struct sparkplug {
     struct sparkplug_node *nodes;
     size_t node_count;
     size_t *node_of;             /* index of the node, by topic */
-    bool *is_born;               /* by topic: the node or device is alive */
-    uint32_t *types;             /* by tag: metric type from the birth; 0: not in a birth */
+    bool *is_born;               /* flag by topic: the node or device is alive */
+    uint32_t *types;             /* metric type from the birth, by tag; 0: not in a birth */
     struct stamped_value *last;  /* last value, by tag */
     bool *has_last, *in_message; /* by tag */
 };
@@ -48,7 +48,7 @@ struct sparkplug {
 enum verb { NBIRTH, NDEATH, NDATA, DBIRTH, DDEATH, DDATA, OTHER };
 static const char *const verbs[] = { "NBIRTH", "NDEATH", "NDATA", "DBIRTH", "DDEATH", "DDATA" };
 
-/* --- who there is ----------------------------------------------------------------------------------------------------------- */
+/* --- nodes and topics ------------------------------------------------------------------------------------------------------- */
 
 /* Finds a node by linear search: there are few nodes, and each message searches once. */
 static struct sparkplug_node *find_node(const struct sparkplug *sparkplug, const char *group, size_t group_length, const char *name,
@@ -318,7 +318,7 @@ static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node,
     return good;
 }
 
-/* --- the sequence ----------------------------------------------------------------------------------------------------------- */
+/* --- sequence numbers ------------------------------------------------------------------------------------------------------- */
 
 /* Makes all readings of a node uncertain after lost messages: its values may have changed unnoticed. */
 static void doubt_all(struct sparkplug *sparkplug, const struct sparkplug_node *node)

@@ -26,7 +26,7 @@ struct opcua_source {
     struct host_turn turn;
     bool link_up, link_known;
     int refusals_said;
-    bool *wrong; /* by node: its last value was no number, which was logged */
+    bool *wrong; /* flag by node: its last value was no number, which was logged */
     int64_t skew_said_ns;
 };
 

@@ -18,7 +18,7 @@ enum { TIMEOUT_MS = 5000, CLOSING_MS = 300, CHANNEL_MS = 3600000, SESSION_MS = 6
 enum { MESSAGE_BYTES = 2 << 20, CHUNKS = 512, BUFFER_BYTES = 65536 }; /* limits for one message of the server */
 enum { DISCOVERIES = 3 };                                             /* discovery attempts; a server may redirect us to another address */
 
-/* --- what the library asks for ---------------------------------------------------------------------------------------------- */
+/* --- library callbacks ------------------------------------------------------------------------------------------------------ */
 
 static void on_log(void *arg, UA_LogLevel level, UA_LogCategory category, const char *format, va_list args)
 {
@@ -104,7 +104,7 @@ static int open_library(struct opcua_client *client, const UA_EndpointDescriptio
     }
 }
 
-/* --- which endpoint --------------------------------------------------------------------------------------------------------- */
+/* --- choosing an endpoint --------------------------------------------------------------------------------------------------- */
 
 static bool is_text(UA_String string, const char *text)
 {

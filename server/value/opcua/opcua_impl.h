@@ -28,7 +28,7 @@ struct opcua_client {
     char **namespaces;    /* namespace URIs of the server, by namespace index */
     size_t namespace_count;
     UA_UInt16 *numbers;        /* namespace index of each node; NO_NAMESPACE: the server has no such URI */
-    bool *refused, *no_filter; /* by node: not subscribed; to be subscribed without a deadband */
+    bool *refused, *no_filter; /* flags by node: the server refused it; to be subscribed without a deadband */
     size_t refused_count;
     struct { /* the request in progress */
         bool done;
