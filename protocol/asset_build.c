@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Asset files, laid out from their parts. */
+/* Builds asset files in memory from their parts. */
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* the hash state is on the stack */
 #include <xxhash.h>
 
 #include "protocol/asset_distance.h"
@@ -62,7 +62,7 @@ static void bounds_of(const struct asset_parts *parts, struct asset_header *h)
         }
 }
 
-/* One for each primitive. NULL: out of memory. */
+/* Makes one cluster per primitive. NULL: out of memory. */
 static struct asset_cluster *plain_clusters(const struct asset_parts *parts, uint32_t *count)
 {
     struct asset_cluster *clusters = calloc(parts->primitive_count + 1u, sizeof(*clusters));

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Boxes and cones of an asset's clusters. */
+/* Computes bounding boxes and normal cones of an asset's clusters. */
 #include <float.h>
 #include <math.h>
 
 #include "protocol/asset_format_impl.h"
 
-#define CONE_LEAST 0.1 /* cosine: of wider cones hardly a view sees only backs */
+#define MIN_CONE_COSINE 0.1 /* cosine of the half angle: wider cones hardly ever face away entirely */
 
 double asset_length(const float v[3])
 {
     return sqrt((double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2]);
 }
 
-/* False: a triangle without area, which is not seen from any side. */
+/* Returns false for a triangle without area, which is invisible from all sides. */
 static bool face_normal(const float (*positions_m)[3], const uint32_t v[3], double n[3])
 {
     double u[3], w[3];
@@ -49,7 +49,7 @@ static void measure_cone(struct asset_cluster *cluster, const float (*positions_
     for (int axis = 0; axis < 3; axis++)
         cluster->cone_axis[axis] = length > 0 ? (float)(sum[axis] / length) : 0;
     double least = length > 0 ? asset_cluster_least_dot(cluster, positions_m, indices, cluster->cone_axis) : 0;
-    if (least > CONE_LEAST)
+    if (least > MIN_CONE_COSINE)
         cluster->cone_cutoff = (float)sqrt(fmax(0, 1 - least * least));
     else
         *cluster = (struct asset_cluster){ .first_index = cluster->first_index, .index_count = cluster->index_count, .cone_cutoff = 1 };

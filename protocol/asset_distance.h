@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances along the surface as an asset file has them: 16 bits each, in blocks of vertices, so that what a block needs lies together.
-   A code has 5 bits of exponent and 11 of fraction, as a half-precision float has without its sign, but for larger numbers: off by 2^-12 of
-   itself at most from 61 um to 131 km, by 15 nm below. Layout: [block][sensor][ASSET_DISTANCE_BLOCK]. Thread: any. */
+/* Geodesic distances as an asset file stores them: 16 bits each, in blocks of vertices, so that data used together is contiguous. A code
+   has 5 bits of exponent and 11 of fraction, like a half-precision float without sign, but for larger numbers: the relative error is at
+   most 2^-12 from 61 um to 131 km; below, the error is 15 nm. Layout: [block][sensor][ASSET_DISTANCE_BLOCK]. Thread: any. */
 #ifndef PROTOCOL_ASSET_DISTANCE_H
 #define PROTOCOL_ASSET_DISTANCE_H
 #include <math.h>
@@ -11,12 +11,12 @@
 
 #include "protocol/asset_format.h"
 
-#define ASSET_DISTANCE_BLOCK 256u       /* vertices; the last block is filled up with ASSET_DISTANCE_NONE */
-#define ASSET_DISTANCE_NONE 0xffffu     /* infinity: cannot be reached */
-#define ASSET_DISTANCE_MOST_M 130000.0f /* longer ones are this long */
+#define ASSET_DISTANCE_BLOCK 256u       /* vertices; the last block is padded with ASSET_DISTANCE_NONE */
+#define ASSET_DISTANCE_NONE 0xffffu     /* infinity: not reachable */
+#define ASSET_DISTANCE_MOST_M 130000.0f /* longer distances are stored as this one */
 
-/* Returns the distance, in metres, that a code stands for; INFINITY for ASSET_DISTANCE_NONE. Always inlined, so that it becomes part of
-   loops that are built for other processors. */
+/* Returns the distance of a code in metres; INFINITY for ASSET_DISTANCE_NONE. Always inlined, so that it becomes part of loops that are
+   built for other processors. */
 static inline __attribute__((always_inline)) float asset_distance_of(uint16_t code)
 {
     uint32_t bits = (uint32_t)code << 12;
@@ -25,30 +25,30 @@ static inline __attribute__((always_inline)) float asset_distance_of(uint16_t co
     return code == ASSET_DISTANCE_NONE ? INFINITY : small * 0x1p112f;
 }
 
-/* Returns the code nearest to a distance >= 0 in metres; ASSET_DISTANCE_NONE for INFINITY, and for NaN. */
+/* Returns the code nearest to a distance >= 0 in metres; ASSET_DISTANCE_NONE for INFINITY and NaN. */
 static inline uint16_t asset_distance_code(float distance_m)
 {
     float small = (distance_m < ASSET_DISTANCE_MOST_M ? distance_m : ASSET_DISTANCE_MOST_M) * 0x1p-112f;
     uint32_t bits;
     memcpy(&bits, &small, sizeof(bits));
-    bits += 0x7ffu + (bits >> 12 & 1u); /* half to even */
+    bits += 0x7ffu + (bits >> 12 & 1u); /* round half to even */
     return distance_m <= 0x1p127f ? (uint16_t)(bits >> 12) : ASSET_DISTANCE_NONE;
 }
 
-/* Returns how many codes the distances of so many sensors and vertices take. */
+/* Returns the number of codes for all distances of these sensors and vertices. */
 static inline size_t asset_distance_count(size_t sensor_count, size_t vertex_count)
 {
     return sensor_count * ((vertex_count + ASSET_DISTANCE_BLOCK - 1) / ASSET_DISTANCE_BLOCK) * ASSET_DISTANCE_BLOCK;
 }
 
-/* Returns the codes of a block of vertices and a sensor; vertex: any of the block. They belong to the view. */
+/* Returns the codes of one sensor for a block of vertices. vertex: any of the block. Owned by the view. */
 static inline const uint16_t *asset_distance_codes(const struct asset_view *view, size_t sensor, size_t vertex)
 {
     size_t block = vertex / ASSET_DISTANCE_BLOCK;
     return view->geodesic + (block * view->header->sensor_count + sensor) * ASSET_DISTANCE_BLOCK;
 }
 
-/* Returns the distance of a vertex from a sensor, in metres; INFINITY where no way leads. */
+/* Returns the distance of a vertex from a sensor in metres; INFINITY if there is no path. */
 static inline float asset_distance_m(const struct asset_view *view, size_t sensor, size_t vertex)
 {
     return asset_distance_of(asset_distance_codes(view, sensor, vertex)[vertex % ASSET_DISTANCE_BLOCK]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Asset files: bytes checked into a view. */
+/* Checks the bytes of an asset file and makes a view of them. */
 #include "protocol/asset_format.h"
 
 #include <math.h>
@@ -208,7 +208,7 @@ static bool levels_good(struct format_check *c)
     return true;
 }
 
-/* A box that is too small, or a cone too narrow, would make holes in the picture. */
+/* Checks a cluster's box and cone: if they were too small, culling would leave holes in frames. */
 static bool cluster_good(struct format_check *c, uint32_t number)
 {
     const struct asset_view *v = &c->view;
@@ -312,7 +312,7 @@ static bool materials_good(struct format_check *c)
     return true;
 }
 
-/* Every code of a distance is one: nothing to check there. */
+/* Checks sensors. Distances need no check, since every code is valid. */
 static bool sensors_good(struct format_check *c)
 {
     const struct asset_view *v = &c->view;

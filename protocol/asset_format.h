@@ -11,13 +11,13 @@
 #define ASSET_VERSION 5u
 #define ASSET_ALIGN 64u
 #define ASSET_NO_TEXTURE UINT32_MAX
-#define ASSET_SECOND_MASK 0x1eu /* of asset_material.second */
+#define ASSET_SECOND_MASK 0x1eu /* bits of asset_material.second that may be set */
 
 enum asset_section {
     ASSET_POSITIONS,        /* float[3] per vertex: asset frame (metres, Z up) minus header.origin_m */
     ASSET_NORMALS,          /* float[3] per vertex, unit length */
     ASSET_TEXCOORDS,        /* float[2] per vertex; 0 bytes: no texture anywhere in the asset */
-    ASSET_SECOND_TEXCOORDS, /* likewise; 0 bytes: no material has textures there */
+    ASSET_SECOND_TEXCOORDS, /* float[2] per vertex; 0 bytes: no material uses them */
     ASSET_COLORS,           /* uint8[4] per vertex, linear RGBA; 0 bytes: none */
     ASSET_INDICES,          /* uint32 per corner */
     ASSET_PRIMITIVES,       /* struct asset_primitive */
@@ -25,10 +25,10 @@ enum asset_section {
     ASSET_CLUSTERS,         /* struct asset_cluster, primitive by primitive */
     ASSET_MATERIALS,        /* struct asset_material */
     ASSET_TEXTURES,         /* struct asset_texture */
-    ASSET_TEXELS,           /* bytes: RGBA8, rows from the top, as asset_texture says */
+    ASSET_TEXELS,           /* RGBA8 texels, rows from the top, described by asset_texture */
     ASSET_SENSORS,          /* struct asset_sensor, in the order of the tag list's rows for this asset */
-    ASSET_GEODESIC,         /* uint16[block][sensor][vertex of the block]: distances along the surface, see asset_distance.h */
-    ASSET_NAMES,            /* bytes: strings, each ended by 0 */
+    ASSET_GEODESIC,         /* uint16[block][sensor][vertex of the block]: geodesic distances, see asset_distance.h */
+    ASSET_NAMES,            /* strings, each ended by a 0 byte */
     ASSET_SECTION_COUNT
 };
 
@@ -41,8 +41,8 @@ struct asset_header {
     uint32_t version, header_bytes;
     uint64_t file_bytes;
     uint64_t checksum;  /* XXH3-64 of the file with this field 0 */
-    uint64_t key;       /* XXH3-64 of all that went in: model bytes, node pattern, units, sensor places, program's format version */
-    double origin_m[3]; /* asset frame */
+    uint64_t key;       /* XXH3-64 of all inputs: model bytes, node pattern, units, sensor positions, the program's format version */
+    double origin_m[3]; /* in the asset frame */
     float bounds_min_m[3], bounds_max_m[3]; /* of the positions, relative to origin_m */
     uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, cluster_count;
     struct asset_section_entry sections[ASSET_SECTION_COUNT];
@@ -54,18 +54,18 @@ struct asset_primitive {               /* a run of triangles with one material, 
     uint32_t name; /* offset in ASSET_NAMES: the node's name */
 };
 
-struct asset_level { /* a level of detail: its primitives, and the prefix of the vertices that it uses */
+struct asset_level { /* a level of detail: its primitives, and the number of vertices, from the first, that it uses */
     uint32_t first_primitive, primitive_count, vertex_count;
-    uint32_t added_count; /* of its vertices beyond the next coarser level's, the last so many are not the model's own */
-    float error_m;        /* 0 for the finest */
+    uint32_t added_count; /* vertices that preparation added: the last of those that the next coarser level does not use */
+    float error_m;        /* geometric error; 0 for the finest level */
 };
 
-/* Triangles of one primitive that lie close together and look about the same way: what can be left out at once. A primitive's clusters
-   follow one another, and hold its indices from the first to the last; those of one primitive after those of the one before. */
+/* Triangles of one primitive that are close together and have similar normals, so that they can be culled together. A primitive's clusters
+   are contiguous and cover all its indices; clusters are in the order of primitives. */
 struct asset_cluster {
-    uint32_t first_index, index_count; /* into ASSET_INDICES; a multiple of 3, and not 0 */
-    float low_m[3], high_m[3];         /* box around its vertices */
-    float cone_axis[3], cone_cutoff;   /* see asset_cluster_turned_away; cutoff 1: looks every way */
+    uint32_t first_index, index_count; /* range in ASSET_INDICES; index_count is a positive multiple of 3 */
+    float low_m[3], high_m[3];         /* bounding box of its vertices */
+    float cone_axis[3], cone_cutoff;   /* normal cone, see asset_cluster_turned_away(); cutoff 1: normals in all directions */
 };
 
 enum asset_alpha { ASSET_ALPHA_OPAQUE, ASSET_ALPHA_MASK, ASSET_ALPHA_BLEND };
@@ -76,7 +76,7 @@ struct asset_material { /* glTF 2.0 metallic-roughness; factors linear */
     float emissive[3], alpha_cutoff;
     uint32_t base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture; /* or ASSET_NO_TEXTURE */
     uint32_t alpha, double_sided, name;
-    uint32_t second; /* bit n: the n-th of these textures lies where the second coordinates put it; not the base colour's */
+    uint32_t second; /* bit n: the n-th of these textures uses the second texture coordinates; never the base colour's */
 };
 
 struct asset_texture {
@@ -85,14 +85,14 @@ struct asset_texture {
 };
 
 struct asset_sensor {
-    float position_m[3];      /* relative to origin_m: as configured, or the node's place */
-    float surface_m[3];       /* nearest point of the surface, likewise */
-    float surface_distance_m; /* between the two */
+    float position_m[3];      /* relative to origin_m: as configured, or the node's position */
+    float surface_m[3];       /* nearest point of the surface, relative to origin_m */
+    float surface_distance_m; /* distance between both */
     uint32_t nearest_vertex;
-    uint64_t node_hash; /* XXH3-64 of the node name the place came from, 0 = from X, Y, Z */
+    uint64_t node_hash; /* XXH3-64 of the node name that gave the position; 0: X, Y, Z gave it */
 };
 
-/* A checked asset file in memory. Pointers go into the bytes, which must outlive it. */
+/* A checked asset file in memory. Its pointers point into the bytes, which must outlive the view. */
 struct asset_view {
     const struct asset_header *header;
     const float (*positions_m)[3];
@@ -113,9 +113,9 @@ struct asset_view {
 };
 
 /* Checks an asset file completely (magic, version, size, checksum, section bounds, every index, finiteness) and makes a view of it. bytes
-   must be aligned to ASSET_ALIGN and outlive the view. Returns false if it is invalid, with the reason in why. */
+   must be aligned to ASSET_ALIGN and outlive the view. Returns false if the file is invalid, with the reason in `why`. */
 bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, char why[200]);
-/* The same for bytes that asset_build() has just made: does not check the checksum. */
+/* Does the same for bytes just made by asset_build(), without checking the checksum. */
 bool asset_view_fresh(struct asset_view *view, const void *bytes, size_t size, char why[200]);
 
 /* Computes the bounding box and the normal cone of a cluster from its triangles. */
@@ -123,7 +123,7 @@ void asset_cluster_measure(struct asset_cluster *cluster, const float (*position
 /* Returns whether an eye at eye_m (relative to origin_m) sees only back faces of the cluster. */
 bool asset_cluster_turned_away(const struct asset_cluster *cluster, const float eye_m[3]);
 
-/* What an asset file is made of. Pointers are only read. Zero-initialise. */
+/* Inputs of an asset file. Pointers are only read. Zero-initialise. */
 struct asset_parts {
     uint64_t key;
     double origin_m[3];
@@ -134,14 +134,14 @@ struct asset_parts {
     const uint8_t (*colors)[4];         /* NULL: none */
     const uint32_t *indices;
     const struct asset_primitive *primitives;
-    const struct asset_level *levels;     /* NULL: one level that holds everything */
+    const struct asset_level *levels;     /* NULL: one level with all primitives */
     const struct asset_cluster *clusters; /* NULL: one for each primitive */
     const struct asset_material *materials;
     const struct asset_texture *textures;
     const uint8_t *texels;
     const struct asset_sensor *sensors;
     const float *geodesic_m;                            /* [sensor * vertex_count + vertex] */
-    void (*write_geodesic)(void *arg, uint16_t *codes); /* writes the distances in place, instead of geodesic_m */
+    void (*write_geodesic)(void *arg, uint16_t *codes); /* writes the distances in place, as an alternative to geodesic_m */
     void *write_arg;
     void *(*make_room)(void *arg, size_t bytes); /* allocates the bytes, aligned to ASSET_ALIGN. NULL: aligned_alloc() */
     void *room_arg;
@@ -151,7 +151,7 @@ struct asset_parts {
 };
 
 /* Builds an asset file in memory: lays out the sections and computes bounds and checksum, without checking the contents. Returns the bytes,
-   aligned to ASSET_ALIGN, to be freed with free() unless make_room made them; NULL if out of memory. */
+   aligned to ASSET_ALIGN; free them with free() unless make_room allocated them. NULL when out of memory. */
 void *asset_build(const struct asset_parts *parts, size_t *bytes);
 
 #endif

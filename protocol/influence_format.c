@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Influence files: bytes checked into a view. */
+/* Checks the bytes of an influence file and makes a view of them. */
 #include "protocol/influence_format.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@ static bool entry_good(const struct influence_view *view, const struct influence
         return false;
     const double *precision = influence_array(view, entry->precision);
     const float *shares = influence_array(view, entry->shares);
-    bool good = true, open = entry->interpolation >= INFLUENCE_HEAT; /* some places may be out of reach */
+    bool good = true, open = entry->interpolation >= INFLUENCE_HEAT; /* distances and transport angles may be INFINITY */
     for (uint64_t i = 0; i < sensors * sensors; i++)
         good &= isfinite(precision[i]);
     for (uint64_t i = 0; i < sensors * vertices; i++)

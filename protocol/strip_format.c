@@ -37,7 +37,7 @@ static uint8_t inverse(uint8_t a)
     return x;
 }
 
-/* A polynomial, the lowest coefficient first. */
+/* Evaluates a polynomial, lowest coefficient first. */
 static uint8_t value_at(const uint8_t *polynomial, int count, uint8_t x)
 {
     uint8_t sum = 0;
@@ -51,7 +51,7 @@ static uint8_t value_at(const uint8_t *polynomial, int count, uint8_t x)
 /* code[0] is the coefficient of the highest power. */
 static void add_parity(uint8_t code[STRIP_BYTES])
 {
-    uint8_t generator[STRIP_PARITY + 1] = { 1 }, rest[STRIP_PARITY] = { 0 }; /* highest first */
+    uint8_t generator[STRIP_PARITY + 1] = { 1 }, rest[STRIP_PARITY] = { 0 }; /* highest coefficient first */
     for (int i = 0; i < STRIP_PARITY; i++)
         for (int j = i + 1; j > 0; j--)
             generator[j] ^= times(generator[j - 1], power(i));
@@ -78,7 +78,7 @@ static bool find_syndromes(const uint8_t code[STRIP_BYTES], uint8_t syndromes[ST
     return wrong;
 }
 
-/* Berlekamp and Massey: the polynomial whose roots are the places of errors. Returns its degree. */
+/* Berlekamp-Massey: finds the polynomial whose roots are the error positions. Returns its degree. */
 static int find_locator(const uint8_t syndromes[STRIP_PARITY], uint8_t locator[STRIP_PARITY + 1])
 {
     uint8_t before[STRIP_PARITY + 1] = { 1 }, kept[STRIP_PARITY + 1], last = 1;
@@ -109,8 +109,8 @@ static int find_locator(const uint8_t syndromes[STRIP_PARITY], uint8_t locator[S
     return degree;
 }
 
-/* Returns the number of bytes that were mended, or -1. */
-static int mend(uint8_t code[STRIP_BYTES])
+/* Corrects errors. Returns the number of corrected bytes; -1: too many errors. */
+static int correct_errors(uint8_t code[STRIP_BYTES])
 {
     uint8_t syndromes[STRIP_PARITY], locator[STRIP_PARITY + 1], evaluator[STRIP_PARITY] = { 0 }, slope[STRIP_PARITY] = { 0 };
     if (!find_syndromes(code, syndromes))
@@ -123,7 +123,7 @@ static int mend(uint8_t code[STRIP_BYTES])
             evaluator[i] ^= times(syndromes[i - j], locator[j]);
     for (int i = 1; i <= degree; i += 2)
         slope[i - 1] = locator[i];
-    for (int i = 0; i < STRIP_BYTES; i++) { /* Chien and Forney */
+    for (int i = 0; i < STRIP_BYTES; i++) { /* Chien search and Forney's formula */
         int exponent = STRIP_BYTES - 1 - i;
         uint8_t x = power(exponent), back = power(FIELD - exponent);
         if (value_at(locator, degree + 1, back) != 0)
@@ -139,7 +139,7 @@ static int mend(uint8_t code[STRIP_BYTES])
 
 /* --- contents ----------------------------------------------------------------------------------------------------------------- */
 
-static uint16_t crc16(const uint8_t *bytes, int count) /* CCITT */
+static uint16_t crc16(const uint8_t *bytes, int count) /* CRC-16/CCITT */
 {
     unsigned crc = 0xffff;
     for (int i = 0; i < count; i++) {
@@ -166,7 +166,7 @@ static float get_float(const uint8_t *from)
     return value;
 }
 
-/* As much of the text as has room, whole characters of UTF-8. */
+/* Copies as much of the text as fits, in whole UTF-8 characters. */
 static void put_text(uint8_t *to, int room, const char *text)
 {
     int length = (int)strnlen(text, (size_t)room + 1);
@@ -195,7 +195,7 @@ bool strip_decode(const uint8_t code[STRIP_BYTES], struct strip *strip, int *men
 {
     uint8_t own[STRIP_BYTES];
     memcpy(own, code, sizeof(own));
-    *mended = mend(own);
+    *mended = correct_errors(own);
     uint16_t crc = crc16(own, AT_CRC);
     if (*mended < 0 || own[0] != VERSION || own[AT_CRC] != (uint8_t)crc || own[AT_CRC + 1] != (uint8_t)(crc >> 8))
         return false;
@@ -218,7 +218,7 @@ bool strip_finder_dark(int column)
 bool strip_cell_dark(const uint8_t code[STRIP_BYTES], int row, int column)
 {
     int bit = row * STRIP_INNER + column;
-    return bit < 8 * STRIP_BYTES ? code[bit / 8] >> (7 - bit % 8) & 1 : (row + column) % 2; /* what is left over is a chequerboard */
+    return bit < 8 * STRIP_BYTES ? code[bit / 8] >> (7 - bit % 8) & 1 : (row + column) % 2; /* unused cells form a chequerboard */
 }
 
 void strip_set_cell(uint8_t code[STRIP_BYTES], int row, int column, bool dark)

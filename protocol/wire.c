@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The frame header, byte by byte. */
+/* Reads and writes the frame header byte by byte. */
 #include "protocol/wire.h"
 
 #include <math.h>
@@ -92,7 +92,7 @@ static bool rectangle_valid(const struct wire_frame *frame)
            frame->y_px + frame->height_px <= frame->full_height_px;
 }
 
-/* In perspective the last bytes are reserved: anything may be there. */
+/* In perspective the last bytes are reserved and may have any value. */
 static bool get_lens(const uint8_t **at, struct wire_frame *frame)
 {
     frame->fov_deg = get_f32(at);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light that reaches each vertex (or each texel of the ground) while nothing moves: seen through depth maps taken from many directions.
+// Bakes the light that reaches each vertex, each large triangle or each texel of the ground, using depth maps from many directions.
 #include "light.glsl"
 #include "shadow.glsl"
 #include "environment.glsl"
@@ -8,30 +8,30 @@ layout(local_size_x = 64) in;
 layout(binding = 1) uniform sampler2DArrayShadow sky_maps;
 layout(std430, binding = 1) readonly buffer Directions {
     mat4 map_from_plant[32];
-    vec4 direction[32]; // towards the light; w: its brightness
+    vec4 direction[32]; // unit vector towards the light; w: its brightness
 };
-layout(location = 0) uniform mat4 plant_from_here; // relative to the middle of the scene
+layout(location = 0) uniform mat4 plant_from_here; // result is relative to the centre of the scene
 layout(location = 1) uniform mat4 sun_from_plant;
 layout(location = 4) uniform mat3 plant_from_normal;
-layout(location = 8) uniform vec4 sun;             // direction; w: texel of its map, in metres
+layout(location = 8) uniform vec4 sun;             // direction; w: texel size of the sun's map in metres
 layout(location = 9) uniform float sky_texel_m;
-layout(location = 10) uniform ivec2 range; // first, and one beyond the last
+layout(location = 10) uniform ivec2 range; // first index, and one beyond the last
 #ifdef GROUND
 const int TAPS = 16;
-const float SPREAD = 0.05;  // of the map's side
+const float SPREAD = 0.05;  // relative to the map's width
 layout(rg8, binding = 0) uniform image2D ground; // sun, openness
 layout(location = 11) uniform vec3 ground_up;
 #else
 const int TAPS = 4;
 const float SPREAD = 0.004;
 layout(std430, binding = 2) readonly buffer Positions { float positions_m[]; };
-layout(std430, binding = 3) readonly buffer Normals { uint normals[]; }; // folded
-layout(std430, binding = 4) buffer Light { uint baked[]; }; // light, ambient, openness, how far it faces the sun
-layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // of large triangles: render/light/bake_faces.h
-layout(std430, binding = 6) buffer Sums { uint sums[]; }; // of each vertex, from these: weight, openness, sun
+layout(std430, binding = 3) readonly buffer Normals { uint normals[]; }; // packed as in normal.glsl
+layout(std430, binding = 4) buffer Light { uint baked[]; }; // bytes: light, ambient, openness, cosine to the sun
+layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // three per large triangle: render/light/bake_faces.h
+layout(std430, binding = 6) buffer Sums { uint sums[]; }; // per vertex, over samples in large triangles: weight, openness, sun
 layout(location = 12) uniform float large_m;
 layout(location = 13) uniform bool has_faces;
-layout(location = 14) uniform float least_open; // where some of the plant is not shown
+layout(location = 14) uniform float least_open; // lower bound of openness while some of the plant is hidden
 #endif
 
 const vec2 disc[16] = vec2[](vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035, -0.394), vec2(0.285, 0.371), vec2(-0.522, -0.092),
@@ -39,8 +39,8 @@ const vec2 disc[16] = vec2[](vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035
                              vec2(0.343, -0.734), vec2(0.255, 0.808), vec2(-0.764, -0.443), vec2(0.897, -0.197), vec2(-0.548, 0.779),
                              vec2(-0.126, -0.976));
 
-// How much of the sky map's surroundings lies open: 32 directions are few, so each one stands for the cone around it.
-// slope: of the surface on the map, which must not hide itself.
+// Returns the open fraction of a cone around one direction of the sky maps: 32 directions are too few to test each by a single ray. slope:
+// of the surface in the map, so that the surface does not occlude itself.
 float opening(vec3 p, vec2 slope, int i)
 {
     float sum = 0.0;
@@ -51,7 +51,7 @@ float opening(vec3 p, vec2 slope, int i)
     return sum / float(TAPS);
 }
 
-// How much of the sky and the ground that such a surface faces is not hidden, weighted by a usual sky's brightness; 0..1.
+// Returns the unoccluded fraction of sky and ground that the surface faces, weighted by a typical sky's brightness; 0..1.
 float openness(vec3 place, vec3 normal)
 {
     float open = 0.0, all = 0.0;
@@ -82,7 +82,7 @@ vec3 vertex_normal(uint i)
 #endif
 
 #ifdef FACES
-// Six places in each triangle: three towards the corners, three before the edges' middles.
+// Samples six points in each triangle: three towards the corners, three near the middles of the edges.
 void look_within(int i)
 {
     int k = i % 6, first = i / 6 * 3;
@@ -133,7 +133,7 @@ void main()
 #else
     float open = unpackUnorm4x8(baked[i]).z;
 #endif
-    open = round(max(open, least_open) * 255.0) / 255.0; // as it will be read back when the sun moves
+    open = round(max(open, least_open) * 255.0) / 255.0; // rounded as it is read back when the sun moves
     float ambient = open * sky_brightness(normal);
     float facing = max(dot(normal, sun.xyz), 0.0);
     float sun_visible = weight > 0.0 ? float(sums[3 * i + 2]) / weight : sun_visibility(sun_from_plant, place, normal, sun.w);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cuts away what lies outside the planes of a clipped picture. They are in clip space, so that it does not matter how a vertex got there.
+// Clips vertices against the section planes of a view. The planes are in clip space, so they apply however a vertex was transformed.
 #ifdef CLIP
 out float gl_ClipDistance[6];
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Marks what it covers, but for the holes that a texture cuts.
+// Marks covered pixels, except holes that a texture cuts.
 #ifdef HOLES
 #include "material.glsl"
 layout(location = 0) in vec3 hole;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depth only: shadow maps, and masks of one asset.
+// Transforms positions for depth-only passes: shadow maps, and masks of one asset.
 layout(location = 0) in vec3 position_m;
 layout(location = 0) uniform mat4 clip_from_file;
 #ifdef CLIP
@@ -9,7 +9,7 @@ out float gl_ClipDistance[6];
 #ifdef HOLES
 layout(location = 2) in vec2 texcoord;
 layout(location = 3) in vec4 vertex_color;
-layout(location = 0) out vec3 hole; // place on the texture, alpha
+layout(location = 0) out vec3 hole; // texture coordinates, alpha
 #endif
 
 void main()

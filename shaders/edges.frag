@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Thin dark lines around shapes: where depth breaks, on the farther side, so that they do not lie on the field of what stands in
-// front. Lines on both sides would bury shapes of a few pixels' width: these get the fainter ones the thinner they are, so that along a
-// pole, of one pixel more here and one less there, a line does not come and go.
+// Feature edges: thin dark lines where depth has a step, on the farther side, so that they do not cover the field in front. Lines on both
+// sides would hide shapes a few pixels wide; thinner shapes get fainter lines, so that along a pole, whose width varies by a pixel, a line
+// does not flicker.
 #include "constants.glsl"
 #include "frame.glsl"
 layout(binding = 0) uniform sampler2D depth;
@@ -13,16 +13,15 @@ float at(ivec2 pixel)
     return texelFetch(depth, clamp(pixel, ivec2(0), textureSize(depth, 0) - 1), 0).r;
 }
 
-// How much of a line there is for what is that much nearer, as a part.
+// Returns line coverage for a relative rise in depth.
 float line(float rise)
 {
     return smoothstep(EDGE_FROM, EDGE_TO, rise);
 }
 
-// From here, one pixel to that side: whether it is nearer. Depth is 1/distance, or falls with distance in an orthographic picture; over a
-// flat surface it is a plane on the screen.
-// What is nearer must go on for EDGE_THIN_PX, and about as far to one hand: slanting rails are thin though long. All of a line is for
-// EDGE_WIDE_PX.
+// Returns line coverage towards the neighbour at `side`, if the neighbour is nearer. Depth is 1/distance, or falls with distance in an
+// orthographic view; a flat surface is a plane on the screen. The nearer surface must continue for EDGE_THIN_PX pixels, and about as far
+// sideways (slanting rails are thin but long); the line is complete at EDGE_WIDE_PX.
 float edge(ivec2 pixel, float here, ivec2 side)
 {
     ivec2 other = pixel + side;

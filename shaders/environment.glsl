@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The light of the surroundings (render/light/environments.c): 1 is what makes a level white surface under the open sky reflect 1.
-// Directions: axes of the plant.
+// Image-based light (render/light/environments.c), scaled so that a level white surface under the open sky reflects 1. Directions are in
+// plant axes.
 #include "constants.glsl"
 layout(std140, binding = 1) uniform Environment {
     vec4 irradiance_terms[9];
 };
-layout(binding = 8) uniform sampler3D mirrored_map; // octahedral; by roughness
-layout(binding = 9) uniform sampler2D brdf_map;     // scale and bias of F0, by cosine to the viewer and roughness
+layout(binding = 8) uniform sampler3D mirrored_map; // octahedral map; third coordinate: roughness
+layout(binding = 9) uniform sampler2D brdf_map;     // scale and bias of F0 by cosine to the viewer and roughness
 
-// Over pi.
+// Returns irradiance divided by pi.
 vec3 sky_irradiance(vec3 n)
 {
     vec3 e = irradiance_terms[0].rgb + irradiance_terms[1].rgb * n.y + irradiance_terms[2].rgb * n.z + irradiance_terms[3].rgb * n.x;
@@ -17,13 +17,13 @@ vec3 sky_irradiance(vec3 n)
     return max(e, vec3(0.0));
 }
 
-// Of the sky that faces such a surface, 0 to about 1.
+// Returns the brightness of the sky that the surface faces, 0 to about 1.
 float sky_brightness(vec3 n)
 {
     return clamp(dot(sky_irradiance(n), vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0);
 }
 
-// What a surface of that roughness mirrors.
+// Returns prefiltered reflection at this roughness.
 vec3 mirrored(vec3 r, float roughness)
 {
     const float side = 128.0, layers = 8.0;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The colour of the field at a pixel: one look-up by place on the scale and by light. The colormap (render/shaded_colormap.h)
-// holds sRGB colours
-// by the legend's rule (field/scale.h), with bands, what lies outside MIN and MAX, and the patterns.
+// Colour of the field at a pixel: a lookup by position on the scale and by light. The colour map (render/shaded_colormap.h) holds sRGB
+// colours by the legend's rule (field/scale.h): bands, colours outside MIN and MAX, and patterns.
 #include "constants.glsl"
 layout(binding = 0) uniform sampler2D colormap;
 #ifdef RICH
-layout(binding = 15) uniform sampler2D lines; // by place: the nearest place that has a line
+layout(binding = 15) uniform sampler2D lines; // by position on the scale: the nearest position with an isoline
 #endif
 
 const int PLACES = COLORMAP_PLACES, HATCH_LIGHT = PLACES + 2, HATCH_DARK = PLACES + 3, STIPPLE = PLACES + 4,
           PLAIN_LIGHT = PLACES + 5, PLAIN_DARK = PLACES + 6;
 
-// Interpolating equal values may round: the ends have some slack. Column 0 is below MIN, PLACES + 1 above MAX.
+// Returns the column of a position. Interpolation of equal values may round, so the ends have some slack. Column 0 is below MIN, PLACES + 1
+// above MAX.
 int colormap_column(float place)
 {
     const float slack = 1e-5, columns = float(PLACES) / (1.0 + 2.0 * slack);
@@ -28,7 +28,7 @@ vec3 colormap_color(int column, int row)
     return texelFetch(colormap, ivec2(column, row), 0).rgb;
 }
 
-// Diagonal stripes: over 0.5 on the dark ones.
+// Diagonal stripes: exceeds 0.5 in the dark ones.
 float hatch(vec2 pixel)
 {
     float phase = fract((pixel.x + pixel.y) / (frame.scale.w * HATCH_SLANT));
@@ -43,7 +43,7 @@ float stipple(vec2 pixel)
 }
 
 #ifdef RICH
-// Level lines, wide apart: over 0.5 on them.
+// Horizontal lines, widely spaced: exceeds 0.5 on them.
 float rule(float y)
 {
     return (abs(fract(y / frame.scale.w) - 0.5) - RULE_EDGE) * frame.scale.w + 0.5;
@@ -54,8 +54,8 @@ float place_of(float value)
     return ((frame.scale.z > 0.5 ? log2(max(value, 1e-30)) : value) - frame.scale.x) * frame.scale.y;
 }
 
-// How much of the pixel an isoline covers: its width is the same wherever the field is steep or not. No line where it is level, but for
-// what interpolating rounds: parts of the largest value on the scale.
+// Returns how much of the pixel an isoline covers; line width does not depend on the field's slope. Where the field is level within
+// rounding (relative to the scale's largest value) there is no line.
 float line_part(float place, int column)
 {
     float slope = length(vec2(dFdx(place), dFdy(place)));
@@ -65,8 +65,8 @@ float line_part(float place, int column)
 }
 #endif
 
-// sRGB. field: the scalar's place on the scale (RICH: the scalar itself), then flags: no data, uncertain, RICH: no limits; 0..1 between
-// vertices.
+// Returns an sRGB colour. field: position on the scale (RICH: the value itself), then no data, uncertain and (RICH) no limits, each 0..1,
+// interpolated between vertices.
 vec3 field_color(FIELD_TYPE field, float light)
 {
 #ifdef RICH
@@ -98,7 +98,7 @@ vec3 field_color(FIELD_TYPE field, float light)
 #ifdef REFINED
     vec3 color = mix(colormap_color(column, row), colormap_color(second, row), clamp(part, 0.0, 1.0));
 #else
-    vec3 color = colormap_color(part > 0.5 ? second : column, row); // one look-up
+    vec3 color = colormap_color(part > 0.5 ? second : column, row); // a single lookup
 #endif
 #ifdef RICH
     vec3 ink = dot(color, vec3(GREY_RED, GREY_GREEN, GREY_BLUE)) > ISOLINE_BRIGHT ? vec3(ISOLINE_DARK_RGB) : vec3(ISOLINE_LIGHT);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the field at a fragment comes from: interpolated between vertices, or worked out here.
+// Source of the field at a fragment: interpolated between vertices, or computed here.
 #ifdef PER_FRAGMENT
 #include "reference.glsl"
 FIELD_TYPE field_here(FIELD_TYPE interpolated)

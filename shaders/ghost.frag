@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Assets that are only hinted at: lines where their depth breaks or bends, and a thin level one each ten pixels in between, so that
-// the colours behind stay what they are. No dots and no slanting lines: those say uncertain and no data.
+// Ghosted assets: lines where their depth has steps or creases, and a thin level line every ten pixels, so that the colours behind stay
+// recognisable. No dots and no slanting lines, which mean uncertain and no data.
 #include "constants.glsl"
 #include "frame.glsl"
-layout(binding = 0) uniform sampler2D ghosts; // their depth; 0: none
-layout(binding = 1) uniform sampler2D depth;  // of all else
+layout(binding = 0) uniform sampler2D ghosts; // depth of ghosts; 0: none
+layout(binding = 1) uniform sampler2D depth;  // depth of everything else
 layout(location = 0) in vec2 clip;
 layout(location = 0) out vec4 color;
 
@@ -13,8 +13,7 @@ float at(ivec2 pixel)
     return texelFetch(ghosts, clamp(pixel, ivec2(0), textureSize(ghosts, 0) - 1), 0).r;
 }
 
-// x: how far it falls to either side, beyond how it rises to the other (a plane does, however steep), y: how much it bends; as parts of the
-// distance.
+// x: drop to either side, beyond the rise to the other side (a plane has none, however steep); y: curvature; both relative to distance.
 vec2 shape(ivec2 pixel, float here, float scale, ivec2 side)
 {
     float a = at(pixel - side), b = at(pixel + side);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shadow on the ground, as a factor on what is there.
+// Shadow on the ground, as a factor on the colour behind.
 #include "constants.glsl"
 #include "frame.glsl"
 layout(binding = 1) uniform sampler2D ground_light; // sun and openness

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much light falls on a point, and what it makes of it. Shared by both tiers and by the ramps, so that they agree.
+// Light at a point and the resulting colour; shared by both tiers and by the ramps, so that they agree.
 #include "constants.glsl"
 
-// Scalar light, 0 (a hidden corner) to 1 (faces the sun under the open sky).
-// ambient: sky and ground seen, 0..1; sun: cosine times visibility.
+// Returns scalar light: 0 in a hidden corner, 1 facing the sun under the open sky. ambient: visible sky and ground, 0..1; sun: cosine times
+// visibility.
 float light_scalar(float ambient, float sun)
 {
     return clamp(LIGHT_AMBIENT * ambient + LIGHT_SUN * sun, 0.0, 1.0);
@@ -20,7 +20,7 @@ vec3 srgb_from_linear(vec3 c)
     return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
 }
 
-// Khronos PBR Neutral: keeps base colours, rolls off highlights.
+// Khronos PBR Neutral tone mapping: keeps base colours, compresses highlights.
 vec3 tone_map(vec3 c)
 {
     const float start = TONE_START, desaturation = TONE_DESATURATION;
@@ -40,7 +40,7 @@ float grey_of(vec3 c)
     return dot(c, vec3(GREY_RED, GREY_GREEN, GREY_BLUE));
 }
 
-// Assets without a field are context: paler than they are and without hue, so that no material is taken for a value. sRGB in and out.
+// Mutes assets without a field: paler and without hue, so that no material is mistaken for a value. sRGB in and out.
 vec3 mute(vec3 c)
 {
     return mix(vec3(grey_of(c)), vec3(MUTED_GREY), MUTED_PART);

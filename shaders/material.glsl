@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// glTF 2.0 metallic-roughness materials, laid out as render/gl/materials.c writes them.
+// glTF 2.0 metallic-roughness materials; the layout must match render/gl/materials.c.
 struct Material {
     vec4 base_color;
     vec4 factors;  // metallic, roughness, normal scale, occlusion strength

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Not a colour but the field itself: its place in the range, no data (-1: no field at all), uncertain, and the depth.
+// Writes the field's numbers instead of a colour: position in the range, no data (-1: no field), uncertain, and depth.
 #include "frame.glsl"
 #ifdef FIELD
 #ifdef REFINED
@@ -16,6 +16,6 @@ void main()
 #ifdef FIELD
     measured = vec4(field_here(field), gl_FragCoord.z);
 #else
-    measured = vec4(0.0, -1.0, 0.0, gl_FragCoord.z); // context
+    measured = vec4(0.0, -1.0, 0.0, gl_FragCoord.z); // an asset without a field
 #endif
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Normals as gpu/mesh.c packs them: the octahedron's lower half is folded out around its upper one (Cigolle et al. 2014, "A survey of
-// efficient representations for independent unit vectors", oct32).
+// Unpacks normals that gpu/mesh.c packed: octahedral mapping (Cigolle et al. 2014, "A survey of efficient representations for independent
+// unit vectors", oct32).
 vec3 unfold_normal(vec2 folded)
 {
     vec3 n = vec3(folded, 1.0 - abs(folded.x) - abs(folded.y));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Some of a box lies before all that was drawn: its asset is to be drawn, too.
+// Runs for visible fragments of an asset's box, and enables the asset's draw commands.
 layout(early_fragment_tests) in;
-layout(location = 0) flat in uvec2 commands_here; // the first one's place, and how many
+layout(location = 0) flat in uvec2 commands_here; // index of the first command, and their number
 struct Command {
     uint count, instances, first_index;
     int base_vertex;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The boxes of assets, as one strip of 14 corners each: render/gl/occlusion.h.
-layout(location = 0) in mat4 clip_from_box; // whose corners are 0 and 1
+// Draws the boxes of assets, each as a strip of 14 corners: render/gl/occlusion.h.
+layout(location = 0) in mat4 clip_from_box; // maps the unit cube to clip space
 layout(location = 4) in uvec2 commands_of;
-layout(location = 0) flat out uvec2 commands_here; // the first, and how many
+layout(location = 0) flat out uvec2 commands_here; // index of the first command, and their number
 
 void main()
 {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A dark line with a light one around it, along the rim of what the mask covers: stands out from any colour of the field.
+// Outline of the masked asset: a dark line inside a light one, visible on any field colour.
 #include "constants.glsl"
 layout(binding = 0) uniform sampler2D mask;
 layout(location = 0) uniform float width_px;
 layout(location = 0) in vec2 clip;
 layout(location = 0) out vec4 color;
 
-// How much of a ring of that radius around the pixel lies inside.
+// Returns 1 if any of 12 points on a circle of this radius around the pixel is inside the mask.
 float ring(ivec2 at, float radius)
 {
     ivec2 last = textureSize(mask, 0) - 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// glTF 2.0 metallic-roughness shading under one sun and the surroundings. Linear colours. What is reflected between the facets of a
-// rough surface is not lost: Fdez-Aguera, "A multiple-scattering microfacet model for real-time image-based lighting", 2019.
+// glTF 2.0 metallic-roughness shading with one sun and image-based light. Linear colours. Energy lost between microfacets is added back:
+// Fdez-Aguera, "A multiple-scattering microfacet model for real-time image-based lighting", 2019.
 
 float ggx_visible(float n_l, float n_v, float n_h, float alpha)
 {
@@ -14,11 +14,11 @@ struct Surface {
     vec3 base;
     float metallic, roughness;
     vec3 normal;
-    float open;        // how much of the sky that it faces is not hidden, 0..1
-    float sun_visible; // 0..1
+    float open;        // unoccluded fraction of the sky that the surface faces, 0..1
+    float sun_visible; // visible fraction of the sun, 0..1
 };
 
-// What leaves after more than one reflection, of light from everywhere.
+// Returns light that leaves after more than one reflection, under uniform light.
 vec3 reflected_more(vec3 f0, vec2 brdf)
 {
     float lost = 1.0 - brdf.x - brdf.y;
@@ -44,7 +44,7 @@ vec3 sun_shade(Surface s, vec3 v, vec3 l)
     vec3 f0 = mix(vec3(CLEAR_F0), s.base, s.metallic), diffuse = s.base * (1.0 - s.metallic);
     float x = 1.0 - max(dot(v, h), 0.0), x2 = x * x;
     float grazing = x2 * x2 * x;
-    vec3 fresnel = f0 + (1.0 - f0) * grazing; // what is diffuse lies under the clear part's own
+    vec3 fresnel = f0 + (1.0 - f0) * grazing; // the diffuse part is below the clear coat
     float mirror = min(ggx_visible(n_l, n_v, max(dot(s.normal, h), 0.0), roughness * roughness), 50.0);
     vec3 c = diffuse * (0.96 - 0.96 * grazing) + fresnel * mirror;
     return c * (n_l * s.sun_visible * SUN_LIGHT);

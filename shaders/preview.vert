@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Moving tier: a place, a baked light and, on assets with a field, a scalar. llvmpipe runs this on one thread: keep it short.
+// Preview: position, baked light and, on assets with a field, a scalar. llvmpipe runs this on one thread, so keep it short.
 #include "frame.glsl"
 #include "clip.glsl"
 #include "instance.glsl"
@@ -8,7 +8,7 @@ layout(location = 0) in vec3 position_m;
 layout(location = 0) out float light;
 layout(location = 1) out FIELD_TYPE field;
 #else
-layout(location = 0) out vec2 light; // ambient, facing the sun
+layout(location = 0) out vec2 light; // ambient light, cosine to the sun
 layout(location = 1) out vec3 sun_place;
 #endif
 #ifdef CLIP
@@ -20,7 +20,7 @@ layout(location = 7) out vec3 file_place;
 #ifdef TEXTURED
 layout(location = 2) in vec2 texcoord;
 layout(location = 3) in vec4 vertex_color;
-layout(location = 2) out vec3 hole; // place on the texture, alpha
+layout(location = 2) out vec3 hole; // texture coordinates, alpha
 #endif
 
 void main()

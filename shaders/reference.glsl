@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The field worked out anew for a fragment, over all sensors: Algorithm 1 of Kim & Suh, and Shepard, by the rules of field/field.h.
-// Distances along the surface are interpolated over the triangle, others are taken from the fragment's own place.
+// Computes the field at a fragment over all sensors: Algorithm 1 of Kim & Suh, and Shepard, by the rules of field/field.h. Geodesic
+// distances are interpolated over the triangle, straight-line ones computed from the fragment's position.
 struct Sensor {
-    vec4 place_m;  // file frame; w: strength
+    vec4 place_m;  // file coordinates; w: strength
     float decay, value;
-    uint column, state; // state: 1 configured, 2 usable, 4 uncertain
+    uint column, state; // state bits: 1 configured, 2 usable, 4 uncertain
 };
 layout(std430, binding = 5) readonly buffer Sensors {
-    vec4 numbers; // power, radius, reach, the range's MIN
-    vec4 more;    // the range's MAX - MIN or 0 (paper: turns the sum into a value); vertices of the model
-    ivec4 choice; // paper, geodesic, fill, show
+    vec4 numbers; // power, radius, reach, MIN of the range
+    vec4 more;    // x: MAX - MIN of the range, or 0 (paper: scales the sum to a value); y: number of vertices of the model
+    ivec4 choice; // paper, geodesic, fill, show; each a choice of struct sensors_head
     Sensor sensors[];
 };
 layout(std430, binding = 6) readonly buffer Corners { uint corners[]; };
 layout(std430, binding = 7) readonly buffer Positions { float positions_m[]; };
-layout(binding = 14) uniform samplerBuffer distances; // metres along the surface; four sensors to a texel, [sensor / 4][vertex]
+layout(binding = 14) uniform samplerBuffer distances; // geodesic distances in metres; four sensors per texel, [sensor / 4][vertex]
 layout(location = 8) uniform int first_triangle;
 layout(location = 7) in vec3 file_place;
 
@@ -25,7 +25,7 @@ vec3 corner_place(uint vertex)
     return vec3(positions_m[3 * vertex], positions_m[3 * vertex + 1], positions_m[3 * vertex + 2]);
 }
 
-// Where in its triangle the fragment lies.
+// Returns the fragment's barycentric weights in its triangle.
 vec3 parts_of(uvec3 corner)
 {
     vec3 a = corner_place(corner.x), b = corner_place(corner.y) - a, c = corner_place(corner.z) - a, p = file_place - a;
@@ -54,14 +54,14 @@ float nearness(float distance_m)
     return max(0.0, 1.0 - distance_m / numbers.y);
 }
 
-// What a weight is times towards the reach, in parts of the nearest one's.
+// Returns the factor by which a weight fades towards the reach, relative to the nearest sensor's.
 float faded(float distance_m, float near_m)
 {
     float left = isinf(numbers.z) || distance_m <= near_m ? 1.0 : max(0.0, numbers.z - distance_m) / (numbers.z - near_m);
     return left * left;
 }
 
-// x: the scalar; y: no data; z: uncertain.
+// Returns x: value; y: no data; z: uncertain.
 vec3 reference_field()
 {
     int triangle = first_triangle + gl_PrimitiveID;
@@ -81,7 +81,7 @@ vec3 reference_field()
         return vec3(near_m, near_m < FAR ? 0.0 : 1.0, 0.0);
     bool reached = near_m < FAR && near_m <= numbers.z;
     float limit_m = min(max(near_m, numbers.z), 0.5 * FAR);
-    for (int i = 0; i < sensors.length(); i++) { // the scale: the largest exponent
+    for (int i = 0; i < sensors.length(); i++) { // largest exponent, for scaling
         float d = distance_to(i, corner, part);
         if ((sensors[i].state & 2u) != 0u && d <= limit_m)
             top = max(top, nearness(d) * sensors[i].place_m.w);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Still tier: physically based shading with every texture of the material; on the field only lightness, as in the moving tier.
+// Refined frames: physically based shading with all textures of the material; the field only gets lightness, as in previews.
 #include "frame.glsl"
 #include "light.glsl"
 #include "material.glsl"
@@ -10,12 +10,13 @@
 #include "field_source.glsl"
 layout(location = 0) centroid in vec3 place;
 layout(location = 1) centroid in vec3 surface_normal;
-layout(location = 2) centroid in vec4 uv; // both places on the textures
+layout(location = 2) centroid in vec4 uv; // first and second texture coordinates
 layout(location = 3) centroid in vec4 tint;
-layout(location = 4) centroid in vec3 sky; // ambient light and openness, baked; 1, as centroids make it
+layout(location = 4) centroid in vec3 sky; // x: baked ambient light; y: baked openness; z: 1 as interpolated to the centroid
 layout(location = 5) centroid in FIELD_TYPE field;
 layout(location = 2) uniform int material;
-layout(location = 3) uniform int textures; // bits: base colour, metallic-roughness, normal, occlusion, emissive; from 8 on: second uv
+// bits: base colour, metallic-roughness, normal, occlusion, emissive; from bit 8 on: uses the second coordinates
+layout(location = 3) uniform int textures;
 layout(binding = 3) uniform sampler2D base_color_map;
 layout(binding = 4) uniform sampler2D metallic_roughness_map;
 layout(binding = 5) uniform sampler2D normal_map;
@@ -26,19 +27,19 @@ layout(location = 0) out vec4 color;
 #include "section.glsl"
 #endif
 
-vec2 uv_of(int map) // its bit
+vec2 uv_of(int map) // map: bit of the texture
 {
     return (textures >> 8 & map) != 0 ? uv.zw : uv.xy;
 }
 
-// The surface's normal with the normal map on it; the tangents come from the derivatives of place and uv.
+// Returns the surface's normal with the normal map applied; tangents come from derivatives of position and texture coordinates.
 vec3 mapped_normal(vec3 n, float scale)
 {
     vec3 dx = dFdx(place), dy = dFdy(place);
     vec2 on_map = uv_of(4), du = dFdx(on_map), dv = dFdy(on_map);
     vec3 cross_y = cross(dy, n), cross_x = cross(n, dx);
     vec3 t = cross_y * du.x + cross_x * dv.x, b = cross_y * du.y + cross_x * dv.y;
-    float size = max(dot(t, t), dot(b, b)), turn = sign(dot(dx, cross_y)); // rows may run downward
+    float size = max(dot(t, t), dot(b, b)), turn = sign(dot(dx, cross_y)); // rows may run downwards
     if (size < 1e-20)
         return n;
     vec3 m = texture(normal_map, on_map).xyz * 2.0 - 1.0;
@@ -56,7 +57,7 @@ void main()
         return;
     }
 #endif
-    bool turned = dot(n, v) < (gl_FrontFacing ? MOST_AWAY : 0.0); // from behind; or its normals are those of the other side
+    bool turned = dot(n, v) < (gl_FrontFacing ? MOST_AWAY : 0.0); // seen from behind, or the normals belong to the other side
     if (turned)
         n = -n;
 #if defined(TEXTURED) || !defined(FIELD) || defined(GLOSSY)
@@ -71,7 +72,8 @@ void main()
 #endif
     float sun_visible = sun_visibility(frame.sun_from_eye, place, n, frame.sun.w);
     float ambient = sky.x;
-#ifdef FIELD // llvmpipe interpolates to the centroid, but divides by the depth at the middle of the pixel: by what that makes of 1
+// llvmpipe interpolates to the centroid but divides by the depth at the pixel's centre; dividing by the interpolated 1 corrects that
+#ifdef FIELD
     color = vec4(field_color(field_here(field / sky.z), light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible)), 1.0);
 #endif
 #if !defined(FIELD) || defined(GLOSSY)
@@ -79,7 +81,7 @@ void main()
     vec3 glow = m.emissive.rgb;
 #ifdef GLOSSY
     s.base = linear_from_srgb(color.rgb);
-    s.metallic = 0.0; // a mirror would show the sky instead of the field
+    s.metallic = 0.0; // a metal would reflect the sky instead of showing the field
 #endif
 #ifdef TEXTURED
     if ((textures & 2) != 0) {
@@ -94,7 +96,7 @@ void main()
     if ((textures & 16) != 0)
         glow *= texture(emissive_map, uv_of(16)).rgb;
 #endif
-#ifdef GLOSSY // likewise in a black part of an occlusion map
+#ifdef GLOSSY // keeps colours recognisable in dark parts of an occlusion map
     s.open = mix(GLOSSY_OPEN, 1.0, s.open);
     vec3 c = srgb_from_linear(tone_map(GLOSSY_SKY * sky_shade(s, v) + GLOSSY_SUN * sun_shade(s, v, l) + glow));
 #else

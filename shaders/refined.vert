@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Still tier: all that shading by pixel needs.
+// Refined frames: outputs everything that per-pixel shading needs.
 #include "frame.glsl"
 #include "clip.glsl"
 #include "instance.glsl"
 #include "normal.glsl"
 layout(location = 0) in vec3 position_m;
-layout(location = 1) in vec2 normal; // folded
+layout(location = 1) in vec2 normal; // packed as in normal.glsl
 layout(location = 2) in vec2 texcoord;
 layout(location = 3) in vec4 vertex_color;
 layout(location = 7) in vec2 second_texcoord;
 layout(location = 0) centroid out vec3 place;
 layout(location = 1) centroid out vec3 surface_normal;
-layout(location = 2) centroid out vec4 uv; // both places on the textures
+layout(location = 2) centroid out vec4 uv; // first and second texture coordinates
 layout(location = 3) centroid out vec4 tint;
 layout(location = 4) centroid out vec3 sky;
 layout(location = 5) centroid out FIELD_TYPE field;
@@ -33,6 +33,7 @@ void main()
     uv = vec4(texcoord, second_texcoord);
     tint = vertex_color;
     vec4 baked = light_here();
-    sky = vec3(baked.yz, baked.w < 0.0 ? 0.0 : 1.0); // 1, and compilers cannot know it: what is known is not interpolated
+    // z is always 1, but compilers must not know, because they do not interpolate constants
+    sky = vec3(baked.yz, baked.w < 0.0 ? 0.0 : 1.0);
     field = scalar_here();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One triangle over the whole picture, at the far plane.
+// One triangle that covers the whole frame, at the far plane.
 layout(location = 0) out vec2 clip;
 
 void main()

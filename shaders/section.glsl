@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a cut opens, in neutral greys: the inner side of a surface, as round as it is; and, darker and flat, with stripes that lean the
-// other way than those of no data, a body that is solid as far as the model says.
+// Colours of section cuts, in neutral greys: the inner side of a surface, shaded; and section caps of closed bodies, darker and flat, with
+// stripes that slant the opposite way to those of no data.
 #include "constants.glsl"
 
-// v: towards the viewer; n: of the surface, to either side, of any length.
+// v: unit vector towards the viewer; n: normal of any length and sign.
 vec3 inside_color(vec3 v, vec3 n)
 {
     n *= inversesqrt(max(dot(n, n), 1e-30)) * (dot(n, v) < 0.0 ? -1.0 : 1.0);

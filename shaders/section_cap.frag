@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a cut shows of closed bodies: a plane where it enters them. Over the resolved picture; once for colours, once for depth.
+// Draws section caps: the section plane where it enters closed bodies. Runs over the resolved frame, once for colours, once for depth.
 #include "frame.glsl"
 #include "section.glsl"
-layout(binding = 0) uniform sampler2D bodies; // of section_cap_count.frag; several texels to a pixel
-layout(location = 0) uniform int texels;      // to a pixel's side
+layout(binding = 0) uniform sampler2D bodies; // written by section_cap_count.frag; several texels per pixel
+layout(location = 0) uniform int texels;      // along a pixel's side
 layout(location = 0) in vec2 clip;
 #ifdef DEPTH
 #else
 layout(location = 0) out vec4 color;
 #endif
 
-// Where the ray enters what is left of the plant: depth, 1 near; 1: it begins within, below 0: it misses it.
+// Returns the depth at which the ray enters the uncut space (1 near). 1: the ray begins inside; negative: it misses.
 float entry()
 {
     float top = 1.0, bottom = 0.0;

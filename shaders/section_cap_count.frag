@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Summed up over all that a pixel's ray meets: 1 where it leaves a body, -1 where it comes into one. What is left over is what it was in
-// from the beginning.
+// Added up over all surfaces along a pixel's ray: +1 where the ray leaves a body, -1 where it enters one. A positive sum means that the ray
+// began inside a body.
 layout(location = 0) out float bodies;
 
 void main()

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares pictures tile by tile and puts rectangles around what differs. */
+/* Compares frames tile by tile and encloses the differences in rectangles. */
 #include "encode/dirty_rects.h"
 
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 
-static const long PART_COST_PX = 4096; /* header and tables of one more rectangle, in pixels that take as many bytes */
+static const long PART_COST_PX = 4096; /* cost of header and tables of one more rectangle, in pixels with as many bytes */
 
 static const uint8_t *row(const struct frame *frame, int x_px, int y_px)
 {
@@ -62,7 +62,7 @@ static bool overlap(const struct dirty_rect *a, const struct dirty_rect *b)
            b->y_px < a->y_px + a->height_px;
 }
 
-/* Pixels that one rectangle around both costs more than the two. */
+/* Returns how many pixels more one rectangle around both costs than the two. */
 static long growth(const struct dirty_rect *a, const struct dirty_rect *b)
 {
     struct dirty_rect all = around(a, b);
@@ -74,7 +74,7 @@ struct rect_list {
     size_t count, capacity;
 };
 
-/* Runs of tiles in a row; one that stands below an equal run makes it longer. */
+/* Adds a run of differing tiles in a row, merged with an equal run directly above. */
 static void add_run(struct rect_list *list, const struct dirty_rect *run)
 {
     for (size_t i = 0; i < list->count; i++) {
@@ -107,7 +107,7 @@ static void find_runs(const struct frame *before, const struct frame *now, struc
     }
 }
 
-/* The pair whose common rectangle costs least. */
+/* Finds the pair of rectangles whose common rectangle costs least. Returns that cost. */
 static long cheapest(const struct rect_list *list, size_t *a, size_t *b)
 {
     long best = 0;
@@ -130,7 +130,7 @@ static void merge(struct rect_list *list, size_t a, size_t b)
     list->at[b] = list->at[--list->count];
 }
 
-/* Many runs first meet their neighbours, so that looking for the best pair stays cheap. */
+/* First merges neighbours while there are many runs, so that the search for the best pair stays cheap. */
 static void thin(struct rect_list *list, size_t enough)
 {
     for (size_t i = 0; i + 1 < list->count && list->count > enough;)

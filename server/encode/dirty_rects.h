@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dirty rectangles: finds which parts of a frame differ from the one before it. Pure. Thread: any. */
+/* Dirty rectangles: finds which parts of a frame differ from the previous one. Pure. Thread: any. */
 #ifndef ENCODE_DIRTY_RECTS_H
 #define ENCODE_DIRTY_RECTS_H
 #include <stdbool.h>
@@ -11,11 +11,11 @@ struct dirty_rect {
     int x_px, y_px, width_px, height_px;
 };
 
-/* Finds disjoint rectangles that cover every differing pixel of two frames of one size, and returns how many; 0: the frames are equal.
+/* Finds disjoint rectangles that cover every differing pixel of two frames of one size. Returns their number; 0: the frames are equal.
    Edges are at multiples of DIRTY_RECTS_TILE_PX or at the frame's right and lower edge. */
 int dirty_rects_find(const struct frame *before, const struct frame *now, struct dirty_rect out[DIRTY_RECTS_MAX]);
 bool dirty_rects_none(const struct frame *before, const struct frame *now); /* returns whether the frames are equal; faster */
-/* Returns the share of the frame that rectangles cover, 0..1. */
+/* Returns the fraction of the frame that the rectangles cover, 0..1. */
 double dirty_rects_share(const struct frame *frame, const struct dirty_rect *rects, int count);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of codecs, and what is the same for all of them. */
+/* The table of codecs, and code common to all of them. */
 #include "encode/encoder.h"
 
 #include <errno.h>
@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "encode/encoder_impl.h"
 
-static const double WHOLE_SHARE = 0.6; /* from this share on one whole picture costs less than its parts */
+static const double MAX_DIRTY_SHARE = 0.6; /* from this fraction of the frame on, one whole frame costs less than its rectangles */
 static const struct encoder_impl *const table[] = {
     &jpeg_impl,
     &png_impl,
@@ -50,21 +50,22 @@ bool encoder_is_stream(const char *name)
     return impl && impl->is_stream;
 }
 
-/* Of a frame that follows `before` under the same view. False: nothing differs. */
+/* Finds what changed since `before`, under the same view. Returns false if nothing did. */
 static bool find_dirty_rects(const struct encoder *encoder, const struct frame *frame, const struct frame *before, struct dirty_rect *rects,
                              int *count)
 {
-    if (encoder->impl->is_stream) /* it finds them itself */
+    if (encoder->impl->is_stream) /* the codec finds changes itself */
         return !dirty_rects_none(before, frame);
     *count = dirty_rects_find(before, frame, rects);
     if (*count == 0)
         return false;
-    if (dirty_rects_share(frame, rects, *count) > WHOLE_SHARE)
+    if (dirty_rects_share(frame, rects, *count) > MAX_DIRTY_SHARE)
         *count = 0;
     return true;
 }
 
-/* Arrows are not in the pixels, but come with the picture: where one turns, or its direction is lost, there has to be one. */
+/* Returns whether arrows are equal. They are not in the pixels but are sent with the frame, so a turned or lost arrow requires a new
+   one. */
 static bool arrows_equal(const struct frame *a, const struct frame *b)
 {
     if (a->label_count != b->label_count)

@@ -6,21 +6,21 @@
 #include "base/workers.h"
 #include "encode/packet.h"
 
-#define ENCODER_H264_LIBRARY "libx264" /* the encoder of libavcodec that is taken unless another one is named */
+#define ENCODER_H264_LIBRARY "libx264" /* default encoder in libavcodec */
 
 struct encoder;
 struct encoder_params {
-    int quality;          /* 1..100, for codecs that have one */
+    int quality;          /* 1..100, for codecs that have a quality */
     bool full_chroma;     /* 4:4:4 instead of 4:2:0, for codecs that have both */
-    bool key;             /* make a key frame: the packet must not depend on earlier ones */
-    struct workers *workers; /* to encode in parallel; may be NULL */
-    struct frame *before; /* what the client shows, in this quality; NULL: unknown. What equals it need not be sent */
+    bool key;             /* makes a key frame: its packet does not depend on earlier ones */
+    struct workers *workers; /* for encoding in parallel; may be NULL */
+    struct frame *before; /* the frame that the client shows, in this quality; NULL: unknown. Parts equal to it are not sent */
 };
 
 /* Creates an encoder. name: "jpeg", "png" or, unless left out of the build, "h264", whose packets depend on each other, so each stream has
-   an encoder of its own. library: the libavcodec encoder for H.264. Returns NULL on failure (logged). */
+   an encoder of its own. library: the libavcodec encoder for H.264. Returns NULL on failure, logged. */
 struct encoder *encoder_create(struct log *log, const char *name, const char *library);
-void encoder_destroy(struct encoder **encoder); /* &NULL is fine; leaves NULL */
+void encoder_destroy(struct encoder **encoder); /* &NULL is fine; sets it to NULL */
 /* Encodes a frame. Returns 0; -EAGAIN: call encoder_receive() first; other < 0: the frame cannot be encoded (logged). */
 int encoder_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params);
 /* Gets the next packet. Returns 0, and the caller owns *out (packet_unref()); -EAGAIN: nothing is ready, or the last frame equals

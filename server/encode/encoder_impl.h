@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The interface that each codec implements, with a line in the table of encoder.c. Private to encode/. */
+/* Interface of a codec; the table of codecs is in encoder.c. Private to encode/. */
 #ifndef ENCODE_ENCODER_IMPL_H
 #define ENCODE_ENCODER_IMPL_H
 #include "encode/dirty_rects.h"
@@ -9,17 +9,17 @@ struct encoder_impl {
     const char *name;
     bool is_stream;
     struct encoder *(*create)(struct log *log, const char *library);
-    /* Encodes a frame and leaves the packet in encoder->ready. count 0: encode the whole frame; else the rectangles are all that differs
-       from params->before, and the codec may encode more than those. */
+    /* Encodes a frame and leaves the packet in encoder->ready. count 0: encodes the whole frame; else the rectangles cover everything that
+       differs from params->before, and the codec may encode more. */
     int (*send)(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
                 int count);
     void (*destroy)(struct encoder *encoder);
 };
 
-struct encoder { /* first member of each codec's own struct */
+struct encoder { /* first member of each codec's struct */
     const struct encoder_impl *impl;
     struct log *log;
-    struct packet *ready; /* made by send, not yet received */
+    struct packet *ready; /* made by send and not received yet; NULL: none */
 };
 
 extern const struct encoder_impl jpeg_impl, png_impl;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* H.264 by libavcodec: Annex B, no picture waits for another, key frames only on demand. */
+/* H.264 with libavcodec: Annex B, no frame reordering, key frames on demand only. */
 #include "encode/h264_codec.h"
 
 #include <errno.h>
@@ -11,11 +11,11 @@
 #include "base/mem.h"
 #include "encode/h264_upload.h"
 
-/* Options of libavcodec's encoders. x264: qcomp=1 makes every picture of one quality, however little moves; without ipratio key frames
-   are no finer than what follows, which would only be a spike. */
+/* Options of libavcodec's encoders. x264: qcomp=1 gives every frame the same quality, however little moves; without ipratio, key frames are
+   no finer than others, which would only cause a spike in the bit rate. */
 struct library {
     const char *name, *options;
-    bool has_crf; /* its quality can change between pictures; that of others is what the options say */
+    bool has_crf; /* quality can change per frame; others use the quality in `options` */
 };
 static const struct library libraries[] = {
     { "libx264",
@@ -26,13 +26,13 @@ static const struct library libraries[] = {
     { "libopenh264", "rc_mode=quality allow_skip_frames=0", false },
 };
 static const struct library other_library = { "", "", false };
-static const int64_t OTHERS_BITS_PER_PX_S = 4; /* rate of the encoders that need one */
-enum { RATE_HZ = 60, SLICED_PX = 1500000, MANY_CORES = 8, MOST_THREADS = 8 };
+static const int64_t DEFAULT_BITS_PER_PX_S = 4; /* bit rate for encoders that need one */
+enum { RATE_HZ = 60, SLICED_PX = 1500000, MANY_CORES = 8, MAX_THREADS = 8 };
 
 struct h264_codec {
     const AVCodec *codec;
     const struct library *library;
-    AVCodecContext *context; /* of the size of the last picture */
+    AVCodecContext *context; /* for the size of the last frame */
     AVFrame *picture;
     AVPacket *out;
     struct h264_upload *upload;
@@ -88,18 +88,18 @@ static int failed(const struct h264_codec *h264, const char *what, int status, c
     return status == AVERROR(ENOMEM) ? -ENOMEM : -EIO;
 }
 
-/* Slices only where one core would be late; where there are many, for each part of a picture so large. */
+/* Returns the number of slices: several only where one core would be too slow; with many cores one per SLICED_PX pixels. */
 static int thread_count(int width_px, int height_px)
 {
     long cores = sysconf(_SC_NPROCESSORS_ONLN), pixels = (long)width_px * height_px;
     if (cores < MANY_CORES)
         return pixels < SLICED_PX || cores < 2 ? 1 : cores < 4 ? (int)cores : 4;
-    long parts = 1 + MOST_THREADS * pixels / (SLICED_PX + SLICED_PX / 4), most = cores / 2 < MOST_THREADS ? cores / 2 : MOST_THREADS;
+    long parts = 1 + MAX_THREADS * pixels / (SLICED_PX + SLICED_PX / 4), most = cores / 2 < MAX_THREADS ? cores / 2 : MAX_THREADS;
     return (int)(parts < most ? parts : most);
 }
 
-/* Colours are what JPEG has them, BT.601 at full range: libyuv's fastest, and what browsers turn back most exactly (of BT.709 and limited
-   range at that, chromium is up to 12 of 255 off). */
+/* Describes the frames. Colours are BT.601 at full range, as in JPEG: libyuv's fastest conversion, and what browsers reproduce most exactly
+   (with BT.709 at limited range chromium is up to 12 of 255 off). */
 static void describe(AVCodecContext *context, const struct h264_codec *h264)
 {
     context->width = (h264->width_px + 1) & ~1;
@@ -115,7 +115,7 @@ static void describe(AVCodecContext *context, const struct h264_codec *h264)
     context->refs = 1;
     context->thread_count = thread_count(h264->width_px, h264->height_px);
     if (h264->library == &other_library)
-        context->bit_rate = (int64_t)h264->width_px * h264->height_px * OTHERS_BITS_PER_PX_S;
+        context->bit_rate = (int64_t)h264->width_px * h264->height_px * DEFAULT_BITS_PER_PX_S;
 }
 
 static int open_codec(struct h264_codec *h264, int width_px, int height_px, char why[H264_WHY_BYTES])
@@ -163,8 +163,8 @@ static int codec_begin(struct h264_codec *h264, int width_px, int height_px, str
     return 0;
 }
 
-/* JPEG's 92 looks as 18 does, 78 as 25. Below that, bytes go down with quality as JPEG's do, and looks more slowly: from 40 on nearly all
-   blocks of a picture that moves are skipped, and it shows what stood there before. */
+/* Maps quality to x264's rate factor: JPEG's 92 looks like 18, 78 like 25. Below, the bit rate falls with quality as JPEG's does, and the
+   look more slowly: from 40 on nearly all blocks of a moving picture would be skipped and show outdated content. */
 static double rate_factor(int quality)
 {
     static const double fine = 18, moving = 25;

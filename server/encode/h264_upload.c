@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From planar pictures to what an encoder takes. */
+/* Converts planar frames to the format that an encoder accepts. */
 #include "encode/h264_upload.h"
 
 #include <libavutil/hwcontext.h>
@@ -10,11 +10,11 @@
 #include "base/mem.h"
 
 struct h264_upload {
-    AVFrame *interleaved; /* NULL: the encoder takes planes */
-    bool device;          /* and pictures of its own memory only */
+    AVFrame *interleaved; /* NULL: the encoder accepts planes */
+    bool device;          /* the encoder accepts only frames in its device's memory */
 };
 
-/* What it takes, up to AV_PIX_FMT_NONE. NULL: anything. */
+/* Returns the accepted formats, ended by AV_PIX_FMT_NONE. NULL: any. */
 static const enum AVPixelFormat *formats_of(const AVCodec *codec)
 {
 #if LIBAVCODEC_VERSION_INT >= AV_VERSION_INT(61, 13, 100)
@@ -34,7 +34,7 @@ static bool takes(const AVCodec *codec, enum AVPixelFormat format)
     return !formats;
 }
 
-/* The kind of device whose pictures are the only ones that the encoder takes. */
+/* Returns the type of device whose memory format this is. */
 static enum AVHWDeviceType device_type(enum AVPixelFormat format)
 {
     for (enum AVHWDeviceType type = AV_HWDEVICE_TYPE_NONE; (type = av_hwdevice_iterate_types(type)) != AV_HWDEVICE_TYPE_NONE;) {

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts planar pictures to what a libavcodec encoder accepts: planar, with interleaved chroma, or on its device. Thread: one. */
+/* Converts planar frames to a format that a libavcodec encoder accepts: planar, with interleaved chroma, or in its device's memory. Thread:
+   one. */
 #ifndef ENCODE_H264_UPLOAD_H
 #define ENCODE_H264_UPLOAD_H
 #include <libavcodec/avcodec.h>
 
 struct h264_upload;
-/* Sets the pixel format of a context that is not open yet, and its device if it needs one. Returns 0 or an AVERROR. Free *out with
+/* Sets the pixel format of a context that is not open yet, and its device if needed. Returns 0 or an AVERROR. Free *out with
    h264_upload_destroy(). */
 int h264_upload_create(AVCodecContext *context, struct h264_upload **out);
-void h264_upload_destroy(struct h264_upload **upload); /* &NULL is fine; leaves NULL */
-/* Converts a picture (YUV 4:2:0, with its time and type) and sends it to the encoder. Returns 0 or an AVERROR. */
+void h264_upload_destroy(struct h264_upload **upload); /* &NULL is fine; sets it to NULL */
+/* Converts a frame (YUV 4:2:0, with its time and type) and sends it to the encoder. Returns 0 or an AVERROR. */
 int h264_upload_send(struct h264_upload *upload, AVCodecContext *context, AVFrame *picture);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Baseline JPEG. */
+/* The baseline JPEG codec. */
 #include <errno.h>
 #include <string.h>
 
@@ -11,9 +11,9 @@
 struct jpeg_encoder {
     struct encoder base;
     struct jpeg_writer *writer;
-    unsigned char *out; /* kept from picture to picture */
+    unsigned char *out; /* output buffer, reused from frame to frame */
     size_t capacity;
-    unsigned char *planes; /* of one rectangle, halved chroma behind its luma */
+    unsigned char *planes; /* luma of one rectangle, then its subsampled chroma */
     size_t planes_capacity;
 };
 
@@ -40,7 +40,7 @@ static struct encoder *jpeg_create(struct log *log, const char *library)
     return &jpeg->base;
 }
 
-/* What was there is lost. */
+/* Grows a buffer; its content is lost. */
 static bool reserve(unsigned char **at, size_t *capacity, size_t need)
 {
     if (need <= *capacity)
@@ -56,13 +56,13 @@ static int padded(int px)
     return (px + JPEG_PAD_PX - 1) / JPEG_PAD_PX * JPEG_PAD_PX;
 }
 
-/* No picture needs more: TurboJPEG's bound. */
-static size_t most_bytes(const struct dirty_rect *part)
+/* Returns an upper bound of the JPEG's size, as TurboJPEG's. */
+static size_t max_bytes(const struct dirty_rect *part)
 {
     return (size_t)padded(part->width_px) * (size_t)padded(part->height_px) * 6 + 2048;
 }
 
-/* Beyond the right edge lies what stands at it. */
+/* Fills the padding at the right with the last column. */
 static void extend(const struct yuv_planes *planes)
 {
     for (int c = 0; c < 3; c++) {
@@ -74,7 +74,7 @@ static void extend(const struct yuv_planes *planes)
     }
 }
 
-/* Returns how many bytes; 0: failed, why says how. */
+/* Compresses a rectangle with subsampled chroma. Returns the number of bytes; 0: failed, with the reason in *why. */
 static size_t compress_halved(struct jpeg_encoder *jpeg, const uint8_t *from, int stride_bytes, const struct dirty_rect *part, int quality,
                               unsigned char *to, const char **why)
 {
@@ -89,10 +89,10 @@ static size_t compress_halved(struct jpeg_encoder *jpeg, const uint8_t *from, in
         planes.plane[i] = jpeg->planes + (i > 0 ? luma : 0) + (i > 1 ? luma / 4 : 0);
     planes_convert(&planes, 0, planes_bands(part->height_px));
     extend(&planes);
-    return jpeg_write_halved(jpeg->writer, &planes, quality, to, most_bytes(part));
+    return jpeg_write_halved(jpeg->writer, &planes, quality, to, max_bytes(part));
 }
 
-/* Appends one rectangle at *end of what is reserved. */
+/* Compresses a rectangle and appends it at *end of the output buffer. */
 static bool compress(struct jpeg_encoder *jpeg, const struct frame *frame, const struct dirty_rect *part,
                      const struct encoder_params *params, size_t *end)
 {
@@ -100,7 +100,7 @@ static bool compress(struct jpeg_encoder *jpeg, const struct frame *frame, const
     const char *why = jpeg_writer_why(jpeg->writer);
     unsigned char *to = jpeg->out + *end;
     size_t count = params->full_chroma ? jpeg_write_whole(jpeg->writer, from, frame->stride_bytes, part->width_px, part->height_px,
-                                                          params->quality, to, most_bytes(part))
+                                                          params->quality, to, max_bytes(part))
                                        : compress_halved(jpeg, from, frame->stride_bytes, part, params->quality, to, &why);
     if (count == 0)
         log_err(jpeg->base.log, "jpeg %dx%d: %s", part->width_px, part->height_px, why);
@@ -112,7 +112,7 @@ static bool reserve_for(struct jpeg_encoder *jpeg, const struct dirty_rect *part
 {
     size_t need = 0;
     for (int i = 0; i < count; i++)
-        need += most_bytes(&parts[i]);
+        need += max_bytes(&parts[i]);
     return reserve(&jpeg->out, &jpeg->capacity, need);
 }
 

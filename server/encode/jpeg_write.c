@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* libjpeg, whose errors jump. */
+/* Writes JPEG with libjpeg, whose errors are caught by longjmp. */
 #include "encode/jpeg_write.h"
 
 #include <setjmp.h>
@@ -27,7 +27,7 @@ static void fail(j_common_ptr codec)
     longjmp(writer->failed, 1);
 }
 
-static void start(j_compress_ptr codec) /* `to` is set by then */
+static void start(j_compress_ptr codec) /* `to` is set before */
 {
     (void)codec;
 }
@@ -55,7 +55,7 @@ struct jpeg_writer *jpeg_writer_create(void)
         mem_free(writer);
         return NULL;
     }
-    jpeg_create_compress(&writer->codec); /* keeps err and client_data */
+    jpeg_create_compress(&writer->codec); /* err and client_data are kept */
     writer->to = (struct jpeg_destination_mgr){ .init_destination = start, .empty_output_buffer = need_room, .term_destination = start };
     writer->codec.dest = &writer->to;
     return writer;
@@ -106,7 +106,7 @@ static void write_halved(struct jpeg_compress_struct *codec, const struct yuv_pl
     begin(codec, planes->width_px, planes->height_px, JCS_YCbCr, quality, true);
     while (codec->next_scanline < codec->image_height) {
         for (int c = 0; c < 3; c++)
-            for (int j = 0; j < (c ? ROWS / 2 : ROWS); j++) { /* beyond the picture, its last row */
+            for (int j = 0; j < (c ? ROWS / 2 : ROWS); j++) { /* below the picture, its last row is repeated */
                 int height = c ? (planes->height_px + 1) / 2 : planes->height_px;
                 int y = (int)codec->next_scanline / (c ? 2 : 1) + j;
                 rows[c][j] = planes->plane[c] + (ptrdiff_t)(y < height ? y : height - 1) * planes->pitch[c];

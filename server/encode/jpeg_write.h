@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes baseline JPEG by libjpeg, with its own chroma quantization tables: the colours of a field differ by chroma, and the standard
-   tables, made for photographs, lose most of it within a few pixels. Measured at quality 80 on parts a few pixels wide: 3.9 % of
-   the range misread, 4.7 % by deuteranopes; with these 2.3 and 2.7 %, for 8 % more bytes of the demo plant at 1920x1080 (up to 30 % of one
-   vessel close to). So from JPEG_READ_QUALITY up, chroma loses at most a fifth of what luma may if it is subsampled, and half if it
-   is not. Private to jpeg.c. Thread: one at a time per writer. */
+/* Writes baseline JPEG with libjpeg and its own chroma quantization tables. A field's colours differ by chroma, of which the standard
+   tables, made for photographs, lose most within a few pixels. At quality 80, on parts a few pixels wide, the standard tables misread
+   values by 3.9 % of the range, these by 2.3 %, for 8 % more bytes. From JPEG_READ_QUALITY up, the chroma tables allow at most a fifth of
+   luma's error if chroma is subsampled, and half of it if not. Private to jpeg.c. Thread: one at a time per writer. */
 #ifndef ENCODE_JPEG_WRITE_H
 #define ENCODE_JPEG_WRITE_H
 #include <stdbool.h>
@@ -12,13 +11,13 @@
 
 #include "encode/planes.h"
 
-enum { JPEG_READ_QUALITY = 75 }; /* below, all tables are the standard ones: the picture is a draft */
+enum { JPEG_READ_QUALITY = 75 }; /* below this quality all tables are the standard ones */
 
 struct jpeg_writer;
 struct jpeg_writer *jpeg_writer_create(void); /* NULL: out of memory */
-void jpeg_writer_destroy(struct jpeg_writer **writer); /* &NULL is fine; leaves NULL */
-/* Both functions write to `to`, which has room for `capacity` bytes, and return how many were written; 0 on failure, and jpeg_writer_why()
-   says why. */
+void jpeg_writer_destroy(struct jpeg_writer **writer); /* &NULL is fine; sets it to NULL */
+/* Both functions write to `to`, which has room for `capacity` bytes. They return the number of bytes written; 0 on failure, with the reason
+   in jpeg_writer_why(). */
 /* Encodes pixels with full chroma. */
 size_t jpeg_write_whole(struct jpeg_writer *writer, const uint8_t *bgrx, int stride_bytes, int width_px, int height_px, int quality,
                         unsigned char *to, size_t capacity);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packets: an encoded picture and what it means, without the pixels. */
+/* Packets: an encoded frame and its metadata, without the pixels. */
 #include "encode/packet.h"
 
 #include <string.h>
@@ -15,11 +15,12 @@ static void *copy_of(const void *list, size_t count, size_t bytes_each)
     return copy;
 }
 
-/* A packet may wait for a slow peer: it keeps what the frame says, not its megabytes of pixels. */
+/* Copies a frame without its pixels: a packet may wait for a slow peer, and must not hold megabytes meanwhile. */
 static struct frame *without_pixels(const struct frame *frame)
 {
     struct frame *copy = mem_new(sizeof(*copy));
-    size_t plain = offsetof(struct frame, view); /* others count its references meanwhile */
+    /* members before `view` are not copied: other threads change the reference count meanwhile */
+    size_t plain = offsetof(struct frame, view);
     memcpy((char *)copy + plain, (const char *)frame + plain, sizeof(*copy) - plain);
     atomic_init(&copy->refs, 1);
     copy->bgrx = NULL;

@@ -9,31 +9,32 @@
 #include "render/frame.h"
 
 enum { PACKET_PARTS = 8, PACKET_SHA256_BYTES = 32 };
-struct packet_part { /* a rectangle of the picture, and its bytes */
+struct packet_part { /* a rectangle of the frame, and the range of its bytes */
     int x_px, y_px, width_px, height_px;
     size_t begin, count;
 };
 
 struct packet {
     _Atomic int refs;
-    struct frame *frame; /* what it shows, without the pixels (frame->bgrx is NULL) */
+    struct frame *frame; /* metadata of the frame, without the pixels (frame->bgrx is NULL) */
     enum wire_codec codec;
-    bool key; /* does not depend on the packet before */
+    bool key; /* does not depend on the previous packet */
     bool is_signed; /* a PNG file with statement and signature (provenance/signed_picture.h) */
     uint8_t *bytes;
     size_t count;
-    uint8_t pixels_sha256[PACKET_SHA256_BYTES]; /* of a frame with a record, as PNG: of its pixels, red, green, blue, rows from the top */
+    /* for PNG of a frame with a record: hash of the pixels as red, green, blue, rows from the top */
+    uint8_t pixels_sha256[PACKET_SHA256_BYTES];
     struct packet_part parts[PACKET_PARTS];
     int part_count;
     int64_t encode_ns;
 };
 
-/* Creates a packet of the whole frame. Copies bytes, and the frame without its pixels. Returns NULL if out of memory. */
+/* Creates a packet of the whole frame. Copies the bytes, and the frame without its pixels. Returns NULL when out of memory. */
 struct packet *packet_create(const struct frame *frame, enum wire_codec codec, bool key, const void *bytes, size_t count);
-/* Creates a packet of 1..PACKET_PARTS rectangles, whose bytes are one after the other. Returns NULL if out of memory. */
+/* Creates a packet of 1..PACKET_PARTS rectangles, whose bytes are contiguous. Returns NULL when out of memory. */
 struct packet *packet_create_parts(const struct frame *frame, enum wire_codec codec, const void *bytes, const struct packet_part *parts,
                                    int part_count);
 struct packet *packet_ref(struct packet *packet);
-void packet_unref(struct packet **packet); /* &NULL is fine; leaves NULL */
+void packet_unref(struct packet **packet); /* &NULL is fine; sets it to NULL */
 
 #endif

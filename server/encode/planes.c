@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Halved chroma whose colours keep to their rims: libyuv's mean, made anew where a colour meets a grey. */
+/* Subsampled chroma with sharp colour edges: libyuv's mean, recomputed with weights where a colour meets a grey. */
 #include "encode/planes.h"
 
 #include <libyuv.h>
@@ -8,9 +8,9 @@
 
 #include "base/math/simd.h"
 
-enum { TILE_W = 16, TILE_H = PLANES_BAND_PX / 2 }; /* samples of chroma */
-enum { COLOUR = 16 };         /* chroma that counts as one, in steps */
-static const float GREY = 4;  /* weight of a pixel without colour; that of others is this and the square of their chroma */
+enum { TILE_W = 16, TILE_H = PLANES_BAND_PX / 2 }; /* size of a tile in chroma samples */
+enum { COLOUR = 16 };         /* smallest chroma, in steps, that counts as a colour */
+static const float GREY = 4;  /* weight of a pixel without colour; others have this plus the square of their chroma */
 
 size_t planes_bands(int height_px)
 {
@@ -22,7 +22,7 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-/* A colour and a grey within a tile. Between two colours the mean is as good. */
+/* Returns whether a tile contains both a colour and a grey. Between two colours the plain mean is as good. */
 static bool has_rim(uint8_t *const at[2], const int pitch[2], int width, int height)
 {
     bool colour = false, grey = true;
@@ -52,7 +52,7 @@ SIMD_BODY void weigh_row(const uint32_t *pixels, float u[2 * TILE_W], float v[2 
     }
 }
 
-/* pixels: two rows of 2 * TILE_W, one below the other. */
+/* pixels: two rows of 2 * TILE_W pixels, contiguous. */
 SIMD_BODY void weigh_pair(const uint32_t *pixels, uint8_t out[2][TILE_W])
 {
     float u[2][2 * TILE_W], v[2][2 * TILE_W], weight[2][2 * TILE_W];
@@ -63,7 +63,7 @@ SIMD_BODY void weigh_pair(const uint32_t *pixels, uint8_t out[2][TILE_W])
         v[0][i] += v[1][i];
         weight[0][i] += weight[1][i];
     }
-    for (int i = 0; i < TILE_W; i++) { /* a mean of what is within -127.5..127.5, and a half to round */
+    for (int i = 0; i < TILE_W; i++) { /* the mean is within -127.5..127.5; 128.5 includes rounding */
         float part = 1 / (weight[0][2 * i] + weight[0][2 * i + 1]);
         out[0][i] = (uint8_t)least((int)((u[0][2 * i] + u[0][2 * i + 1]) * part + 128.5f), 255);
         out[1][i] = (uint8_t)least((int)((v[0][2 * i] + v[0][2 * i + 1]) * part + 128.5f), 255);
@@ -80,7 +80,7 @@ SIMD_AVX2 static void weigh_wide(const uint32_t *pixels, uint8_t out[2][TILE_W])
     weigh_pair(pixels, out);
 }
 
-/* What lies beyond the picture is what stands at its edge. */
+/* Copies pixels; beyond the picture, the edge is repeated. */
 static void gather(const struct yuv_planes *planes, int x, int y, uint32_t pixels[2][2 * TILE_W])
 {
     int width = least(2 * TILE_W, planes->width_px - x);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lossless PNG by libpng, for snapshots and for still pictures on request. */
+/* Lossless PNG with libpng, for snapshots and for still frames on request. */
 #include <errno.h>
 #include <openssl/evp.h>
 #include <png.h>
@@ -35,7 +35,7 @@ static uint8_t *pack_rgb(const struct frame *frame)
     return packed;
 }
 
-/* Zero, which is the hash of no picture, where the library cannot. */
+/* Hashes the pixels. All zero, which is no frame's hash, if the library fails. */
 static void hash_pixels(const struct frame *frame, const uint8_t *packed, uint8_t out[PACKET_SHA256_BYTES])
 {
     size_t bytes = 3 * (size_t)frame->width_px * (size_t)frame->height_px;
@@ -46,7 +46,7 @@ static void hash_pixels(const struct frame *frame, const uint8_t *packed, uint8_
 static int png_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
                     int count)
 {
-    (void)params; /* nothing to choose: it is lossless, and always whole */
+    (void)params; /* no choices: PNG is lossless, and the frame is always whole */
     (void)rects;
     (void)count;
     png_image image = {

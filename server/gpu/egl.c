@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* GL contexts from EGL without a window: a chosen device, or Mesa's surfaceless platform. */
+/* GL contexts from EGL without a window: on a chosen device, or on Mesa's surfaceless platform. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ struct egl {
     struct gl base;
     EGLDisplay display;
     EGLContext context;
-    bool used; /* the context was current once */
+    bool used; /* the context was current at least once */
 };
 
 static const char *egl_error_text(void)
@@ -46,8 +46,9 @@ static void egl_lose(struct gl *gl)
     egl->context = EGL_NO_CONTEXT;
 }
 
-/* A driver that was in use stays loaded: its own leaks are known by its name (tests/leaks.txt), which an unloaded one has lost. A
-   display outlives the loss of a context; if not, the next attempt fails on it and closes it for the one after. */
+/* Destroys a context. A driver that was used stays loaded, since leaks are suppressed by the driver's name (tests/leaks.txt), which an
+   unloaded one has lost. A display outlives the loss of a context; if it does not, the next attempt fails and closes it for the one
+   after. */
 static void egl_destroy(struct gl *gl)
 {
     struct egl *egl = (struct egl *)gl;
@@ -56,7 +57,7 @@ static void egl_destroy(struct gl *gl)
         egl_lose(gl);
     if (egl->display && !used && !gl_others())
         eglTerminate(egl->display);
-    if (egl->display && eglReleaseThread) /* EGL 1.2: not loaded yet where the display could not be initialised */
+    if (egl->display && eglReleaseThread) /* EGL 1.2 function: not loaded if the display could not be initialised */
         eglReleaseThread();
     if (!used && !gl_others())
         gladLoaderUnloadEGL();
@@ -71,7 +72,7 @@ static bool load_client(const char *name, struct text *why)
     return false;
 }
 
-/* One that says when it is lost, where the driver can. */
+/* Creates a context that reports its loss, where the driver supports that. */
 static EGLContext create_context(EGLDisplay display, EGLConfig config)
 {
     static const EGLint telling[] = {
@@ -86,7 +87,7 @@ static EGLContext create_context(EGLDisplay display, EGLConfig config)
     return context ? context : eglCreateContext(display, config, EGL_NO_CONTEXT, silent);
 }
 
-/* From an initialised display to a current context. */
+/* Creates a context on an initialised display and makes it current. */
 static bool make_current(struct egl *egl, const char *name, struct text *why)
 {
     static const EGLint config_attributes[] = { EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* EGL's list of devices, and where each sits on the PCI bus. */
+/* EGL's list of devices, and their PCI addresses. */
 #include "gpu/egl_devices.h"
 
 #include <limits.h>
@@ -35,7 +35,7 @@ static bool has_word(const char *all, const char *name)
     return false;
 }
 
-/* Asked of EGL itself: what the loader notes is of the display that it was last told. */
+/* Asks EGL itself: the loader's flags describe the display that was initialised last. */
 bool egl_client_has(const char *name)
 {
     return has_word(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), name);
@@ -62,7 +62,7 @@ bool egl_device_is_software(EGLDeviceEXT device)
     return has_word(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
 }
 
-/* /sys/dev/char/226:0/device leads to .../0000:65:00.0. */
+/* Reads a PCI address from the link /sys/dev/char/226:0/device, which points to .../0000:65:00.0. */
 static bool address_of_file(const char *path, struct gl_device *address)
 {
     struct stat file;

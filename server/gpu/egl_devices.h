@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* EGL's list of devices, and where each sits on the PCI bus. Private to gpu/. libEGL is loaded by the caller. */
+/* EGL's list of devices, and their PCI addresses. Private to gpu/. The caller loads libEGL. */
 #ifndef GPU_EGL_DEVICES_H
 #define GPU_EGL_DEVICES_H
 #include <glad/egl.h>
@@ -13,14 +13,14 @@ struct egl_devices {
     int count;
 };
 
-/* Extensions of EGL itself, not of a display. */
+/* Returns whether EGL itself (not a display) has an extension. */
 bool egl_client_has(const char *name);
-/* False: this EGL has none, or cannot list them; the reason is added to why. */
+/* Returns false if this EGL has no devices or cannot list them; the reason is appended to `why`. */
 bool egl_devices_read(struct egl_devices *devices, const char *name, struct text *why);
 bool egl_device_is_software(EGLDeviceEXT device);
-/* Its PCI address, through the kernel's device file. False: it has none (software), or EGL does not say. */
+/* Finds a device's PCI address by the kernel's device file. Returns false if it has none (software), or EGL does not report the file. */
 bool egl_device_address(EGLDeviceEXT device, struct gl_device *address);
-/* Index of the device asked for; -1: it is not there, and why says what is. */
+/* Returns the index of the requested device; -1: it does not exist, and `why` lists those that do. */
 int egl_devices_find(const struct egl_devices *devices, const struct gl_device *asked, const char *name, struct text *why);
 
 #endif

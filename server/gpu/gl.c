@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses a way to a GL context and reads what it can do. */
+/* Chooses how to create a GL context, and reads the context's capabilities. */
 #include "gpu/gl.h"
 
 #include <pthread.h>
@@ -12,7 +12,8 @@
 
 struct attempt {
     const struct gl_impl *impl;
-    bool software, again; /* may be a software device, if none is asked for; differs in that alone from one before */
+    /* software: may use a software device if none is requested; again: differs from an earlier attempt in that alone */
+    bool software, again;
 };
 static const struct attempt attempts[] = {
     { &gl_egl_device_impl, false, false },
@@ -23,10 +24,10 @@ static const struct attempt attempts[] = {
 enum { ATTEMPTS = sizeof(attempts) / sizeof(attempts[0]) };
 
 static struct {
-    pthread_mutex_t lock; /* held while a context is made or destroyed */
+    pthread_mutex_t lock; /* held while a context is created or destroyed */
     /* --- below: under lock */
-    int count;         /* of contexts that are there */
-    enum gl_kind kind; /* theirs */
+    int count;         /* number of living contexts */
+    enum gl_kind kind; /* kind of the living contexts */
 } living = { .lock = PTHREAD_MUTEX_INITIALIZER };
 
 bool gl_others(void)
@@ -93,7 +94,7 @@ static void read_capabilities(struct gl *gl)
     glGetIntegerv(GL_MAX_SAMPLES, &gl->max_samples);
 }
 
-/* What every pass relies on: rows from the top, depth 1 (near) to 0 (far). */
+/* Sets state that every pass relies on: rows from the top, depth 1 (near) to 0 (far). */
 static void set_conventions(struct gl *gl)
 {
     glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
@@ -105,10 +106,10 @@ static void set_conventions(struct gl *gl)
     glDebugMessageCallback(on_debug_message, gl->log);
 }
 
-/* why: the reasons of those that do not work, each after "; ". */
+/* Tries all kinds. why: receives the reasons of failed attempts, each after "; ". */
 static struct gl *attempt_all(enum gl_kind kind, const struct gl_device *device, struct text *why)
 {
-    bool asked = kind != GL_AUTO || device; /* then it may be a software device at once */
+    bool asked = kind != GL_AUTO || device; /* then a software device is accepted at once */
     for (int i = 0; i < ATTEMPTS; i++) {
         const struct attempt *attempt = &attempts[i];
         bool wanted = kind == GL_AUTO ? !device || attempt->impl->kind == GL_EGL_DEVICE : attempt->impl->kind == kind;
@@ -176,7 +177,7 @@ static GLenum next_error(void)
 
 void gl_clear_errors(void)
 {
-    for (int i = 0; i < 8 && next_error() != GL_NO_ERROR; i++) { /* a lost context has no end of them */
+    for (int i = 0; i < 8 && next_error() != GL_NO_ERROR; i++) { /* a lost context reports errors forever */
     }
 }
 

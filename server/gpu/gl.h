@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* OpenGL 4.5 core contexts without a window. One back end at a time in a process; each is current on the thread that made it, for life. */
+/* OpenGL 4.5 core contexts without a window. All contexts of a process are of one kind; each stays current on the thread that created
+   it. */
 #ifndef GPU_GL_H
 #define GPU_GL_H
 #include <stdbool.h>
@@ -9,45 +10,46 @@
 
 enum gl_kind { GL_AUTO, GL_EGL_DEVICE, GL_EGL_SURFACELESS, GL_OSMESA };
 
-struct gl_device { /* one EGL device, by its place in the list or by its PCI address */
-    int index;     /* -1: by address */
+struct gl_device { /* an EGL device, by index in the list or by PCI address */
+    int index;     /* -1: the address is used */
     unsigned domain, bus, slot, function;
 };
 
 struct gl {
-    enum gl_kind kind; /* what it became; never GL_AUTO */
+    enum gl_kind kind; /* the kind that was created; never GL_AUTO */
     char vendor[128], renderer[128], version[128];
     bool software; /* llvmpipe, softpipe, swrast */
-    bool reads_in_place; /* software that draws from the caller's memory without a copy (GL_AMD_pinned_memory) */
+    bool reads_in_place; /* a software driver that reads the caller's memory without a copy (GL_AMD_pinned_memory) */
     int max_texture_px, max_samples;
     const struct gl_impl *impl;
     struct log *log;
 };
 
-/* "auto", "egl-device", "egl-surfaceless", "osmesa". False: unknown. */
+/* Parses "auto", "egl-device", "egl-surfaceless" or "osmesa". Returns false for any other name. */
 bool gl_kind_parse(const char *name, enum gl_kind *kind);
 const char *gl_kind_name(enum gl_kind kind);
-/* "2", "65:00.0", "0000:65:00.0". False: neither. */
+/* Parses an index or a PCI address: "2", "65:00.0", "0000:65:00.0". Returns false for anything else. */
 bool gl_device_parse(const char *text, struct gl_device *device);
-/* One line for each EGL device: index, PCI address, what draws. Their number. Leaves no context current. */
+/* Prints one line per EGL device: index, PCI address, renderer. Returns their number. Leaves no context current. */
 int gl_list_devices(FILE *out);
-/* Tries in the order EGL device (device NULL: the first with hardware that works), EGL surfaceless, OSMesa, or only the kind asked for;
-   with a device only EGL devices. While there is a context already, only of its kind. NULL: none works; every reason is logged. */
+/* Creates a context. Tries EGL device (device NULL: the first working hardware), EGL surfaceless, OSMesa, in this order, or only the
+   requested kind; with a device only EGL devices. While other contexts exist, only their kind. NULL: none works; all reasons are logged. */
 struct gl *gl_create(struct log *log, enum gl_kind kind, const struct gl_device *device);
-void gl_destroy(struct gl **gl); /* &NULL is fine; leaves NULL */
+void gl_destroy(struct gl **gl); /* &NULL is fine; sets it to NULL */
 
-/* The context is gone (the GPU was reset, its driver restarted): whatever was drawn or read back since it was last asked is worth
-   nothing, and so is every object in it. Destroy all that hangs on it, then gl itself, and make a new one. */
+/* Returns whether the context is lost (the GPU was reset, or its driver restarted). Everything drawn or read back since the last call is
+   then invalid, and so are all GL objects: destroy everything that uses the context, then the context, and create a new one. */
 bool gl_lost(const struct gl *gl);
-/* Destroys the context underneath, as a reset of the device does. So that tests can see what comes after. */
+/* Destroys the underlying context, as a device reset does, for tests. */
 void gl_lose(struct gl *gl);
 
-void gl_clear_errors(void); /* those of what was done before, so that the next one is of what is done now */
-bool gl_no_errors(void);    /* there was none since */
-/* How often the GPU was out of memory in the contexts of this thread, as far as was asked above or below: what was made or drawn before
-   it rose is worth nothing. */
+void gl_clear_errors(void); /* discards errors of earlier calls, so that the next error belongs to later ones */
+bool gl_no_errors(void);    /* returns whether there was no error since */
+/* Returns how often this thread's contexts ran out of GPU memory, as far as the functions above and below noticed. Anything created or
+   drawn while the count rose is invalid. */
 unsigned gl_out_of_memory_count(void);
-/* Around everything a pass does: a debug group, and on leaving the GL errors of the pass, logged by its name. False: there was one. */
+/* Brackets everything a pass does: opens and closes a debug group. gl_pass_leave() logs the pass's GL errors under its name, and returns
+   false if there was one. */
 void gl_pass_enter(const char *name);
 bool gl_pass_leave(struct gl *gl, const char *name);
 

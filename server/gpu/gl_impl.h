@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What one way to a GL context provides; gl.c holds the table. */
+/* Interface of a way to create GL contexts; gl.c holds the table. */
 #ifndef GPU_GL_IMPL_H
 #define GPU_GL_IMPL_H
 #include "base/text/text.h"
@@ -8,15 +8,15 @@
 struct gl_impl {
     enum gl_kind kind;
     const char *name;
-    /* Makes a context current and loads GL's functions, unless gl_others: they draw with them. software: may be a software device, where
-       none is asked for. NULL: the reasons are added to why. */
+    /* Creates a context, makes it current and loads GL's functions, unless gl_others() is true: other contexts draw with these functions.
+       software: may use a software device, if none is requested. NULL: failed, with the reasons appended to `why`. */
     struct gl *(*create)(const struct gl_device *device, bool software, struct text *why);
     void (*destroy)(struct gl *gl);
-    bool (*current)(const struct gl *gl); /* the context is there and current */
-    void (*lose)(struct gl *gl);          /* destroys the context, keeps the rest */
+    bool (*current)(const struct gl *gl); /* the context exists and is current */
+    void (*lose)(struct gl *gl);          /* destroys the context but keeps the struct */
 };
 
-/* Other contexts of this kind are there, and maybe at work. For create and destroy, which are called one at a time. */
+/* Returns whether other contexts of this kind exist, possibly in use. For create and destroy, which are called one at a time. */
 bool gl_others(void);
 
 extern const struct gl_impl gl_egl_device_impl, gl_egl_surfaceless_impl, gl_osmesa_impl;

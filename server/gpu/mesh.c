@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vertex and index buffers, and how shaders see them. */
+/* Creates vertex and index buffers, and describes their layout to shaders. */
 #include "gpu/mesh.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@ GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *
     return 0;
 }
 
-/* A buffer of the mesh, filled with data. */
+/* Creates a buffer owned by the mesh, filled with data. */
 static GLuint own_buffer(struct gpu_mesh *mesh, struct log *log, const char *name, size_t bytes, const void *data)
 {
     GLuint buffer = mesh_buffer(log, name, bytes, data, 0);
@@ -29,10 +29,10 @@ static GLuint own_buffer(struct gpu_mesh *mesh, struct log *log, const char *nam
     return buffer;
 }
 
-/* Of data that the caller keeps: no copy, where GL reads it in place. */
+/* Creates a buffer over data that the caller keeps: without a copy, if GL can read it in place. */
 static GLuint kept_buffer(struct gpu_mesh *mesh, const struct gl *gl, const char *name, size_t bytes, const void *data)
 {
-    enum { EXTERNAL_VIRTUAL_MEMORY_BUFFER = 0x9160 }; /* of GL_AMD_pinned_memory, which glad does not know */
+    enum { EXTERNAL_VIRTUAL_MEMORY_BUFFER = 0x9160 }; /* constant of GL_AMD_pinned_memory, which glad does not define */
     GLuint buffer = 0;
     if (!gl->reads_in_place)
         return own_buffer(mesh, gl->log, name, bytes, data);
@@ -95,7 +95,7 @@ static int16_t to_short(float part)
     return (int16_t)lrintf(32767 * part);
 }
 
-/* None at all: up, as good as any. */
+/* Folds a normal into two 16-bit numbers. A zero normal becomes up, an arbitrary choice. */
 static void fold(const float n[3], int16_t out[2])
 {
     float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]);
@@ -119,7 +119,7 @@ static GLuint upload_normals(struct gpu_mesh *mesh, struct log *log, const char 
     return buffer;
 }
 
-/* is_short: whether they became 16-bit numbers, where they can and there is memory to do it. */
+/* is_short: set to whether the coordinates were packed into 16 bits: they can be, and there was memory for it. */
 static GLuint upload_texcoords(struct gpu_mesh *mesh, struct log *log, const char *name, size_t count, const float (*texcoords)[2],
                                bool *is_short)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A GL context from OSMesa, looked for at run time: Mesa 25.1 and later have none. */
+/* GL contexts from OSMesa, which is searched for at run time: Mesa 25.1 and later do not have it. */
 #include <dlfcn.h>
 
 #include <glad/gl.h>
@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "gpu/gl_impl.h"
 
-/* From GL/osmesa.h, which is not needed to build. */
+/* Constants from GL/osmesa.h, which is not needed to build. */
 enum {
     OSMESA_FORMAT = 0x22,
     OSMESA_DEPTH_BITS = 0x30,
@@ -27,7 +27,7 @@ struct osmesa {
     unsigned char (*make_current)(void *context, void *buffer, unsigned type, int width, int height);
     GLADapiproc (*get_proc)(const char *name);
     void *(*get_current)(void);
-    unsigned char buffer[4 * 4 * 4]; /* OSMesa wants one to be current with; we draw to our own targets */
+    unsigned char buffer[4 * 4 * 4]; /* required by OSMesa to make a context current; frames are drawn to framebuffers instead */
 };
 
 static bool osmesa_current(const struct gl *gl)
@@ -49,7 +49,7 @@ static void osmesa_destroy(struct gl *gl)
     struct osmesa *osmesa = (struct osmesa *)gl;
     if (osmesa->context)
         osmesa->destroy(osmesa->context);
-    mem_free(osmesa); /* the library stays: its threads may still be ending */
+    mem_free(osmesa); /* the library stays loaded: its threads may still be ending */
 }
 
 static bool osmesa_load(struct osmesa *osmesa)

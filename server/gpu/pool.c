@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pages, and where in them there is room. */
+/* Manages pages of GPU memory and the free gaps in them. */
 #include "gpu/pool.h"
 
 #include "base/mem.h"
@@ -9,9 +9,9 @@ struct pool {
     struct log *log;
     const char *name;
     GLenum format;
-    size_t texel_bytes, most_texels; /* of a page */
+    size_t texel_bytes, max_texels; /* most_texels: of a page */
     GLbitfield flags;
-    size_t expected, texels; /* in the next page; in all pages */
+    size_t expected, texels; /* expected: texels for the next page; texels: sum over all pages */
     struct pool_page **pages;
     size_t page_count, page_capacity;
 };
@@ -22,7 +22,7 @@ struct pool *pool_create(struct log *log, const char *name, GLenum format, size_
     struct pool *pool = mem_new(sizeof(*pool));
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
     *pool = (struct pool){ .log = log, .name = name, .format = format, .texel_bytes = texel_bytes, .flags = flags };
-    pool->most_texels = (size_t)most;
+    pool->max_texels = (size_t)most;
     return pool;
 }
 
@@ -53,7 +53,7 @@ static size_t whole_blocks(size_t texels)
     return (texels + POOL_BLOCK - 1) / POOL_BLOCK * POOL_BLOCK;
 }
 
-/* A gap of that size, after *before or, where that is NULL, at the beginning. False: there is none. */
+/* Finds a gap of that size after *before or, where that is NULL, at the beginning of the page. Returns false if there is none. */
 static bool find_gap(const struct pool_page *page, size_t count, struct pool_slice **before, size_t *first)
 {
     *before = NULL;
@@ -102,11 +102,11 @@ void pool_expect(struct pool *pool, size_t texels, size_t slices)
     pool->expected = texels + slices * (POOL_BLOCK - 1);
 }
 
-/* Half of what there is already, so that there are never many pages. */
+/* Returns the size of a new page: at least half of what all pages hold, so that pages stay few. */
 static size_t page_texels(const struct pool *pool, size_t least)
 {
     size_t texels = pool->expected > pool->texels / 2 ? pool->expected : pool->texels / 2;
-    texels = whole_blocks(texels < pool->most_texels ? texels : pool->most_texels);
+    texels = whole_blocks(texels < pool->max_texels ? texels : pool->max_texels);
     return texels > least ? texels : least;
 }
 
@@ -118,13 +118,13 @@ struct pool_slice *pool_take(struct pool *pool, size_t count)
     if (slice)
         return slice;
     size_t least = count > 0 ? whole_blocks(count) : POOL_BLOCK, most = page_texels(pool, least);
-    struct pool_page *page = count > pool->most_texels ? NULL : page_create(pool, most);
-    if (!page && most > least && count <= pool->most_texels)
+    struct pool_page *page = count > pool->max_texels ? NULL : page_create(pool, most);
+    if (!page && most > least && count <= pool->max_texels)
         page = page_create(pool, least);
     pool->expected = 0;
-    if (count > pool->most_texels)
+    if (count > pool->max_texels)
         log_err(pool->log, "%s: %zu vertices are more than the %zu texels that the GPU reads from a buffer", pool->name, count,
-                pool->most_texels);
+                pool->max_texels);
     return page ? take_from(page, count) : NULL;
 }
 

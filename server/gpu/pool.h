@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers by vertex of many assets in few buffers, which shaders read as texels: so one draw can show many assets. Slices begin at whole
-   blocks, in which shaders count. Thread: the one of the GL context. */
+/* Per-vertex numbers of many assets in few GPU buffers that shaders read as texels, so that one draw can show many assets. Slices begin at
+   whole blocks, the unit in which shaders count. Thread: the one of the GL context. */
 #ifndef GPU_POOL_H
 #define GPU_POOL_H
 #include <stdbool.h>
@@ -10,33 +10,34 @@
 
 #include "base/log/log.h"
 
-enum { POOL_BLOCK = 64 }; /* texels; as in shaders/instance.glsl; of 4 bytes, what GL asks of offsets into storage buffers at most */
+/* texels; must match shaders/instance.glsl. With 4-byte texels a block satisfies GL's largest alignment of storage buffer offsets */
+enum { POOL_BLOCK = 64 };
 
 struct pool;
 struct pool_page {
     struct pool *pool;
     GLuint buffer, texture;
     size_t texels;
-    struct pool_slice *first; /* of those in it, by place */
+    struct pool_slice *first; /* first slice of the page, in order of offset */
 };
 struct pool_slice {
     struct pool_page *page;
-    size_t block, count; /* where it begins; of texels */
+    size_t block, count; /* block: number of its first block; count: of texels */
     int holds;
     struct pool_slice *next;
 };
 
-/* format: of a texel. Every slice is to be released before the pool is destroyed. */
+/* Creates a pool. format: of a texel. Release all slices before destroying the pool. */
 struct pool *pool_create(struct log *log, const char *name, GLenum format, size_t texel_bytes, GLbitfield flags);
-void pool_destroy(struct pool **pool); /* &NULL is fine; leaves NULL */
-/* So many slices of so many texels together are to be taken next: they shall lie in one page, if they can. */
+void pool_destroy(struct pool **pool); /* &NULL is fine; sets it to NULL */
+/* Announces slices that will be taken next, so that they share one page if possible. texels: their total size. */
 void pool_expect(struct pool *pool, size_t texels, size_t slices);
-/* Held once. NULL: the GPU has no room for so many texels, logged. */
+/* Takes a slice of `count` texels, with one reference. NULL: the GPU has no room for it, logged. */
 struct pool_slice *pool_take(struct pool *pool, size_t count);
 struct pool_slice *pool_ref(struct pool_slice *slice); /* NULL is fine */
-void pool_unref(struct pool_slice **slice);            /* &NULL is fine; leaves NULL */
-size_t pool_offset(const struct pool_slice *slice);    /* bytes, in the page's buffer */
+void pool_unref(struct pool_slice **slice);            /* &NULL is fine; sets it to NULL */
+size_t pool_offset(const struct pool_slice *slice);    /* in bytes, within the page's buffer */
 size_t pool_bytes(const struct pool_slice *slice);
-size_t pool_bytes_taken(const struct pool *pool); /* of all pages */
+size_t pool_bytes_taken(const struct pool *pool); /* bytes of all pages */
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compiles and links shaders, and says what is wrong with them. */
+/* Compiles and links shaders, and logs their errors. */
 #include "gpu/program.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@
 
 enum { MAX_INCLUDES = 16, LOG_BYTES = 4096 };
 
-/* One source on its way through the includes. Source numbers in the compiler's messages are places in `names`. */
+/* State of include expansion for one source. Source numbers in compiler messages are indices in `names`. */
 struct expansion {
     struct log *log;
     struct text out;
@@ -20,7 +20,7 @@ struct expansion {
 
 static bool expand(struct expansion *x, const char *name, const char *text);
 
-/* `#include "x.glsl"` -> its text. False: logged. */
+/* Replaces a line `#include "x.glsl"` by the file's text. Returns false on failure, logged. */
 static bool expand_include(struct expansion *x, const char *from, int line, const char *directive)
 {
     const char *open = strchr(directive, '"');

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shader programs from the embedded sources. Thread: the one of the GL context. */
+/* Compiles shader programs from the embedded sources. Thread: the one of the GL context. */
 #ifndef GPU_PROGRAM_H
 #define GPU_PROGRAM_H
 #include <glad/gl.h>
@@ -7,19 +7,20 @@
 #include "base/log/log.h"
 
 struct program_params {
-    const char *vertex, *fragment; /* names of embedded files; or */
+    const char *vertex, *fragment; /* names of embedded files; or set `compute` */
     const char *compute;
-    const char *defines; /* lines put before the source, or NULL */
+    const char *defines; /* lines inserted before the source; NULL: none */
 };
 #define program_params(...) (&(struct program_params){ __VA_ARGS__ })
 
-/* A whole line `#include "x.glsl"` is replaced by that embedded file. 0 on failure: the compiler's text is logged. */
+/* Compiles and links a program. A line `#include "x.glsl"` is replaced by that embedded file. Returns 0 on failure; the compiler's messages
+   are logged. */
 GLuint program_create(struct log *log, const struct program_params *params);
-void program_destroy(GLuint *program); /* &0 is fine; leaves 0 */
+void program_destroy(GLuint *program); /* &0 is fine; sets it to 0 */
 
-/* One stage from text; name is for messages. 0 on failure, logged. */
+/* Compiles one stage from text. name: for messages. Returns 0 on failure, logged. */
 GLuint program_compile(struct log *log, GLenum stage, const char *name, const char *text, const char *defines);
-/* Deletes the stages (0 = none). 0 on failure, logged. */
+/* Links two stages (0: none) and deletes them. Returns 0 on failure, logged. */
 GLuint program_link(struct log *log, const char *name, const GLuint stages[2]);
 
 #endif

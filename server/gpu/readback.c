@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads pictures through a pixel buffer that stays mapped. */
+/* Reads frames back through a persistently mapped pixel buffer. */
 #include "gpu/readback.h"
 
 #include <string.h>
 
 #include "gpu/mesh.h"
 
-static const GLuint64 TIMEOUT_NS = 20ull * 1000000000; /* far beyond any frame: the context hangs */
+static const GLuint64 TIMEOUT_NS = 20ull * 1000000000; /* much longer than any frame takes: the context hangs */
 enum { GRAIN_ROWS = 128 };
 
 static bool fit(struct readback *readback, struct log *log, size_t bytes)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Framebuffers. */
+/* Creates framebuffers with colour and depth. */
 #include "gpu/target.h"
 
 #include "gpu/gl.h"
@@ -50,7 +50,7 @@ bool target_init(struct target *target, struct log *log, int width_px, int heigh
 size_t target_bytes(const struct target *target)
 {
     size_t pixels = (size_t)target->width_px * (size_t)target->height_px, samples = (size_t)target->samples;
-    return 8 * pixels * (samples > 1 ? samples + 1 : 1); /* colour and depth, and what they are resolved to */
+    return 8 * pixels * (samples > 1 ? samples + 1 : 1); /* colour and depth, with resolved copies if multisampled */
 }
 
 void target_finish(struct target *target)

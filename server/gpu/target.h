@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An offscreen picture: 8-bit colour and 32-bit depth, with or without multisampling. Thread: the one of the GL context. */
+/* An offscreen render target: 8-bit colour and 32-bit depth, with or without multisampling. Thread: the one of the GL context. */
 #ifndef GPU_TARGET_H
 #define GPU_TARGET_H
 #include <stdbool.h>
@@ -12,25 +12,25 @@
 
 struct target {
     int width_px, height_px, samples;
-    GLuint framebuffer, color, depth;                            /* what is drawn to */
+    GLuint framebuffer, color, depth;                            /* the framebuffer that is drawn to */
     GLuint resolved_framebuffer, resolved_color, resolved_depth; /* one sample; the same objects when samples = 1 */
-    GLuint over_framebuffer;                                     /* resolved colour alone: to draw over it while reading its depth */
+    GLuint over_framebuffer; /* resolved colour only, for drawing over the picture while reading its depth */
 };
 
-/* False: out of GPU memory, logged. */
-size_t target_bytes(const struct target *target); /* of its textures; an empty one: 0 */
+/* target_init() returns false when out of GPU memory, logged. */
+size_t target_bytes(const struct target *target); /* of its textures; 0 for an empty target */
 bool target_init(struct target *target, struct log *log, int width_px, int height_px, int samples);
 void target_finish(struct target *target);
-/* A part: colour averaged, depth of one sample; nothing to do for one sample. */
+/* Resolves a rectangle: averages colour, takes the depth of one sample. A no-op without multisampling. */
 void target_resolve(const struct target *target, int x_px, int y_px, int width_px, int height_px);
 
-/* One texture to draw to, that is made again when pictures of another size come. Zero-initialise. */
+/* A texture to draw to that adapts to the frame's size. Zero-initialise. */
 struct render_texture {
     int width_px, height_px;
     GLuint framebuffer, texture;
 };
-/* Makes the texture, with a framebuffer that has it as that attachment, if there is none or its size is another one; its contents are lost
-   then. Format and attachment must be those of the first call. Returns false if out of GPU memory (not logged), with the texture empty; the
+/* Creates the texture, with a framebuffer that has it as `attachment`, if there is none or its size differs; the contents are lost then.
+   Format and attachment must be those of the first call. Returns false when out of GPU memory (not logged), with the texture empty; the
    next call tries again. */
 bool render_texture_fit(struct render_texture *layer, GLenum format, GLenum attachment, int width_px, int height_px);
 void render_texture_finish(struct render_texture *layer);

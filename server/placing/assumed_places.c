@@ -15,7 +15,7 @@
 
 /* --- what is known of a place ------------------------------------------------------------------------------------------------- */
 
-/* Distances from places to the surfaces of their assets, by tag; NaN: the tag is not on a surface. */
+/* Returns per tag the distance of its position from its asset's surface; NaN: the tag is not on a surface. The caller frees the array. */
 static double *surface_distances(const struct scene *scene)
 {
     double *distance_m = mem_array(scene->plant->tag_count + 1, sizeof(*distance_m));
@@ -27,7 +27,7 @@ static double *surface_distances(const struct scene *scene)
     return distance_m;
 }
 
-/* Confidences of the matcher, by tag; NaN: not known. */
+/* Returns per tag the matcher's confidence; NaN: unknown. The caller frees the array. */
 static double *confidences(const struct plant *plant)
 {
     double *confidence = mem_array(plant->tag_count + 1, sizeof(*confidence));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the kept surface of an asset. */
+/* Finds the stored surface of an asset and starts its relocation object. */
 #include "placing/mover.h"
 
 #include <stdlib.h>
@@ -31,7 +31,7 @@ struct relocation *mover_create(struct log *log, struct workers *workers, const 
     const struct manifest_entry *entry = read ? manifest_find(&manifest, of->plant->id) : NULL;
     if (entry && entry->surface) {
         shape.surface_path = path = mem_printf("%s/%s", folder, entry->surface);
-        shape.surface_key = strtoull(entry->surface, NULL, 16); /* KEY.surface */
+        shape.surface_key = strtoull(entry->surface, NULL, 16); /* the name is KEY.surface */
     }
     struct relocation *relocation = relocation_create(log, workers, &shape);
     mem_free(path);

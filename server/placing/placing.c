@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sets of moves, the movers of the assets they are on, and what workers find out for them. */
+/* Sets of moved sensors, the relocation objects of their assets, and results from workers. */
 #include "placing/placing.h"
 
 #include <math.h>
@@ -15,17 +15,17 @@
 #include "surface/relocation.h"
 #include "value/quality.h"
 
-enum { MOVERS = 4 }; /* kept warm; those that moves are on, in any case */
+enum { MOVERS = 4 }; /* number kept warm; those with moved sensors are kept in any case */
 
-struct distance_ask { /* distances of one move, on their way */
+struct distance_ask { /* pending request for the distances of one moved sensor */
     struct placing *placing;
     uint64_t number;
-    float *along_m; /* NULL: none came */
+    float *along_m; /* geodesic distances per vertex; NULL: failed */
     struct distance_ask *next;
 };
 
-struct placing_entry { /* a move; beside it, in the set, what is said of it */
-    uint64_t asked; /* number; 0: nothing is asked */
+struct placing_entry { /* private part of a moved sensor; set->placed holds the public part */
+    uint64_t asked; /* number of its pending request; 0: none */
     uint64_t ticket;
     struct trial_sensor sensor;
 };
@@ -57,7 +57,7 @@ struct placing {
     /* --- below: under lock */
     struct distance_ask *done;
     struct sensor_coverage_answer *answers, **answers_last;
-    int jobs; /* for coverage */
+    int jobs; /* pending coverage jobs */
 };
 
 /* --- life ------------------------------------------------------------------------------------------------------------------- */
@@ -131,7 +131,8 @@ static bool is_moved_on(const struct placing *placing, int asset)
     return false;
 }
 
-/* A surface takes memory: only a few stay that nobody moves anything on. One that is still being made would have to be waited for. */
+/* Frees the least recently used surface without moved sensors, if more than MOVERS are in memory. A surface still being built stays, since
+   freeing it would mean waiting. keep: index of an asset whose surface stays. */
 static void cool(struct placing *placing, int keep)
 {
     int count = 0, oldest = -1;
@@ -179,12 +180,12 @@ static void on_distances(void *arg, struct relocation_result *result)
 static void to_file(const struct scene_asset *asset, const double plant_m[3], double out[3])
 {
     double file_from_plant[16];
-    if (!transform_invert(asset->placement, file_from_plant)) /* plant_load refuses such a placement */
+    if (!transform_invert(asset->placement, file_from_plant)) /* plant_load() refuses such a placement */
         memcpy(file_from_plant, transform_identity, sizeof(file_from_plant));
     transform_point(file_from_plant, plant_m, out);
 }
 
-/* Where it would be. False: nowhere on the asset. */
+/* Projects the moved sensor onto its asset. Returns false if the point is too far away. */
 static bool find_place(struct placing *placing, const struct place_move *move, struct placing_entry *entry, struct placed *placed)
 {
     const struct scene_asset *asset = &placing->params.scene->assets[move->asset];
@@ -260,7 +261,7 @@ void place_set_destroy(struct place_set **pointer)
     *pointer = NULL;
 }
 
-/* Index in the set of the same move; -1: none. */
+/* Returns the index of an equal move in the set; -1: none. */
 static int find_same(const struct place_set *set, const struct place_move *move)
 {
     for (size_t i = 0; i < set->count; i++) {

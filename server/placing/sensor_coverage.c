@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Gaps between sensors, from the distances of every vertex and the area that it stands for. */
+/* Computes gaps between sensors, from the distances of every vertex and the area that it represents. */
 #include "placing/sensor_coverage.h"
 
 #include <math.h>
@@ -66,7 +66,7 @@ static void find_next(const struct field_layout *layout, enum distance_mode mode
     }
 }
 
-struct nearest_block { /* the nearest in a block of vertices */
+struct nearest_block { /* nearest sensors for a block of vertices */
     float m[KERNEL_BLOCK];
     bool good[KERNEL_BLOCK];
 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Candidates are ranked by what they could gain by straight distances, which is never less than by those along the surface; so only the
-   first few have to be measured. */
+/* Suggests positions for new sensors. Candidates are ranked by an upper bound of their gain, from straight-line distances, which are never
+   longer than geodesic ones; so geodesic distances are computed for the first few only. */
 #include "placing/sensor_suggest.h"
 
 #include <math.h>
@@ -16,28 +16,28 @@
 #include "plant/influence.h"
 #include "plant/models/transform.h"
 
-#define CANDIDATES 1500 /* on each asset, evenly by area of what is not seen */
-#define MEASURED 40     /* of them at most for each suggestion: what is left is worth less than a straight bound */
-#define WORTH 1e-6      /* of the measure: less is nothing */
+#define MAX_CANDIDATES 1500 /* per asset, spread evenly over the unseen area */
+#define MAX_MEASURED 40     /* geodesic distances computed per suggestion, at most; the bounds of the remaining candidates are smaller */
+#define MIN_GAIN 1e-6       /* gains below this part of the measure are ignored */
 
 struct suggest_asset { /* an asset */
     int asset;
     size_t count;
     const float (*at_m)[3];
     double *area_m2, whole_m2;
-    float *near_m;            /* by vertex: the nearest sensor */
+    float *near_m;            /* by vertex: distance to the nearest sensor */
     struct relocation *mover; /* NULL: not needed yet */
 };
 
 struct candidate {
     size_t part;
     uint32_t vertex;
-    double bound; /* of its gain, in square metres times the measure */
+    double bound; /* upper bound of its gain: square metres times the measure */
 };
 
 struct suggesting {
     const struct suggest_query *query;
-    double seen_m; /* as far as a hot spot of the whole range is seen from a sensor */
+    double seen_m; /* distance from a sensor at which a hot spot of the whole range is still seen */
     struct suggest_asset *parts;
     size_t part_count;
     double whole_m2;
@@ -132,10 +132,10 @@ static int by_bound(const void *a, const void *b)
     return (first->bound < second->bound) - (first->bound > second->bound);
 }
 
-/* Evenly over what is not seen, so that the same plant has the same candidates. The caller frees the list. */
+/* Spreads candidates evenly over the unseen area, deterministically. The caller frees the list. */
 static struct candidate *find_candidates(const struct suggesting *suggesting, size_t *count)
 {
-    struct candidate *list = mem_array(suggesting->part_count * (CANDIDATES + 1), sizeof(*list));
+    struct candidate *list = mem_array(suggesting->part_count * (MAX_CANDIDATES + 1), sizeof(*list));
     *count = 0;
     for (size_t p = 0; p < suggesting->part_count; p++) {
         const struct suggest_asset *part = &suggesting->parts[p];
@@ -148,7 +148,7 @@ static struct candidate *find_candidates(const struct suggesting *suggesting, si
                 continue;
             list[(*count)++] = (struct candidate){ .part = p, .vertex = v };
             while (next < passed)
-                next += whole / CANDIDATES;
+                next += whole / MAX_CANDIDATES;
         }
     }
     struct bounding bounding = { suggesting, list };
@@ -177,7 +177,7 @@ static void on_distances(void *arg, struct relocation_result *result)
     pthread_mutex_unlock(&waiting->lock);
 }
 
-/* The caller frees what comes back (mem_free); NULL: it cannot be measured. */
+/* Computes geodesic distances from a vertex. The caller frees the result (mem_free). NULL on failure. */
 static float *distances_from(const struct suggesting *suggesting, struct suggest_asset *part, uint32_t vertex)
 {
     const struct suggest_query *query = suggesting->query;
@@ -198,14 +198,14 @@ static float *distances_from(const struct suggesting *suggesting, struct suggest
     return waiting.result.status == RELOCATION_DONE ? waiting.result.geodesic_m : NULL;
 }
 
-/* The best of all, and what it changes. Returns false where there is nothing to gain. */
+/* Finds the best candidate and applies its effect. Returns false if there is nothing to gain. */
 static bool take_best(struct suggesting *suggesting, struct suggestion *out)
 {
     size_t count;
     struct candidate *list = find_candidates(suggesting, &count), best = { 0 };
     float *best_m = NULL;
-    double most = WORTH * suggesting->whole_m2;
-    for (size_t i = 0; i < count && i < MEASURED && list[i].bound > most; i++) {
+    double most = MIN_GAIN * suggesting->whole_m2;
+    for (size_t i = 0; i < count && i < MAX_MEASURED && list[i].bound > most; i++) {
         struct suggest_asset *part = &suggesting->parts[list[i].part];
         float *away_m = distances_from(suggesting, part, list[i].vertex);
         double gain = away_m ? gain_of(suggesting, part, away_m) : 0;

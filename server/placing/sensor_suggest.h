@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where more sensors would show the most: places one after the other, each of which takes away as much as one can of what the sensors of a
-   group do not see. The measure is, over the surface, the mean of ln(h / h0) / ln(1 / 0.05), cut at 1: h is the smallest hot spot that is
-   seen there (show: blind), h0 the one seen at a sensor; so 0 is a sensor everywhere, and 1 is that not even a hot spot as hot as the
-   group's whole range would be seen. Taking the best each time reaches at least 63 % of what the best set of that number would (Nemhauser,
-   Wolsey & Fisher, 1978), as far as the places that are tried go. Thread: one; it waits for workers. */
+/* Suggests where additional sensors would help most: one position after the other, each reducing the unseen part as much as a single sensor
+   can. The measure is the mean over the surface of ln(h / h0) / ln(1 / 0.05), capped at 1: h is the smallest hot spot detectable at a point
+   (show: blind), h0 the one detectable at a sensor. 0 means a sensor everywhere; 1 means that even a hot spot of the group's whole range is
+   undetectable. The greedy choice reaches at least 63 % of the best set's gain (Nemhauser, Wolsey & Fisher, 1978), among the tested
+   positions. Thread: one; waits for workers. */
 #ifndef PLACING_SENSOR_SUGGEST_H
 #define PLACING_SENSOR_SUGGEST_H
 #include "base/log/log.h"
@@ -14,20 +14,20 @@ struct suggest_query {
     struct log *log;
     struct workers *workers;
     const struct scene *scene;
-    const char *folder; /* of the prepared files */
-    int group, asset;   /* asset -1: wherever the group has sensors whose place is known */
+    const char *folder; /* folder of the prepared files */
+    int group, asset;   /* asset -1: all assets with sensors of the group at known positions */
     size_t count;
 };
 
 struct suggestion {
     int asset;
-    double at_m[3];                     /* plant frame, on the surface */
-    double before, after;               /* the measure, over all assets asked for */
-    double unseen_before, unseen_after; /* share of the area where not even a hot spot as hot as the range is seen */
+    double at_m[3];                     /* on the surface, in the plant frame */
+    double before, after;               /* the measure over all requested assets */
+    double unseen_before, unseen_after; /* fraction of the area where even a hot spot of the whole range is undetectable */
 };
 
-/* Writes up to query->count suggestions to out and returns their number: fewer where nothing is left to gain. Returns 0 if no asset has
-   sensors of the group whose place is known, or after a failure that was logged. */
+/* Writes up to query->count suggestions to `out` and returns their number, fewer if there is nothing left to gain. Returns 0 if no asset
+   has sensors of the group at known positions, or after a failure, logged. */
 size_t sensor_suggest(const struct suggest_query *query, struct suggestion *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Versions of a tag list beside each other. */
+/* Saves versions of a tag list next to each other. */
 #include "placing/tag_file.h"
 
 #include <errno.h>
@@ -15,7 +15,7 @@
 #include "base/mem.h"
 #include "base/text/text.h"
 
-enum { MOST_BYTES = 64 << 20, MOST_VERSIONS = 100000 };
+enum { MAX_BYTES = 64 << 20, MAX_VERSIONS = 100000 };
 
 void tag_save_free(struct tag_save *save)
 {
@@ -31,7 +31,7 @@ void tag_save_free(struct tag_save *save)
 char *tag_file_read(const char *path, struct refusal *why)
 {
     size_t bytes;
-    char *text = text_read_file(path, MOST_BYTES, &bytes);
+    char *text = text_read_file(path, MAX_BYTES, &bytes);
     if (!text)
         refusal_set(why, REFUSAL_UNREAD_FILE, "file=%s\nerror=%s", text_base_name(path), strerror(errno));
     return text;
@@ -52,10 +52,10 @@ static void cannot_write(struct refusal *why, const char *file, int error)
         refusal_set(why, REFUSAL_UNWRITTEN, "file=%s\nerror=%s", file, strerror(error));
 }
 
-/* Owner and rights stay with it. */
+/* Uses a link, so that owner and mode stay. */
 char *tag_file_keep(const char *path, struct refusal *why)
 {
-    for (int n = 1; n < MOST_VERSIONS; n++) {
+    for (int n = 1; n < MAX_VERSIONS; n++) {
         char *name = mem_printf("%s.%d", path, n);
         if (link(path, name) == 0)
             return name;
@@ -72,7 +72,7 @@ char *tag_file_keep(const char *path, struct refusal *why)
     return NULL;
 }
 
-/* With the rights that the list has. */
+/* Writes the new file with the mode of the present list. */
 static int replace(const struct tag_save *save)
 {
     struct stat was;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Asset files, mapped and checked. */
+/* Maps and checks prepared asset files. */
 #include "scene/asset.h"
 
 #include <errno.h>
@@ -13,7 +13,8 @@
 
 #include "base/mem.h"
 
-/* MAP_FAILED, with errno. prep never writes into a file that is there (it renames a new one over it), so a map stays whole. */
+/* Maps a file. Returns MAP_FAILED with errno on failure. plantcast-prep never modifies a file in place (it renames a new one over it), so
+   the map stays consistent. */
 static void *map_file(const char *path, size_t *bytes)
 {
     struct stat st;
@@ -122,7 +123,7 @@ void asset_unref(struct asset **asset_ptr)
     asset_forget_closed(asset);
     if (asset->map)
         munmap(asset->map, asset->bytes);
-    free(asset->made); /* as asset_build says */
+    free(asset->made); /* allocated with malloc() by asset_build() */
     cache_file_close(&asset->influence_file);
     mem_free(asset->path);
     mem_free(asset);

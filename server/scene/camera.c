@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where a camera stands and what it sees, in double precision: plants may lie far from their origin. */
+/* Camera positions and matrices in double precision, since plants may be far from their origin. */
 #include "scene/camera.h"
 
 #include <math.h>
@@ -7,10 +7,10 @@
 
 #include "base/math/vec.h"
 
-#define FIT_MARGIN 1.06      /* the box may fill 1/1.06 of the picture */
-#define LEAST_BOX_M 1e-4     /* a smaller box, or one that is empty, is looked at as if it had this size */
+#define FIT_MARGIN 1.06      /* a fitted box fills 1/1.06 of the picture */
+#define LEAST_BOX_M 1e-4     /* a smaller or empty box is framed as if it had this size */
 #define LEAST_NEAR_M 1e-6
-#define LEAST_HEIGHT_M 1e-5  /* of an orthographic picture */
+#define LEAST_HEIGHT_M 1e-5  /* smallest height of an orthographic picture */
 
 /* --- which way it looks ----------------------------------------------------------------------------------------------------- */
 
@@ -18,7 +18,7 @@ struct basis {
     double right[3], up[3], forward[3];
 };
 
-/* False: there is none, since up lies along the view. */
+/* Computes the camera's axes. Returns false if up is along the view direction. */
 static bool basis_of(const double forward[3], const double up[3], struct basis *basis)
 {
     double sure_up[3] = { up[0], up[1], up[2] };
@@ -78,9 +78,8 @@ static void safe_box(const double min_m[3], const double max_m[3], double safe_m
     }
 }
 
-/* One axis of the picture, and the part of it that is to be filled: the tangents of its planes, or, without perspective, where they lie
-   in halves of the picture. They touch the box where low = max(-x + z from) and high = max(x - z to), with z forward. Between them
-   stands the eye. */
+/* One axis of the picture and the range of it to fill: tangents of the bounding planes, or in an orthographic view their positions in half
+   pictures. The planes touch the box where low = max(-x + z from) and high = max(x - z to), with z forward. The eye is between them. */
 struct clip_side {
     double from, to, low, high;
 };
@@ -97,19 +96,19 @@ static void side_add(struct clip_side *side, double x, double z)
     side->low = fmax(side->low, -x + z * side->from);
 }
 
-/* At least so far back. */
+/* Returns the smallest distance of the eye. */
 static double side_back(const struct clip_side *side)
 {
     return (side->low + side->high) / (side->to - side->from);
 }
 
-/* To which side, from that far back. */
+/* Returns the sideways shift of the eye at this distance. */
 static double side_shift(const struct clip_side *side, double back_m)
 {
     return (side->high - side->low - back_m * (side->to + side->from)) / 2;
 }
 
-/* How far the box reaches from its middle, to the sides of an orthographic picture. */
+/* Places an orthographic camera, from the extent of the box around its centre along the picture's axes. */
 static void place_parallel(struct camera *camera, const struct basis *basis, const double half_m[3], const double center_m[3],
                            double aspect, const struct camera_window *window)
 {
@@ -232,7 +231,7 @@ static void depth_range(const struct camera *camera, const struct basis *basis, 
         *far_m = farthest + margin_m;
         return;
     }
-    *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M); /* a box behind the camera: any range will do */
+    *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M); /* the box is behind the camera: any range will do */
     *near_m = fmax(fmax(nearest * 0.999, *far_m * CAMERA_NEAR_TO_FAR), LEAST_NEAR_M);
     if (*near_m >= *far_m) /* a box without depth */
         *near_m = *far_m / 2;
@@ -243,7 +242,7 @@ static void camera_look(const struct camera *camera, struct basis *basis)
     double forward[3];
     for (int i = 0; i < 3; i++)
         forward[i] = camera->target_m[i] - camera->eye_m[i];
-    if (!basis_of(forward, camera->up, basis)) /* camera_valid says no; looking north keeps the numbers finite */
+    if (!basis_of(forward, camera->up, basis)) /* camera_valid() refuses such a camera; looking north keeps the numbers finite */
         basis_of((double[]){ 0, 1, 0 }, (double[]){ 0, 0, 1 }, basis);
 }
 

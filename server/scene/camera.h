@@ -6,35 +6,37 @@
 
 #include "plant/plant.h"
 
-#define CAMERA_NEAR_TO_FAR 1e-4 /* least ratio of near to far plane: 24 bits of depth must resolve near parts */
+#define CAMERA_NEAR_TO_FAR 1e-4 /* smallest ratio of near to far plane, limited by 24 bits of depth */
 
 struct camera {
     double eye_m[3], target_m[3], up[3];
     double fov_deg;  /* vertical */
-    double height_m; /* what an orthographic picture is high; 0: perspective */
+    double height_m; /* height of an orthographic picture; 0: perspective */
 };
 
-/* Finite, eye apart from target, up not along the view, 1 <= fov <= 120, or 1e-5 <= height; nothing beyond PLANT_MAX_M. */
+/* Returns whether all numbers are finite and within PLANT_MAX_M, the eye differs from the target, up is not along the view, and 1 <=
+   fov_deg <= 120 or height_m >= 1e-5. */
 bool camera_valid(const struct camera *camera);
-/* Looks at the whole box, filling the picture, from the plant's raised south-west corner: x is east; north is y in a Z-up frame and -z in
-   a Y-up one. Sets every field. */
+/* Frames the whole box from the plant's raised south-west corner: x is east; north is y in a Z-up frame and -z in a Y-up one. Sets every
+   member. */
 void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], const double max_m[3], double aspect);
-struct camera_window { /* a part of the picture, each way from -1 to 1. Zero: all of it */
+struct camera_window { /* a rectangle of the picture; each axis from -1 to 1. Zero: the whole picture */
     double left, right, bottom, top;
 };
-/* The same in a direction that is not along camera->up, with the lens and the up of `camera`: of an orthographic one, height_m > 0, the
-   height is chosen. It fills that window. */
+/* Frames the box within a window of the picture, along `forward`, which must not be along camera->up. Keeps lens and up vector of the
+   camera; an orthographic one (height_m > 0) gets a new height. */
 void camera_fit_along(struct camera *camera, const double forward[3], const double min_m[3], const double max_m[3], double aspect,
                       const struct camera_window *window);
-/* Does the same for count >= 1 points: a perspective camera fits the points themselves, an orthographic one their bounding box. */
+/* Frames count >= 1 points: a perspective camera frames the points themselves, an orthographic one their bounding box. */
 void camera_fit_points(struct camera *camera, const double forward[3], const double (*points_m)[3], size_t count, double aspect,
                        const struct camera_window *window);
-/* Unit vectors of the picture. */
+/* Writes the unit vectors of the picture's axes. */
 void camera_basis(const struct camera *camera, double right[3], double up[3], double forward[3]);
-/* From so far off, an eye of the usual angle sees as much as an orthographic picture shows. 0: perspective. */
+/* Returns the distance from which a camera with the default angle sees as much as an orthographic picture shows. 0: the camera is
+   perspective. */
 double camera_parallel_m(const struct camera *camera);
-/* near and far planes are chosen to hold the box: in an orthographic picture also what of it lies behind the eye.
-   view_from_plant and clip_from_view, each 16 doubles. */
+/* Computes view_from_plant and clip_from_view, 16 doubles each. Near and far planes enclose the box; in an orthographic picture also its
+   part behind the eye. */
 void camera_matrices(const struct camera *camera, double aspect, const double min_m[3], const double max_m[3], double view[16],
                      double projection[16]);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vertices joined by place, triangles by vertices, edges counted. */
+/* Finds closed bodies: welds vertices by position, groups connected triangles, and counts the uses of each edge in both directions. */
 #include "scene/closed_bodies.h"
 
 #include <math.h>
@@ -8,23 +8,23 @@
 
 #include "base/mem.h"
 
-enum { MOST_INDICES = 3 * 1000 * 1000 };
-static const float APART = 1e-5f; /* of the asset's size: what is nearer is one place */
+enum { MAX_INDICES = 3 * 1000 * 1000 };
+static const float WELD_PART = 1e-5f; /* relative to the asset's size: vertices nearer than this are welded */
 
 struct edge_count {
-    uint64_t ends; /* the lower one above; 0: free, since no edge joins a vertex to itself */
+    uint64_t ends; /* two vertices, the lower one in the upper half; 0: a free slot, since no edge joins a vertex to itself */
     int32_t balance;
 };
 
 struct bodies {
     const struct asset_view *view;
     const struct asset_level *level;
-    uint32_t *place, *root; /* by vertex: the first one at its place; by place: union-find */
-    uint32_t *table;        /* of places, by cell; vertex + 1 */
+    uint32_t *place, *root; /* place: by vertex, the first vertex at its position; root: by that vertex, union-find */
+    uint32_t *table;        /* hash table of positions by cell: vertex + 1 */
     float apart_m;
     size_t table_mask, edge_mask;
     struct edge_count *edges;
-    uint8_t *open; /* by root */
+    uint8_t *open; /* by root: 1 if the body is open */
 };
 
 static size_t power_above(size_t count)
@@ -62,7 +62,7 @@ static size_t slot_of(const struct bodies *bodies, const int32_t cell[3])
     return XXH3_64bits(cell, 3 * sizeof(*cell)) & bodies->table_mask;
 }
 
-/* A place in that cell, near enough; else UINT32_MAX. Cells are four times as wide as what is one place. */
+/* Finds a welded position in a cell, or returns UINT32_MAX. Cells are four times as wide as the welding distance. */
 static uint32_t find_place(const struct bodies *bodies, const int32_t cell[3], const float at[3])
 {
     for (size_t slot = slot_of(bodies, cell); bodies->table[slot]; slot = (slot + 1) & bodies->table_mask) {
@@ -74,7 +74,7 @@ static uint32_t find_place(const struct bodies *bodies, const int32_t cell[3], c
     return UINT32_MAX;
 }
 
-/* In its own cell, or in one beside it whose rim is near. */
+/* Finds a welded position in the point's cell, or in an adjacent cell whose border is near. */
 static uint32_t find_place_near(const struct bodies *bodies, const float at[3], int32_t own[3])
 {
     int32_t beside[3];
@@ -85,7 +85,7 @@ static uint32_t find_place_near(const struct bodies *bodies, const float at[3], 
     }
     for (int k = 0; k < 8; k++) {
         int32_t cell[3];
-        bool again = false; /* the same as another k */
+        bool again = false; /* the cell equals that of another k */
         for (int i = 0; i < 3; i++) {
             cell[i] = k >> i & 1 ? beside[i] : own[i];
             again |= (k >> i & 1) && beside[i] == own[i];
@@ -103,7 +103,7 @@ static void join_places(struct bodies *bodies)
     float size_m = 0;
     for (int i = 0; i < 3; i++)
         size_m = fmaxf(size_m, header->bounds_max_m[i] - header->bounds_min_m[i]);
-    bodies->apart_m = fmaxf(APART * size_m, 1e-9f);
+    bodies->apart_m = fmaxf(WELD_PART * size_m, 1e-9f);
     for (uint32_t v = 0; v < bodies->level->vertex_count; v++) {
         int32_t cell[3];
         uint32_t found = find_place_near(bodies, bodies->view->positions_m[v], cell);
@@ -183,7 +183,7 @@ void closed_bodies_find(const struct asset_view *view, uint32_t level, struct cl
     *out = (struct closed_bodies){ 0 };
     for (uint32_t p = 0; p < bodies.level->primitive_count; p++)
         index_count += view->primitives[bodies.level->first_primitive + p].index_count;
-    if (index_count <= MOST_INDICES && bodies_init(&bodies, index_count)) {
+    if (index_count <= MAX_INDICES && bodies_init(&bodies, index_count)) {
         join_places(&bodies);
         count_edges(&bodies);
         collect(&bodies, out);

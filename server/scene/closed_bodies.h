@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which triangles of a level bound closed bodies: what a cut through those opens is solid. A body is all that hangs together by places
-   of vertices; it is closed where each edge is run along as often one way as the other. Thread: any. */
+/* Finds which triangles of a level bound closed bodies, whose cut sections are solid. A body is a set of triangles connected by vertex
+   positions; it is closed if each edge is used equally often in both directions. Thread: any. */
 #ifndef SCENE_CLOSED_BODIES_H
 #define SCENE_CLOSED_BODIES_H
 #include <stddef.h>
@@ -16,7 +16,8 @@ struct closed_bodies {
     size_t run_count, run_capacity;
 };
 
-/* Only of opaque materials. Out of memory, or too large to look at while somebody waits: none are. */
+/* Finds the closed bodies of opaque materials. Finds none when out of memory, or when the level is too large to examine while a user
+   waits. */
 void closed_bodies_find(const struct asset_view *view, uint32_t level, struct closed_bodies *out);
 void closed_bodies_finish(struct closed_bodies *closed);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Large triangles of two assets on one plane and over each other. */
+/* Finds large triangles of two assets that lie in one plane and overlap. */
 #include "scene/coincident.h"
 
 #include <math.h>
@@ -9,15 +9,15 @@
 #include "base/mem.h"
 #include "plant/models/transform.h"
 
-static const double SAME_PLANE_M = 2e-4, SAME_NORMAL = 1e-3; /* CAD's own places, kept as floats */
-static const double LEAST_AREA_M2 = 1e-4, LEAST_OVERLAP_M = 1e-3;
-/* More than pictures err in depth where a surface is seen at 6 degrees: a place in the picture is right to 1/256 pixel. */
-static const double FORWARD = 4e-5;
-enum { MOST_STEPS = 7 };
+static const double SAME_PLANE_M = 2e-4, SAME_NORMAL = 1e-3; /* accuracy of CAD positions stored as floats */
+static const double MIN_AREA_M2 = 1e-4, MIN_OVERLAP_M = 1e-3;
+/* relative shift: more than the depth error of frames where a surface is seen at 6 degrees and positions are exact to 1/256 pixel */
+static const double SHIFT_PER_STEP = 4e-5;
+enum { MAX_STEPS = 7 };
 
 struct coincident_face {
-    double normal[3]; /* turned so that its largest part is above 0: both sides are alike */
-    double offset_m;  /* of its plane, from the middle of where two assets meet */
+    double normal[3]; /* sign chosen so that the largest component is positive: both sides are treated alike */
+    double offset_m;  /* distance of its plane from the centre of the region where two assets meet */
     double corner[3][3], low[3], high[3];
 };
 struct faces {
@@ -44,7 +44,7 @@ static void turn(double normal[3])
         normal[c] = -normal[c];
 }
 
-/* False: too small to be looked at. */
+/* Computes normal and plane. Returns false if the triangle is too small to consider. */
 static bool measure(struct coincident_face *face)
 {
     double ab[3], ac[3];
@@ -57,7 +57,7 @@ static bool measure(struct coincident_face *face)
     for (int c = 0; c < 3; c++)
         face->normal[c] = ab[(c + 1) % 3] * ac[(c + 2) % 3] - ab[(c + 2) % 3] * ac[(c + 1) % 3];
     double twice = sqrt(face->normal[0] * face->normal[0] + face->normal[1] * face->normal[1] + face->normal[2] * face->normal[2]);
-    if (!(twice > 2 * LEAST_AREA_M2))
+    if (!(twice > 2 * MIN_AREA_M2))
         return false;
     for (int c = 0; c < 3; c++)
         face->normal[c] /= twice;
@@ -65,7 +65,7 @@ static bool measure(struct coincident_face *face)
     return true;
 }
 
-/* Of the coarsest level: it keeps what is flat, in few triangles. */
+/* Collects faces of the coarsest level, which keeps flat areas in few triangles. */
 static void collect(const struct scene_asset *asset, const struct region *region, struct faces *out)
 {
     const struct asset_view *view = &asset->file->view;
@@ -102,7 +102,7 @@ static bool over_each_other(const struct coincident_face *a, const struct coinci
         double overlap_m = fmin(a->high[c], b->high[c]) - fmax(a->low[c], b->low[c]);
         if (overlap_m < -SAME_PLANE_M)
             return false;
-        wide += overlap_m > LEAST_OVERLAP_M;
+        wide += overlap_m > MIN_OVERLAP_M;
     }
     return wide >= 2;
 }
@@ -122,7 +122,7 @@ static bool on_one_plane(const struct coincident_face *a, const struct coinciden
     return true;
 }
 
-/* Planes of nearly the same direction differ in their offsets by what that makes over the region. */
+/* Returns whether any faces coincide. Nearly parallel planes may differ in offset by their angle times the region's size. */
 static bool coincide(const struct faces *a, const struct faces *b, const struct region *region)
 {
     double slack_m = SAME_PLANE_M;
@@ -158,7 +158,7 @@ static bool meet(const struct scene_asset *a, const struct scene_asset *b, struc
     return coincide(&faces[0], &faces[1], &region);
 }
 
-/* From what is farthest behind: each asset in front of all that came before and that it meets. */
+/* Assigns fronts from back to front: each asset is in front of all earlier ones that it meets. */
 void coincident_find(struct scene *scene)
 {
     struct faces faces[2] = { 0 };
@@ -173,8 +173,8 @@ void coincident_find(struct scene *scene)
         asset->front = 0;
         for (size_t k = 0; k < i; k++) {
             const struct scene_asset *behind = &scene->assets[order[k]];
-            if (behind->front >= asset->front && asset->front < MOST_STEPS && meet(asset, behind, faces))
-                asset->front = behind->front < MOST_STEPS ? behind->front + 1 : MOST_STEPS;
+            if (behind->front >= asset->front && asset->front < MAX_STEPS && meet(asset, behind, faces))
+                asset->front = behind->front < MAX_STEPS ? behind->front + 1 : MAX_STEPS;
         }
     }
     mem_free(order);
@@ -184,5 +184,5 @@ void coincident_find(struct scene *scene)
 
 double coincident_forward(const struct scene_asset *asset)
 {
-    return FORWARD * asset->front;
+    return SHIFT_PER_STEP * asset->front;
 }

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Faces of two assets in one place, as CAD has them: which one is seen. The asset with sensors is, before one without; else the one
-   that the plant file names first. */
+/* Decides which asset is visible where faces of two assets coincide, as in CAD models: an asset with sensors before one without; else the
+   one that the plant file names first. */
 #ifndef SCENE_COINCIDENT_H
 #define SCENE_COINCIDENT_H
 #include "scene/scene.h"
 
-/* Sets `front` of every asset: 0, or above that of all assets that it hides where their faces coincide. */
+/* Sets `front` of every asset: 0, or higher than that of all assets that it covers where faces coincide. */
 void coincident_find(struct scene *scene);
-/* So much of its distance (or, in an orthographic view, of what would be the distance in perspective) an asset is brought forward. */
+/* Returns how far the asset is shifted towards the viewer, relative to its distance (in an orthographic view, to camera_parallel_m()). */
 double coincident_forward(const struct scene_asset *asset);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The vertex that lies farthest in each of many directions, spread evenly over the sphere. */
+/* Finds the farthest vertex in each of many directions, distributed evenly over the sphere. */
 #include "scene/extremes.h"
 
 #include <math.h>
@@ -10,10 +10,10 @@
 #include "scene/main_part.h"
 
 enum { DIRECTIONS = 96 };
-/* Ground has no sensor, is low for its size, lamps and kerbs on it included, and lies under most of the plant. */
-static const double GROUND_HEIGHT = 0.25, GROUND_PART = 0.8; /* of its larger side; of the plant's area */
+/* Rules for recognising ground: it has no sensor, is low for its size, including lamps and kerbs, and covers most of the plant's area. */
+static const double GROUND_HEIGHT = 0.25, GROUND_PART = 0.8; /* height relative to its larger side; area relative to the plant's */
 static const double GROUND_LEAST_M = 5;                      /* its larger side: a smaller plate is part of the equipment */
-static const double LEVEL_ERROR = 0.005;                     /* of an asset's size: coarser levels than that would be cropped */
+static const double LEVEL_ERROR = 0.005; /* relative to an asset's size; with coarser levels the view would crop the asset */
 
 static double area_of(const double min_m[3], const double max_m[3], int up)
 {
@@ -47,7 +47,7 @@ static void add_asset(const struct scene *scene, const struct scene_asset *asset
     const struct asset_view *view = &asset->file->view;
     const double *m = asset->placement;
     uint32_t count = level_vertices(asset);
-    char *held = NULL; /* of an asset that is partly outside the main part: by vertex */
+    char *held = NULL; /* for an asset partly outside the main part: per vertex, whether it is inside */
     if (asset->stray) {
         held = mem_array(count, 1);
         for (uint32_t v = 0; v < count; v++) {
@@ -89,7 +89,8 @@ void extremes_find(struct scene *scene)
         memcpy(directions[d], (double[]){ flat * cos(turn), flat * sin(turn), z }, sizeof(directions[d]));
         most[d] = -INFINITY;
     }
-    for (int round = 0; round < 3 && !isfinite(most[0]); round++) /* without the ground, with it, with what starts hidden */
+    /* first without the ground, then with it, then also with assets hidden at start */
+    for (int round = 0; round < 3 && !isfinite(most[0]); round++)
         for (size_t i = 0; i < scene->asset_count; i++)
             if (!scene->assets[i].missing && (round > 0 || !is_ground(scene, &scene->assets[i])) &&
                 (round > 1 || scene->plant->assets[i].start != PLANT_START_HIDDEN))

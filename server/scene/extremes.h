@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The outermost places of a plant, each way: what a view of the whole has to hold. Thread: any. */
+/* Outermost points of a plant in many directions, which a view of the whole plant has to contain. Thread: any. */
 #ifndef SCENE_EXTREMES_H
 #define SCENE_EXTREMES_H
 #include <stdbool.h>
 
 #include "scene/scene.h"
 
-/* Sets scene->extremes_m, which is the scene's. Without the ground, where there is more than that, and without what starts hidden. */
+/* Sets scene->extremes_m, owned by the scene. Ignores the ground, if there is more than that, and assets hidden at start. */
 void extremes_find(struct scene *scene);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors too far from their surface. */
+/* Finds sensors that are too far from their surface. */
 #include "scene/far_sensors.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Standard views and what is looked at. */
+/* Standard views of the plant, an asset or a sensor. */
 #include "scene/framing.h"
 
 #include <math.h>
@@ -7,12 +7,13 @@
 
 #include "base/mem.h"
 
-/* Straight down, north has no direction: so much beside it, up stays the plant's own, and hands go on turning the same way. */
-static const double BESIDE_VERTICAL = 1e-3;
-static const double USUAL_ASPECT = 16 / 9.0; /* of the pictures that a plant file's view is chosen in */
-static const double SENSOR_PART = 0.35;                      /* of the asset's size is shown around a sensor, */
-static const double SENSOR_LEAST_M = 0.3, SENSOR_MOST_M = 3; /* but no less and no more */
-static const double SENSOR_RISE = 0.36;                      /* seen from that much above, as a tangent */
+/* Tilt of the views straight down and up, as a tangent: exactly vertical, north would have no direction. With it up stays the plant's, and
+   orbiting continues the same way. */
+static const double VERTICAL_TILT = 1e-3;
+static const double DEFAULT_ASPECT = 16 / 9.0; /* aspect ratio assumed for the plant file's view */
+static const double SENSOR_PART = 0.35;                      /* part of the asset's size that is shown around a sensor */
+static const double SENSOR_MIN_M = 0.3, SENSOR_MAX_M = 3; /* limits of that size */
+static const double SENSOR_RISE = 0.36;                      /* elevation of the camera above a sensor, as a tangent */
 
 static const struct scene_sensor *find_sensor(const struct scene_asset *asset, int tag)
 {
@@ -36,7 +37,7 @@ bool framing_find(const struct plant *plant, const char *name, struct framing *f
     return framing->tag >= 0;
 }
 
-/* East, north and up. */
+/* Computes the directions east, north and up. */
 static void compass(const struct scene *scene, double east[3], double north[3], double up[3])
 {
     bool y_up = scene->plant->up == AXIS_Y;
@@ -47,9 +48,9 @@ static void compass(const struct scene *scene, double east[3], double north[3], 
 
 static void side_forward(const struct scene *scene, enum side side, const struct camera *camera, double forward[3])
 {
-    static const double parts[][3] = { /* of east, north and up */
-                                       [SIDE_TOP] = { 0, BESIDE_VERTICAL, -1 },
-                                       [SIDE_BOTTOM] = { 0, BESIDE_VERTICAL, 1 },
+    static const double parts[][3] = { /* components along east, north and up */
+                                       [SIDE_TOP] = { 0, VERTICAL_TILT, -1 },
+                                       [SIDE_BOTTOM] = { 0, VERTICAL_TILT, 1 },
                                        [SIDE_FRONT] = { 0, 1, 0 },
                                        [SIDE_BACK] = { 0, -1, 0 },
                                        [SIDE_LEFT] = { 1, 0, 0 },
@@ -63,7 +64,7 @@ static void side_forward(const struct scene *scene, enum side side, const struct
                                       : parts[side][0] * east[i] + parts[side][1] * north[i] + parts[side][2] * up[i];
 }
 
-/* Along the normal of the ellipsoid in the asset's box, a little from above. */
+/* Computes the view direction onto a sensor: along the normal of the ellipsoid in the asset's box, slightly from above. */
 static void sensor_forward(const struct scene_asset *asset, const double place_m[3], const double up[3], double forward[3])
 {
     double out[3], rise = 0, length = 0;
@@ -86,7 +87,7 @@ static void sensor_box(const struct scene_asset *asset, const double place_m[3],
     double size_m = 0;
     for (int i = 0; i < 3; i++)
         size_m = fmax(size_m, asset->bounds_max_m[i] - asset->bounds_min_m[i]);
-    size_m = fmin(fmax(SENSOR_PART * size_m, SENSOR_LEAST_M), SENSOR_MOST_M);
+    size_m = fmin(fmax(SENSOR_PART * size_m, SENSOR_MIN_M), SENSOR_MAX_M);
     for (int i = 0; i < 3; i++) {
         min_m[i] = place_m[i] - 0.5 * size_m;
         max_m[i] = place_m[i] + 0.5 * size_m;
@@ -116,7 +117,7 @@ void framing_look(const struct scene *scene, const struct framing *framing, doub
         camera_fit_along(camera, forward, min_m, max_m, aspect, &framing->window);
 }
 
-/* In a part of a picture. */
+/* Returns whether the camera sees the point within a window of the picture. */
 static bool sees(const struct camera *camera, double aspect, const struct camera_window *window, const double point_m[3])
 {
     static const struct camera_window whole = { -1, 1, -1, 1 };
@@ -144,7 +145,7 @@ void framing_keep(const struct scene *scene, double aspect, const struct camera_
         for (int i = 0; i < 3; i++)
             corner_m[i] = n >> i & 1 ? scene->bounds_max_m[i] : scene->bounds_min_m[i];
         const double *point_m = scene->extreme_count > 0 ? scene->extremes_m[n] : corner_m;
-        if (!sees(camera, USUAL_ASPECT, &(struct camera_window){ 0 }, point_m))
+        if (!sees(camera, DEFAULT_ASPECT, &(struct camera_window){ 0 }, point_m))
             continue;
         memcpy(points_m[held++], point_m, sizeof(*points_m));
         seen += sees(camera, aspect, window, point_m);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The part of a plant that a first view frames: everything except stray pieces so far away that the rest would be a dot. */
+/* The main part of a plant, which an initial view frames: everything except stray pieces so far away that the rest would be a dot. */
 #ifndef SCENE_MAIN_PART_H
 #define SCENE_MAIN_PART_H
 #include <stdbool.h>
@@ -7,10 +7,10 @@
 #include "base/log/log.h"
 #include "scene/scene.h"
 
-/* Sets the scene's bounds to the box of the main part by the rule of gap_split.h, and scene->outside and the assets' stray members.
-   Logs the stray pieces (log may be NULL). */
+/* Sets the scene's bounds to the box of the main part by the rule of gap_split.h; sets scene->outside and the assets' stray members. Logs
+   the stray pieces (log may be NULL). */
 void main_part_find(struct log *log, struct scene *scene);
-/* Returns whether a place lies in the scene's bounds, with a rim for rounding. */
+/* Returns whether a point is within the scene's bounds, with a margin for rounding. */
 bool main_part_holds(const struct scene *scene, const double place_m[3]);
 
 #endif

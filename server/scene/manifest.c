@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The manifest, by jansson. */
+/* Reads the manifest with jansson. */
 #include "scene/manifest.h"
 
 #include <errno.h>
@@ -29,7 +29,7 @@ static json_t *load(struct log *log, const char *path)
     return root;
 }
 
-/* A name in the manifest's own folder, and nothing else. */
+/* Returns whether `file` is a plain name in the manifest's own folder. */
 static bool file_name_good(const char *file)
 {
     return file && *file && *file != '.' && !strchr(file, '/');

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* FOLDER/manifest.json: which prepared file belongs to which asset (protocol/ASSET.md). Thread: one. */
+/* FOLDER/manifest.json: the prepared file of each asset (protocol/ASSET.md). Thread: one. */
 #ifndef SCENE_MANIFEST_H
 #define SCENE_MANIFEST_H
 #include <stdbool.h>
@@ -11,18 +11,18 @@
 struct manifest {
     char *path;
     struct manifest_entry {
-        char *id, *file; /* file: a name in the same folder */
-        char *surface;   /* likewise, surface_store.h; NULL: none was kept */
-        char *missing;   /* why it could not be prepared, and has no file; NULL: it has */
-        uint64_t recipe; /* plant/recipe.h */
-        uint64_t resolved_levels; /* struct asset's */
+        char *id, *file; /* file: a name in the manifest's folder */
+        char *surface;   /* name of the stored surface (surface_store.h); NULL: none */
+        char *missing;   /* why the asset could not be prepared and has no file; NULL: it was prepared */
+        uint64_t recipe; /* hash of the inputs of its preparation (plant/recipe.h) */
+        uint64_t resolved_levels; /* as in struct asset */
     } *entries;
     size_t count;
 };
 
-/* False: logged, with what to do about it. */
+/* Reads the manifest. Returns false on failure; logged, with advice. */
 bool manifest_read(struct log *log, const char *folder, struct manifest *manifest);
 void manifest_finish(struct manifest *manifest);
-const struct manifest_entry *manifest_find(const struct manifest *manifest, const char *id); /* or NULL */
+const struct manifest_entry *manifest_find(const struct manifest *manifest, const char *id); /* NULL: not found */
 
 #endif

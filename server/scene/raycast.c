@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rays against boxes of assets, boxes of clusters, and triangles, in double precision in the file's own frame. */
+/* Intersects rays with boxes of assets, boxes of clusters, and triangles, in double precision in the file's coordinates. */
 #include "scene/raycast.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "plant/models/transform.h"
 #include "scene/coincident.h"
 
-static const double RIM = 1e-9; /* corners weigh so little less than nothing: rays do not slip through between triangles */
+static const double MIN_WEIGHT = 1e-9; /* triangles are enlarged by this barycentric weight, so that rays do not slip between them */
 
 void ray_init(struct ray *ray, const struct camera *camera, double aspect, double x, double y)
 {
@@ -27,7 +27,7 @@ void ray_init(struct ray *ray, const struct camera *camera, double aspect, doubl
     ray->parallel_m = camera_parallel_m(camera);
 }
 
-/* The part of low..high in the box. */
+/* Clips low..high to the ray's part within the box. Returns false if nothing is left. */
 static bool cross_box(const double origin[3], const double direction[3], const double min[3], const double max[3], double *low,
                       double *high)
 {
@@ -46,19 +46,19 @@ static bool cross_box(const double origin[3], const double direction[3], const d
 
 struct raycast_search { /* search in one asset */
     const struct asset_view *view;
-    double origin[3], direction[3], low; /* file frame */
+    double origin[3], direction[3], low; /* in the file's coordinates */
     bool cut;
-    double limit; /* of t: nothing farther counts */
+    double limit; /* largest t of interest */
     struct raycast_hit *hit;
     int asset;
 };
 
 struct surface_crossing {
     double t, u, v;
-    bool back; /* it is left there */
+    bool back; /* the ray leaves the body here */
 };
 
-/* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. The determinant is negative where a back is seen. */
+/* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. The determinant is negative for back faces. */
 static bool cross_triangle(const struct raycast_search *search, const uint32_t corners[3], struct surface_crossing *out)
 {
     const float *a = search->view->positions_m[corners[0]], *b = search->view->positions_m[corners[1]],
@@ -74,11 +74,11 @@ static bool cross_triangle(const struct raycast_search *search, const uint32_t c
     if (determinant == 0)
         return false;
     double u = vec_dot(s, p) / determinant;
-    if (u < -RIM || u > 1 + RIM)
+    if (u < -MIN_WEIGHT || u > 1 + MIN_WEIGHT)
         return false;
     vec_cross(s, ab, q);
     double v = vec_dot(search->direction, q) / determinant;
-    if (v < -RIM || u + v > 1 + RIM)
+    if (v < -MIN_WEIGHT || u + v > 1 + MIN_WEIGHT)
         return false;
     *out = (struct surface_crossing){ vec_dot(ac, q) / determinant, u, v, determinant < 0 };
     return true;
@@ -106,7 +106,7 @@ static bool cluster_crossed(const struct raycast_search *search, const struct as
     return cross_box(search->origin, search->direction, min, max, &low, &high);
 }
 
-/* The finest level's primitives come first, and their clusters too. */
+/* Searches the finest level: its primitives and their clusters come first in the file. */
 static void search_asset(struct raycast_search *search)
 {
     const struct asset_view *view = search->view;
@@ -142,7 +142,7 @@ static void find_normal(const struct scene *scene, const struct ray *ray, struct
         hit->normal[i] *= turn / length;
 }
 
-/* Where a hit of that asset counts as, which is brought forward as in pictures; and back. */
+/* Converts t of a hit to that of the asset shifted forward as in frames (coincident_forward); brought_back() is the inverse. */
 static double brought_forward(const struct ray *ray, const struct scene_asset *asset, double t)
 {
     double forward = coincident_forward(asset);
@@ -155,7 +155,7 @@ static double brought_back(const struct ray *ray, const struct scene_asset *asse
     return ray->parallel_m > 0 ? t + forward * ray->parallel_m : t * (1 + forward);
 }
 
-/* The ray in the file's frame. False: it passes the asset by. */
+/* Transforms the ray to the file's coordinates. Returns false if it misses the asset. */
 static bool aim_at(struct raycast_search *search, const struct scene_asset *asset, const struct ray *ray, double low, double limit)
 {
     double file_from_plant[16], ahead[3], enter = low, leave = limit;
@@ -174,7 +174,7 @@ static bool aim_at(struct raycast_search *search, const struct scene_asset *asse
     return true;
 }
 
-/* How many closed bodies of the asset the ray is in at search->low: those that it leaves less those that it comes into. */
+/* Counts the asset's closed bodies that contain the ray's point at search->low: exits minus entries. */
 static int count_bodies(const struct raycast_search *search, const struct asset *file)
 {
     const struct closed_bodies *closed = asset_closed(file, 0);
@@ -187,12 +187,12 @@ static int count_bodies(const struct raycast_search *search, const struct asset 
     return count;
 }
 
-/* Within a closed body, where the ray passes the cut: a plane closes that (render/gl/section_caps.h). */
+/* Tests whether the ray meets a section cap where it passes the cut: the point is inside a closed body (render/gl/section_caps.h). */
 static bool hits_cap(const struct scene *scene, const struct visibility *visibility, const struct ray *ray, double low, double high,
                      struct raycast_hit *hit)
 {
     int bodies = 0;
-    if (!(low > ray->low)) /* the eye is in what is left */
+    if (!(low > ray->low)) /* the eye is in the uncut space */
         return false;
     for (size_t i = 0; i < scene->asset_count; i++) {
         const struct scene_asset *asset = &scene->assets[i];
@@ -212,7 +212,7 @@ static bool hits_cap(const struct scene *scene, const struct visibility *visibil
     return true;
 }
 
-/* Of the plane that the ray passes there. */
+/* Sets the normal to that of the section plane at the hit. */
 static void find_cap_normal(const struct clip *clip, const struct ray *ray, struct raycast_hit *hit)
 {
     double least = INFINITY;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Puts the prepared assets into the plant, after checking that they are of this plant. */
+/* Makes a plant's scene from prepared asset files, after checking that they belong to this plant. */
 #include "scene/scene_create.h"
 
 #include <errno.h>
@@ -23,7 +23,7 @@
 
 /* --- does the file fit? ----------------------------------------------------------------------------------------------------- */
 
-/* Positions in the file are floats relative to its origin, so a place far from it is only known as well as a float is. */
+/* Compares positions. Positions in the file are floats relative to its origin, so a position far from the origin is less exact. */
 static bool same_place(const struct asset_header *header, const struct asset_sensor *in_file, const struct plant_sensor *in_plant)
 {
     if (in_file->node_hash || in_plant->node)
@@ -63,14 +63,14 @@ static size_t count_placed(const struct plant *plant, const struct plant_sensor 
     return placed;
 }
 
-/* What is not stated was fitted. */
+/* Returns whether the prepared parameters equal those stated in the plant file; unstated ones were fitted. */
 static bool is_as_stated(const struct plant_gp *gp, const struct influence_entry *entry)
 {
     return (isnan(gp->range_m) || gp->range_m == entry->range_m) && (isnan(gp->noise) || gp->noise == entry->noise) &&
            (isnan(gp->deviation) || gp->deviation == entry->deviation);
 }
 
-/* What was prepared for a group is what the plant file says now. */
+/* Returns whether the prepared entry of a group matches the plant file's present sensors. */
 static bool has_entry(struct log *log, const struct scene_asset *asset, size_t group, uint32_t kind, size_t placed)
 {
     const struct influence_entry *entry =
@@ -111,7 +111,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
     return true;
 }
 
-/* Of the model of an asset before it, if that has the same; else read. Each model is read once. */
+/* Hashes the model of an asset; a model used by an earlier asset is not read again. */
 static bool model_hash(const struct plant *plant, uint64_t *hashes, int index)
 {
     for (int i = 0; i < index; i++)
@@ -184,7 +184,8 @@ static void place_sensor(const struct scene_asset *asset, int column, int tag, s
     transform_point(asset->placement, surface, out->surface_m);
 }
 
-/* Not drawn, not measured, no part of the plant's box: what is left is that it is known, and why it is not there. */
+/* Sets up a missing asset: it is neither drawn nor measured and not part of the plant's box, but it is known with the reason for its
+   absence. */
 static bool create_missing(struct log *log, const struct scene *scene, struct scene_asset *asset, const struct manifest_entry *entry)
 {
     log_warn(log, "asset %s is missing: %s; repair it and run plantcast-prep %s", asset->plant->id, entry->missing, scene->plant->path);
@@ -195,7 +196,7 @@ static bool create_missing(struct log *log, const struct scene *scene, struct sc
     return asset->file != NULL;
 }
 
-/* Of an asset whose file is open, or could not be opened. */
+/* Completes an asset after its file was opened, or failed to open. */
 static bool create_asset(struct log *log, struct scene *scene, int index)
 {
     struct scene_asset *asset = &scene->assets[index];
@@ -220,9 +221,9 @@ static bool create_asset(struct log *log, struct scene *scene, int index)
 /* --- files ------------------------------------------------------------------------------------------------------------------ */
 
 struct file_use {
-    const char *name; /* in the prepared folder */
+    const char *name; /* name of the file in the prepared folder */
     int asset;
-    uint64_t resolved_levels; /* struct asset's */
+    uint64_t resolved_levels; /* as in struct asset */
 };
 
 struct file_uses {
@@ -242,7 +243,7 @@ static int compare_assets(const void *a, const void *b)
     return ((const struct file_use *)a)->asset - ((const struct file_use *)b)->asset;
 }
 
-/* Those that are the first of their name, for all that follow them and have it. */
+/* Opens files for all assets: each range opens the first use of a name, and the following uses share it. */
 static void open_some(void *arg, size_t begin, size_t end)
 {
     const struct file_uses *uses = arg;
@@ -258,7 +259,7 @@ static void open_some(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Opens each file once, on all cores: checking them takes longer than all else here. */
+/* Opens each file once, on all cores, because checking the files takes longer than everything else here. */
 static void open_files(struct file_uses *uses)
 {
     qsort(uses->at, uses->count, sizeof(*uses->at), compare_uses);
@@ -267,7 +268,7 @@ static void open_files(struct file_uses *uses)
     workers_destroy(&workers);
 }
 
-/* Adds the asset's file to those to be opened, unless the asset is missing. Returns false if the file would not fit, logged. */
+/* Adds the asset's file to the list, unless the asset is missing. Returns false if the file does not match the plant, logged. */
 static bool find_file(struct file_uses *uses, const struct manifest *manifest, uint64_t *hashes, int index)
 {
     struct log *log = uses->log;
@@ -289,7 +290,7 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, u
 
 /* --- all of them ------------------------------------------------------------------------------------------------------------ */
 
-/* Whoever looks for a missing asset sees the plant. False: nothing else is there. */
+/* Gives missing assets the bounds of the plant, so that framing one shows the plant. Returns false if there is no other asset. */
 static bool bound_missing(struct scene *scene)
 {
     for (size_t i = 0; i < scene->asset_count; i++)
@@ -300,7 +301,7 @@ static bool bound_missing(struct scene *scene)
     return scene->bounds_min_m[0] <= scene->bounds_max_m[0];
 }
 
-/* Returns false if one does not fit, after all were looked at; logged. */
+/* Creates all assets. Returns false if any does not fit; all are checked and logged. */
 static bool create_assets(struct log *log, struct scene *scene, const struct manifest *manifest)
 {
     struct file_uses uses = { .log = log, .scene = scene, .at = mem_array(scene->asset_count, sizeof(*uses.at)) };
@@ -387,13 +388,13 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
     memcpy(camera->eye_m, view->eye_m, sizeof(camera->eye_m));
     memcpy(camera->target_m, view->target_m, sizeof(camera->target_m));
     camera->fov_deg = view->fov_deg;
-    if (!camera_valid(camera)) /* straight down: a plan, north above */
+    if (!camera_valid(camera)) /* looking straight down: a plan with north at the top */
         memcpy(camera->up, scene->plant->up == AXIS_Y ? (double[]){ 0, 0, -1 } : (double[]){ 0, 1, 0 }, sizeof(camera->up));
 }
 
 void scene_depth_box(const struct scene *scene, const double eye_m[3], double min_m[3], double max_m[3])
 {
-    double away_m = 0, farthest_m2 = 0; /* to the main part, and to the farthest corner of everything */
+    double away_m = 0, farthest_m2 = 0; /* from the eye to the main part, and to the farthest corner of everything */
     for (int c = 0; c < 3; c++) {
         away_m = fmax(away_m, fmax(scene->bounds_min_m[c] - eye_m[c], eye_m[c] - scene->bounds_max_m[c]));
         farthest_m2 += pow(fmax(fabs(scene->whole_min_m[c] - eye_m[c]), fabs(scene->whole_max_m[c] - eye_m[c])), 2);

@@ -6,11 +6,11 @@
 #include "scene/scene.h"
 
 /* Opens the prepared files of a plant and makes its scene. prepared_folder: as plant_prepared_folder() returns it. Refuses files that do
-   not fit the plant as it is now, and names asset and reason in the log. An asset that plantcast-prep could not prepare is missing, with a
-   warning. Returns NULL on failure, all errors logged. plant must outlive the scene. */
+   not match the plant and logs asset and reason. An asset that plantcast-prep could not prepare is missing, with a warning. `plant` must
+   outlive the scene. Returns NULL on failure, all errors logged. */
 struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder);
-void scene_destroy(struct scene **scene); /* &NULL is fine; leaves NULL */
-/* Sets the camera that clients start with: the view of the plant file, else one of the whole plant from a raised corner. */
+void scene_destroy(struct scene **scene); /* &NULL is fine; sets it to NULL */
+/* Sets the initial camera: the view in the plant file, else one of the whole plant from a raised corner. */
 void scene_home(const struct scene *scene, double aspect, struct camera *camera);
 
 #endif

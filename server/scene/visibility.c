@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sets of assets, and planes that cut. */
+/* Sets of assets, and section planes. */
 #include "scene/visibility.h"
 
 #include <assert.h>
@@ -66,7 +66,7 @@ bool clip_keeps(const struct clip *clip, const double point_m[3])
     return true;
 }
 
-/* Where the corner of a box that lies farthest inward stands (inward 1), or outward (-1). */
+/* Returns the signed height over the plane of the box's corner that is farthest inward (inward 1) or outward (-1). */
 static double corner_height(const double plane[4], const double min_m[3], const double max_m[3], int inward)
 {
     double height = plane[3] + SLACK_M;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which assets a picture shows, which it only hints at, and what of the plant is cut away. Plain data. Thread: any. */
+/* Which assets a view shows, which it ghosts, and what is cut away. Plain data. Thread: any. */
 #ifndef SCENE_VISIBILITY_H
 #define SCENE_VISIBILITY_H
 #include <stdbool.h>
@@ -14,20 +14,20 @@ struct asset_set { /* by index in scene->assets; zero: empty */
 void asset_set_add(struct asset_set *set, int asset); /* 0..ASSET_SET_MAX - 1 */
 bool asset_set_has(const struct asset_set *set, int asset);
 
-struct clip { /* what lies on the inner side of every plane stays */
+struct clip { /* section planes; the intersection of all inner sides is kept */
     int plane_count;
-    bool is_box;                       /* the planes are those of a box: min x, max x, min y, ... */
-    double planes[CLIP_MAX_PLANES][4]; /* n x, n y, n z, d: n p + d >= 0 inside; n of unit length, plant frame */
+    bool is_box;                       /* the planes are those of an axis-aligned box: min x, max x, min y, ... */
+    double planes[CLIP_MAX_PLANES][4]; /* n x, n y, n z, d: n p + d >= 0 is kept; n: unit vector in the plant frame */
 };
-/* As it cuts: a little farther out than it was asked for, so that a surface in the plane itself stays whole. */
+/* Returns a plane as it cuts: slightly farther out than set, so that a surface in the plane itself is kept whole. */
 void clip_plane(const struct clip *clip, int index, double out[4]);
 void clip_box(struct clip *clip, const double min_m[3], const double max_m[3]);
 void clip_get_box(const struct clip *clip, double min_m[3], double max_m[3]);
 bool clip_keeps(const struct clip *clip, const double point_m[3]);
-/* Of a box: none of it stays; or something is cut off it. */
+/* clip_drops: the box is cut away entirely; clip_touches: some of the box is cut away. */
 bool clip_drops(const struct clip *clip, const double min_m[3], const double max_m[3]);
 bool clip_touches(const struct clip *clip, const double min_m[3], const double max_m[3]);
-/* The part of origin + t direction, low <= t <= high, that stays. False: none. */
+/* Clips origin + t direction, low <= t <= high, to the kept space. Returns false if nothing is left. */
 bool clip_ray(const struct clip *clip, const double origin[3], const double direction[3], double *low, double *high);
 
 struct visibility {
@@ -36,12 +36,12 @@ struct visibility {
 };
 enum asset_look {
     ASSET_SHOWN,
-    ASSET_GHOST, /* see-through, without a field */
-    ASSET_HIDDEN /* asked to be hidden; or others are isolated, and it is no ghost */
+    ASSET_GHOST, /* transparent, without a field */
+    ASSET_HIDDEN /* hidden by the user, or others are isolated and it is no ghost */
 };
 enum asset_look visibility_of(const struct visibility *visibility, int asset);
 struct plant;
-void visibility_start(const struct plant *plant, struct visibility *out); /* until somebody asks for something else */
+void visibility_start(const struct plant *plant, struct visibility *out); /* initial visibility of the plant */
 bool visibility_equal(const struct visibility *a, const struct visibility *b);
 
 #endif
