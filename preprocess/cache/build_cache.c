@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One table of the kinds of entries: their files' names and formats. */
+/* The table of cache entry kinds: file names and formats. */
 #include "preprocess/cache/build_cache.h"
 
 #include <inttypes.h>
@@ -9,7 +9,7 @@
 
 static const struct {
     const char *ending;
-    const char *magic; /* with the format's version; of files with a format of their own: NULL */
+    const char *magic; /* identifies format and version; NULL: the kind has a file format of its own */
     bool needs_sensors;
 } kinds[BUILD_CACHE_KINDS] = {
     [BUILD_CACHE_MODELS] = { NULL, "PLCCUTS1", false },

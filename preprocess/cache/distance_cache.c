@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Slots of equal size in a file: a place, a checksum and a column in each. */
+/* Stores columns in file slots of equal size, each with position, checksum and column. */
 #include "preprocess/cache/distance_cache.h"
 
 #include <fcntl.h>
@@ -13,9 +13,9 @@
 #include "preprocess/cache/file_io.h"
 #include "protocol/asset_distance.h"
 
-struct distance_slot { /* the column follows */
+struct distance_slot { /* header of a slot; the column follows */
     double place_m[3];
-    uint64_t checksum; /* XXH3-64 of the column, with key and place; torn or foreign slots have another */
+    uint64_t checksum; /* XXH3-64 of key, position and column; does not match in partially written or foreign slots */
 };
 
 static size_t slot_bytes(const struct distance_cache *cache)
@@ -34,7 +34,7 @@ static uint64_t checksum_of(const struct distance_cache *cache, size_t place, co
     return XXH3_64bits_withSeed(codes, cache->length * sizeof(*codes), seed);
 }
 
-/* Which place each slot belongs to; the others get the free slots, and then new ones. */
+/* Finds the slot of each position. Positions without a slot get unused ones, then new ones at the end. */
 static void deal_slots(struct distance_cache *cache)
 {
     struct stat st;
@@ -70,7 +70,7 @@ void distance_cache_open(struct distance_cache *cache, const char *folder, uint6
     cache->slots = mem_array(count, sizeof(*cache->slots));
     for (size_t p = 0; p < count; p++)
         cache->slots[p] = SIZE_MAX;
-    deal_slots(cache); /* of a file that cannot be opened: none is there */
+    deal_slots(cache); /* finds no slots if the file could not be opened */
     mem_free(path);
 }
 
@@ -118,7 +118,7 @@ static void keep(void *arg, size_t source, float *distances_m)
     memcpy(slot.place_m, cache->places_m[source], sizeof(slot.place_m));
     if (!cache->may_write || !file_write(cache->fd, &slot, sizeof(slot), at) ||
         !file_write(cache->fd, codes, cache->length * sizeof(*codes), at + (off_t)sizeof(slot)))
-        cache->may_write = false; /* what is there of it has another checksum */
+        cache->may_write = false; /* the partially written slot has no valid checksum */
     mem_free(codes);
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache of geodesic distances, by the position of the sensor that they start from: the file KEY.columns in the folder of prepared files.
-   One entry is a column: the distances of all surface points from one sensor, in 16 bits each (protocol/asset_distance.h). Those that are
-   computed are rounded likewise, so that what follows is the same whether a column was there or not. Safe to delete; a damaged entry
-   counts as absent. The file grows to the largest number of sensors that the asset ever had at once. */
+/* Cache of geodesic distances by sensor position: the file KEY.columns in the folder of prepared files. One entry ("column") holds the
+ * distances of all surface points from one sensor, in 16 bits each (protocol/asset_distance.h). Computed distances are rounded the same
+ * way, so that results do not depend on the cache. Can be deleted at any time; a damaged entry counts as absent. The file grows to the
+ * largest number of sensors that the asset ever had at once. */
 #ifndef PREPROCESS_CACHE_DISTANCE_CACHE_H
 #define PREPROCESS_CACHE_DISTANCE_CACHE_H
 #include <stdatomic.h>
@@ -14,18 +14,18 @@ struct distance_cache {
     int fd;
     atomic_bool may_write;
     uint64_t key;
-    size_t length; /* of a column */
+    size_t length; /* numbers per column */
     const double (*places_m)[3];
     size_t count;
-    size_t *slots;      /* in the file, of each place; SIZE_MAX: none */
-    atomic_size_t kept; /* places whose column was there */
+    size_t *slots;      /* by sensor position: index of its entry in the file; SIZE_MAX: none */
+    atomic_size_t kept; /* positions whose column was found in the file */
 };
 
 /* Opens or creates FOLDER/KEY.columns and looks up which of the `count` sensor positions places_m (asset frame, metres; must outlive the
    cache) have an entry there. length: numbers in a column. Never fails: a file that cannot be opened or written is an empty cache. */
 void distance_cache_open(struct distance_cache *cache, const char *folder, uint64_t key, size_t length, const double (*places_m)[3],
                          size_t count);
-/* Closes the file and frees what the cache holds. A zeroed cache is fine. */
+/* Closes the file and frees the cache's arrays. A zeroed cache is fine. */
 void distance_cache_close(struct distance_cache *cache);
 /* Returns the cache as callbacks for surface_field_init(), which fetches known columns and stores new ones. Valid until
    distance_cache_close(). Thread: the callbacks may run on any thread, each on a source of its own. */

@@ -4,7 +4,7 @@
 #include <errno.h>
 #include <unistd.h>
 
-/* What the system did of it: false, if no more is to be had. */
+/* Advances by the result of a system call. Returns false on an error, or if no bytes were transferred. */
 static bool went_on(ssize_t done, size_t *bytes, off_t *at)
 {
     if (done < 0)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeping the folder of prepared files. */
+/* Manages the folder of prepared files. */
 #include "preprocess/cache/folder.h"
 
 #include <dirent.h>
@@ -22,8 +22,8 @@
 
 #define KEY_DIGITS 16
 #define MANIFEST "manifest.json"
-#define LOCK "lock" /* the number of the process that has it, or had it last */
-#define AGAIN_US 50000
+#define LOCK "lock" /* contains the id of the process that holds the lock, or held it last */
+#define LOCK_RETRY_DELAY_US 50000
 #define ASSET ".asset"
 #define REPORT ".report.json"
 #define INFLUENCE ".influence"
@@ -45,7 +45,7 @@ char *folder_influence_path(const char *folder, uint64_t key)
     return path_of(folder, key, INFLUENCE);
 }
 
-/* Of the file with the lock, if it says. */
+/* Returns the process id in the lock file, or 0 if there is none. */
 static long holder_of(int fd)
 {
     char text[32] = "";
@@ -60,7 +60,7 @@ int folder_lock(const char *folder, struct log *log, const atomic_bool *stop)
     if (fd >= 0 && status != 0 && errno == EWOULDBLOCK)
         log_warn(log, "%s: process %ld is preparing this folder; waiting for it", folder, holder_of(fd));
     while (fd >= 0 && status != 0 && errno == EWOULDBLOCK && !(stop && atomic_load(stop))) {
-        usleep(AGAIN_US);
+        usleep(LOCK_RETRY_DELAY_US);
         status = flock(fd, LOCK_EX | LOCK_NB);
     }
     int length = snprintf(own, sizeof(own), "%-10ld\n", (long)getpid());
@@ -140,7 +140,8 @@ int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, s
 
 void folder_draft_send(const struct folder_draft *draft)
 {
-    sync_file_range(draft->file.fd, 0, (off_t)draft->size, SYNC_FILE_RANGE_WRITE); /* where it cannot, all is written in folder_put */
+    /* where this is not supported, folder_put() writes everything */
+    sync_file_range(draft->file.fd, 0, (off_t)draft->size, SYNC_FILE_RANGE_WRITE);
 }
 
 int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report)
@@ -179,8 +180,8 @@ static void add_surface(json_t *asset, const char *folder, uint64_t key)
     mem_free(path);
 }
 
-/* Tells the daemon in which levels no edge errs, for want of triangles, for its length or at a jump of the distance, so that it need not
-   measure their errors (server/field/drawn_error.h). */
+/* Lists the levels in which subdivision left no edge with an error, neither because of triangle limit, length or distance jumps, so that
+ * the daemon need not measure their errors (server/field/drawn_error.h). */
 static void add_resolved(json_t *asset, const char *folder, uint64_t key)
 {
     char *text = folder_report(folder, key);
@@ -231,7 +232,7 @@ static uint64_t cache_key_of(const struct folder_entry *entry, enum build_cache_
     return build_cache_needs_sensors(kind) ? entry->distances_key : entry->geometry_key;
 }
 
-/* 16 hexadecimal digits and the ending; *whole: nothing behind, else what an interrupted write left. */
+/* Returns whether a name is 16 hexadecimal digits and the ending. *whole: nothing follows; false: the rest marks an interrupted write. */
 static bool is_name(const char *name, const char *ending, bool *whole)
 {
     if (strspn(name, "0123456789abcdef") != KEY_DIGITS || strncmp(name + KEY_DIGITS, ending, strlen(ending)) != 0)
@@ -241,7 +242,8 @@ static bool is_name(const char *name, const char *ending, bool *whole)
     return *whole || (strlen(rest) > 4 && strcmp(rest + strlen(rest) - 4, ".new") == 0);
 }
 
-/* Whether no entry needs this file: of a key that none has, or left by an interrupted write. *is_asset: it was a whole asset file. */
+/* Returns whether no entry needs this file: its key is unused, or it was left by an interrupted write. *is_asset: it is a complete asset
+ * file. */
 static bool is_left_over(const char *name, const struct folder_entry *entries, size_t count, bool *is_asset)
 {
     uint64_t key = strtoull(name, NULL, 16);

@@ -25,9 +25,9 @@ char *folder_file_name(uint64_t key);
 /* Returns the path FOLDER/KEY.influence. The caller frees it (mem_free). */
 char *folder_influence_path(const char *folder, uint64_t key);
 
-/* Takes the folder's lock file, so that one process at a time prepares into it. Returns the file descriptor, which holds the lock until it
-   is closed. While another process has the lock, logs its number and waits until *stop is true (NULL: for ever). Returns -1 if it was
-   stopped or the lock file cannot be made. */
+/* Takes the folder's lock file, so that only one process at a time prepares into it. Returns the file descriptor, which holds the lock
+ * until it is closed. While another process holds the lock, logs its process id and waits until the lock is free or *stop is true (NULL:
+ * never). Returns -1 if it was stopped or the lock file cannot be created. */
 int folder_lock(const char *folder, struct log *log, const atomic_bool *stop);
 
 /* Maps FOLDER/KEY.asset and checks it. Returns 1 with *file set (until folder_close()), 0 if there is no such file, or -1 if it is damaged,
@@ -36,36 +36,36 @@ int folder_open(struct folder_file *file, const char *folder, uint64_t key, char
 /* Unmaps the file. */
 void folder_close(struct folder_file *file);
 
-/* A KEY.asset file being written through a mapping. It has no name that others see before folder_put(). */
+/* A KEY.asset file being written through a mapping. It has no visible name before folder_put(). */
 struct folder_draft {
-    void *bytes; /* mapped; zeros at first. NULL: none */
+    void *bytes; /* mapping, initially zeros; NULL: none */
     size_t size;
     struct atomic_file file;
 };
 /* Creates an unnamed file of `size` bytes for KEY.asset, with its disk space reserved, and maps it for writing. Returns 0 or -errno. */
 int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, size_t size);
-/* Asks the disk to begin writing what the draft holds so far. Returns at once; folder_put() waits for the rest. */
+/* Starts writing the draft's current contents to disk and returns at once; folder_put() waits for the rest. */
 void folder_draft_send(const struct folder_draft *draft);
-/* Writes KEY.report.json (unless report is NULL), then gives the draft its name KEY.asset: where there is an asset file, there is its
-   report. The draft stays mapped until it is closed. Returns 0 or -errno. */
+/* Writes KEY.report.json (unless report is NULL), then gives the draft its name KEY.asset, so that every asset file has its report. The
+ * draft stays mapped until it is closed. Returns 0 or -errno. */
 int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report);
-/* Unmaps and closes the draft; one that folder_put() has not named is deleted. A zeroed draft is fine. */
+/* Unmaps and closes the draft. Deletes it if folder_put() has not named it. A zeroed draft is fine. */
 void folder_draft_close(struct folder_draft *draft);
 /* Returns the text of KEY.report.json, or NULL if there is none. The caller frees it (mem_free). */
 char *folder_report(const char *folder, uint64_t key);
 
-/* One asset's line in the manifest. */
+/* An asset's entry in the manifest. */
 struct folder_entry {
     const char *id;
     uint64_t key, recipe; /* recipe: plant/recipe.h */
     uint64_t geometry_key, distances_key;
-    const char *missing;     /* why there is no file; NULL: there is */
-    const double *placement; /* 16: plant from asset frame */
-    const char *const *tags; /* of its sensors, as they stand in the file */
+    const char *missing;     /* reason why there is no asset file; NULL: there is one */
+    const double *placement; /* 16 numbers: transform from the asset frame to the plant frame */
+    const char *const *tags; /* tags of its sensors, in the order of the asset file */
     size_t tag_count;
 };
-/* Writes manifest.json for these entries unless it already says the same, then deletes files of keys that no entry names and counts them in
-   *removed (NULL: deletes nothing). Returns 0 or -errno. */
+/* Writes manifest.json for these entries, unless it is unchanged. Then deletes files whose key no entry has, and counts them in *removed
+ * (NULL: deletes nothing). Returns 0 or -errno. */
 int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed);
 
 #endif

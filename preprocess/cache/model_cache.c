@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two lists in a file. */
+/* Stores the two lists of the cache in a file. */
 #include "preprocess/cache/model_cache.h"
 
 #include <string.h>

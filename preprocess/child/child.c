@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fork, limits, pipes: the parent waits for output, the end, a signal or the time limit, whichever comes first. */
+/* Forks, sets limits and connects pipes. The parent waits for output, the child's end, a signal or the time limit, whichever is first. */
 #include "preprocess/child/child.h"
 
 #include <errno.h>
@@ -20,7 +20,7 @@
 
 #include "base/mem.h"
 
-enum { MAX_OUTPUT = 8 << 20, PIPE_BYTES = 1 << 20 /* the most that a pipe may hold */, MAX_FILES = 512, EXIT_NOT_STARTED = 127 };
+enum { MAX_OUTPUT = 8 << 20, PIPE_BYTES = 1 << 20 /* capacity requested for a pipe */, MAX_FILES = 512, EXIT_NOT_STARTED = 127 };
 enum watched { OUTPUT, ERRORS, END, SIGNALS, WATCHED };
 
 struct child {
@@ -61,14 +61,15 @@ static void limit_all(const struct child_params *params)
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, MAX_FILES);
     limit(RLIMIT_FSIZE, (rlim_t)8 << 30);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* their shadow memory counts as data */
-    limit(RLIMIT_DATA, params->memory_bytes); /* not address space, of which WebAssembly reserves much more than it uses */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* sanitizers' shadow memory would count as data */
+    /* limits data instead of address space, because WebAssembly reserves far more address space than it uses */
+    limit(RLIMIT_DATA, params->memory_bytes);
 #else
     (void)params;
 #endif
 }
 
-/* After the fork. */
+/* Turns the forked process into the child: process group, limits, descriptors, confinement, program. */
 static void become(const struct child_params *params, int out, int errors, const sigset_t *signals, char **environment)
 {
     setpgid(0, 0);
@@ -131,7 +132,7 @@ error:
     return false;
 }
 
-/* False: there is no more. */
+/* Reads some output. Returns false at the end of the stream. */
 static bool take(int fd, struct text *text)
 {
     char bytes[65536];
@@ -141,7 +142,8 @@ static bool take(int fd, struct text *text)
     return count > 0 || (count < 0 && (errno == EINTR || errno == EAGAIN));
 }
 
-/* What is in the pipes when the child is gone; a process that it left behind may hold them open, and fill them for ever. */
+/* Reads the remaining output after the child's end, without blocking: a process it left behind may hold the pipe open and write for
+ * ever. */
 static void drain(int fd, struct text *text)
 {
     char bytes[4096];
@@ -176,7 +178,7 @@ static void wait_for(struct child *child, int timeout_s, struct text *out)
     }
 }
 
-/* The last line that is not empty. */
+/* Returns the last non-empty line of the errors in why. */
 static void last_line(const struct text *errors, char why[CHILD_WHY_BYTES])
 {
     size_t end = errors->length;
@@ -191,7 +193,7 @@ static void last_line(const struct text *errors, char why[CHILD_WHY_BYTES])
             *c = ' ';
 }
 
-/* Returns whether the child failed for want of memory: it used nearly all that it may have, or a library says so. */
+/* Returns whether the child probably failed for lack of memory: it used nearly all of its limit, or an error message says so. */
 static bool ran_out(const struct child *child, const struct child_params *params, const struct rusage *usage)
 {
     static const char *const words[] = { "out of memory", "bad_alloc", "Cannot allocate memory", "allocation failed", "memory exhausted" };
@@ -245,9 +247,9 @@ bool child_run(const struct child_params *params, struct text *out, char why[CHI
         snprintf(why, CHILD_WHY_BYTES, "%s", strerror(errno));
     if (child.pid > 0) {
         kill(-child.pid, SIGKILL);
-        kill(child.pid, SIGKILL); /* it may not have its group yet */
+        kill(child.pid, SIGKILL); /* the process group may not exist yet */
         wait4(child.pid, &status, 0, &usage);
-        kill(-child.pid, SIGKILL); /* processes that it started meanwhile */
+        kill(-child.pid, SIGKILL); /* kills processes that the child started */
     }
     if (child.fds[OUTPUT] >= 0)
         drain(child.fds[OUTPUT], out);

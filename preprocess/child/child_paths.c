@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resolved copies of paths. */
+/* Collects copies of resolved paths. */
 #include "preprocess/child/child_paths.h"
 
 #include <dirent.h>
@@ -88,7 +88,7 @@ static void add_settings(struct child_paths *paths)
         closedir(dir);
 }
 
-/* Adds what the programs of a folder such as ~/.venv/bin load: folders and files next to it, but not all of ~/.local. */
+/* Adds the files that programs in a folder such as ~/.venv/bin load: certain folders and files next to it, but not all of ~/.local. */
 static void add_installation(struct child_paths *paths, const char *programs)
 {
     static const char *const parts[] = { "lib", "lib64", "libexec", "versions", "version", "pyvenv.cfg" };
@@ -99,7 +99,7 @@ static void add_installation(struct child_paths *paths, const char *programs)
     }
 }
 
-/* Separators of a shell, or those of PATH. */
+/* Adds the absolute paths in a text. separators: those of the shell, or of PATH. */
 static void add_absolute(struct child_paths *paths, const char *text, const char *separators, bool installed)
 {
     for (const char *at = text; *at;) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* exec in the confined thread: the kernel ends the other threads. */
+/* Calls exec from the confined thread, which makes the kernel end all other threads. */
 #include "preprocess/child/child_self.h"
 
 #include <dirent.h>

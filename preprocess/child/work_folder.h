@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A folder for what is made, until all of it is good: then its files are moved to where they belong, else nothing stays. Thread: any. */
+/* A temporary folder for output files. On success they are moved to their target, on failure nothing remains. Thread: any. */
 #ifndef PREPROCESS_CHILD_WORK_FOLDER_H
 #define PREPROCESS_CHILD_WORK_FOLDER_H
 #include <signal.h>
@@ -7,17 +7,18 @@
 
 struct work_folder {
     char *path;      /* absolute */
-    char *target;    /* where its files will go; NULL: nowhere */
-    bool created;    /* the target was not there before */
-    sigset_t before; /* which signals were blocked */
+    char *target;    /* folder that receives the files; NULL: none */
+    bool created;    /* the target did not exist before */
+    sigset_t before; /* signal mask before work_folder_begin() */
 };
 
-/* Makes a new folder inside `target`, which is made too if it is not there, or with target NULL among the system's temporary files. SIGINT
- * and SIGTERM wait until its end, so that they leave nothing behind. Returns 0, or -errno, and then there is nothing to end. */
+/* Creates a new folder inside `target`, which is created if missing; target NULL: inside the system's temporary folder. Blocks SIGINT and
+ * SIGTERM until work_folder_end(), so that an interruption leaves no files behind. Returns 0, or -errno; then work_folder_end() need not be
+ * called. */
 int work_folder_begin(struct work_folder *work, const char *target);
-/* Returns whether a signal waits: then nothing more needs to be done. */
+/* Returns whether SIGINT or SIGTERM is pending, so that the caller should stop. */
 bool work_folder_interrupted(void);
-/* Removes the folder and all in it, and with `keep` false the target too if it was made for it and is empty. */
+/* Removes the folder and its contents. With keep false, also removes the target if work_folder_begin() created it and it is empty. */
 void work_folder_end(struct work_folder *work, bool keep);
 /* Removes a folder and everything in it, without following symlinks. Returns 0 or -errno. */
 int work_folder_remove(const char *path);

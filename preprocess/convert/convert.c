@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes of what went in and what came out decide what is made again. */
+/* Compares hashes of inputs and outputs to decide which models to generate again. */
 #include "preprocess/convert/convert.h"
 
 #include <errno.h>
@@ -21,7 +21,7 @@
 
 static const size_t max_bytes = (size_t)16 << 30, memory_bytes = (size_t)12 << 30;
 
-/* Appends the hash of a file as text. Returns false, with errno, if it cannot be read. */
+/* Appends the hash of a file as text. Returns false with errno set if the file cannot be read. */
 static bool add_hash(const char *path, const char *also, struct text *out)
 {
     size_t size;
@@ -43,7 +43,7 @@ static bool is_made(const json_t *made, const struct plant_conversion *how, cons
     return same;
 }
 
-/* In a folder beside the model, so that it comes to its name whole. */
+/* Runs the command in a temporary folder next to the model, so that the model is replaced only when complete. */
 static bool make(const struct plant_conversion *how, char why[CHILD_WHY_BYTES])
 {
     struct work_folder work;
@@ -120,7 +120,7 @@ bool convert_run(const struct plant *plant, const char *folder, FILE *progress, 
     char *path = mem_printf("%s/conversions.json", folder);
     json_t *made = json_load_file(path, 0, NULL);
     bool good = true;
-    if (!json_is_object(made)) { /* none yet, or damaged: all is made */
+    if (!json_is_object(made)) { /* no record yet, or a damaged one: generate all models */
         json_decref(made);
         made = json_object();
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One asset's surface, distances, points and bridges as coloured shapes. */
+/* Builds coloured shapes for one asset's surface, distances, points and bridges. */
 #include "preprocess/debug/debug_view.h"
 
 #include <math.h>
@@ -13,11 +13,11 @@
 #include "surface/repair/repair.h"
 #include "surface/mesh/trimesh.h"
 
-#define ISOLINES 20  /* at most so many */
-#define LIFT 3e-4    /* of the size: isolines and open edges lie so far off the surface, on both sides */
-#define MARK 0.3     /* arms of the mark at a bridge, in spacings of the points */
-#define SENSOR 0.012 /* of the size */
-#define DARKEST 0.75 /* shade of faces that are seen edge on */
+#define ISOLINES 20  /* maximum number of isolines */
+#define LIFT 3e-4    /* relative to the size; offset of isolines and open edges from the surface, on both sides */
+#define MARK 0.3     /* length of the mark at a bridge, in spacings of the surface points */
+#define SENSOR 0.012 /* relative to the size */
+#define DARKEST 0.75 /* brightness of faces seen edge-on */
 static const double light[3] = { 0.36, -0.48, 0.8 };
 
 static const uint8_t plain_color[3] = { 150, 155, 160 }, unreached_color[3] = { 235, 0, 235 }, hidden_color[3] = { 255, 140, 0 },
@@ -32,14 +32,14 @@ struct debug_drawing {
     double size_m, spacing_m, farthest_m;
 };
 
-struct soup { /* a shape in the making */
+struct soup { /* a shape being built */
     float (*positions)[3];
     uint16_t (*colors)[4];
-    uint32_t *indices, *vertex_of; /* vertex_of: of the surface's points, + 1 */
+    uint32_t *indices, *vertex_of; /* vertex_of: by surface point: its vertex + 1; 0: none yet */
     size_t vertices, indices_used, position_room, color_room, index_room;
 };
 
-/* Z up to Y up. */
+/* Adds a vertex, converted from Z up to Y up. */
 static uint32_t add_vertex(struct soup *soup, const double p[3])
 {
     mem_grow(&soup->positions, &soup->position_room, soup->vertices + 1, sizeof(*soup->positions));
@@ -82,7 +82,7 @@ static void face_normal(const struct surface_debug_mesh *look, size_t t, double 
     vec_normal(look->points_m[v[0]], look->points_m[v[1]], look->points_m[v[2]], n);
 }
 
-/* Which way the surface faces at each point; faces may be turned either way. */
+/* Computes a normal for each point; faces may have either orientation. */
 static double (*find_normals(const struct surface_debug_mesh *look))[3]
 {
     double(*normals)[3] = mem_array(look->point_count, sizeof(*normals));
@@ -161,7 +161,7 @@ static void draw_surfaces(struct debug_drawing *drawing)
 
 /* --- lines on surfaces --------------------------------------------------------------------------------------------------------- */
 
-/* Once on each side, or the surface would hide half of it. */
+/* Adds a line on both sides of the surface, which would otherwise hide half of it. */
 static void add_lifted(struct soup *soup, const struct debug_drawing *drawing, size_t t, const double a[3], const double b[3])
 {
     double n[3], length;
@@ -178,7 +178,7 @@ static void add_lifted(struct soup *soup, const struct debug_drawing *drawing, s
     }
 }
 
-/* 1, 2 or 5 times a power of ten. */
+/* Returns the isoline spacing: 1, 2 or 5 times a power of ten. */
 static double isoline_step(double range_m)
 {
     double least = range_m / ISOLINES, power = pow(10, floor(log10(least)));
@@ -248,7 +248,7 @@ static void draw_points(struct debug_drawing *drawing)
 {
     const struct surface_debug_mesh *look = &drawing->look;
     struct soup model = { 0 }, samples = { 0 };
-    char *kind = mem_array(look->point_count, 1); /* 1: some triangle has it; 2: the model's own besides */
+    char *kind = mem_array(look->point_count, 1); /* 1: used by some triangle; 2: also a vertex of the model */
     for (size_t t = 0; t < look->tri_count; t++)
         for (int i = 0; i < 3; i++)
             kind[look->tris[t][i]] = 1;

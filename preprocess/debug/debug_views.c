@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Debug views, model by model. */
+/* Writes debug views, model by model. */
 #include "preprocess/debug/debug_views.h"
 
 #include <ctype.h>
@@ -21,7 +21,7 @@ struct views {
     bool failed;
 };
 
-struct subject { /* one asset in hand */
+struct subject { /* the current asset */
     const struct plant_asset *asset;
     const struct gltf_model *model;
     struct geometry_params params;
@@ -30,7 +30,7 @@ struct subject { /* one asset in hand */
     double (*places_m)[3];
     size_t sensor_count, chosen;
     struct surface *surface;
-    struct surface_field field; /* of the chosen sensor */
+    struct surface_field field; /* distances from the chosen sensor */
 };
 
 char *debug_views_folder(const struct plant *plant)
@@ -41,7 +41,7 @@ char *debug_views_folder(const struct plant *plant)
     return folder;
 }
 
-/* What is no part of a file's name is written as %XX. */
+/* Returns the path of an asset's file; characters unsuitable in file names are written as %XX. */
 static char *file_of(const char *folder, const char *id)
 {
     struct text name = { 0 };
@@ -137,7 +137,7 @@ static bool is_wanted(const struct views *views, const struct plant_asset *asset
     return tag < 0 || views->plant->tags[tag].asset == (int)(asset - views->plant->assets);
 }
 
-/* All wanted assets of one model, which is parsed if there are any. */
+/* Writes the views of all wanted assets of one model, which is parsed only if there are any. */
 static void write_model(struct views *views, struct model_file *model)
 {
     for (size_t i = 0; i < views->plant->asset_count; i++) {

@@ -11,9 +11,9 @@
 
 struct debug_views_params {
     const char *folder;
-    const char *asset;  /* NULL: all */
-    const char *sensor; /* its asset alone, and its distances; NULL: each asset's first sensor */
-    FILE *say;          /* what was written; NULL: silent */
+    const char *asset;  /* id of an asset; NULL: all */
+    const char *sensor; /* name of a sensor: shows only its asset, with distances from it; NULL: each asset's first sensor */
+    FILE *say;          /* stream for the names of written files; NULL: silent */
 };
 
 /* Reads the plant's models, computes distances and writes a GLB for each asset that params select. Errors go to diag. Returns false if any
@@ -21,7 +21,7 @@ struct debug_views_params {
 bool debug_views_write(struct log *log, struct workers *workers, const struct plant *plant, const struct debug_views_params *params,
                        struct diag *diag);
 
-/* Returns the default folder: NAME.debug beside NAME.yaml. The caller frees it (mem_free). */
+/* Returns the default folder: NAME.debug next to NAME.yaml. The caller frees it (mem_free). */
 char *debug_views_folder(const struct plant *plant);
 
 #endif

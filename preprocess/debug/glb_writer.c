@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Putting a GLB file together: JSON grows by jansson, its one buffer as bytes. */
+/* Builds a GLB file: the JSON with jansson, the buffer as bytes. */
 #include "preprocess/debug/glb_writer.h"
 
 #include <errno.h>

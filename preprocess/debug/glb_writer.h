@@ -8,27 +8,27 @@
 
 enum glb_mode { GLB_POINTS = 0, GLB_LINES = 1, GLB_TRIANGLES = 4 };
 
-struct glb_shape { /* what one node shows; Y is up */
+struct glb_shape { /* shape of one node; Y is up */
     enum glb_mode mode;
     const float (*positions)[3];
-    const uint16_t (*colors)[4]; /* linear, 65535 is 1; NULL: color is that of all */
-    const uint32_t *indices;     /* NULL: the positions as they come */
+    const uint16_t (*colors)[4]; /* linear colours, 65535 is 1; NULL: `color` applies to all vertices */
+    const uint32_t *indices;     /* NULL: the positions are used in order */
     size_t vertex_count, index_count;
     uint8_t color[3]; /* sRGB */
 };
 
 struct glb_writer;
 
-/* Creates an empty scene whose root node has this name. The caller destroys it. */
+/* Creates an empty scene whose root node has this name. The caller frees it with glb_writer_destroy(). */
 struct glb_writer *glb_writer_create(const char *name);
-/* Frees the writer. &NULL is fine; leaves NULL. */
+/* Frees the writer and sets *writer to NULL. *writer may be NULL. */
 void glb_writer_destroy(struct glb_writer **writer);
-/* Copies a shape into the scene as a node of this name below the root. A shape without vertices adds nothing. */
+/* Copies a shape into the scene as a child of the root with this name. Ignores a shape without vertices. */
 void glb_writer_add(struct glb_writer *writer, const char *name, const struct glb_shape *shape);
 /* Writes the scene to `path`. Returns 0 or -errno. */
 int glb_writer_save(struct glb_writer *writer, const char *path);
 
-/* Converts an 8-bit sRGB component to linear, 65535 being 1. */
+/* Converts an 8-bit sRGB component to linear, where 65535 is 1. */
 uint16_t glb_linear(uint8_t srgb);
 
 #endif

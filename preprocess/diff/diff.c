@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Comparing two plants, one asset at a time. */
+/* Compares two plants, one asset at a time. */
 #include "preprocess/diff/diff.h"
 
 #include <math.h>
@@ -18,11 +18,11 @@
 
 const char *const diff_changes[DIFF_CHANGES] = { "same", "added", "removed", "moved", "changed" };
 
-struct pair_half { /* an asset in one of the two */
+struct pair_half { /* an asset in one of the two revisions */
     const struct diff_side_asset *asset;
     struct diff_side_shape shape;
     struct diff_shape *tree;
-    double to_plant[16]; /* from the shape's frame */
+    double to_plant[16]; /* transform from the shape's frame to the plant frame */
 };
 
 struct asset_pair {
@@ -79,7 +79,7 @@ static bool equal_shapes(const struct diff_side_shape *a, const struct diff_side
            memcmp(a->indices, b->indices, a->index_count * sizeof(*a->indices)) == 0;
 }
 
-/* In the plant frame: what takes the old asset to the new one, if new = turn(old) in their own frames. */
+/* Computes the motion in the plant frame from the old asset to the new one. new_to_old: motion between the shapes in their own frames. */
 static void plant_motion(const struct asset_pair *pair, const double new_to_old[16], double motion[16])
 {
     double plant_to_old[16], old_to_new[16], step[16];
@@ -89,7 +89,7 @@ static void plant_motion(const struct asset_pair *pair, const double new_to_old[
     transform_multiply(step, plant_to_old, motion);
 }
 
-/* How far the old asset's corners go when it is taken to where the new one is. */
+/* Returns the largest movement of a corner of the old asset's box on its way to the new position. */
 static double moved_by(const struct asset_pair *pair, const double new_to_old[16], double *turned_deg)
 {
     double motion[16], plant_to_old[16], step[16], local[16];
@@ -101,7 +101,7 @@ static double moved_by(const struct asset_pair *pair, const double new_to_old[16
     return diff_shape_moved(pair->old_half.tree, local);
 }
 
-/* The same shape, once new_to_old has been undone: it is the same, or moved. False: another shape. */
+/* Returns whether the shapes are equal after applying new_to_old, so that the asset is unchanged or only moved. */
 static bool same_shape(struct asset_pair *pair, const double new_to_old[16], bool equal)
 {
     if (!equal && diff_shape_apart(pair->old_half.tree, pair->new_half.tree, new_to_old, pair->tolerance_m) > pair->tolerance_m)
@@ -117,7 +117,7 @@ static void compare_shapes(struct asset_pair *pair)
     double in_place[16], plant_to_old[16], turned[16], middle_old[3], middle_new[3];
     bool equal = equal_shapes(&old_half->shape, &new_half->shape);
     transform_invert(old_half->to_plant, plant_to_old);
-    transform_multiply(plant_to_old, new_half->to_plant, in_place); /* both where they stand in the plant */
+    transform_multiply(plant_to_old, new_half->to_plant, in_place); /* compare both at their positions in the plant */
     transform_point(old_half->to_plant, (const double[3]){ 0, 0, 0 }, middle_old);
     transform_point(new_half->to_plant, (const double[3]){ 0, 0, 0 }, middle_new);
     vec_sub(middle_new, middle_old, pair->found.move_m);
@@ -135,7 +135,7 @@ static void compare_shapes(struct asset_pair *pair)
 
 /* --- its sensors ------------------------------------------------------------------------------------------------------------------ */
 
-/* Where a sensor is and the surface next to it, plant frame. */
+/* Computes the position of a sensor and of the nearest surface point, in the plant frame. Returns their distance. */
 static double place_sensor(const struct pair_half *half, size_t column, double place_m[3], double surface_m[3])
 {
     double nearest_m[3];
@@ -145,8 +145,9 @@ static double place_sensor(const struct pair_half *half, size_t column, double p
     return distance_m;
 }
 
-/* In the middle of a pipe many places of the surface are equally near, and which one is found hangs on the last bit. So where the surface
-   is still there, and no farther away than the nearest place, it has not moved. */
+/* Returns how far the surface at a sensor moved. In the middle of a pipe many surface points are equally near, and rounding decides which
+ * is found. So the surface counts as unmoved if the new surface still passes through the old point, and that point is about as near as the
+ * nearest one. */
 static double surface_moved(const struct asset_pair *pair, const double place_m[3], const double old_m[3], const double new_m[3])
 {
     double plant_to_new[16], at[3], still_m[3], moved_m = vec_distance(old_m, new_m);
@@ -196,7 +197,8 @@ static void compare_sensors(struct diff *diff, struct asset_pair *pair)
     }
 }
 
-/* A node of the new model with the old shape in the old place: what was renamed. why says so, in place of a name that is merely like it. */
+/* Searches the new model for a renamed node: one with the old shape at the old position. If found, `why` names it instead of a similar
+ * name. */
 static void find_renamed(struct diff *diff, const struct asset_pair *pair, const struct diff_side_asset *asset, double tolerance_m,
                          char *why)
 {
@@ -232,7 +234,7 @@ static void find_renamed(struct diff *diff, const struct asset_pair *pair, const
     }
 }
 
-/* The tags of an asset that the new plant names but its model has not. */
+/* Reports tags of an asset that is in the new plant file but not in its model. */
 static void lose_sensors(struct diff *diff, const char *id, const char *why)
 {
     for (size_t i = 0; i < diff->new_side.tag_count; i++) {
@@ -272,7 +274,7 @@ static void compare_asset(struct diff *diff, const struct diff_side_asset *new_a
     half_close(&pair.new_half);
 }
 
-/* --- all of it --------------------------------------------------------------------------------------------------------------------- */
+/* --- the comparison ---------------------------------------------------------------------------------------------------------------- */
 
 static int by_model(const void *a, const void *b)
 {
@@ -280,7 +282,7 @@ static int by_model(const void *a, const void *b)
     return (*p)->work != (*q)->work ? ((*p)->work < (*q)->work ? -1 : 1) : *p < *q ? -1 : *p > *q;
 }
 
-/* The new plant's assets model by model, so that each model is parsed once. */
+/* Compares the new plant's assets model by model, so that each model is parsed once. */
 static void compare_assets(struct diff *diff, double tolerance_m)
 {
     const struct diff_side *now = &diff->new_side;

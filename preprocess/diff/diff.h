@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Compares two revisions of a plant (`plantcast-prep --diff`): which assets changed, how far the surface moved under each sensor, and which
-   tags lost their place. Thread: one. */
+ * tags lost their position. Thread: one. */
 #ifndef PREPROCESS_DIFF_H
 #define PREPROCESS_DIFF_H
 #include <stdatomic.h>
@@ -13,23 +13,23 @@ extern const char *const diff_changes[DIFF_CHANGES];
 struct diff_asset {
     const char *id;
     enum diff_change change;
-    char *why;        /* removed: why it is not there, where its id still is; else NULL */
-    double move_m[3]; /* of the middle of its box, plant frame */
-    double moved_m;   /* the farthest that any corner of its box moved */
+    char *why;        /* reason why a removed asset is missing although its id still exists; else NULL */
+    double move_m[3]; /* movement of the centre of its box, plant frame */
+    double moved_m;   /* largest movement of a corner of its box */
     double turned_deg;
-    double apart_m;      /* changed: how far the surfaces are apart at most, once laid over each other */
-    double tolerance_m;  /* less than that is no change */
+    double apart_m;      /* changed assets: largest distance between the two surfaces after aligning them */
+    double tolerance_m;  /* smaller changes count as none */
     size_t triangles[2]; /* old, new */
 };
 
-struct diff_sensor {         /* a tag that is a sensor in both */
-    const char *tag, *asset; /* asset: in the new one */
-    double moved_m;          /* from where the surface was, to where it is */
-    double place_moved_m;    /* of what the tag list or the node says */
-    double distance_m[2];    /* from its place to the surface: old, new */
-    double limit_m;          /* of that */
+struct diff_sensor {         /* a tag that is a sensor in both revisions */
+    const char *tag, *asset; /* asset: in the new revision */
+    double moved_m;          /* distance between the nearest surface points in the two revisions */
+    double place_moved_m;    /* movement of the position stated by the tag list or the node */
+    double distance_m[2];    /* distance from the sensor's position to the surface: old, new */
+    double limit_m;          /* distance_m above this limit is worth a warning */
     double tolerance_m;
-    bool far_moved; /* beyond the tolerance */
+    bool far_moved; /* moved by more than the tolerance */
 };
 
 struct diff_orphan {
@@ -47,10 +47,10 @@ struct diff {
     size_t asset_room, sensor_room, orphan_room, added_room, removed_room;
 };
 
-/* Reads both plants and compares them into *diff. tolerance_m: changes below it count as none; 0 means 10 mm, or 1 % of the asset's
-   diagonal if that is less. Returns false if a plant cannot be read; diag says why. Call diff_finish() in both cases. */
+/* Reads and compares both plants into *diff. tolerance_m: smaller changes count as none; 0 means 10 mm, or 1 % of the asset's diagonal if
+ * that is less. Returns false if a plant cannot be read, with the reason in diag. Call diff_finish() in both cases. */
 bool diff_run(struct diff *diff, const char *old_path, const char *new_path, double tolerance_m, struct diag *diag);
-/* Frees what diff_run() filled in. */
+/* Frees the result of diff_run(). */
 void diff_finish(struct diff *diff);
 
 /* Prints the comparison as text for a person. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a comparison found, as text and as JSON (REPORT.md). */
+/* Prints the result of a comparison as text and as JSON (REPORT.md). */
 #include <jansson.h>
 #include <stdlib.h>
 

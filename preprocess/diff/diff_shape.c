@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances between surfaces, and the motion between equal ones. */
+/* Computes distances between surfaces, and the motion between equal shapes. */
 #include "preprocess/diff/diff_shape.h"
 
 #include <math.h>
@@ -11,8 +11,8 @@
 #include "preprocess/geometry/rigid_fit.h"
 #include "surface/mesh/bvh.h"
 
-#define SPREAD 100.0     /* places on a triangle are so many to the diagonal */
-#define PLACES_MAX 64    /* along a side of one triangle */
+#define SPREAD 100.0  /* probes per length of the shape's diagonal */
+#define PLACES_MAX 64 /* maximum probes along a side of a triangle */
 
 struct diff_shape {
     struct trimesh mesh;
@@ -20,7 +20,7 @@ struct diff_shape {
     double low[3], high[3];
 };
 
-/* In order, those that a triangle uses: of a prepared asset the others are of its coarser levels, and lie off the surface. */
+/* Copies the points used by triangles, in order. Unused points of a prepared asset belong to coarser levels and are not on the surface. */
 static void take_points(struct trimesh *mesh, const struct diff_side_shape *from)
 {
     char *used = mem_array(from->vertex_count, 1);
@@ -89,7 +89,7 @@ double diff_shape_nearest(const struct diff_shape *shape, const double point_m[3
     return at.distance_m;
 }
 
-/* --- how far apart ---------------------------------------------------------------------------------------------------------------- */
+/* --- distance between surfaces ---------------------------------------------------------------------------------------------------- */
 
 struct shape_distance_search {
     const struct diff_shape *to;
@@ -107,7 +107,8 @@ static bool try_place(struct shape_distance_search *search, const double p[3])
     return search->enough_m > 0 && search->worst_m > search->enough_m;
 }
 
-/* Places in rows parallel to one side, the rows closer together the longer the triangle. True: enough. */
+/* Probes a triangle at points in rows parallel to one side, closer together in larger triangles. Returns true once the distance exceeds
+ * enough_m. */
 static bool try_triangle(struct shape_distance_search *search, const double *a, const double *b, const double *c, double spacing_m)
 {
     double longest_m = max_of(vec_distance(a, b), max_of(vec_distance(b, c), vec_distance(c, a)));

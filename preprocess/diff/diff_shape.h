@@ -4,29 +4,30 @@
 #define PREPROCESS_DIFF_SHAPE_H
 #include "preprocess/diff/diff_side.h"
 
-/* A shape with a bounding volume hierarchy over its triangles. */
+/* A triangle shape with a bounding volume hierarchy. */
 struct diff_shape;
 
-/* Builds a shape from an asset's triangles, which must outlive it. The caller destroys it. */
+/* Builds a shape from an asset's triangles, which must outlive it. The caller frees it with diff_shape_destroy(). */
 struct diff_shape *diff_shape_create(const struct diff_side_shape *shape);
-/* Frees the shape. &NULL is fine; leaves NULL. */
+/* Frees the shape and sets *shape to NULL. *shape may be NULL. */
 void diff_shape_destroy(struct diff_shape **shape);
-/* Writes the shape's bounding box, metres. */
+/* Writes the shape's bounding box in metres. */
 void diff_shape_box(const struct diff_shape *shape, double low_m[3], double high_m[3]);
-/* Returns the diagonal of the shape's bounding box, metres. */
+/* Returns the diagonal of the shape's bounding box in metres. */
 double diff_shape_diagonal(const struct diff_shape *shape);
 
-/* Finds the point of the surface nearest to point_m, writes it to place_m and returns its distance in metres. */
+/* Finds the point of the surface nearest to point_m and writes it to place_m. Returns its distance in metres. */
 double diff_shape_nearest(const struct diff_shape *shape, const double point_m[3], double place_m[3]);
 
-/* Returns the largest distance between the two surfaces (both directions), with b moved by the matrix b_to_a, probed at corners and at
-   points spread over the triangles. If enough_m is not 0, stops as soon as the distance is known to exceed it. */
+/* Returns the largest distance between the two surfaces, in both directions, after moving b by the matrix b_to_a. Probes corners and points
+ * spread over the triangles. If enough_m is not 0, stops once the distance exceeds it. */
 double diff_shape_apart(const struct diff_shape *a, const struct diff_shape *b, const double b_to_a[16], double enough_m);
 
-/* Finds the rigid motion that takes b's vertices to a's, if both have as many vertices in the same order. Returns false if they do not. */
+/* Finds the rigid motion from b's vertices to a's. Returns false if their numbers of vertices differ; assumes the same order of
+ * vertices. */
 bool diff_shape_motion(const struct diff_shape *a, const struct diff_shape *b, double b_to_a[16]);
 
-/* Returns the largest distance that `motion` moves any corner of the shape's bounding box, metres. */
+/* Returns the largest distance by which `motion` moves a corner of the shape's bounding box, in metres. */
 double diff_shape_moved(const struct diff_shape *shape, const double motion[16]);
 /* Returns the rotation angle of a rigid motion in degrees. */
 double diff_turned_deg(const double motion[16]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reading either kind of plant, one asset at a time. */
+/* Reads both kinds of plants, one asset at a time. */
 #include "preprocess/diff/diff_side.h"
 
 #include <errno.h>
@@ -83,7 +83,7 @@ static struct gltf_model *parse(struct diff_side *side, struct model_file *model
     return &model->parsed;
 }
 
-/* Takes the triangles. */
+/* Cuts the geometry out of the model and takes over its triangles. */
 static bool cut_shape(const struct gltf_model *model, const struct geometry_params *params, struct diff_side_shape *shape, char *why)
 {
     struct geometry g;
@@ -95,7 +95,7 @@ static bool cut_shape(const struct gltf_model *model, const struct geometry_para
                                        .index_count = g.index_count,
                                        .own = true };
     memcpy(shape->origin_m, g.origin_m, sizeof(shape->origin_m));
-    g.positions_m = NULL; /* the shape's now */
+    g.positions_m = NULL; /* owned by the shape now */
     g.indices = NULL;
     geometry_finish(&g);
     return true;
@@ -163,7 +163,7 @@ bool diff_side_shape_of_node(struct diff_side *side, const struct diff_side_asse
     return cut_shape(model, &params, shape, why);
 }
 
-/* --- a folder of prepared files --------------------------------------------------------------------------------------------------- */
+/* --- folder of prepared files ----------------------------------------------------------------------------------------------------- */
 
 static bool take_entry(struct diff_side *side, const json_t *entry)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One of the two plants that a comparison reads: a plant file with its models, or a folder of prepared files. Thread: one. */
+/* One of the two plants in a comparison: a plant file with its models, or a folder of prepared files. Thread: one. */
 #ifndef PREPROCESS_DIFF_SIDE_H
 #define PREPROCESS_DIFF_SIDE_H
 #include "base/text/diag.h"
@@ -9,19 +9,19 @@
 
 struct diff_side_tag {
     const char *name;
-    const char *asset; /* the id that its row names, whether there is such an asset; "" for none */
-    size_t column;     /* among the sensors of its asset */
+    const char *asset; /* asset id in the tag's row, even if there is no such asset; "": none */
+    size_t column;     /* index among the sensors of its asset */
     bool is_sensor;
 };
 
 struct diff_side_asset {
     const char *id;
-    double placement[16]; /* plant from asset frame */
-    uint64_t work;        /* assets with equal numbers are of one model */
-    /* of a plant file: */
+    double placement[16]; /* transform from the asset frame to the plant frame */
+    uint64_t work;        /* assets with equal numbers use the same model */
+    /* Set only for a plant file: */
     const struct plant_asset *plant;
     size_t model;
-    /* of a folder: */
+    /* Set only for a folder: */
     uint64_t key;
 };
 
@@ -30,48 +30,48 @@ struct diff_side {
     struct diff_side_asset *assets;
     struct diff_side_tag *tags; /* sorted by name */
     size_t asset_count, tag_count;
-    struct plant *plant; /* NULL: a folder */
+    struct plant *plant; /* NULL: the side is a folder */
     struct model_files models;
-    struct model_file *parsed; /* the one in memory */
-    char *manifest;            /* as it was read; names point into root */
+    struct model_file *parsed; /* the model currently in memory */
+    char *manifest;            /* text of the manifest; strings of the side point into root */
     void *root;
 };
 
 /* Opens a plant file or a folder of prepared files and lists its assets and tags. Returns false with the reason in diag. Call
-   diff_side_finish() in both cases. */
+ * diff_side_finish() in both cases. */
 bool diff_side_open(struct diff_side *side, const char *path, struct diag *diag);
-/* Frees the lists and releases a model that is still in memory. */
+/* Frees the lists and the model in memory. */
 void diff_side_finish(struct diff_side *side);
-/* Returns the tag of this name, or NULL. Belongs to the side. */
+/* Returns the tag with this name, or NULL. The tag belongs to the side. */
 const struct diff_side_tag *diff_side_find_tag(const struct diff_side *side, const char *name);
 
-struct diff_side_shape { /* an asset's triangles, and where its sensors are; less origin_m, asset frame */
+struct diff_side_shape { /* triangles and sensor positions of an asset; relative to origin_m, asset frame */
     double origin_m[3];
     const float (*positions_m)[3];
     const uint32_t *indices;
     size_t vertex_count, index_count;
-    double (*places_m)[3]; /* of its sensors; NaN where the node is not there */
-    char **whys;           /* why a node is not there, or not the only one; else NULL */
+    double (*places_m)[3]; /* sensor positions; NaN if the sensor's node does not exist */
+    char **whys;           /* by sensor: why its node is missing or ambiguous; else NULL */
     size_t sensor_count;
-    bool own; /* the arrays are a geometry's */
+    bool own; /* the arrays are allocated; false: they point into the mapped file */
     struct folder_file file;
 };
-/* Reads an asset's triangles and sensor positions into *shape. Returns false if the plant does not have them, with the reason in why; else
-   finish it with diff_side_shape_finish(). */
+/* Reads an asset's triangles and sensor positions into *shape. Returns false with the reason in why if the plant does not have them;
+ * otherwise call diff_side_shape_finish(). */
 bool diff_side_shape(struct diff_side *side, const struct diff_side_asset *asset, struct diff_side_shape *shape, char why[MODEL_WHY_BYTES]);
 /* A bounding box in the asset frame, metres. */
 struct diff_side_box {
     double low_m[3], high_m[3];
 };
-/* Searches the asset's model, from *node on, for a node whose sub-tree has this bounding box (asset frame) to tolerance_m. Writes its
-   number to *node and its quoted name, or its number where the name is not unique, to name. Returns false if there is none, or if the side
-   is a folder. */
+/* Searches the asset's model, starting at node *node, for a node whose subtree has this bounding box (asset frame) within tolerance_m.
+ * Writes its index to *node, and to name its quoted name, or its number if the name is not unique. Returns false if there is none or the
+ * side is a folder. */
 bool diff_side_node_in_box(struct diff_side *side, const struct diff_side_asset *asset, const struct diff_side_box *box, double tolerance_m,
                            uint32_t *node, char *name, size_t name_bytes);
-/* As diff_side_shape(), for the triangles of model node `node` in place of the asset's own, without sensors. */
+/* Like diff_side_shape(), but with the triangles of model node `node` instead of the asset's own, and without sensors. */
 bool diff_side_shape_of_node(struct diff_side *side, const struct diff_side_asset *asset, uint32_t node, struct diff_side_shape *shape,
                              char why[MODEL_WHY_BYTES]);
-/* Frees or unmaps what the shape holds. */
+/* Frees or unmaps the shape's arrays. */
 void diff_side_shape_finish(struct diff_side_shape *shape);
 
 #endif

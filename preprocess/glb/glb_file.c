@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Accessors grow by jansson, the one buffer as bytes. */
+/* Builds accessors with jansson, and the buffer as bytes. */
 #include "preprocess/glb/glb_file.h"
 
 #include <errno.h>
@@ -22,7 +22,7 @@ void glb_file_finish(struct glb_file *file)
     text_finish(&file->bytes);
 }
 
-/* Every element is a multiple of 4 bytes long, so every view begins at one. */
+/* All elements are multiples of 4 bytes long, so every view is aligned. */
 int glb_file_add(struct glb_file *file, const void *bytes, size_t each, size_t count, int component, const char *type, int target)
 {
     json_array_append_new(file->views, json_pack("{s:i,s:I,s:I,s:i}", "buffer", 0, "byteOffset", (json_int_t)file->bytes.length,
@@ -61,7 +61,7 @@ static void begin_chunk(struct text *out, const char *type, size_t count)
     text_add_bytes(out, type, 4);
 }
 
-/* The bytes are written from where they are: they may be gigabytes. */
+/* Writes the buffer's bytes without copying them, because they may be gigabytes. */
 int glb_file_put(json_t *root, const struct text *bytes, const char *path)
 {
     char *json = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(17));
@@ -91,7 +91,7 @@ int glb_file_put(json_t *root, const struct text *bytes, const char *path)
 
 int glb_file_save(struct glb_file *file, json_t *root, const char *path)
 {
-    if (file->bytes.length > 0) { /* glTF allows no empty lists */
+    if (file->bytes.length > 0) { /* glTF forbids empty arrays */
         json_object_set(root, "accessors", file->accessors);
         json_object_set(root, "bufferViews", file->views);
         json_object_set_new(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)file->bytes.length));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* JSON lists beside one buffer. */
+/* Builds the JSON lists of a scene and one buffer. */
 #include "preprocess/glb/glb_scene.h"
 
 #include <string.h>
@@ -8,12 +8,12 @@
 #include "base/text/utf8.h"
 #include "preprocess/glb/glb_file.h"
 
-enum { TRIANGLES = 4 }; /* as glTF numbers them */
+enum { TRIANGLES = 4 }; /* primitive mode of glTF */
 
 struct glb_scene {
     char *generator;
     json_t *nodes, *meshes, *materials, *roots;
-    json_t *material_numbers; /* by colour, as text */
+    json_t *material_numbers; /* index of each material, by its colour as text */
     struct glb_file file;
 };
 
@@ -145,7 +145,7 @@ int glb_scene_write(struct glb_scene *scene, const char *path)
 {
     json_t *root = json_pack("{s:{s:s,s:s},s:i,s:[{s:O}],s:O}", "asset", "version", "2.0", "generator", scene->generator, "scene", 0,
                              "scenes", "nodes", scene->roots, "nodes", scene->nodes);
-    if (json_array_size(scene->meshes) > 0) /* glTF allows no empty lists */
+    if (json_array_size(scene->meshes) > 0) /* glTF forbids empty arrays */
         json_object_set(root, "meshes", scene->meshes);
     if (json_array_size(scene->materials) > 0)
         json_object_set(root, "materials", scene->materials);

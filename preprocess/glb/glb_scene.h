@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A glTF scene in the making: nodes with names, matrices and properties, meshes that several of them may share, materials that are each
- * there once. One thread per scene. */
+/* Builds a glTF scene: nodes with names, matrices and properties; meshes that nodes can share; materials without duplicates. One thread per
+ * scene. */
 #ifndef PREPROCESS_GLB_GLB_SCENE_H
 #define PREPROCESS_GLB_GLB_SCENE_H
 #include <stdbool.h>
@@ -15,30 +15,30 @@ struct glb_scene;
 
 struct glb_scene_triangles {
     const float (*positions)[3];
-    const float (*normals)[3]; /* NULL: none */
+    const float (*normals)[3]; /* NULL: no normals */
     size_t vertex_count;
-    const uint32_t *corners; /* three for each triangle */
+    const uint32_t *corners; /* three vertex indices per triangle */
     size_t corner_count;
-    int material; /* -1: none */
+    int material; /* index of the material; -1: none */
 };
 
-/* Creates an empty scene; `generator` names the program in the file. The caller owns it: glb_scene_destroy. */
+/* Creates an empty scene. `generator` is the program's name written into the file. The caller frees it with glb_scene_destroy(). */
 struct glb_scene *glb_scene_create(const char *generator);
-/* &NULL is fine; leaves NULL. */
+/* Frees the scene and sets *scene to NULL. *scene may be NULL. */
 void glb_scene_destroy(struct glb_scene **scene);
 
-/* Returns the number of a matt material, seen from both sides, of a linear colour with its opacity. */
+/* Returns the index of a matt, double-sided material with this linear colour and opacity. */
 int glb_scene_material(struct glb_scene *scene, const double rgba[4]);
-/* Adds a mesh and returns its number. It must get triangles before the scene is written. */
+/* Adds a mesh and returns its index. The mesh must have triangles before the scene is written. */
 int glb_scene_add_mesh(struct glb_scene *scene, const char *name);
-/* Adds triangles of one material to a mesh; all is copied. */
+/* Adds triangles of one material to a mesh; copies the arrays. */
 void glb_scene_add_triangles(struct glb_scene *scene, int mesh, const struct glb_scene_triangles *triangles);
-/* Adds a node below `parent` (-1: a root) and returns its number. mesh -1: none. matrix: column-major; NULL: none. */
+/* Adds a node below `parent` (-1: a root) and returns its index. mesh: index, or -1 for none. matrix: column-major; NULL: identity. */
 int glb_scene_add_node(struct glb_scene *scene, int parent, const char *name, int mesh, const double matrix[16]);
-/* Sets a property of a node, in its extras. Text that is not UTF-8 is read as Latin-1, as it is in names. */
+/* Sets a property of a node in its extras. Text that is not UTF-8 is taken as Latin-1, as for names. */
 void glb_scene_set_property(struct glb_scene *scene, int node, const char *key, const char *value);
 
-/* Writes the scene as a GLB file. Returns 0 or -errno (-EFBIG: more than a GLB file can hold). */
+/* Writes the scene as a GLB file. Returns 0 or -errno (-EFBIG: larger than the 4 GiB limit of GLB). */
 int glb_scene_write(struct glb_scene *scene, const char *path);
 
 #ifdef __cplusplus

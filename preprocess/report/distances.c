@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One sensor's distances as a table. */
+/* Prints one sensor's distances as a table. */
 #include "preprocess/report/distances.h"
 
 #include <math.h>
@@ -25,7 +25,7 @@ static void to_plant(const struct asset_view *view, const double placement[16], 
     transform_point(placement, p, out);
 }
 
-/* Vertices of the model itself, not those that preparing added. */
+/* Returns whether a vertex is from the model and not added by preparing. */
 static bool is_own(const struct asset_view *view, uint32_t vertex)
 {
     uint32_t level = 0;

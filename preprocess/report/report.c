@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The report as text: what is worth a look first, then tables. */
+/* Prints the report as text: possible problems first, then tables. */
 #include "preprocess/report/report.h"
 
 #include <math.h>
@@ -9,17 +9,17 @@
 #include "plant/models/asset_size.h"
 #include "preprocess/report/text_table.h"
 
-#define ROWS_MAX 40 /* of a table, unless all are asked for */
+#define ROWS_MAX 40 /* maximum rows per table, unless all are requested */
 #define CONCERNS_MAX 20
 
-struct order { /* assets as they are shown: those that concern first, then those that took longest */
+struct order { /* display order of assets: those with problems first, then the slowest */
     const struct prepare_asset *asset;
     double weight;
 };
 
 struct text_report {
     const struct prepare *prepare;
-    struct order *order; /* of the assets to be shown */
+    struct order *order; /* the assets to show */
     size_t count, rows;
     FILE *out;
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What in a report is worth a look. */
+/* Finds possible problems in a report. */
 #include <stdlib.h>
 
 #include "base/mem.h"
@@ -8,11 +8,11 @@
 #include "preprocess/subdivision/subdivide.h"
 #include "preprocess/report/text_table.h"
 
-#define METHODS_DIFFER 0.05 /* root mean square, of the largest distance: more than what the heat method smooths */
-#define FIELD_SLACK 1.05    /* float rounding in what splitting reached */
-#define BENT_SHARE 1e-3     /* of an asset's surface: less is not worth a look */
-#define HIGH_POWER 5        /* from there on the error of a distance alone can be worth more than two steps of colour */
-#define DISTANCE_ERROR 0.0031 /* of a distance along the surface: the worst of accuracy_test's whole shapes */
+#define METHODS_DIFFER 0.05   /* root mean square relative to the largest distance; more than the heat method's own smoothing */
+#define FIELD_SLACK 1.05      /* tolerance for single-precision rounding in the target error of subdivision */
+#define BENT_SHARE 1e-3       /* share of an asset's surface; a smaller affected area is not reported */
+#define HIGH_POWER 5          /* from this power on, the error of a distance alone can exceed two colour steps */
+#define DISTANCE_ERROR 0.0031 /* relative error of a distance along the surface: the worst of accuracy_test's whole shapes */
 
 const char *const report_states[] = { "left", "failed", "unchanged", "shared", "built" };
 
@@ -67,7 +67,7 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
                        (double)left->steps, text_table_number(left->edges).text));
 }
 
-/* Of fields that are solved for, on triangles that were made for another one. */
+/* Reports the bend of solved fields, which are drawn on triangles made for another purpose. */
 static void add_bend(struct concerns *concerns, const struct prepare_asset *asset)
 {
     const struct bend_report *bend = &asset->report.bend;
@@ -81,7 +81,8 @@ static void add_bend(struct concerns *concerns, const struct prepare_asset *asse
                                            bend->unmeasured > 0 ? 100 : 100 * bend->unknown_share));
 }
 
-/* A weight is a power p of a distance, so the share of one sensor against another errs by up to p/2 of the error of a distance. */
+/* Reports high powers. A weight is a power p of a distance, so the ratio of two sensors' weights has a relative error of up to p/2 times
+ * that of a distance. */
 static void add_powers(struct concerns *concerns, const struct prepare *prepare, const struct prepare_asset *asset)
 {
     for (size_t g = 0; g < prepare->plant->group_count; g++) {
@@ -100,7 +101,7 @@ static void add_powers(struct concerns *concerns, const struct prepare *prepare,
     }
 }
 
-/* Also of those that were not built in this run: wrong units do not become right. */
+/* Reports doubtful sizes, also of assets not built in this run, because wrong units stay wrong. */
 static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
 {
     double *longest_m = mem_array(prepare->asset_count, sizeof(*longest_m));
@@ -112,7 +113,7 @@ static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
         char why[SIZE_WHY_BYTES];
-        bool stray = asset->reported && asset->report.stray[0]; /* that concern says where the size comes from */
+        bool stray = asset->reported && asset->report.stray[0]; /* that problem already explains the size */
         if (!stray && asset_longest_m(asset->size_m) > 0 && asset_size_doubtful(asset->plant, asset->size_m, median_m, why))
             add(concerns, asset, 1e6, mem_strdup(why));
     }

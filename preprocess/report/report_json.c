@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The report as JSON; REPORT.md says what each name means. */
+/* Prints the report as JSON; REPORT.md explains the names. */
 #include <jansson.h>
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of text for a terminal. */
+/* Formats text tables for a terminal. */
 #include "preprocess/report/text_table.h"
 
 #include <stdarg.h>
@@ -18,7 +18,7 @@ void text_table_add(struct text_table *table, const char *fmt, ...)
     table->cells[table->cell_count++] = cell.at ? cell.at : mem_strdup("");
 }
 
-/* Characters, not bytes: names may be in any language. */
+/* Returns the width in characters, not bytes, because names may be in any language. */
 static size_t width_of(const char *text)
 {
     size_t width = 0;
@@ -27,7 +27,7 @@ static size_t width_of(const char *text)
     return width;
 }
 
-/* 0: there is nothing in it. */
+/* Returns the width of a column, or 0 if it has no content. */
 static size_t column_width(const struct text_table *table, size_t column, size_t rows)
 {
     size_t width = 0;

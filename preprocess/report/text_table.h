@@ -8,28 +8,28 @@
 
 struct text_table_column {
     const char *title;
-    bool right; /* numbers */
+    bool right; /* right-aligned, for numbers */
 };
 
-struct text_table { /* columns belong to the caller; else zero-initialise */
+struct text_table { /* zero-initialise, then set the columns, which are borrowed */
     const struct text_table_column *columns;
     size_t column_count;
     char **cells; /* row by row */
     size_t cell_count, capacity;
 };
 
-/* Formats the next cell; a row is full once it has as many cells as there are columns. */
+/* Formats the next cell. A row is complete after one cell per column. */
 void text_table_add(struct text_table *table, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
-/* Prints the titles and at most `rows` rows, then how many were left out; columns that are empty throughout are dropped. */
+/* Prints the titles and at most `rows` rows, then the number of rows left out. Columns without content are omitted. */
 void text_table_print(const struct text_table *table, size_t rows, FILE *out);
 /* Frees the cells. */
 void text_table_finish(struct text_table *table);
 
-/* A number as text, by value. */
+/* A number formatted as text, returned by value. */
 struct text_table_number {
     char text[32];
 };
-/* Returns the number as text with thousands separators: 62,653. */
+/* Returns the number with thousands separators: 62,653. */
 struct text_table_number text_table_number(unsigned long long number);
 
 #endif
