@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who is let in: TLS, tokens and their roles by every way, revocation, proxies, names, pages of others; and a person who is asked
+// Access control: TLS, tokens and their roles by every way, revocation, proxies, host names, pages of other sites; and a user who is asked
 // for a token.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
@@ -46,7 +46,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-// One that trusts nobody for being near: what a daemon for others does, on an address that any machine has.
+// Starts a daemon that trusts no loopback connection, like one that listens on an address reachable by other machines.
 async function behindProxy(...args) {
     await plant.daemon?.stop();
     await plant.startDaemon('--behind-proxy', '--host', 'plant.example', ...args);
@@ -136,7 +136,7 @@ walls:
             await said(query, lobby, 400, /beside view, a query has width, height and language only/);
         await said('view=gone', lobby, 400, /the plant file has no such view/);
         await said('view=page', lobby, 400, /unknown: a picture cannot show that/);
-        await said('view=left&view=rest&width=320&height=200', lobby, 200, /PNG/); // the first is meant
+        await said('view=left&view=rest&width=320&height=200', lobby, 200, /PNG/); // the first view= argument counts
         for (const url of ['/api/v1/plant', '/api/v1/tags', '/api/v1/views', '/api/v1/alarms', '/metrics', '/api/v1/pick?x=1&y=1&view=left',
             '/api/v1/history?tags=TI-1&from=-1h', '/api/v1/notes', '/api/v1/alarms/journal', '/api/v1/proofs', '/api/v1/history/gaps'])
             assert.equal((await ask(url, { bearer: lobby })).status, 403, url);
@@ -147,7 +147,7 @@ walls:
         assert.deepEqual(all.map(({ panes }) => panes.length), [6, 1]);
         await streamsOnlyItsViews(lobby, whole);
         assert.match(readFileSync(path('views.log'), 'utf8'), /"who":"lobby"[^\n]*view=rest: this token is for the views/);
-        // It shows what the same query does, without readings, whoever asks for it.
+        // A named view shows the same as the same query, but without readings, whoever asks for it.
         const query = 'group=temperature&hidden=P-101A&camera=0,-4,2,0,0,0,40&width=320&height=200';
         const [named, asked] = [await picture('view=left&width=320&height=200', whole), await picture(query, whole)];
         assert.equal(named.status, 200);
@@ -158,7 +158,7 @@ walls:
     }
 });
 
-// A stream of the token shows what its views show, whatever else is asked for, and tells of nothing but them.
+// A stream with a token narrowed to views shows only these views, whatever is requested, and reveals nothing else.
 async function streamsOnlyItsViews(lobby, whole) {
     const client = await open({ headers: [`Authorization: Bearer ${lobby}`] });
     const camera = { eye: [0, -9, 2], target: [0, 0, 0], up: [0, 0, 1], fov: 40 };
@@ -193,8 +193,8 @@ async function streamsOnlyItsViews(lobby, whole) {
     assert.match((await wrong.text('error')).text, only);
     assert.equal((await wrong.until('a close', (c) => c.closed)).code, 1008);
     assert.equal(wrong.frames.length, 0);
-    assert.equal((await anyone.hello({ token: whole, named: 'rest' })).view.group, 'pressure'); // anybody may begin with one
-    // Its list of views is another one from now on: it has to come back.
+    assert.equal((await anyone.hello({ token: whole, named: 'rest' })).view.group, 'pressure'); // any client may begin with a named view
+    // The token's list of views changes: the session must reconnect.
     token('revoke', path('limited'), 'lobby');
     assert.equal((await other.until('a close', (c) => c.closed, 20000)).code, 1008);
     anyone.close();
@@ -223,7 +223,7 @@ test('a session that is left alone is locked, but not that of a wall; and what i
     clearInterval(timer);
     assert.deepEqual([clients[1].closed, clients[2].closed], [null, null]);
     clients.forEach((client) => client.close());
-    const back = await open(); // a connection that comes back is no sign of a person
+    const back = await open(); // an automatic reconnection is no sign of user activity
     back.say({ type: 'hello', token: desk, width: 320, height: 180, codecs: ['jpeg'], idle_ms: 60000 });
     assert.equal((await back.text('error')).code, 'locked');
     back.close();
@@ -264,7 +264,7 @@ test('each URL asks for its role', { skip }, async () => {
     let guesses = 0;
     const statuses = async (url) => {
         const all = [];
-        const from = `203.0.113.${++guesses}`; // one address may be wrong ten times within a minute
+        const from = `203.0.113.${++guesses}`; // each address may fail ten times within a minute
         for (const bearer of [null, 'pc_wrong', tokens.viewer, tokens.operator, tokens.engineer])
             all.push((await ask(url, { bearer, from })).status);
         return all;
@@ -424,7 +424,7 @@ test('TLS: pictures over wss, no old versions, and a new certificate while it ru
     assert.equal((await subject())[0], 'other.example');
 });
 
-// deploy/proxy/nginx.conf as it is, but for ports and files.
+// Starts nginx with deploy/proxy/nginx.conf; only ports and files differ.
 async function startNginx(port) {
     const sample = readFileSync('deploy/proxy/nginx.conf', 'utf8').replace('listen 443 ssl', `listen 127.0.0.1:${port} ssl`)
         .replace('127.0.0.1:8080', `127.0.0.1:${plant.port}`).replace('/etc/ssl/plantcast/fullchain.pem', path('first.pem'))
@@ -472,7 +472,7 @@ test('through nginx, as deploy/proxy has it', { skip: skip || (existsSync(NGINX)
         assert.equal(await throughNginx(port, '/stream', null, { ...upgrade, Origin: 'https://plant.example' }), 101);
         assert.equal(await throughNginx(port, '/stream', null, { ...upgrade, Origin: 'https://evil.example' }), 403);
         await plant.daemon.stop();
-        await plant.startDaemon('--port', String(plant.port)); // one that was not told of the proxy, asked by a name that is not its own
+        await plant.startDaemon('--port', String(plant.port)); // a daemon that was not told of the proxy, addressed by an unknown host name
         assert.equal(await throughNginx(port, '/healthz'), 403);
         assert.equal(await throughNginx(port, '/api/v1/tags', null, { Host: 'localhost' }), 403);
     } finally {
@@ -489,7 +489,7 @@ test('a person is asked for a token, and sees the plant', {
     try {
         await page.waitForSelector('#token[open]');
         for (let i = 0; i < 3; i++)
-            await page.keyboard.press('Escape'); // there is nothing to see without one
+            await page.keyboard.press('Escape'); // without a token there is nothing to see
         await page.waitForSelector('#token[open]');
         await page.fill('#token-text', 'pc_wrong');
         await page.click('#token-form button');

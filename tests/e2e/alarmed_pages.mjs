@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Subjects of the page on one plant with an alarm, by one browser: what there is to see and to open is seen by everybody.
+// Tests of the page on one plant with an alarm, in one browser: everything that every user can see and open.
 import { describe } from 'node:test';
-import './support/browser.mjs'; // whose browser ends with the program, not with the first subject
+import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first subject
 import './alarmed_pages/alarmed.mjs';
 
 describe('alarmed_pages', { concurrency: 2 }, () => {

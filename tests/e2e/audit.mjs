@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The audit trail: what people do stands in it with name, place and result; what is done to it is found; a syslog server gets it by TLS;
-// a disk that is full is said, and nothing is lost.
+// The audit trail: user actions are recorded with name, place and result; tampering is detected; a syslog server gets the entries over TLS;
+// a full disk is reported, and no entry is lost.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -30,7 +30,7 @@ async function found(what, where) {
     throw new Error(`${what} is not in the trail:\n${readFileSync(trail, 'utf8')}`);
 }
 
-// One that takes RFC 5425 apart: messages with their length in front.
+// A server that parses RFC 5425: messages preceded by their length.
 class SyslogServer {
     constructor(key, cert) {
         this.messages = [];
@@ -271,7 +271,7 @@ test('a small disk that is full is alarmed, no line on it is torn, and a read-on
     await start();
     await found('the start', (line) => line.event === 'start');
     assert.notEqual(spawnSync('dd', ['if=/dev/zero', `of=${full}`]).status, 0);
-    // The last page of the file still takes some lines.
+    // The last page of the file still holds some lines.
     for (let i = 0; i < 60 && await good() === '1'; i++, await sleep(20))
         await ask('/api/v1/tags', 'pc_wrong', { localAddress: `127.0.2.${i + 1}` });
     await plant.daemon.line(/audit: .*audit\.log cannot be written \(No space left on device/);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Backup while a daemon records, restore elsewhere, and the two compared; what is damaged or in the way is refused by name.
+// Backup while a daemon records, restore to another place, and comparison of both; damaged or conflicting files are refused by name.
 import assert from 'node:assert/strict';
 import { appendFileSync, existsSync, mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -8,7 +8,7 @@ import { PlainClient } from './support/plain_client.mjs';
 import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
-const BEGIN_S = Math.floor(Date.now() / 1000) - 40 * 86400; // over a border of months
+const BEGIN_S = Math.floor(Date.now() / 1000) - 40 * 86400; // includes the beginning of a month
 let plant;
 
 before(async () => {
@@ -35,7 +35,7 @@ const exported = (file, to) => {
 };
 
 test('what was recorded comes back elsewhere, point by point', { skip }, async () => {
-    await new Promise((done) => setTimeout(done, 3000)); // something of now
+    await new Promise((done) => setTimeout(done, 3000)); // records some present values
     const engineer = await PlainClient.open(plant.port);
     await engineer.hello();
     engineer.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 0.5, fail: true });
@@ -53,7 +53,8 @@ test('what was recorded comes back elsewhere, point by point', { skip }, async (
     assert.ok(names.filter((name) => /^history-\d{4}-\d\d\.sqlite$/.test(name)).length >= 2, names.join(' '));
     assert.ok(names.includes('backup.json') && names.includes('plant.yaml') && names.includes('tags.csv'));
     assert.ok(!names.some((name) => /-wal|-shm|part/.test(name)), names.join(' '));
-    const stamp = statSync(join(plant.file.replace(/yaml$/, 'history'), 'last-backup')).mtimeMs; // which the daemon says in its metrics
+    // the daemon reports this time in its metrics
+    const stamp = statSync(join(plant.file.replace(/yaml$/, 'history'), 'last-backup')).mtimeMs;
     assert.ok(Math.abs(Date.now() - stamp) < 60000);
     const drill = runProgram('plantcast', ['backup', '--verify', folder('one')]);
     assert.equal(drill.code, 0, drill.err);

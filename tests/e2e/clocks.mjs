@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A core, a renderer and a page whose clocks are an hour apart: ages are those of the readings, and all times are the core's.
+// A core, a renderer and a page whose clocks are an hour apart: ages are those of the readings, and all times follow the core's clock.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -15,13 +15,13 @@ let nodes;
 before(async () => {
     if (options.skip)
         return;
-    nodes = await Nodes.create({ slowDevice: true }); // a picture without one good reading has no age
+    nodes = await Nodes.create({ slowDevice: true }); // a picture without any good reading has no age
     for (const [tag, value] of [['TI-1', 20], ['TI-2', 20], ['PI-1', 5]])
         await nodes.plant.tell(`set ${tag} ${value}`);
 });
 after(() => nodes?.destroy());
 
-// Has the page's clock be wrong, before anything of it runs.
+// Makes the page's clock wrong before its scripts run.
 const wrongDate = (ms) => {
     const Real = Date;
     globalThis.Date = class extends Real {
@@ -39,7 +39,7 @@ const startCore = async (name, off_s) => {
     nodes.all.push(core);
     return core.ready();
 };
-// Between two instants, to 5 s; on a busy machine an answer takes longer than that.
+// Checks that a time lies between two instants, within 5 s; an answer takes that long on a busy machine.
 const between = (us, first_us, last_us, what) => assert.ok(us > first_us - 5e6 && us < last_us + 5e6,
     `${what}: ${(us - first_us) / 1e6} s after it was asked for, of ${(last_us - first_us) / 1e6} s`);
 const alarmOf = async (node) => (await (await node.fetch('/api/v1/alarms')).json()).alarms
@@ -71,7 +71,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
         const shelving = performance.now();
         client.say({ type: 'alarm', seq: 2, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 4, reason: 'is looked at' });
         await client.text('alarmed');
-        await until('its shelf', async () => !(await alarmOf(renderer)), 60); // which comes from the core after the answer
+        await until('its shelf', async () => !(await alarmOf(renderer)), 60); // the shelving arrives from the core after the answer
         await until('its return', () => alarmOf(renderer), 60);
         assert.ok(performance.now() - shelving > 3900, 'it was away for 4 s, not for an hour less');
         client.close();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command line as a client of a daemon: many at once over https, and through a proxy that serves the daemon below a path.
+// The command line as a client: many commands at once over https, and through a proxy that serves the daemon below a path.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdirSync, writeFileSync } from 'node:fs';
@@ -13,7 +13,7 @@ const H264 = 'plantcast-h264.so', noFilms = skip || (existsSync(join(BIN, H264))
 const SESSIONS = 10, PROBES = 10, TOGETHER = 2;
 let plant, proxy, cert;
 
-// A proxy of one sort of request: what begins with /b/ goes on without it, all else is not found.
+// A minimal proxy: passes requests for /b/... on without that prefix, and answers 404 to all others.
 function serveBelow(base, port) {
     return createServer((client) => {
         client.once('data', (head) => {

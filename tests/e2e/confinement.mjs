@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Readers of strangers' files: what one that is taken over can reach, and what becomes of one that crashes, hangs or swells.
+// Confinement of programs that read untrusted files: what a compromised reader can reach, and how readers that crash, hang or use too much
+// memory are ended.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { chmodSync, copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -11,11 +12,13 @@ import { freePort } from './support/ports.mjs';
 import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const ESCAPE = resolve(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/escape');
-const ENDLESS_S = 200; // each step of a reader is ended after --timeout, 10 s here: longer than this, no limit held, whatever the load
+// each step of a reader is ended after --timeout, 10 s here: if a run takes longer than this, no limit worked, whatever the load
+const ENDLESS_S = 200;
 const absent = [...missing(), ...['plantcast-import', 'plantcast-match'].filter((name) => !existsSync(join(BIN, name)))];
 absent.push(...[ESCAPE, `${ESCAPE}.so`].filter((path) => !existsSync(path)));
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
-const ASK = 'import ctypes; print(ctypes.CDLL(None).syscall(444, None, 0, 1))'; // landlock_create_ruleset, its version
+// landlock_create_ruleset, which returns the Landlock ABI version
+const ASK = 'import ctypes; print(ctypes.CDLL(None).syscall(444, None, 0, 1))';
 const abi = Number(spawnSync('/usr/bin/python3', ['-c', ASK], { encoding: 'utf8' }).stdout);
 const unguarded = skip || (abi >= 2 ? false : `this kernel has ABI ${abi} of Landlock; 2 is needed to hold all of this back`);
 
@@ -28,7 +31,7 @@ async function inFolder(f) {
     }
 }
 
-// Programs with the reader of meshes replaced.
+// Returns a folder of the programs in which the mesh reader is replaced.
 function programs(folder, reader, ...more) {
     const bin = join(folder, 'bin');
     mkdirSync(bin);
@@ -96,7 +99,7 @@ test('a matcher that is taken over reaches nothing of the daemon or the machine'
     }
 });
 
-// The daemon prepares when it starts, because the models have changed.
+// The daemon prepares the plant at start because the models have changed.
 test('a plantcast-prep of the daemon that is taken over reaches nothing of the daemon or the machine', { skip: unguarded }, () => inFolder(
     async (folder) => {
         const plant = await TinyPlant.create(), port = await freePort(), bin = programs(folder, ESCAPE, 'plantcastd');
@@ -159,7 +162,7 @@ test('a reader of the daemon ends at --limit import-seconds', { skip }, () => in
     }
 }));
 
-// As a kernel without Landlock, which answers ENOSYS.
+// Simulates a kernel without Landlock, which answers ENOSYS.
 const WITHOUT = `import errno, os, seccomp, sys
 calls = seccomp.SyscallFilter(seccomp.ALLOW)
 calls.set_attr(seccomp.Attr.ACT_BADARCH, seccomp.ALLOW)
@@ -187,14 +190,14 @@ test('without Landlock, models are read under the list of system calls, and what
         assert.match(stderr, missingLine);
         const got = Object.entries(attempts(stdout)).filter(([, how]) => how === 'succeeded').map(([name]) => name);
         console.log(`# by system calls alone, these are not held back: ${got.join(', ')}`);
-        for (const name of got) // files, and the daemon's where root asks
+        for (const name of got) // files; and the daemon's process, which root may access
             assert.match(name, /^(read|list|create|append|mkdir|rename|open|program|shell)-?/);
     } finally {
         await plant.destroy();
     }
 }));
 
-// --- files that crash, hang or swell -------------------------------------------------------------------------------------------
+// --- files that make readers crash, hang or use too much memory --------------------------------------------------------------------
 
 const gltf = (rest) => JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }],
     meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }], ...rest });
@@ -212,7 +215,7 @@ const TRIANGLE = `<geometry id="g"><mesh><source id="p"><float_array id="a" coun
 <param name="Z" type="float"/></accessor>
 </technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="1">
 <input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>`;
-// Each node holds the next one ten times.
+// Each node contains the next one ten times.
 const tenfold = (levels) => collada(TRIANGLE, Array.from({ length: levels }, (_, i) => `<node id="n${i}">${(i + 1 < levels
     ? `<instance_node url="#n${i + 1}"/>` : '<instance_geometry url="#g"/>').repeat(i + 1 < levels ? 10 : 1)}</node>`).join(''),
 '<node id="root"><instance_node url="#n0"/></node>');
@@ -225,7 +228,7 @@ function stlOf(count) {
 }
 const step = (data) => `ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n` +
     `FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n${data}ENDSEC;\nEND-ISO-10303-21;\n`;
-function rvmOf(depth) { // groups within groups
+function rvmOf(depth) { // nested groups
     const words = (...numbers) => Buffer.concat(numbers.map((n) => { const b = Buffer.alloc(4); b.writeUInt32BE(n >>> 0); return b; }));
     const name = (text) => Buffer.concat([...text].map((c) => words(c.charCodeAt(0))));
     const chunk = (id) => Buffer.concat([name(id), words(0xffffffff, 1)]);

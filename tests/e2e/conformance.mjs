@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PROTOCOL.md against a real daemon, sentence by sentence, by a client that was written from that page alone (conformance/client.mjs).
+// PROTOCOL.md against a real daemon, sentence by sentence, with a client that was written from that page alone (conformance/client.mjs).
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -67,7 +67,7 @@ test('welcome has what the page says', { skip }, async () => {
     assert.deepEqual(welcome.groups.map((group) => group.id), ['temperature', 'pressure']);
     const tags = await client.text('tags');
     assert.deepEqual(tags.values.map(([index]) => index), [0, 1, 2]);
-    for (const [, value, quality] of tags.values) /* where there is none it is good */
+    for (const [, value, quality] of tags.values) /* a missing quality means good */
         assert.ok(quality === undefined ? typeof value === 'number' && tags.age_ms >= 0 : ['good', 'uncertain', 'bad'].includes(quality));
     const status = await client.text('status');
     assert.deepEqual([status.links.length, typeof status.live], [1, 'boolean']);
@@ -110,7 +110,8 @@ test('parameters, sizes and projections are echoed by the pictures that show the
     const { seq, group, ramp_interval: ramp, range, distance, unit } = await client.text('params');
     assert.deepEqual([seq, group, ramp, range, distance, unit], [5, 'pressure', 2, [0, 8], 'euclidean', 'bar']);
     const shown = await client.picture('parameters 5', (p) => p.params_seq === 5);
-    const markers = client.texts.findLast((m) => m.type === 'markers' && m.markers && m.seq <= shown.seq); // told when they change
+    // markers are sent only when they change
+    const markers = client.texts.findLast((m) => m.type === 'markers' && m.markers && m.seq <= shown.seq);
     assert.deepEqual(markers?.markers.map(([tag]) => tag), [2], 'markers go before their frame');
     client.say('resize', { width: 200, height: 120, pixel_ratio: 2 });
     await client.picture('200x120', (p) => p.full_width === 200 && p.full_height === 120 && p.flags & FLAG.still);
@@ -176,7 +177,7 @@ test('who comes back has the view that it left', { skip }, async () => {
     const { resume } = await client.hello({ width: 256, height: 144, camera: { seq: 9, ...CAMERA } });
     client.say('params', { seq: 1, group: 'pressure', sensors: { 'PI-1': { strength: 2 } } });
     await client.text('params');
-    client.socket.destroy(); // no good-bye
+    client.socket.destroy(); // no closing handshake
     const again = await Client.open(plant.port);
     again.say('hello', { resume });
     const welcome = await again.text('welcome');
@@ -185,7 +186,7 @@ test('who comes back has the view that it left', { skip }, async () => {
     const picture = await again.picture('the first');
     assert.deepEqual([picture.full_width, picture.full_height, picture.eye, picture.camera_seq], [256, 144, CAMERA.eye, 0]);
     const third = await Client.open(plant.port);
-    third.say('hello', { resume: welcome.resume }); // while the second is still there
+    third.say('hello', { resume: welcome.resume }); // while the second connection is still open
     assert.equal((await third.text('welcome')).resumed, true);
     assert.equal((await again.wait('a close', (c) => c.closed)).code, 1000);
     const late = await Client.open(plant.port);

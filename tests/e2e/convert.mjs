@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `convert` in a plant file: models that plantcast-prep has made by another program.
+// The key `convert` of a plant file: plantcast-prep has models made by another program.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -10,7 +10,7 @@ import { BIN, notBuilt } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
 
-// A square of this side, as a glTF file.
+// Returns a glTF file of a square with that side length.
 function square(side) {
     const bytes = Buffer.from(new Float32Array([0, 0, 0, side, 0, 0, side, side, 0, 0, 0, 0, side, side, 0, 0, side, 0]).buffer);
     return JSON.stringify({

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One daemon reads the devices, two others draw: readings, alarms and what operators do travel between them; a lost core is said.
+// One daemon reads the devices and two others draw: readings, alarms and operators' actions are passed between them; a lost core is
+// reported.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -70,7 +71,7 @@ test('an acknowledgement at one renderer is done by the core, with the name, and
     anna.say({ type: 'alarm', seq: 3, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 3, reason: 'is looked at' });
     await anna.text('alarmed');
     await all(async (node) => (await alarm(node, 'shelved'))?.reason === 'is looked at');
-    await all(async (node) => !await alarm(node, 'shelved')); // its time is over: the core says so
+    await all(async (node) => !await alarm(node, 'shelved')); // the core reports that the shelving time is over
     const { rows } = await (await core.fetch('/api/v1/alarms/journal')).json();
     assert.deepEqual(rows.filter(({ who }) => who === 'anna').map(({ event }) => event).sort(), ['acknowledge', 'shelve']);
     anna.close();
@@ -173,7 +174,7 @@ test('another version, and another plant of the same tags, are named by both; th
         await renderer.ready();
         await renderer.program.line(new RegExp(`no readings: .*${ours}`));
         await until('its refusal', () => core.program.said.includes(`renderer ${name}: refused: ${theirs}`));
-        await sleep(2500); // it comes again, and again
+        await sleep(2500); // the peer retries several times
         assert.equal(core.program.said.split(`renderer ${name}: refused`).length, 2, 'it is said once');
         assert.ok(Object.values(await renderer.tags()).every(({ value }) => value === null));
         assert.equal(await renderer.metric('plantcast_core_up'), 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A renderer keeps no history: trends, gaps, the journal, pictures and sessions of the past, and differences from then, come from its core.
+// A renderer keeps no history: trends, gaps, the journal, pictures and sessions of the past, and differences from past values come from its
+// core.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -16,7 +17,7 @@ const BEGIN_S = Math.floor(Date.now() / 1000) - 7200;
 const at = (s) => (BEGIN_S + s) * 1e6, iso = (s) => new Date((BEGIN_S + s) * 1000).toISOString();
 let nodes, core, renderer;
 
-// TI-1 waves for an hour, TI-2 is bad from minute 10 to 20, then nothing is recorded; a tag's every sample is kept.
+// TI-1 is a wave for an hour, TI-2 is bad from minute 10 to 20, then nothing is recorded; one tag has every sample.
 function series() {
     const lines = ['Tag,Time,Value,Quality'];
     for (let s = 0; s <= 3600; s++)
@@ -45,7 +46,8 @@ const body = async (node, path, token) => {
     const answer = await node.fetch(path, token);
     return [answer.status, answer.headers.get('content-type'), await answer.text()];
 };
-// Answers of both nodes while the core's did not change: the first live row after a range belongs to it, and is written at some time.
+// Returns the answers of both nodes, read while the core's answer did not change: the first live row after a range belongs to it, and is
+// written at an unknown time.
 async function bothAt(path) {
     for (;;) {
         const earlier = await body(core, path), here = await body(renderer, path), there = await body(core, path);
@@ -165,7 +167,7 @@ test('without its core a renderer says that it has no history, once in its log; 
     await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
     assert.deepEqual(await body(renderer, path), before_);
     assert.equal((await renderer.fetch(picture)).status, 200);
-    core.program.child.kill('SIGSTOP'); // it takes the question, and does not answer
+    core.program.child.kill('SIGSTOP'); // the core accepts the question and does not answer
     const waits = renderer.fetch(path).catch(() => null);
     await sleep(300);
     assert.equal((await renderer.fetch('/healthz')).status, 200, 'nobody else waits');

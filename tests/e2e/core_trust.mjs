@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A core does for a renderer only what the core's own check of the person at the renderer allows. The tests speak to /core as a renderer
-// would, with a renderer's token.
+// A core does for a renderer only what its own check of the user allows. The tests send messages to /core like a renderer, with a
+// renderer's token.
 import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -54,11 +54,12 @@ async function open(token = nodes.tokens.renderer) {
     const client = await PlainClient.open(core.port, { path: '/core', protocol: 'plantcast.core.v1',
         headers: [`Authorization: Bearer ${token}`] });
     const { onMessage } = client;
-    client.onMessage = (message) => (client.opcode === 1 ? onMessage.call(client, message) : undefined); // readings are of no interest
+    // binary messages, which carry readings, are ignored
+    client.onMessage = (message) => (client.opcode === 1 ? onMessage.call(client, message) : undefined);
     return client;
 }
 
-// Version, plant and configuration as the core tells them: what any renderer knows.
+// Returns version, plant and configuration from the core's message: every renderer knows them.
 async function learnIdentity() {
     const client = await open(), [, version] = /plantcastd (\S+)/.exec(runProgram('plantcastd', ['--version']).out);
     const configuration = /configuration ([0-9a-f]{16})/.exec(core.program.said)[1];
@@ -68,7 +69,7 @@ async function learnIdentity() {
     return { version, plant: 'Two boxes', configuration };
 }
 
-// As a renderer that somebody has taken over would: a message, for whom it names.
+// Sends a message in the name of `who`, like a renderer that an attacker has taken over.
 async function asEvil(message, who) {
     const client = await open();
     client.say({ type: 'renderer', node: 'evil', ...identity });
@@ -127,7 +128,7 @@ test('a token that only the renderer\'s file has is not enough', options, async 
     await other.stop();
 });
 
-// Signs in at the renderer as a browser does. Returns the cookie.
+// Signs in at the renderer like a browser. Returns the cookie.
 async function signIn() {
     const at = (where, more) => fetch(`http://127.0.0.1:${renderer.port}${where}`, { redirect: 'manual', ...more });
     const begun = await until('the provider', async () => {

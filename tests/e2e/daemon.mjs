@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The daemon as a stranger meets it: HTTP, a client written from PROTOCOL.md, bad input of every kind, a PLC that dies.
+// The daemon from outside: HTTP, a client written from PROTOCOL.md, invalid input of every kind, a PLC that dies.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -27,7 +27,7 @@ after(() => plant?.destroy());
 const valueOf = (message, index) => message.values.find((row) => row[0] === index);
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-// The newest said of a tag, whenever it comes to satisfy the question.
+// Waits until the newest row of a tag satisfies the question, and returns it.
 const tagUntil = (client, index, what, question, timeoutMs) => client.until(`tag ${index}: ${what}`, () => {
     const rows = client.texts.filter((m) => m.type === 'tags').map((m) => valueOf(m, index)).filter(Boolean);
     const row = rows.at(-1);
@@ -130,7 +130,7 @@ test('snapshots: a picture, or what is wrong with the question', { skip }, async
     const file = join(plant.folder, 'mapped.yaml'), mapped = 'colormaps: [{ name: Mine, image: map.png }]\n';
     writeFileSync(join(plant.folder, 'map.png'), good.body);
     writeFileSync(file, readFileSync(plant.file, 'utf8') + mapped);
-    for (const program of [['plantcastd', '--check'], ['plantcast-prep']]) // reading images is loaded now
+    for (const program of [['plantcastd', '--check'], ['plantcast-prep']]) // loads the code that reads images
         assert.equal(runProgram(program[0], [...program.slice(1), file]).code, 0, program[0]);
     for (const query of ['width=0', 'width=1000000000', 'height=nan', 'group=none', 'camera=1,2', 'colour=red', 'power=1e999', 'look=%01',
         'x'.repeat(400)])
@@ -342,7 +342,7 @@ test('plantcast tags and plantcast probe', { skip }, () => {
     assert.equal(probe.code, 0, probe.err);
     const report = JSON.parse(probe.out);
     assert.ok(report.frames > 4 && report.fps > 1 && report.input_to_frame_ms.p50 > 0 && report.failures.length === 0);
-    // Each camera that was sent has waited, not only those that a frame happened to show.
+    // Every camera that was sent counts as an input, not only those that a frame happened to show.
     assert.ok(report.input_to_frame_ms.count >= Math.min(60, 3 * report.frames),
         `${report.input_to_frame_ms.count} inputs, ${report.frames} frames`);
     const crowd = ['--sessions', '40', '--follow', '--blind', '--hz', '10', '--seconds', '6', '--size', '640x360', '--json'];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Subjects of the page on one demo plant, by one browser: a daemon of the demo takes two seconds of a processor to its first picture.
-// One after the other: they hold its readings, and let them go.
+// Tests of the page on one demo plant, in one browser, because starting a daemon of the demo takes two seconds of processor time. They run
+// one after the other: each freezes the plant's readings and releases them.
 import { describe } from 'node:test';
-import './support/browser.mjs'; // whose browser ends with the program, not with the first subject
+import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first subject
 import './demo_pages/demo.mjs';
 
 for (const subject of ['screens', 'views', 'codecs', 'rings'])

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names and units in encodings of other systems: each format that import and match read, in each encoding. A table says how many
-// are right.
+// Names and units in other systems' text encodings: every format that import and match read, in each encoding. A table shows how many are
+// right.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -16,7 +16,7 @@ const SAMPLES = join(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/cad/st
 const FOUND = join(import.meta.dirname, '../../../shared/data/found');
 const plantcast = (...args) => spawnSync(join(BIN, 'plantcast'), args, { encoding: 'utf8', timeout: 120000 });
 
-// Two names and a unit; node writes none of these encodings, iconv all.
+// Two names and a unit per encoding; node can write none of these encodings, iconv all.
 const ENCODINGS = {
     'UTF-8': ['UTF-8', '离心泵', '储罐 V-201', '℃'],
     GB18030: ['GB18030', '离心泵', '储罐 V-201', '℃'],

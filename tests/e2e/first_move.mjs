@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The first move on a fresh page that is still busy: the picture is as good as any other.
+// The first camera move on a new page that is still busy: its pictures are as good as later ones.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { FLYING, grab, openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
@@ -13,7 +13,7 @@ const LEAST = 0.95, WITHIN_MS = 1000, BUSY_MS = 350, QUIET_MS = 1500;
 const SMALL_MS = 500;
 let plant, browser, page;
 
-// Blocks the page for so many milliseconds, as loading does. The page waits for an answer, which takes no processor.
+// Blocks the page's main thread for that many milliseconds, like loading does. A synchronous request does so without using the processor.
 const BUSY = `globalThis.busy = (ms) => {
         const request = new XMLHttpRequest();
         request.open('GET', '/busy?' + ms, false);
@@ -63,7 +63,7 @@ test('it looks as the refined picture does, within a second', options, async (t)
     }
     await page.mouse.up();
     const ended = performance.now(), seen = [];
-    do { // each picture, and what is known of it
+    do { // records each picture and its properties
         const picture = await shown(), at = performance.now() - ended, image = await grab(page);
         if (picture.seq === (await shown()).seq && picture.seq !== seen.at(-1)?.seq)
             seen.push({ ...picture, at, image });
@@ -76,7 +76,7 @@ test('it looks as the refined picture does, within a second', options, async (t)
     t.diagnostic(said.join('; '));
     const good = seen[alike.findIndex((ssim) => ssim >= LEAST)], first = alike[seen.findIndex(({ still }) => still)];
     assert.ok(first >= LEAST, `refined at once, not in two stages: ${said.join('; ')}`);
-    // The first previews of a fresh page are small: little is known of its link yet.
+    // The first previews of a new page are small, because its bandwidth is not known yet.
     assert.ok(seen.every((one) => one.fullWidth === image.width || one.at <= SMALL_MS), `of the viewport's size: ${said.join('; ')}`);
     assert.ok(good.at <= WITHIN_MS, said.join('; '));
     assert.deepEqual(browser.errors, []);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The first view of a plant whose file has none: what there is fills the picture, and none of it is under a legend.
+// The first view of a plant whose file defines none: the plant fills the picture, and no part of it is under a legend.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -59,7 +59,7 @@ for (const [name, screen] of Object.entries(SCREENS))
         }
     });
 
-// A box at the origin of a plant that lies where its survey has it, as some models bring with them.
+// A box at the origin of a plant that is at survey coordinates; some models contain one.
 test('a notice says what lies far outside, and shows everything', options, async () => {
     const far = await TinyPlant.create(), at = [260978, 7007098, 12];
     const text = readFileSync(far.file, 'utf8').replace('model: box.gltf,', `model: box.gltf, placement: { translate: [${at}] },`)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fleet page: what it says of real servers, of those that are silent, and of two hundred; how often it asks, and what it costs.
+// The fleet page: what it shows of real servers, of silent ones, and of two hundred; how often it asks, and how much processor time it
+// takes.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -36,7 +37,7 @@ async function serve(file) {
         stop: () => new Promise((done) => { child.removeAllListeners('exit').on('exit', done); child.kill(); }) };
 }
 
-// A server as /metrics shows it; asked: when. The picture is a real PNG.
+// Starts a fake server with these /metrics; `asked` records the times of requests. The picture is a real PNG.
 const PNG = Buffer.from('iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==', 'base64');
 async function pretend(metrics = '', status = 200, headers = {}) {
     const asked = { metrics: [], picture: [] };
@@ -182,7 +183,7 @@ test('nothing is asked faster than it allows, and who asks for patience gets it'
         await until('enough requests', () => quick.asked.metrics.length >= 6 && slow.asked.metrics.length >= 3 &&
             slow.asked.picture.length >= 2 && busy.asked.metrics.length >= 2);
         const least = (times) => Math.min(...times.slice(1).map((at, i) => at - times[i]));
-        assert.ok(least(quick.asked.metrics) > 500); // a loaded machine delays one request and not the next
+        assert.ok(least(quick.asked.metrics) > 500); // a loaded machine delays single requests
         assert.equal(quick.asked.picture.length, 0);
         assert.ok(least(slow.asked.metrics) > 3500);
         assert.ok(least(slow.asked.picture) > 5500);
@@ -205,7 +206,7 @@ test('two hundred plants take two hundredths of a core', { ...options, skip: opt
         await until('all answer', async () => (await fleet.state()).plants.every(({ answers }) => answers));
         await sleep(2000);
         const before = cpuMs(fleet.pid);
-        for (let s = 0; s < SECONDS; s += 5) { // as a page does
+        for (let s = 0; s < SECONDS; s += 5) { // like an open page
             await fleet.state();
             await sleep(5000);
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many clients at once, good and bad ones: what each costs the server, and the others. SOAK_S=1800 for the long form.
+// Many clients at once, well-behaved and bad ones: what each costs the server and the other clients. SOAK_S=1800 for a long run.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { camera, median, metrics, Mover, openFiles, openMany, residentKb, sanitized, sleep } from './support/crowd.mjs';
@@ -35,7 +35,7 @@ test('a hundred viewers of one view: one render, one encode, a hundred sends', {
         client.say({ type: 'follow', session });
     await Promise.all(all.map((c) => c.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0)));
     const mover = new Mover(leader, 20);
-    await sleep(4000); // until all get the best there is
+    await sleep(4000); // until all have the best quality
     mover.stop();
     await sleep(500);
     const start = await metrics(plant.port, ...names);
@@ -50,7 +50,7 @@ test('a hundred viewers of one view: one render, one encode, a hundred sends', {
         `${renders} renders and ${encodes} encodes for ${frames} frames of ${steps} views`);
 });
 
-// What a daemon has once pictures of a size were drawn is no client's.
+// Waits until the daemon's memory stops growing; caches for a picture size are not charged to a client.
 async function standsStillKb() {
     let kb = residentKb(pid), same = 0;
     for (let i = 0; i < 40 && same < 4; i++) {
@@ -81,7 +81,7 @@ test('fifty clients that take nothing cost next to nothing', { skip }, async () 
     }
     const moreKb = residentKb(pid) - beforeKb;
     console.log(`# ${STALLED} stalled clients: ${moreKb} kB more`);
-    const picturesKb = 3 * 1280 * 720 * 4 / 1024; // under way just then: two are drawn at a time, one is encoded
+    const picturesKb = 3 * 1280 * 720 * 4 / 1024; // pictures in flight at that moment: two being drawn, one being encoded
     assert.ok(sanitized || moreKb <= 5 * 1024 + picturesKb, `${moreKb} kB more`);
 });
 
@@ -97,7 +97,7 @@ test('1 Mbit/s and 200 ms: never more than a second old, and not felt by another
         for (const one of [fast, slow, relay])
             one.close();
     });
-    // Both rates in turn. A delay that the fast client sees too is not the slow line's.
+    // Measures both rates in turn. A delay that the fast client sees too is not caused by the slow link.
     for (let round = 0, frames = 0; round < 3; round++) {
         await sleep(500);
         const alone = await mover.rate(1000), slowMover = new Mover(slow, 30, frames), begin = performance.now();
@@ -125,7 +125,7 @@ test('who took nothing for 15 s is gone, and his connection with him', { skip },
         client.close();
 });
 
-// One of those that come and go: drags, hides, stops reading, is cut off.
+// A random client that connects, drags, hides its page, stops reading, and is cut off.
 async function wander(port, random, end) {
     while (performance.now() < end) {
         const client = await PlainClient.open(port).catch(() => null);
@@ -145,12 +145,12 @@ async function wander(port, random, end) {
             client.frames.length = client.texts.length = 0;
             await sleep(30);
         }
-        client.close(); // in the middle of whatever is under way
+        client.close(); // whatever it is doing
     }
 }
 
-// What it has open for clients. SQLite keeps a descriptor of a month's file whose handle is closed as long as another handle is open, and
-// uses it again: of those there are as many as handles that were ever open at the same time, and the first of a minute may come late.
+// Returns the files that the daemon has open for clients. SQLite keeps the descriptor of a closed month file while another handle of it is
+// open, and reuses it. So there are as many such descriptors as handles were ever open at the same time, and some may appear late.
 const MOST_OF_HISTORY = 10;
 function openForClients() {
     const all = openFiles(pid), others = all.filter((name) => !name.includes('.history/'));
@@ -186,7 +186,7 @@ test(`random connects, drags, stalls and cuts for ${SOAK_S} s: nothing grows`, {
     assert.ok(late < 1.5 * early + 20, `latency grew from ${early.toFixed(1)} to ${late.toFixed(1)} ms`);
     assert.ok(sanitized || grownKb < 8 * 1024, `memory grew by ${grownKb} kB`);
     const patience = performance.now() + 180000;
-    for (; openForClients().length > filesBefore.length; await sleep(250)) // of those who went last
+    for (; openForClients().length > filesBefore.length; await sleep(250)) // the last clients' files may close later
         assert.ok(performance.now() < patience, `open:\n${openForClients().join('\n')}\nbefore:\n${filesBefore.join('\n')}`);
     assert.equal(steady.closed.code, 1000);
 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Root's programs in a folder that the daemon may write: backup, restore and token are not led out of it by links, nor by files of others,
-// and what they make is for nobody else to read. As deploy/INSTALL.md lays the folders out.
+// Root runs backup, restore and token in a folder that the daemon may write: symlinks and foreign files cannot redirect them, and their
+// results are not readable for others. Folders as in deploy/INSTALL.md.
 import assert from 'node:assert/strict';
 import {
     chmodSync, chownSync, existsSync, linkSync, lstatSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync,
@@ -15,7 +15,7 @@ const NOBODY = 65534, absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : process.getuid() !== 0 ? 'only root can be led astray' : false;
 let plant, root, state, history, secret;
 
-// The plant file in a folder of root's; tag list and history in one of the daemon's.
+// The plant file is in a folder of root; tag list and history are in one of the daemon's user.
 before(async () => {
     if (skip)
         return;
@@ -69,7 +69,7 @@ test('what leads out of the folder is not copied, by whatever name', { skip }, (
             put(path);
             const made = backUp('two');
             assert.equal(made.code, 1, `${name} ${why}`);
-            if (name !== '../tags.csv') // the plant is not read, either, where its list is no list
+            if (name !== '../tags.csv') // if the tag list is no regular file, reading the plant fails already
                 assert.match(made.err, why, name);
             assert.ok(!existsSync(join(root, 'two')) && !existsSync(join(root, 'two.part')), name);
             rmSync(path, { recursive: true });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The GPU is reset while sessions look on, and its memory runs out: by a library before the real one, which destroys the daemon's context
-// under its hands and refuses it room. Once as on a GPU, where GL draws all, and once as without one.
+// The GPU is reset, and its memory runs out, while sessions are connected: a preloaded library destroys the daemon's context or refuses
+// allocations. Run once as on a GPU, where GL draws everything, and once as without one.
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
@@ -50,14 +50,14 @@ function aim(client, eye) {
     return client.seq;
 }
 
-// From now on the readings are so; since when, as frames say it.
+// Sets the readings; returns the time from which frames show them.
 async function setWarm(plant, value) {
     await plant.tell(`set TI-1 ${value}`);
     await sleep(350); // three polls
     return Date.now() * 1000 - 50000;
 }
 
-// What all see once nobody moves: each another side, refined, of readings since then.
+// Waits for each client's refined picture from another side, with readings newer than sinceUs.
 async function rest(clients, sinceUs) {
     const pictures = await Promise.all(clients.map((client, i) => {
         const seq = aim(client, i);
@@ -69,7 +69,7 @@ async function rest(clients, sinceUs) {
     return pictures.map(digest);
 }
 
-// One camera after the other until told to stop; then the pictures that came, as [camera, bytes].
+// Moves the camera until told to stop; then returns the pictures received, as [camera, bytes].
 function move(client) {
     const seen = [];
     let stopped = false;
@@ -85,11 +85,11 @@ function move(client) {
     return { count: () => seen.length, stop: async () => { stopped = true; await done; return seen; } };
 }
 
-// How many of them are not of a size that pictures by that camera have had. One that shows nothing has half of it.
+// Counts pictures whose size differs from all earlier ones of that camera. An empty picture has half the size.
 const strange = (seen, known) =>
     seen.filter(([eye, bytes]) => !known.some(([other, usual]) => other === eye && Math.abs(bytes / usual - 1) < 0.04)).length;
 
-// A view kept its preview once, before the first loss, beside other programs: make test-long runs the first.
+// Once a view kept its preview before the first loss, when other programs ran: make test-long runs the first case.
 for (const hardware of [true, false]) {
     const where = hardware ? 'as on a GPU' : 'without a GPU', options = { skip: skip || (hardware && long) };
     test(`a context that is lost ${LOSSES} times under load is made again each time, ${where}`, options, async () => {
@@ -141,7 +141,7 @@ for (const hardware of [true, false]) {
     });
 }
 
-// Other fields, colours, lines, light and sizes: each needs room of its own.
+// Other fields, colours, isolines, lights and sizes: each needs GPU memory of its own.
 const WISHES = [
     { isolines: 10 }, { light: [0.3, 0.5, 0.8] }, { ghost: ['P-101A'] }, { selected: 'E-101' }, { colormap: 'turbo' },
     { clip: { planes: [[1, 0, 0, 0.1]] } }, { split: { group: 'pressure' } }, { width: 300, height: 200 },
@@ -149,7 +149,7 @@ const WISHES = [
 const USUAL = {
     isolines: null, light: [0.4, -0.5, 0.8], ghost: [], selected: null, colormap: 'relief', clip: null, split: null,
 };
-const LITTLE_BYTES = 20000, WITHOUT_MS = 600, BUSY_TIMES = 8; // so many times as long, where the machine is busy
+const LITTLE_BYTES = 20000, WITHOUT_MS = 600, BUSY_TIMES = 8; // factor on waiting times when the machine is busy
 
 function wish(client, { width = SIZES[3][0], height = SIZES[3][1], ...params }) {
     client.params = (client.params ?? 0) + 1;
@@ -207,7 +207,7 @@ test('what there was no room for comes once there is room, whole, and without be
         came.push(await shown(client));
     }
     assert.ok(refused.filter(Boolean).length > WISHES.length / 2, `refused: ${refused}`);
-    faults.set('losses', 1); // all is made anew, with room for everything
+    faults.set('losses', 1); // everything is created again, with enough memory
     for (const [i, one] of WISHES.entries()) {
         wish(client, one);
         const right = await shown(client);
@@ -228,7 +228,7 @@ test('a driver that restarts is waited for, and room: nothing else draws meanwhi
     aim(client, 3);
     await client.until('attempts at another context', () => faults.get('refusals') === 0 && faults.get('made') > made, PATIENCE_MS);
     assert.equal(await status(), 503);
-    faults.set('hardware', 1); // but there is no room yet
+    faults.set('hardware', 1); // the GPU is back, but without memory
     await client.until('another attempt', () => /out of GPU memory for the plant/.test(plant.daemon.said), PATIENCE_MS);
     assert.equal(await status(), 503);
     faults.set('room_bytes', 0);

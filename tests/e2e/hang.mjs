@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A page whose main thread hangs, on an X display as people see it: a wall says so and is reloaded, a desk says so, the daemon logs it.
-// And what once made pages hang: rings of alarms in a viewport without area.
+// A page whose main thread hangs, on an X display: a wall shows that and is reloaded, a desk shows it, the daemon logs it. Also what once
+// made pages hang: alarm rings in a viewport without area.
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { join } from 'node:path';
@@ -14,7 +14,7 @@ const why = absent.length > 0 ? `not built: ${absent.join(', ')}`
     : missingDisplay() ?? (existsSync('/usr/bin/chromium') ? false : 'no chromium');
 const options = { skip: why, timeout: 300000 };
 const [WIDTH, HEIGHT] = [960, 540], PATIENCE_MS = 120000;
-const VEIL = [0x8f, 0x13, 0x20]; // the band in which the words stand
+const VEIL = [0x8f, 0x13, 0x20]; // colour of the band behind the watchdog's text
 const WALLS = `
 views: [{ id: whole, title: Whole unit, view: "group=temperature" }]
 walls:
@@ -39,7 +39,7 @@ after(async () => {
     await plant?.stop();
 });
 
-// Waits until the band of the watchdog's words is seen on the display, or is gone.
+// Waits until the watchdog's band is visible on the display, or has gone.
 async function seesVeil(wanted) {
     const end = performance.now() + PATIENCE_MS;
     for (;;) {
@@ -51,10 +51,10 @@ async function seesVeil(wanted) {
     }
 }
 
-// A main thread that never comes back.
+// Blocks the page's main thread for ever.
 const hang = (page) => page.evaluate(() => { setTimeout(() => { for (;;); }); });
 
-// As browserOn, but closed however the page hangs.
+// Like browserOn(), but closes the browser even if the page hangs.
 async function withPage(url, f) {
     const { page, close } = await browserOn(display.name, url, WIDTH, HEIGHT);
     try {
@@ -94,7 +94,7 @@ test('a desk that hangs says so until it answers again; the daemon logs that it 
         savePng(display.grab(), join(SCREENSHOTS, 'hang-desk-again.png'));
     }));
 
-// Draws call-outs as soon as they are there, in a page or in the panes of a wall. A page that hangs does not return.
+// Draws call-outs once they are loaded, in a page or in the panes of a wall. Does not return if the page hangs.
 const drawCallouts = (page, selector) => page.evaluate(async (which) => {
     const windows = which ? [...document.querySelectorAll(which)].map((frame) => frame.contentWindow) : [globalThis];
     for (const { plantcast } of windows) {
@@ -119,7 +119,7 @@ test('a display with a trend and alarms, and a desk with hardly any height, go o
     await wall.close();
     const desk = await openPage(plant.url, { viewport: { width: 844, height: 150 } }), { page } = desk;
     await waitForPicture(page);
-    for (const height of [150, 100, 40]) { // the last ones leave a viewport of 0
+    for (const height of [150, 100, 40]) { // the last heights leave a viewport of height 0
         await page.setViewportSize({ width: 844, height });
         await drawCallouts(page, null);
         await shoot(page, `hang-desk-844x${height}`);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HAProxy in front of two renderers: a node that is killed, or drained, loses nobody's view and no acknowledgement.
+// HAProxy in front of two renderers: a node that is killed or drained loses no view and no acknowledgement.
 import assert from 'node:assert/strict';
 import { connect } from 'node:net';
 import { after, before, test } from 'node:test';
@@ -40,7 +40,7 @@ async function start(name, i) {
     return Object.assign(node, { agentPort, name });
 }
 
-// A page without a screen: it comes back as pages do, and says nothing of its view but the token.
+// A page without a screen: it reconnects like pages do, and restores its view only with the view token.
 class Viewer {
     constructor(number) {
         Object.assign(this, { number, eye: [3 + number / 10, -5, 2], returns: 0, moved: null, resume: null, lostAt: null });
@@ -70,7 +70,7 @@ class Viewer {
                 await this.come();
                 this.returns++;
                 return;
-            } catch { /* tries again */ }
+            } catch { /* retries */ }
         }
     }
 
@@ -78,7 +78,7 @@ class Viewer {
         this.client.say({ type: 'camera', seq: 1, eye: this.eye, target: [0, 0, 0] });
         await this.shows();
         await this.client.until('a token', ({ texts }) => texts.some(({ type }) => type === 'resume'));
-        await sleep(1200); // the newest one
+        await sleep(1200); // waits for the newest token
         this.resume = this.client.texts.findLast(({ type }) => type === 'resume').resume;
     }
 
@@ -133,7 +133,7 @@ test('kill -9 of one of two: all are back within 10 s, with their views; no ackn
     await until('three alarms', async () => (await standing(core)).filter(({ state }) => state === 'unacknowledged').length === 3);
     const hit = viewers.filter(({ node }) => node === 'r1'), done = [];
     const acknowledge = async (viewer, tag, seq) => {
-        for (;;) { // a person does it again where nothing was confirmed
+        for (;;) { // a user repeats an action that was not confirmed
             const { client } = viewer, from = client.texts.length;
             client.say({ type: 'alarm', seq, action: 'acknowledge', alarms: [[tag, 'H']] });
             const answer = await client.until('an answer', ({ texts, closed }) => closed ?? texts.slice(from)
@@ -181,7 +181,7 @@ test('a drained node sends its sessions elsewhere, one after the other, and is a
 });
 
 test('a token that was changed, or is another person\'s, restores nothing; as it was made it does', options, async () => {
-    await renderers[1].stop(); // a new one has no views of its own
+    await renderers[1].stop(); // a new process has no views of its own
     renderers[1] = await start('r2', 1);
     const { resume } = viewers[0], [secret, body, mac] = resume.split('.');
     const cases = [[`${secret}.${body}.${mac.replace(/.$/, (c) => (c === '0' ? '1' : '0'))}`, 'operator', false],

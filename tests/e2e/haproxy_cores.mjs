@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HAProxy in front of two cores and a renderer: what only the core answers comes from whoever leads, also after kill -9, and sessions at
-// the renderer are not lost.
+// HAProxy in front of two cores and a renderer: requests that only a core answers go to the leader, also after kill -9, and the renderer's
+// sessions survive.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
@@ -11,7 +11,7 @@ import { promise } from './support/promise.mjs';
 import { kill, missingTwoCores, TAKE_OVER_MS, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores() || (missingHaproxy() ?? false), options = { skip, timeout: 240000 };
-const CHECKS_MS = 1500; // the proxy asks once a second
+const CHECKS_MS = 1500; // the proxy checks once a second
 const HOST = ['--behind-proxy', '--host', 'plant.example', '--host', '127.0.0.1'];
 let server, two, renderer, proxy;
 
@@ -37,7 +37,7 @@ after(async () => {
 });
 
 const ask = (path, token = two.nodes.tokens.viewer) => get(proxy.port, path, 'GET', `Authorization: Bearer ${token}\r\n`);
-// Which of the two cores the proxy sends to.
+// Returns the cores to which the proxy sends requests.
 const chosen = async () => {
     const { core, standby } = await proxy.servers('core');
     return [[core, 'one'], [standby, 'two']].filter(([{ status }]) => /^UP/.test(status)).map(([, name]) => name).join();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands between a fault of ours and whoever finds it: what compiler and linker put into every program, and what the unit leaves a
-// daemon that somebody else has got hold of.
+// Hardening of all programs by compiler and linker, and the restrictions of the systemd unit for a daemon that an attacker controls.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
@@ -69,7 +68,7 @@ test('with the system calls that the unit leaves it, the daemon draws on llvmpip
         assert.deepEqual([frame.full_width, frame.full_height], [320, 180]);
         client.say({ type: 'params', seq: 1, baseline: 'now' });
         await client.text('params');
-        client.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 1, fail: true }); // written and synced
+        client.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 1, fail: true }); // written and synced to disk
         const proved = await client.text('proved');
         assert.equal(proved.kept, true, plant.daemon.said);
         client.close();

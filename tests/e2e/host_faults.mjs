@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a machine does to a daemon that runs for years: its volume becomes read-only, its certificate ends in the night.
+// Faults of a machine that runs for years: its volume becomes read-only, and its certificate expires.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -16,7 +16,7 @@ const at = (name) => join(scratch, name), sleep = (ms) => new Promise((done) => 
 const sh = (line) => spawnSync('/bin/sh', ['-euc', line], { encoding: 'utf8' });
 after(() => rmSync(scratch, { recursive: true, force: true }));
 
-// A volume that becomes read-only as those of ext4 do when the disk below them fails.
+// A volume that becomes read-only like ext4 when the disk below fails.
 const volume = at('volume');
 function makeVolume() {
     mkdirSync(volume);
@@ -34,7 +34,7 @@ async function gauge(plant, name) {
 const ledger = (plant, folder) => runProgram('plantcast',
     ['history', 'export', plant.file, '--tags', 'TI-1', '--folder', folder, '--from', '-1h']).out.trim().split('\n').slice(1);
 
-// Sets the tag, and waits until it was read: a value that lasts less than a poll is nobody's.
+// Sets the tag and waits until the daemon has read it: a value shorter than a poll interval could be missed.
 async function take(plant, value) {
     await plant.tell(`set TI-1 ${value}`);
     await until(`${value} is read`, async () => {
@@ -54,7 +54,7 @@ test('a volume that becomes read-only: it runs on and says so; what it held come
     }
     const runtime = at('runtime'), history = join(volume, 'history');
     mkdirSync(runtime);
-    process.env.RUNTIME_DIRECTORY = runtime; // where a service keeps what no disk takes
+    process.env.RUNTIME_DIRECTORY = runtime; // where a service stores what no disk accepts
     const plant = await TinyPlant.create();
     try {
         assert.equal(plant.prepare().code, 0);
@@ -64,7 +64,7 @@ test('a volume that becomes read-only: it runs on and says so; what it held come
         await until('a point on disk', () => ledger(plant, history).some((line) => /,11[.,]/.test(`${line},`)));
         writeFileSync(trigger, '1');
         assert.notEqual(sh(`touch ${volume}/x`).status, 0, 'the volume is read-only');
-        await take(plant, 77); // on no line from 11 to 33
+        await take(plant, 77); // not on the line from 11 to 33, so it must be recorded
         await until('plantcast_history_good is 0', async () => await gauge(plant, 'plantcast_history_good') === 0);
         await plant.daemon.line(/history-[\d-]+\.sqlite: .*error$/m);
         await plant.daemon.line(/history: cannot be written \(/);
@@ -73,8 +73,8 @@ test('a volume that becomes read-only: it runs on and says so; what it held come
         await take(plant, 33);
         assert.deepEqual(await plant.daemon.stop(), { code: 0, signal: null }, plant.daemon.said);
         unmount();
-        // A copy: programs with mounts of their own (unshare, services) that began meanwhile go on holding the volume, and what is held
-        // is not mounted anew, but stays read-only.
+        // Mounts a copy: programs with mount namespaces of their own (unshare, services) may still hold the volume, and a held volume stays
+        // read-only.
         const mended = sh(`cp --sparse=always ${volume}.img ${volume}.mended; fsck.ext4 -fy ${volume}.mended >/dev/null || [ $? = 1 ]
             mount -o loop ${volume}.mended ${volume}; touch ${volume}/x`);
         assert.equal(mended.status, 0, mended.stderr);
@@ -91,7 +91,7 @@ test('a volume that becomes read-only: it runs on and says so; what it held come
     }
 });
 
-// A certificate that ends so many seconds from now.
+// Makes a certificate that expires in that many seconds.
 function certificate(name, seconds) {
     const utc = (ms) => new Date(ms).toISOString().replace(/[-:T]/g, '').slice(2, 14) + 'Z';
     writeFileSync(at('ca.cnf'), `[ca]\ndefault_ca=a\n[a]\ndatabase=${at('index')}\nnew_certs_dir=${scratch}\nrand_serial=yes

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clients that mean harm, or do it: each has its answer, all of them at once leave another session its frames, and when they are gone the
-// daemon has what it had.
+// Malicious and careless clients: each gets its answer, all of them together leave another session its frames, and when they have gone the
+// daemon uses no more than before.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { readdirSync, readlinkSync } from 'node:fs';
@@ -19,8 +19,8 @@ const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const SILENT = 1000, PATIENCE_S = 3, FLOOD_PER_S = 10000, PATIENCE_MS = 60000;
 const PINGS = 4000, MESSAGES_PER_S = 1000;
 const HELLO = { type: 'hello', width: 320, height: 180, codecs: ['jpeg'] };
-const LEAST_CPU_S = 0.4; // of one viewer that gets all its frames
-const MOST_TIMES = 5; // of the processor time that one viewer costs: all of them and the viewer
+const LEAST_CPU_S = 0.4; // minimum of one viewer that gets all its frames
+const MOST_TIMES = 5; // maximum processor time, as a multiple of one viewer's
 let plant, quiet;
 
 before(async () => {
@@ -40,13 +40,13 @@ after(() => Promise.all([plant?.destroy(), quiet?.destroy()]));
 
 const closed = (client, timeoutMs = 20000) => client.until('a close', (c) => c.closed, timeoutMs);
 const metric = async (name) => Number((await get(plant.port, '/metrics')).body.toString().match(new RegExp(`^${name} (\\d+)`, 'm'))[1]);
-// Until it is so, or whoever waits has lost patience.
+// Waits until the condition holds or the time is over.
 async function reaches(is) {
     for (const end = performance.now() + PATIENCE_MS; !await is() && performance.now() < end;)
         await sleep(100);
 }
 const cpuSeconds = ({ daemon }) => cpuMs(daemon.child.pid) / 1000;
-// Descriptors of the daemon but for files of the plant: alarm journal and history are opened once there is something to record.
+// Counts the daemon's descriptors, except files of the plant: journal and history are opened only when needed.
 const descriptors = () => {
     const folder = `/proc/${plant.daemon.child.pid}/fd`;
     const path = (fd) => {
@@ -59,7 +59,7 @@ const descriptors = () => {
     return readdirSync(folder).filter((fd) => !path(fd).startsWith(plant.folder)).length;
 };
 
-// A socket that says what it is told, and when it was closed.
+// Opens a raw socket; records what the server sent and when it closed.
 function raw(port) {
     const socket = connect(port, '127.0.0.1');
     socket.on('error', () => {});
@@ -68,7 +68,7 @@ function raw(port) {
     return socket;
 }
 
-// Frames per second of another client, a program of its own: its cameras move 60 times a second.
+// Returns the frames per second of another client, a separate program whose camera moves 60 times a second.
 function othersRate(port, seconds) {
     return new Promise((done, fail) => {
         const url = `http://127.0.0.1:${port}/`;
@@ -106,16 +106,18 @@ test('ten thousand messages a second are read at the pace allowed, and all of th
     t.after(() => client.close());
     const pings = Buffer.concat(Array.from({ length: PINGS }, (_, t) => encodeFrame(1, `{"type":"ping","t":${t}}`)));
     const before = [await metric('plantcast_messages_total'), await metric('plantcast_message_errors_total')];
-    const began = performance.now(); // the first second begins with hello
+    const began = performance.now(); // the first second of counting begins with hello
     await client.hello();
     client.write(pings);
     await client.until('the last answer', (c) => c.texts.some((m) => m.type === 'pong' && m.t === PINGS - 1), PATIENCE_MS);
-    const took = performance.now() - began, full = Math.floor(PINGS / MESSAGES_PER_S) - 1; // one second's may be out of the socket
+    // messages for one more second may be in the socket's buffer
+    const took = performance.now() - began, full = Math.floor(PINGS / MESSAGES_PER_S) - 1;
     assert.ok(took >= 1000 * full, `${PINGS} messages in ${took.toFixed(0)} ms, at ${MESSAGES_PER_S} a second`);
-    await reaches(async () => await metric('plantcast_messages_total') > before[0] + PINGS); // it counts once a second at least
+    // the counter is updated once a second at least
+    await reaches(async () => await metric('plantcast_messages_total') > before[0] + PINGS);
     const read = await metric('plantcast_messages_total') - before[0], told = await metric('plantcast_message_errors_total') - before[1];
-    assert.ok(read > PINGS, `${read} messages read`); // hello, and an acknowledgement of each frame
-    // A daemon that is too slow to read so many messages within a second meets nobody who is too fast.
+    assert.ok(read > PINGS, `${read} messages read`); // also hello, and an acknowledgement of each frame
+    // If the daemon is too slow to read that many messages within a second, no client is too fast.
     const reads = took < 1000 * (PINGS / MESSAGES_PER_S + 1), said = `too fast: said ${told} times in ${took.toFixed(0)} ms`;
     assert.ok(told >= full || !reads, said);
     assert.equal(client.texts.some((m) => m.code === 'too_fast'), told > 0, said);
@@ -123,7 +125,7 @@ test('ten thousand messages a second are read at the pace allowed, and all of th
 
 test('all at once: nobody else is slowed, and each has its answer', { skip }, async (t) => {
     const { port } = plant;
-    await reaches(async () => await metric('plantcast_connections') <= 1); // who was there before has gone
+    await reaches(async () => await metric('plantcast_connections') <= 1); // earlier clients have gone
     const filesBefore = descriptors();
     const began = performance.now();
 
@@ -137,7 +139,7 @@ test('all at once: nobody else is slowed, and each has its answer', { skip }, as
     const mute = await PlainClient.open(port);
     const flood = await PlainClient.open(port, { acknowledge: false });
     await flood.hello();
-    flood.socket.pause(); // and it does not read
+    flood.socket.pause(); // and the client does not read
     const camera = encodeFrame(1, '{"type":"camera","seq":1,"eye":[5,-6,4],"target":[1e300,0,0]}');
     const cameras = Buffer.concat(Array(FLOOD_PER_S / 10).fill(camera));
     const guesses = [];
@@ -154,7 +156,7 @@ test('all at once: nobody else is slowed, and each has its answer', { skip }, as
                 guesses.push(guess);
         }
     }, 100);
-    // At the same time, as whatever else this machine does slows both.
+    // Both at the same time, because other load slows both.
     const before = [plant, quiet].map(cpuSeconds);
     const [beside, alone] = await Promise.all([plant, quiet].map((one) => othersRate(one.port, 4)));
     const [took, tookAlone] = [plant, quiet].map((one, i) => cpuSeconds(one) - before[i]);
@@ -167,7 +169,7 @@ test('all at once: nobody else is slowed, and each has its answer', { skip }, as
     assert.match((await closed(mute)).text, /no hello/);
     assert.ok(guesses.length >= 5);
     for (const guess of guesses)
-        assert.ok([1008, 1013].includes((await closed(guess)).code)); // the first ten, then they are slowed
+        assert.ok([1008, 1013].includes((await closed(guess)).code)); // the first ten; further ones are throttled
     assert.equal(guesses[0].texts[0].code, 'bad_token');
     flood.close();
     const rates = `${alone.toFixed(1)} frames/s of a daemon without them, ${beside.toFixed(1)} beside all of them; processor ` +
@@ -195,8 +197,8 @@ test('beyond the limit connections are cut off, and there is room again once oth
     assert.equal((await get(plant.port, '/healthz')).status, 200);
 });
 
-// Many views of what takes long to draw: with few, or of a plant that is drawn at once, all of them now and then wait for their encoders,
-// and the thread that draws rests.
+// Uses many views that are slow to draw. With few, or with a plant that is quick to draw, all clients sometimes wait for their encoders,
+// and the render thread idles.
 test('where drawing is too busy, one more is refused, told why and when to come again', { skip: skip || noDemo || false }, async () => {
     const busy = await startPlant('', () => {}, ['--limit', 'least-fps=1000']);
     try {

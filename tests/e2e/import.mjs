@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plant as its CAD system exports it, brought in by `plantcast import`: held against what another program made of the same files.
+// `plantcast import` of a real CAD export, compared with another program's result for the same files.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -41,7 +41,7 @@ const rotated = ([x, y, z, w], [a, b, c]) => {
     return [a + w * t[0] + y * t[2] - z * t[1], b + w * t[1] + z * t[0] - x * t[2], c + w * t[2] + x * t[1] - y * t[0]];
 };
 
-// Of each node with triangles, by name: its box in the scene, and its area.
+// Returns the bounding box and area of each node with triangles, by name.
 function shapes(path) {
     const { json, numbers } = readGlb(path), found = new Map();
     const walk = (index, place) => {
@@ -82,7 +82,7 @@ function shapes(path) {
 
 const median = (list) => list.sort((a, b) => a - b)[list.length >> 1];
 
-// The other program had its own chord errors, and moved the models to the origin.
+// The other program used its own chord tolerances and moved the models to the origin.
 for (const { file, as, chordMm, nodes, counted, assets } of [
     { file: 'plm-sample', as: 'plm_plant_hierarchy', chordMm: 2, nodes: 315, counted: '316', assets: 19 },
     { file: 'huldra_WD1-PSUP', as: 'huldra_wd1_psup', chordMm: 5, nodes: 4084, counted: '4,085', assets: 321 },
@@ -106,7 +106,7 @@ for (const { file, as, chordMm, nodes, counted, assets } of [
         }
         console.log(`# ${common.length} shapes, ${off} boxes differ; area ${areas[0].toFixed(2)} m2 for ${areas[1].toFixed(2)}`);
         assert.equal(off, 0, 'boxes that differ');
-        // The other program leaves out fewer of the faces that lie on each other: not those of which one is larger, and of ducts none.
+        // The other program removes fewer coincident faces: it keeps those of different size, and all faces of ducts.
         const all = run('plantcast', 'import', model, '-o', join(folder, 'all'), '--chord', String(chordMm), '--keep-covered');
         assert.equal(all.status, 0, all.stderr);
         const kept = shapes(join(folder, `all/${file}.glb`));
@@ -132,7 +132,7 @@ test('a real export with broken attributes or numbers is one line, and leaves no
     const head = text.subarray(0, text.indexOf('NEW')).toString('latin1'), id = Buffer.from('\0\0\0P\0\0\0R\0\0\0I\0\0\0M', 'latin1');
     const notFinite = Buffer.from(good), model = join(folder, 'a.rvm');
     for (let at = good.indexOf(id); at >= 0; at = good.indexOf(id, at + 4))
-        notFinite.writeFloatBE(NaN, at + 32); // the first number of a primitive's place
+        notFinite.writeFloatBE(NaN, at + 32); // the first number of a primitive's transformation
     for (const [bytes, attributes, why] of [
         [good, text.subarray(0, text.length >> 1), /a\.att: line \d+: the file ends within \d+ elements/],
         [good, `${head}${'NEW A\r\n'.repeat(100000)}`, /a\.att: line \d+: elements are nested more than \d+ deep/],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// IFC, brought in by `plantcast import`: the spatial tree, names, properties, openings, and files that are broken.
+// IFC files imported by `plantcast import`: the spatial tree, names, properties, openings, and broken files.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -56,7 +56,7 @@ for (const schema of ['IFC2X3', 'IFC4', 'IFC4X3_ADD2'])
 
 const hasOcct = existsSync(join(BIN, 'plantcast-import-occt'));
 
-// How far areas of the second reader may be off. Infinity: its shape is not that of the file, as its volume or its box shows.
+// How far areas of the second reader may differ. Infinity: its shape is wrong, as its volume or its box shows.
 const SECOND_OFF = [[/elbow/, Infinity, 'fills the hole'], [/half of an arc/, Infinity, 'takes the whole arc'],
     [/on a (wall|cylinder)/, Infinity, 'lays the profile flat'], [/two outer bounds/, Infinity, 'draws one of two faces'],
     [/polyline|composite|(mapped|clipped) pipe/, 0.085, 'pinches a pipe at a corner'], [/B-rep with/, 0.05, 'draws circles coarsely'],
@@ -70,7 +70,7 @@ function secondAgrees(second, bytes, name, ours) {
     return { good: Math.abs(ratio - 1) < off && sizes, compared: true, text: `area ${(ratio * 100).toFixed(1)} % of the second reader's` };
 }
 
-// Round shapes are drawn with 24 corners to a circle or more: up to 2.4 % less than the true volume.
+// Round shapes are drawn with 24 corners per circle or more, so the volume is up to 2.4 % less than the true one.
 test('every kind of shape has the volume and size that geometry gives, area and size of a second reader', { skip }, () => inFolder(
     async (folder) => {
     const wrong = [], { log, warn } = console, second = await secondReader();
@@ -83,7 +83,7 @@ test('every kind of shape has the volume and size that geometry gives, area and 
             writeFileSync(path, ifcOf(schema, lines, type));
             const said = plantcast(['import', path, '-o', plant]), all = `${said.stdout}${said.stderr}`;
             const found = said.status === 0 ? volumeOf(join(plant, 'kind.glb')) : { volume: 0, size: [0, 0, 0] };
-            console.log = console.warn = () => {}; // the second reader prints
+            console.log = console.warn = () => {}; // silences the second reader
             const other = secondAgrees(second, Buffer.from(ifcOf(schema, lines, type)), name, found);
             Object.assign(console, { log, warn });
             compared += Boolean(other.compared);
@@ -114,7 +114,8 @@ test('a pipe along a curve with parameters, and a basin with round edges', { ski
     const { status, stderr } = plantcast(['import', join(found, 'basin_brep/basin_brep.ifc'), '-o', join(folder, 'basin')]);
     assert.equal(status, 0, stderr);
     const { volume, size } = volumeOf(join(folder, 'basin/basin_brep.glb'));
-    assert.ok(near(size, [0.61, 0.4223, 0.094]) && volume > 0.00203 && volume < 0.00206, `${volume} m3, ${size}`); // closed: 2.04 l
+    // the closed volume is 2.04 litres
+    assert.ok(near(size, [0.61, 0.4223, 0.094]) && volume > 0.00203 && volume < 0.00206, `${volume} m3, ${size}`);
 }));
 
 test('an element whose shape is not built is named, with its class and the reason', { skip }, () => inFolder((folder) => {
@@ -137,7 +138,7 @@ test('an element whose shape is not built is named, with its class and the reaso
     assert.match(stdout, /lost: #904 LINE-1002 \(IfcPipeSegment, 0\$PlantcastKinds000000A\): its representation is empty/);
 }));
 
-// A ZIP file of one stored file.
+// Returns a ZIP file with one stored file.
 function zip(name, text) {
     const bytes = Buffer.from(text), title = Buffer.from(name), fields = Buffer.alloc(26), end = Buffer.alloc(22);
     fields.writeUInt16LE(20, 0);

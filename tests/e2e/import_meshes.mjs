@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OBJ, STL, PLY, FBX, COLLADA and 3DS, brought in by `plantcast import`: names, units, axes, and files that are broken.
+// OBJ, STL, PLY, FBX, COLLADA and 3DS imported by `plantcast import`: names, units, axes, and broken files.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
@@ -91,7 +91,7 @@ test('OBJ: a material file in a folder with backslashes', { skip }, () => inFold
     assert.equal(triangles, 8);
 }));
 
-// 100 in = 2.54 m. The geometry of the pump is moved 1 in x, its child stands 2 in x; neither moves the other.
+// 100 in = 2.54 m. The geometric transform moves the pump's own mesh by 1 in x, the child is 2 in x away; neither moves the other.
 test('FBX: a geometric transform moves its own mesh and no child', { skip }, () => inFolder((folder) => {
     const whole = fbx(2.54), moved = (x, y) => `"A",${x},0,0\n            P: "GeometricTranslation", "Vector3D", "Vector", "",${y}\n`;
     const mesh = /Geometry: 100[\s\S]*?\n {4}\}\n/.exec(whole)[0], model = /Model: 200[\s\S]*?\n {4}\}\n/.exec(whole)[0];
@@ -105,7 +105,7 @@ test('FBX: a geometric transform moves its own mesh and no child', { skip }, () 
     assert.ok(near(list[1].size, [4.54, 3.54, 0.5]), JSON.stringify(list[1])); /* from 2.54 to 7.08 */
 }));
 
-// A triangle in a glTF file, or a GLB file of these chunks.
+// A triangle as a glTF file, or as a GLB file with these chunks.
 const triangle = Buffer.alloc(44);
 [0, 0, 0, 1, 0, 0, 1, 1, 0].forEach((v, i) => triangle.writeFloatLE(v, 4 * i));
 [0, 1, 2].forEach((v, i) => triangle.writeUInt16LE(v, 36 + 2 * i));
@@ -187,7 +187,7 @@ test('glTF: the diffuse colour of the older materials, odd kinds of images, chun
     assert.equal(boxed(folder, 'tail.glb', Buffer.concat([glbOf(first, bin), Buffer.alloc(12, 7)])).triangles, 1);
 }));
 
-// Two buffers that gltfpack writes: the compressed bytes, and one without bytes for programs that cannot read them.
+// gltfpack writes two buffers: the compressed one, and an empty one for programs that cannot decompress.
 const noPacker = spawnSync('gltfpack', ['-v']).error ? 'no gltfpack' : false;
 test('glTF: meshopt, with a fallback buffer that has no uri', { skip: skip || noPacker }, () => inFolder((folder) => {
     writeFileSync(join(folder, 'a.bin'), triangle);
@@ -202,18 +202,18 @@ test('glTF: meshopt, with a fallback buffer that has no uri', { skip: skip || no
     for (const [name, extensions] of Object.entries(cases)) {
         packed.buffers[standIn].extensions = extensions;
         const { triangles, size } = boxed(folder, `${name}.gltf`, JSON.stringify(packed));
-        assert.ok(triangles === 1 && near(size, [1, 0, 1]), JSON.stringify(size)); // Z up: y of glTF is z
+        assert.ok(triangles === 1 && near(size, [1, 0, 1]), JSON.stringify(size)); // Z up: the y axis of glTF becomes z
     }
 }));
 
 test('a signal ends it, and nothing is left behind', { skip }, () => inFolder(async (folder) => {
-    writeFileSync(join(folder, 'a.ply'), ply().slice(0, ply().length >> 1)); // on which Assimp hangs
+    writeFileSync(join(folder, 'a.ply'), ply().slice(0, ply().length >> 1)); // Assimp hangs on this truncated file
     const program = spawn(join(BIN, 'plantcast'), ['import', join(folder, 'a.ply'), '-o', join(folder, 'plant')]);
     let said = '';
     program.stderr.on('data', (bytes) => said += bytes);
     const ended = once(program, 'close');
     await until(() => existsSync(join(folder, 'plant')) && readdirSync(join(folder, 'plant')).length > 0);
-    await setTimeout(300); // for the reader to begin
+    await setTimeout(300); // time for the reader to begin
     program.kill('SIGINT');
     const [code] = await ended;
     assert.equal(code, 1, said);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plantcast import --serve`: a plant is brought in on the page. Files are dropped, tags gone through and decided, units corrected.
+// `plantcast import --serve`: a plant is imported on the page. Files are dropped, tags reviewed and decided, units corrected.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -24,7 +24,7 @@ const DATA = join(import.meta.dirname, '../../../shared/data');
 const noData = notBuilt || (existsSync(join(DATA, 'cad')) ? false : 'no ../shared/data/cad');
 const DESK = { viewport: { width: 1280, height: 800 } };
 
-// `plantcast import --serve`, in a folder that is not there yet.
+// `plantcast import --serve` in a folder that does not exist yet.
 class Served {
     static async start(...args) {
         const served = new Served();
@@ -74,7 +74,7 @@ class Served {
     }
 }
 
-// A model of boxes with these names, side by side, each `size` wide.
+// Returns a model of boxes with these names, in a row, each `size` wide.
 function boxes(names, size = 1) {
     const corners = [...Array(8).keys()].flatMap((i) => [i & 1, i >> 1 & 1, i >> 2 & 1].map((bit) => bit * size));
     const faces = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
@@ -102,7 +102,7 @@ V 401/A.LT,0,100,%,Level
 TT-9999,0,90,degC,Another unit
 `;
 
-// In the page: files as if they had been chosen; [{ name, text }] or paths.
+// Chooses files in the page's file input; files: [{ name, text }] or paths.
 const choose = (page, files) => page.locator('#import input[type=file]').setInputFiles(files.map((file) => (typeof file === 'string' ? file
     : { name: file.name, mimeType: 'application/octet-stream', buffer: Buffer.from(file.text) })));
 const row = (page, tag) => page.locator('#import .row').filter({ has: page.locator('b', { hasText: new RegExp(`^${tag}$`) }) });
@@ -116,7 +116,7 @@ const assetsOf = (page) => page.evaluate(() => globalThis.plantcast.session.mode
 const wrong = (page, pattern) => page.waitForFunction((what) => new RegExp(what).test(document.querySelector('#import .wrong').textContent),
     pattern, { timeout: 60000 });
 
-// --- what is asked over HTTP
+// --- requests over HTTP
 
 test('uploads: names, sizes, other sites, one import at a time', options, async () => {
     const served = await Served.start();
@@ -164,7 +164,7 @@ test('files on their way: four at most, and none that drips', options, async () 
             drip.timer = setInterval(() => socket.write('x'), 500);
             drips.push(drip);
         }
-        for (let status = 200; status !== 503; await new Promise((done) => setTimeout(done, 100))) { // once all four have begun
+        for (let status = 200; status !== 503; await new Promise((done) => setTimeout(done, 100))) { // until all four uploads have begun
             ({ status } = await put('fifth.glb'));
             assert.ok([200, 503].includes(status), `${status}`);
         }
@@ -232,7 +232,7 @@ test('what goes wrong is one line, and the plant before stays', options, async (
 
 test('an import that fails or is cancelled once the new models are in place: the models before come back, too', options, async () => {
     const served = await Served.start();
-    const files = () => Object.fromEntries(readdirSync(served.folder, { withFileTypes: true }) // but for versions that are kept
+    const files = () => Object.fromEntries(readdirSync(served.folder, { withFileTypes: true }) // without kept versions
         .filter((entry) => entry.isFile() && !/\.\d+$/.test(entry.name))
         .map(({ name }) => [name, createHash('md5').update(readFileSync(join(served.folder, name))).digest('hex')]));
     const bring = async (names, how = '') => {
@@ -242,7 +242,7 @@ test('an import that fails or is cancelled once the new models are in place: the
     try {
         await served.post('/upload?name=tags.csv', TAGS);
         const prepared = join(served.folder, readdirSync(served.folder).find((name) => /prepared/.test(name)));
-        const breaks = async (how) => { // nothing can be prepared
+        const breaks = async (how) => { // makes preparing fail
             renameSync(prepared, `${prepared}.away`);
             writeFileSync(prepared, '');
             const before = files();
@@ -260,7 +260,7 @@ test('an import that fails or is cancelled once the new models are in place: the
         assert.equal((await served.idle()).failed, null);
         await breaks('');
         await breaks('?what=anew&units=ft');
-        // A model that is made by a program which waits while there is a file `wait`: an import cannot end before it is cancelled.
+        // A model that is converted by a program which waits while a file `wait` exists: so an import cannot end before it is cancelled.
         const [wait, drawing] = ['wait', 'box.cad'].map((name) => join(served.folder, name));
         const command = 'test -e "${1%/*}/wait" && touch waits && sleep 100; cp "$1" "$2"';
         writeFileSync(drawing, boxes(['Box']));
@@ -280,7 +280,7 @@ test('an import that fails or is cancelled once the new models are in place: the
                 await new Promise((done) => setTimeout(done, 10));
             assert.equal((await (await served.api('')).json()).phase, 'preparing');
             assert.notEqual(files()['plant.glb'], before['plant.glb'], 'the new model is in place');
-            // Nobody else changes the folder meanwhile; whoever does without asking loses nothing.
+            // No other Plantcast program changes the folder meanwhile; a program that does so without locking loses nothing.
             const other = spawnSync(join(BIN, 'plantcast'), ['match', served.folder, join(served.folder, 'exports/tags.csv')]);
             assert.match(String(other.stderr), /^plantcast match: .*: plantcastd \(process \d+\) is at work in it\n$/);
             if (saves)
@@ -296,7 +296,7 @@ test('an import that fails or is cancelled once the new models are in place: the
             else
                 assert.equal(after['matches.csv'], before['matches.csv']);
         }
-        // While somebody else has the folder, an import does not begin.
+        // While another process holds the folder's lock, an import does not begin.
         const held = spawn('flock', [served.folder, 'sh', '-c', 'echo held; read line'], { stdio: ['pipe', 'pipe', 'ignore'] });
         await once(held.stdout, 'data');
         const now = files();
@@ -316,7 +316,7 @@ test('40 % of the rows are there twice, and one tag with control characters', op
     const [model, list] = ['plant.gltf', 't.csv'].map((name) => join(given, name));
     writeFileSync(model, boxes(NAMES));
     writeFileSync(list, [...TAGS.trim().split('\n'), ...lines.slice(0, 5), '"P-201B\u0007_TT",0,1,degC,x'].join('\n'));
-    const served = await Served.start(model, list); // as if they had been dropped
+    const served = await Served.start(model, list); // same as dropping the files
     try {
         const state = await served.idle();
         assert.equal(state.failed, null, state.failed);
@@ -433,7 +433,7 @@ test('placed by hand: the engineer\'s panel takes over, and the tag is not unpla
     });
     assert.deepEqual((await shown()).isolate, ['E-101']);
     await page.getByRole('button', { name: 'Show all' }).click();
-    // On other equipment than it was matched to: said where it is tried out, and before it is saved.
+    // Placed on other equipment than the matched one: reported during the trial, and before saving.
     const { min, max } = await page.evaluate(() => {
         const { session: { model }, cameraController } = globalThis.plantcast, { bounds } = model.asset('P-201A');
         cameraController.flyToBox(bounds, 4);
@@ -452,7 +452,7 @@ test('placed by hand: the engineer\'s panel takes over, and the tag is not unpla
     await engineer.getByRole('button', { name: 'Take all back' }).click();
     await page.waitForFunction(() => globalThis.plantcast.session.model.placed.size === 0);
     await page.locator('#import-toggle').click();
-    // Its own alone, and then what was shown before.
+    // Isolates the tag's equipment, then restores what was shown before.
     await page.getByRole('button', { name: 'Place by hand' }).click();
     await page.waitForFunction(() => globalThis.plantcast.session.params.isolate?.[0] === 'E-101');
     await page.locator('#import-toggle').click();
@@ -489,7 +489,7 @@ for (const [name, language, screen, dark] of READERS)
 
 // --- a real plant
 
-// Names of a GLB file's nodes that no other has.
+// Returns the unique names of a GLB file's nodes.
 function namesIn(path) {
     const bytes = readFileSync(path), json = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)).toString());
     const names = json.nodes.map(({ name }) => name).filter(Boolean);
@@ -497,7 +497,7 @@ function namesIn(path) {
 }
 const seenRows = (text, status) => text.split('\n').filter((line) => line.includes(`,${status},`));
 
-const large = sweep(test, () => {}); // walk.mjs goes the same way with a plant room
+const large = sweep(test, () => {}); // walk.mjs does the same with a plant room
 large('400,000 triangles and 300 tags: a first picture within 5 minutes of the first command', { skip: noData, timeout: 4e5 }, async () => {
     const models = ['models/duplex_mep.glb', 'models/plm_plant_5parts.glb'].map((name) => join(DATA, name));
     const list = join(mkdtempSync(join(tmpdir(), 'plantcast-list-')), 'tags.csv');
@@ -570,7 +570,7 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         await live('3 of 3 tags have values');
         await arrive(desk);
         await shoot(desk, 'import-13-values');
-        // Made anew, in other units: values go on; and what units are in force is known to a page that comes later, too.
+        // Imported again in other units: values continue, and a page that connects later knows the units, too.
         await desk.locator('#import .measures summary').click();
         await desk.locator('#import .measures select').first().selectOption('ft');
         await desk.getByRole('button', { name: 'Apply' }).click();
@@ -592,7 +592,7 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         assert.match((await own.idle()).failed, /source 127\.0\.0\.1 would be lost: there is no tag list among the exports; add it first/);
         assert.ok(own.read('plant.yaml').includes(sources));
         assert.equal((await own.post('/upload?name=tags.csv', list)).status, 200);
-        // A line that somebody wrote is theirs.
+        // A line that the user wrote is kept.
         writeFileSync(join(own.folder, 'plant.yaml'), own.read('plant.yaml').replace('CDAB }', 'CDAB, poll_ms: 2000 }'));
         await own.post(`/source?host=127.0.0.1&port=${wrongPort}&order=CDAB`);
         assert.match((await own.idle()).failed, /somebody wrote its source otherwise than --modbus does: change it there/);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// STEP and IGES, brought in by `plantcast import`: assemblies, names, colours, units, and files that are broken.
+// STEP and IGES imported by `plantcast import`: assemblies, names, colours, units, and broken files.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -105,19 +105,19 @@ test('IGES without groups, and as Open CASCADE writes an assembly', { skip }, ()
     assert.ok(near(all.size, [0.1, 0.2, 0.3]), JSON.stringify(all));
     assert.deepEqual(layers.map(({ name, triangles, properties }) => [name, triangles, properties.Layer]),
         [['Layer 1', 6, '1'], ['Layer 2', 6, '2']]);
-    const skid = nodes('skid.igs'); // its writer knows one level
+    const skid = nodes('skid.igs'); // the program that wrote this file supports one level only
     assert.ok(near(skid[0].size, [2, 1, 0.32]), JSON.stringify(skid[0]));
     assert.deepEqual(skid.slice(1, 6).map(({ name }) => name), ['Skid S-100', 'Plate:1', 'Casing:1', 'Motor:1', 'Casing:1']);
     assert.ok(near(skid[5].size, [0.2, 0.2, 0.3]) && near(skid[5].centre, [0.3, 0.7, 0.15]), JSON.stringify(skid[5]));
 }));
 
-// Each ends within its time, and is refused in one line or read; nothing is left behind.
+// Each file ends within its time limit: it is refused with one line, or read. Nothing is left behind.
 test('broken files are one line each, and leave nothing behind', { skip }, () => withSamples((folder) => {
     const step = readFileSync(join(folder, 'skid_214.stp')), iges = readFileSync(join(folder, 'skid.igs'));
     const text = step.toString('latin1');
     const ring = text.replace(/NEXT_ASSEMBLY_USAGE_OCCURRENCE\(('[^']*','[^']*','[^']*'),#(\d+),#(\d+)/g,
         (whole, names, a) => `NEXT_ASSEMBLY_USAGE_OCCURRENCE(${names},#${a},#${a}`);
-    // Letters for some numbers; and subfigures, their places and groups that name themselves as what is in them.
+    // Letters in place of some numbers; and subfigures, instances and groups that contain themselves.
     const points = readFileSync(join(folder, 'tree.igs'), 'latin1');
     const nanIges = points.replace(/\d\.,/g, (number, at) => (at % 3 === 0 ? 'NA,' : number));
     const selfIges = points.split('\n').map((line) => {
@@ -143,7 +143,7 @@ test('broken files are one line each, and leave nothing behind', { skip }, () =>
         writeFileSync(join(folder, name), bytes);
         const before = readdirSync(folder).sort();
         const { status, stderr, stdout } = plantcast('import', join(folder, name), '-o', join(folder, 'plant'), '--timeout',
-            name === 'nan.step' ? '2' : '8'); // Open CASCADE would look for its end for hours
+            name === 'nan.step' ? '2' : '8'); // Open CASCADE would search for the end for hours
         console.log(`# ${name}: ${status === 0 ? stdout.split('\n')[0].replace(/.*: /, 'read: ') : stderr.trim().replace(/.*: /, '')}`);
         if (name === 'nan.igs')
             assert.match(`${stdout}${stderr}`, /\d+ of its \d+ entities could not be read/);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A first run: `plantcast init` makes all that an instance of the service reads, and the daemon starts with it; a renewed certificate comes
-// by certbot's hook; a build without the charts of the page fails.
+// A first run: `plantcast init` creates everything that a service instance needs, and the daemon starts with it; certbot's hook installs a
+// renewed certificate; a build without the page's charts fails.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -128,7 +128,7 @@ test('`make run` twice on a machine: the second takes another port, and both are
 const OUT = resolve(process.env.PLANTCAST_OUT ?? 'build/release');
 const notReleased = OUT === join(BIN, 'release') ? false : 'not the release build';
 
-// Processes of a plant, by the plant file in their arguments.
+// Returns a plant's processes, found by the plant file in their arguments.
 const processesOf = (file) => readdirSync('/proc').filter((pid) => /^\d+$/.test(pid)).map((pid) => {
     try {
         return readFileSync(`/proc/${pid}/cmdline`, 'utf8').split('\0');
@@ -181,7 +181,7 @@ test('a package that this Debian does not have is left out if it is optional, an
     mkdirSync(bin);
     cpSync('deploy/deps', join(tree, 'deploy/deps'));
     const program = (name, script) => writeFileSync(join(bin, name), `#!/bin/sh\n${script}\n`, { mode: 0o755 });
-    program('dpkg-query', 'exit 1'); // nothing is installed
+    program('dpkg-query', 'exit 1'); // pretends that no package is installed
     program('apt-cache', 'case $2 in known*) echo "  Candidate: 1.0" ;; none*) echo "  Candidate: (none)" ;; esac');
     program('apt-get', `[ $1 = update ] || echo "$@" >>${root}/installed; case "$*" in *" none"*) exit 100 ;; esac`);
     program('id', 'echo 0');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page as it is installed: its service worker keeps one version of its files, for the time without a network. The server here has
-// nothing but these files.
+// The page as an installed app: its service worker caches one version of its files for use without a network. The test's server has only
+// these files.
 import assert from 'node:assert/strict';
 import { existsSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
@@ -29,7 +29,7 @@ before(async () => {
     browser = await openPage(`http://127.0.0.1:${server.address().port}/?lang=en`);
     page = browser.page;
     await page.waitForFunction(() => globalThis.plantcast);
-    await page.evaluate(async () => { // as the page does where it came by https
+    await page.evaluate(async () => { // the page does this when it was loaded over https
         await navigator.serviceWorker.register('service.js');
         await navigator.serviceWorker.ready;
     });
@@ -40,7 +40,7 @@ after(async () => {
     server?.close();
 });
 
-// { version: [path, ...] }; of others, under their names
+// Returns { version: [path, ...] } of the caches; other caches under their names
 const kept = () => page.evaluate(async () => Object.fromEntries(await Promise.all((await caches.keys()).map(async (name) =>
     [name.replace('plantcast-', ''), (await (await caches.open(name)).keys()).map(({ url }) => new URL(url).pathname)]))));
 const reload = async () => {
@@ -64,7 +64,7 @@ test('files are kept as they are used, parts too', options, async () => {
 });
 
 test('with another version nothing of the one before stays', options, async () => {
-    // The page may still ask for the version after its last part came: it would load itself anew just when it is told to.
+    // The page may still ask for the version after its last part was loaded: it would then reload itself just when told to.
     await page.evaluate(() => sessionStorage.setItem('plantcast.renewed', 'bbbbbbbbbbbb'));
     version = 'bbbbbbbbbbbb';
     await page.evaluate(() => caches.open('foreign'));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever somebody does is answered when it is on disk, or with "not kept": of each kind of action, what is answered as done is there
-// after a kill -9 in that very moment; on a disk that is full it is said not to be kept, to programs and on the page.
+// Every action is answered once it is on disk, or with "not kept". For each kind of action, one that was answered as done survives a kill
+// -9 at that moment; on a full disk it is reported as not kept, to programs and on the page.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { appendFileSync, chmodSync, cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statfsSync, truncateSync,
@@ -38,7 +38,7 @@ walls: [{ id: room, displays: [{ grid: [main], panes: [{ area: main, views: whol
     assert.equal(plant.prepare().code, 0);
     engineer = runProgram('plantcast', ['token', 'add', path('tokens'), '--role', 'engineer', '--name', 'eve']).out.trim();
     chmodSync(path('tokens'), 0o600);
-    // All of it, also the plant file, is on a disk of 24 MB.
+    // Everything, including the plant file, is on a disk of 24 MB.
     const aside = `${plant.folder}.aside`;
     cpSync(plant.folder, aside, { recursive: true });
     mounted = spawnSync('mount', ['-t', 'tmpfs', '-o', 'size=24m', 'tmpfs', plant.folder]).status === 0;
@@ -91,7 +91,8 @@ const shelve = { action: 'shelve', for_s: 3600, reason: 'is looked at' };
 const onAlarm = (more) => ({ type: 'alarm', alarms: [['TI-1', 'H']], ...more });
 const device = () => fetch(`http://127.0.0.1:${port}/api/v1/pair?wall=room&display=1`, { headers: { Authorization: `Pairing ${SECRET}` } });
 
-// name, message (or what returns it), the type of its answer, event of the audit trail, whether it is there: asked of the daemon.
+// name, message (or a function that returns it), type of the answer, event in the audit trail, and a check that asks the daemon whether the
+// action is there.
 const ACTIONS = [
     ['acknowledge', onAlarm({ action: 'acknowledge' }), 'alarmed', 'alarm', async () => (await alarm()).state === 'acknowledged'],
     ['shelve', onAlarm(shelve), 'alarmed', 'alarm', async () => (await alarm()).state === 'shelved'],
@@ -130,7 +131,7 @@ const ACTIONS = [
     }, 'tags_saved', 'reload', () => readFileSync(path('tags.csv'), 'utf8').includes(',-0.5,0.25,0,')],
 ];
 
-// Does one. Returns its answer.
+// Sends one action. Returns its answer.
 async function act(message, type, seq) {
     const client = await enter();
     client.say({ ...(typeof message === 'function' ? await message(client) : message), seq });
@@ -149,13 +150,13 @@ test('on a full disk each kind is answered with "not kept", and why; once there 
     t.after(free);
     const unkept = [], unaudited = [];
     for (const [i, [name, message, type]] of ACTIONS.entries()) {
-        if (/^(remove|revoke|unshelve|put back)/.test(name)) // of what could not be kept
+        if (/^(remove|revoke|unshelve|put back)/.test(name)) // these need an action that was not kept
             continue;
         fill();
         const { answer, client } = await act(message, type, i + 1);
         client.close();
         if (isDone(answer))
-            continue; // it had room: what follows holds it to that
+            continue; // the disk had room: the check below then expects the action
         unkept.push(name);
         assert.match(whyNot(answer), FULL, `${name}: ${JSON.stringify(answer)}`);
         if (answer.unaudited)
@@ -198,7 +199,7 @@ test('what is answered as done is there after a kill -9 in that moment, and in t
         const line = trail().slice(lines).find((one) => one.event === event && one.result === 'done');
         assert.ok(line, `${name} is not in the trail`);
     }
-    const { status } = await upload('part.obj', 'v 0 0 0\n'); // its line in the trail follows within a second
+    const { status } = await upload('part.obj', 'v 0 0 0\n'); // its line in the audit trail follows within a second
     await killed();
     assert.equal(status, 200);
     assert.deepEqual((await fetched('/api/v1/import')).files.map(({ name, bytes }) => [name, bytes]), [['part.obj', 8]]);
@@ -206,7 +207,7 @@ test('what is answered as done is there after a kill -9 in that moment, and in t
         ACTIONS.map(([name]) => name).join(', ')}, upload an export`);
 });
 
-// A file system that is frozen takes no writes and gives no errors, as a disk or a share that hangs.
+// A frozen file system accepts no writes and reports no errors, like a hanging disk or network share.
 function freezable(folder) {
     const image = join(folder, 'image'), disk = join(folder, 'disk');
     const run = (...command) => spawnSync(command[0], command.slice(1)).status === 0;
@@ -259,13 +260,13 @@ test('while the disk hangs, an alarm is answered with "not kept", and others are
         assert.match(first.unaudited, /the server’s disk does not answer/);
         assert.equal(last.done, 0);
         assert.ok(served > 20, `${served} requests in ${ms} ms`);
-        // A page that closes at once: the trail still says that its action is not kept.
+        // The client closes at once: the audit trail still says that its action is not kept.
         leaver.say({ ...onAlarm({ ...shelve, reason: 'leaves at once' }), seq: 1 });
         leaver.close();
         const answerTo = (seq) => client.until('alarmed', ({ texts }) => texts.find((one) => one.type === 'alarmed' && one.seq === seq));
         client.say({ ...onAlarm({ action: 'acknowledge' }), seq: 20 });
         await answerTo(20);
-        // An action that waits for the disk while the daemon is told to end is answered before the connection closes.
+        // An action that waits for the disk during shutdown is answered before the connection closes.
         client.say({ ...onAlarm({ action: 'unshelve' }), seq: 30 });
         client.say({ type: 'ping', t: 30 });
         await client.until('pong', ({ texts }) => texts.find(({ type, t: of }) => type === 'pong' && of === 30));

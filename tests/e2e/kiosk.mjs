@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kiosk's supervisor (deploy/systemd/kiosk) with the real Chromium, below a service manager: it feeds the watchdog while the page
-// answers, and only then; what the page keeps outlives a restart. systemd accepts its units.
+// The kiosk's supervisor (deploy/systemd/kiosk) with the real Chromium, under a service manager: it feeds the watchdog only while the page
+// answers; the page's storage survives a restart. systemd accepts its units.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { chownSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -47,7 +47,7 @@ async function until(what, is) {
     }
 }
 
-// before: what the program is started by; around: what the browser is.
+// before: a command that starts the supervisor; around: a command that wraps the browser.
 function startKiosk(url, { before: starter = [], around = [], env = display.env } = {}) {
     const [program, ...args] = [...starter, 'tests/support/service_manager.py',
         '--watchdog', String(WATCHDOG_S), 'deploy/systemd/kiosk', url, ...around, CHROMIUM,
@@ -69,13 +69,13 @@ before(async () => {
     [beats, answer] = [[], ''];
     await serve();
 });
-// As systemd ends all of a service's processes.
+// Kills all processes, like systemd ends a service.
 function endAll(pids) {
     for (const pid of pids) {
         try {
             process.kill(pid, 'SIGKILL');
         } catch {
-            // it has ended
+            // the process has ended
         }
     }
 }
@@ -115,7 +115,7 @@ test('a page whose main thread hangs does not feed it: the service is started ag
     await until('it is fed', () => kiosk.fed() > 1 && beats.length > 0);
     kiosk.pids = family(kiosk.pid());
     answer = 'hang';
-    assert.equal(await kiosk.ended, 99, kiosk.said); // the manager's watchdog
+    assert.equal(await kiosk.ended, 99, kiosk.said); // ended by the manager's watchdog
     answer = '';
 });
 
@@ -152,7 +152,7 @@ const noCage = why || (lacks.length > 0 && `not here: ${lacks.join(', ')}`) || (
 test('in cage, which draws into memory here, as on a monitor', { ...options, skip: noCage }, async () => {
     const own = state;
     state = mkdtempSync(join(tmpdir(), 'plantcast-cage-'));
-    chownSync(state, NOBODY, NOBODY); // cage refuses root
+    chownSync(state, NOBODY, NOBODY); // cage refuses to run as root
     beats.length = 0;
     try {
         const { DISPLAY: _, ...env } = display.env;

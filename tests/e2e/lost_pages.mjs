@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the page says and does where something is missing, by one browser: its own parts, its server, the plant's values.
+// Tests of the page when something is missing, in one browser: its own parts, its server, the plant's values.
 import { describe } from 'node:test';
-import './support/browser.mjs'; // whose browser ends with the program, not with the first subject
+import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first subject
 
 describe('lost_pages', { concurrency: 2 }, () => {
     for (const subject of ['weight', 'first_light', 'truth', 'proxy'])

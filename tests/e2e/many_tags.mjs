@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 20,000 tags through the whole daemon: read once a second, shown, recorded, and served to programs by pages; a page of tags is whole
-// and in order, what a client sees goes on meanwhile, and the loss of their device is one alarm.
+// 20,000 tags through the whole daemon: read once a second, shown, recorded, and served in pages. A page of tags is complete and in order,
+// clients are served meanwhile, and the loss of their device raises one alarm.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -15,7 +15,7 @@ const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const name = (i) => `X-${String(i).padStart(5, '0')}`;
 let plant;
 
-// As many as 65,536 registers hold, of one device, each with a limit. Numbers before ours are those of the tiny plant's own tags.
+// As many tags as 65,536 registers hold, on one device, each with a limit. The first numbers belong to the tiny plant's own tags.
 before(async () => {
     if (options.skip)
         return;

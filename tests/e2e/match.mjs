@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plantcast match`: tag lists made from the names of real plants, matched and counted against the truth; lists that are in a bad way; what
-// people change by hand and a second run; and the whole way from an export of a CAD system to a picture.
+// `plantcast match`: tag lists made from real plants' names, matched and compared with the truth; malformed lists; manual changes and a
+// second run; and the whole way from a CAD export to a picture.
 import { seed } from './support/sweep.mjs';
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
@@ -37,7 +37,7 @@ function table(path) {
 const assetsOf = (plant) =>
     [...readFileSync(join(plant, 'plant.yaml'), 'utf8').matchAll(/\{ id: "((?:[^"\\]|\\.)+)"/g)].map(([, id]) => id);
 
-// A plant of boxes with these names, without a CAD system.
+// Makes a plant of boxes with these names, without a CAD system.
 function boxPlant(folder, names) {
     const positions = Buffer.from(new Float32Array([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1]).buffer);
     const corners = Buffer.from(new Uint16Array([0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6,
@@ -71,7 +71,7 @@ function count(plant, truth) {
     return { counts, wrong, own, precision: right / (right + not), recall: right / own };
 }
 
-// Each real plant: brought in, matched with 5,000 tags, counted.
+// Each real plant: imported, matched with 5,000 tags, results counted.
 for (const { plant, format, bring } of [
     { plant: 'plm-sample', format: 'kepware', bring: (out) => run('plantcast', 'import', join(DATA, 'cad/plm-sample.rvm'), '-o', out) },
     { plant: 'huldra_WD1-PSUP', format: 'intouch',
@@ -155,7 +155,7 @@ test('what people change stays; a second run changes nothing', { skip: notBuilt 
     const first = texts();
     match();
     assert.deepEqual(texts(), first);
-    // In matches.csv: an asset for one, none for another. In tags.csv: a place that is confirmed, and another asset.
+    // In matches.csv: an asset for one tag, none for another. In tags.csv: a confirmed position, and another asset.
     edit('matches.csv', 'PT-101,none,,', 'PT-101,none,P-101,');
     edit('matches.csv', 'LT-201,sure,V-201', 'LT-201,none,V-201');
     edit('tags.csv', ',E-101,equipment,', ',E-101,,');
@@ -200,11 +200,11 @@ test('what somebody saves while tags are matched is not replaced', { skip: notBu
         const ended = new Promise((done) => child.once('exit', done)), watched = watch(folder);
         let said = '';
         child.stderr.on('data', (piece) => { said += piece; });
-        watched.on('change', (_, name) => { // it has read and matched, and looks whether the result is good
+        watched.on('change', (_, name) => { // the program has matched and now checks the result
             if (!/^\.trial/.test(name) || stopped || child.exitCode !== null)
                 return;
             child.kill('SIGSTOP');
-            stopped = existsSync(join(folder, `.trial.${child.pid}.yaml`)); // it has not written yet
+            stopped = existsSync(join(folder, `.trial.${child.pid}.yaml`)); // the result is not written yet
             if (stopped)
                 writeFileSync(join(folder, 'matches.csv'), mine);
             child.kill('SIGCONT');
@@ -231,14 +231,14 @@ test('killed between two files, left over, at once, out of disk: a valid plant, 
             (_, i) => `E-10${i % 3}.TT-${i},${400001 + 2 * i},${unit},0,90`)].join('\n');
         mkdirSync(first);
         boxPlant(first, ['E-100', 'E-101', 'E-102']);
-        for (const [count, unit] of [[6, 'degC'], [600, 'bar']]) { // a plant without tags; one that has some, and gains a group
+        for (const [count, unit] of [[6, 'degC'], [600, 'bar']]) { // a plant without tags; and one with tags, which gains a group
             writeFileSync(list, rows(count, unit));
             cpSync(first, whole, { recursive: true });
             const args = [list, '--modbus', '127.0.0.1:502'];
             good(run('plantcast', 'match', whole, ...args));
             const replacedAt = names.map((name) => statSync(join(whole, name), { bigint: true }).ctimeNs);
             assert.deepEqual(replacedAt, replacedAt.toSorted((a, b) => Number(a - b)), 'the order of names');
-            for (let replaced = 0; replaced <= names.length; replaced++) { // renamed in this order
+            for (let replaced = 0; replaced <= names.length; replaced++) { // files are renamed in this order
                 rmSync(plant, { recursive: true, force: true });
                 cpSync(first, plant, { recursive: true });
                 for (const name of names.slice(0, replaced))
@@ -246,7 +246,7 @@ test('killed between two files, left over, at once, out of disk: a valid plant, 
                 for (const left of ['tags.csv.4194304.new', 'matches.csv.4194304.3.new', '.trial.4194304.yaml'])
                     writeFileSync(join(plant, left), 'half of a li'); // no process has this number
                 const others = [`tags.csv.${process.pid}.new`, 'tags.csv.4194304.7.new'], hourAgo = Date.now() / 1000 - 3600;
-                for (const name of others) // somebody is writing it here, or in another container
+                for (const name of others) // another process is writing it, on this machine or in another container
                     writeFileSync(join(plant, name), 'half of a li');
                 for (const name of readdirSync(plant).filter((each) => /4194304/.test(each) && each !== others[1]))
                     utimesSync(join(plant, name), hourAgo, hourAgo);
@@ -284,7 +284,7 @@ test('killed between two files, left over, at once, out of disk: a valid plant, 
         assert.notEqual(readFileSync(elsewhere, 'utf8'), before['tags.csv']);
     }));
 
-// A daemon in a folder where replacing files was begun. At the end it is the plant of `whole`, and nothing else is left.
+// Starts a daemon in a folder where replacing files was begun. Afterwards the plant equals `whole`, and no temporary file is left.
 async function startsWhole(folder, whole, filesOf, what) {
     const daemon = new Program('plantcastd', ['--port', '0', '--gl', 'osmesa', '--h264', 'off', join(folder, 'plant.yaml')]);
     try {
@@ -298,7 +298,7 @@ async function startsWhole(folder, whole, filesOf, what) {
     }
 }
 
-// An import is killed before each of its renamings, also where the new files take the places of the old ones.
+// An import is killed before each of its renames, also where new files replace old ones.
 const KILLER = join(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/kill_at_rename.so');
 const noKiller = notBuilt || (existsSync(KILLER) ? false : 'not built: kill_at_rename.so');
 for (const last of ['import', 'undo'])
@@ -317,7 +317,7 @@ for (const last of ['import', 'undo'])
         good(run('plantcast', 'import', model, '-o', first));
         good(match(first));
         good(run('plantcast-prep', join(first, 'plant.yaml')));
-        draw('E-103', 'E-101', 'E-102'); // E-100 is gone, and its tag's equipment with it
+        draw('E-103', 'E-101', 'E-102'); // E-100 is gone, and so is its tag's equipment
         const args = last === 'undo' ? ['--undo', '-o'] : [model, '-o'];
         if (last === 'undo')
             good(run('plantcast', 'import', model, '-o', first));
@@ -362,7 +362,7 @@ for (const last of ['import', 'undo'])
         assert.ok(finished >= 3, `${finished}`);
     }));
 
-// Kepware's export of a device, of a plant that PDMS drew: no line of either is changed by hand.
+// Kepware's export of a device, for a plant drawn in PDMS: no line of either is edited by hand.
 const ROOM = `Tag Name,Address,Data Type,Respect Data Type,Client Access,Scan Rate,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,\
 Eng Units,Description
 "ART1105BA_TT01",400001,Float,1,R/O,100,None,,,0,150,"degC","Tank ART1105BA shell top temperature"
@@ -396,7 +396,7 @@ test('from exports of two systems to a live picture', { skip: noData, timeout: 2
     const before = ['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => readFileSync(join(out, name), 'utf8'));
     good(run('plantcast', 'match', out, join(out, 'kepware.csv')));
     assert.deepEqual(['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => readFileSync(join(out, name), 'utf8')), before);
-    // Somebody knows the equipment alone: no coordinates are needed.
+    // If the user gives only the equipment, no coordinates are needed.
     const list = join(out, 'tags.csv'), shorter = before[1].replace(/^(TT-1101,.*,equipment,,).*$/m, '$1,,');
     assert.notEqual(shorter, before[1]);
     writeFileSync(list, shorter);

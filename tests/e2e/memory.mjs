@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory: somebody tries everything, and the daemon stays under its bound; when all have gone it gives back what it took. What a person
-// does in a minute, as fast as the machine answers; in `make test-long` what he does in ten, and (USES=1440) in an hour.
+// Memory: a random user tries everything, and the daemon stays under its limit; when all clients have gone it releases the memory. By
+// default one minute of a person's use, as fast as the machine answers; ten minutes in `make test-long`, an hour with USES=1440.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -19,7 +19,7 @@ const status = () => readFileSync(`/proc/${plant.pid}/status`, 'utf8');
 const megabytes = (name) => Number(status().match(new RegExp(`${name}:\\s+(\\d+)`))[1]) / 1024;
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-// Gauges in MB, by what they are of.
+// Returns memory gauges in MB, by their label.
 async function gauges() {
     const { body } = await get(port, '/metrics'), found = {};
     for (const [, name, of, value] of body.toString().matchAll(/^plantcast_memory(_bound)?_bytes(?:\{of="(.*)"\})? (\d+)$/gm))
@@ -48,7 +48,7 @@ test('under its bound, whatever somebody tries', options, async (t) => {
             [most, mostOf] = [now, await gauges()];
         assert.ok(now <= BOUND_MB, `after ${n} uses, the last of them ${name}: ${now} MB; ${told(mostOf)}`);
         const { bound, drawing, ...kept } = await gauges(), sum = Object.values(kept).reduce((a, b) => a + b);
-        assert.ok(sum <= bound * 1.1, // what the present picture needs may pass it
+        assert.ok(sum <= bound * 1.1, // the present picture may exceed the limit
             `${sum} MB of ${bound} are kept, beside ${drawing} to draw the next picture in: ${told(kept)}`);
         if (random() < LEAVES) {
             await one.leave();
@@ -63,7 +63,7 @@ test('under its bound, whatever somebody tries', options, async (t) => {
 });
 
 test('when all have gone it is what it was', options, async (t) => {
-    await one?.leave(); // whatever became of the first test
+    await one?.leave(); // whatever the first test's result was
     const began = performance.now();
     while (megabytes('VmRSS') > GROWN * start && performance.now() - began < REST_MS)
         await sleep(250);

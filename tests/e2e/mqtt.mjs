@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sources of type mqtt, against Debian's mosquitto: numbers and JSON, times and qualities that are stated, retained values, a broker that
-// is killed, frozen and started again, and payloads that are none.
+// Sources of type mqtt with Debian's mosquitto: numbers and JSON, timestamps and qualities in payloads, retained values, a broker that is
+// killed, frozen and restarted, and invalid payloads.
 import assert from 'node:assert/strict';
 import { createServer } from 'node:net';
 import packets from 'mqtt-packet';
@@ -86,7 +86,7 @@ for (const protocol of ['5', '3.1.1'])
         await broker.restart();
         for (const end = performance.now() + 90000; await metric('up{source="broker"}') !== 1; await sleep(100))
             assert.ok(performance.now() < end, 'connected again');
-        await until('TI-1', { quality_name: 'Bad_CommunicationError' }, 1); // the broker being there says nothing of the value
+        await until('TI-1', { quality_name: 'Bad_CommunicationError' }, 1); // a connected broker does not make the value current
         await publisher.tell('plant/ti1', 20);
         await until('TI-1', { ...good, value: 20 });
         broker.freeze();
@@ -105,24 +105,24 @@ test('JSON: by path, with the time and the quality that it states', options, asy
     assert.ok(left.age_ms >= 3000 && left.age_ms < 9000, `${left.age_ms} ms`);
     await until('TI-2', { ...good, value: 17.25 });
     await until('PI-1', { ...good, value: 4 });
-    await publisher.tell('line/temps', { right: 18, meta: at(0, 0x40930000) }); // nothing of the left one
+    await publisher.tell('line/temps', { right: 18, meta: at(0, 0x40930000) }); // the left tag is not in this message
     await until('TI-2', { quality_name: 'Uncertain_SensorNotAccurate', value: 18 });
     await until('TI-1', { ...good, value: 40.5 });
-    await publisher.tell('line/temps', { right: 99, meta: at(-60000) }); // older than what is there
+    await publisher.tell('line/temps', { right: 99, meta: at(-60000) }); // older than the present value
     await publisher.tell('line/temps', { left: { v: [1, null] }, right: 19, meta: at(0) });
     await until('TI-1', { quality_name: 'Bad_SensorFailure' });
     await until('TI-2', { ...good, value: 19 });
     await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 'broken', meta: at(0) });
     await until('TI-2', { quality_name: 'Bad_ConfigurationError' });
     await until('TI-1', { ...good, value: 5 });
-    await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 21 }); // without its time
+    await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 21 }); // without a timestamp
     await until('TI-1', { quality_name: 'Bad_ConfigurationError' });
     await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 21, meta: at(3600000) });
     await plant.daemon.line(/line\/temps: its times are \d+\.\d s ahead of this machine's clock/);
     assert.ok((await until('TI-2', { ...good, value: 21 })).age_ms < 9000);
 });
 
-// Kepware's IoT Gateway publishes an array of the tags that have changed, in any order.
+// Kepware's IoT Gateway publishes an array of the changed tags, in any order.
 test('a gateway that publishes what has changed: no tag gets the value of another', options, async () => {
     const paths = { A2: 'values[1].v', A3: 'values[2].v', F1: "values[?@.id=='G.A1'].v", F2: "$.values[?id=='G.A2'].v",
         F9: "values[?id=='G.A9'].v" };
@@ -137,14 +137,14 @@ test('a gateway that publishes what has changed: no tag gets the value of anothe
     let tags = await plant.tags();
     for (const name of ['A1', 'A2', 'A3', 'F1', 'F9'])
         assert.deepEqual([tags[name].quality_name, tags[name].value], ['Bad_NoMatch', null], name);
-    await tell(['G.A1', 21], ['G.A2', 23], ['G.A3', 24]); // all, each where its tag has it
+    await tell(['G.A1', 21], ['G.A2', 23], ['G.A3', 24]); // all three, each at its tag's index
     for (const [name, value] of [['A3', 24], ['A1', 21], ['F1', 21], ['F2', 23]])
         await until(name, { ...good, value });
     await tell(['G.A3', 34], ['G.A1', 31, false]);
     await until('F1', { quality_name: 'Bad' }); // the quality of its own item
     tags = await plant.tags();
     assert.equal(tags.A1.quality_name, 'Bad_NoMatch');
-    assert.equal(tags.F2.value, 23); // nothing was said of it
+    assert.equal(tags.F2.value, 23); // no message mentioned it
     await tell(['G.A1', 41], ['G.A1', 42]);
     await until('F1', { quality_name: 'Bad_TooManyMatches', value: null });
     await tell(['G.A1', 51]);
@@ -168,7 +168,7 @@ test('a persistent session brings what was published meanwhile, as old as it is'
     assert.ok((await until('PI-1', { ...good, value: 2 })).age_ms >= 1500);
 });
 
-// A broker that sends what nobody asked for: the longest topics that there are, each before a reading.
+// A broker that sends topics without subscription: the longest possible topics, each before a reading.
 test('topics of 64 kB, at a broker that lies: nothing else suffers', options, async () => {
     await broker.kill();
     let sent = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brokers that let only some in: TLS with certificates of both sides, users with passwords, topics that are not for us; the last will.
+// Brokers with access control: TLS with certificates of both sides, users with passwords, forbidden topics; the last will.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -43,7 +43,7 @@ async function start(...more) {
     broker = plant.broker = await Broker.start(more);
 }
 
-// A daemon that gets no readings, for the reason said.
+// Starts a daemon that gets no readings, and waits for the reason in its log.
 async function refused(keys, why) {
     plant.write(keys, ROWS);
     assert.equal(plant.plant.prepare().code, 0);
@@ -61,7 +61,7 @@ test('TLS: the broker has to be who it should be, and so have we', options, asyn
     publisher = await broker.client({ ca: pem('ca.crt'), cert: pem('ca-client.crt'), key: pem('ca-client.key') });
     await publisher.tell('plant/ti1', 21.5);
     await plant.until('TI-1', { ...good, value: 21.5 });
-    await publisher.tell('plant/ti1', '5'.repeat(3 << 20)); // more than one record of TLS
+    await publisher.tell('plant/ti1', '5'.repeat(3 << 20)); // larger than one TLS record
     await plant.until('TI-1', { quality_name: 'Bad_ConfigurationError' });
     await publisher.tell('plant/ti1', 22);
     await plant.until('TI-1', { ...good, value: 22 });

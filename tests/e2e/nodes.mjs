@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plantcast nodes`: what is in a model.
+// `plantcast nodes`: lists the nodes of a model.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
@@ -11,7 +11,7 @@ import { BIN, notBuilt } from './support/tiny_plant.mjs';
 const DATA = join(import.meta.dirname, '../../../shared/data');
 const skip = notBuilt();
 
-// A triangle of the given size, as a data URI, in as many nodes as asked for.
+// Returns a model with a triangle of that size, as a data URI, in the given nodes.
 function model(nodes, size = 1, meshName = 'plate') {
     const bytes = Buffer.from(new Float32Array([0, 0, 0, size, 0, 0, 0, 2 * size, 0]).buffer);
     return {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alarms that leave the browser: by e-mail with TLS, webhook and Alertmanager, all servers on loopback; floods, outages, kills.
+// Alarm notifications: e-mail over TLS, webhook and Alertmanager, with all servers on loopback; floods, outages, kills.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -14,12 +14,12 @@ import { until } from './support/until.mjs';
 const options = { skip: notBuilt(), timeout: 240000 };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-// Two boxes and their three tags; extra: so many more. Limits: what is above 50 is an alarm.
+// Makes a plant of two boxes and three tags; extra: number of additional tags. Values above 50 raise an alarm.
 async function createPlant(notify, extra = 0) {
     const plant = await TinyPlant.create(), tags = join(plant.folder, 'tags.csv');
     const place = '"more, of it",temperature,E-101,0.5,0,0,600';
     const rows = Array.from({ length: extra }, (_, i) => `X-${i},${410001 + 2 * i},Float,°C,${place}\n`);
-    plant.keepFresh(); // a reading that is Bad for a moment ends an alarm, which is told, and begins it anew
+    plant.keepFresh(); // a reading that is Bad for a moment would end an alarm, which is notified, and raise it again
     const text = (readFileSync(tags, 'utf8') + rows.join('')).trim().split('\n');
     writeFileSync(tags, `${[`${text[0]},H,HH`, ...text.slice(1).map((row) => `${row},50,60`)].join('\n')}\n`);
     makeCertificate(plant.folder);
@@ -68,7 +68,7 @@ notify:
             await mail.listen(port);
             await calm(plant);
             await plant.startDaemon();
-            await set(plant, 'PI-1', limits.high); // of another area
+            await set(plant, 'PI-1', limits.high); // a tag of another area
             await set(plant, 'TI-1', limits.high);
             const [first] = await until('a mail', () => mail.mails.length > 0 && mail.mails);
             assert.deepEqual(first.to, ['ops@p.example', 'night@p.example']);
@@ -134,7 +134,7 @@ notify:
         await calm(plant, EXTRA);
         await plant.startDaemon();
         await isCalm(plant);
-        plant.daemon.child.kill('SIGSTOP'); // it reads all of them at once, however long setting them takes
+        plant.daemon.child.kill('SIGSTOP'); // so that the daemon reads all of them at once, however long setting them takes
         for (let i = 0; i < EXTRA; i++)
             await set(plant, `X-${i}`, limits.high);
         plant.daemon.child.kill('SIGCONT');
@@ -151,7 +151,7 @@ notify:
         await until('the other one has given up', async () => await metric(plant, 'plantcast_notify_failed_total{recipient="ops"}') >= 2);
         assert.equal(await metric(plant, 'plantcast_notify_waiting{recipient="ops"}'), EXTRA);
         const took_ms = [];
-        for (let i = 0; i < 5; i++) { // the others may be this machine's doing
+        for (let i = 0; i < 5; i++) { // slower requests may be due to other load
             const asked = performance.now();
             await fetch(`http://127.0.0.1:${plant.port}/api/v1/alarms?limit=1`);
             took_ms.push(performance.now() - asked);
@@ -214,7 +214,7 @@ ${hooks.map(({ port }, i) => `    - { id: h${i}, webhook: "http://127.0.0.1:${po
     try {
         await calm(plant);
         await plant.startDaemon();
-        hooks[0].status = 503; // the first tries are in vain
+        hooks[0].status = 503; // the first attempts fail
         await set(plant, 'TI-1', limits.high);
         await until('a try', () => hooks[0].posts.length > 0);
         hooks[0].status = 200;
@@ -223,7 +223,7 @@ ${hooks.map(({ port }, i) => `    - { id: h${i}, webhook: "http://127.0.0.1:${po
         const [next] = await until('the next one is told', () => hooks[1].taken.length > 0 && hooks[1].taken);
         assert.deepEqual(next.alarms.map(({ tag, escalation }) => [tag, escalation]), [['TI-1', 1]]);
         await acknowledge(plant, 'TI-1', ['H']);
-        await set(plant, 'TI-2', limits.high); // when its time is over for the last recipient, so is that of TI-1
+        await set(plant, 'TI-2', limits.high); // once the last recipient is due for TI-2, TI-1 would have been due, too
         const [last] = await until('the last one is told', () => hooks[2].taken.length > 0 && hooks[2].taken);
         assert.deepEqual(last.alarms.map(({ tag }) => tag), ['TI-2']);
     } finally {

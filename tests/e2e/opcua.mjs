@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OPC UA, by one server process: node-opcua takes three seconds of a processor to load.
+// OPC UA tests with one server process, because loading node-opcua takes three seconds of processor time.
 import { describe } from 'node:test';
-import './opcua/server.mjs'; // which ends with the program, not with the first subject
+import './opcua/server.mjs'; // imported here, so that the server ends with the program and not with the first subject
 
-// Last the one that sets the server's clock: node-opcua is some milliseconds off from then on.
+// The test that sets the server's clock runs last: afterwards node-opcua's clock is off by some milliseconds.
 for (const subject of ['values', 'secure', 'hostile'])
     describe(subject, () => import(`./opcua/${subject}.mjs`));

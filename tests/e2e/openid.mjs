@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// People sign in by OpenID Connect: at a provider that a test leads astray, and at oidc-provider, which others wrote.
+// Sign-in with OpenID Connect: with a provider that the test makes misbehave, and with oidc-provider and Glewlwyd, two independent ones.
 import assert from 'node:assert/strict';
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { createServer, request } from 'node:http';
@@ -19,7 +19,7 @@ const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, provider, token, port;
 
 const path = (name) => join(plant.folder, name);
-// The trail is written beside what it tells of.
+// Waits for an entry of the audit trail, which is written asynchronously.
 async function recorded(what, where) {
     for (let i = 0; i < 100; i++, await sleep(50)) {
         const found = trail().find(where);
@@ -30,7 +30,7 @@ async function recorded(what, where) {
 }
 const trail = () => readFileSync(path('audit.log'), 'utf8').trim().split('\n').map((line) => JSON.parse(line));
 
-// A browser's cookies, and nothing else of one.
+// A browser that only keeps cookies.
 class Browser {
     constructor() { this.jar = new Map(); }
 
@@ -51,7 +51,7 @@ class Browser {
 
     at(where, options) { return this.get(`http://127.0.0.1:${port}${where}`, options); }
 
-    // Up to the provider's redirection back: its URL.
+    // Begins a log-in. Returns the URL to which the provider redirects back.
     async begin(to = '/') {
         const response = await this.at(`/login?to=${encodeURIComponent(to)}`);
         assert.equal(response.status, 303);
@@ -205,7 +205,7 @@ test('a code, a state or a whole answer once more, another browser, another issu
 
 test('keys that are rotated are fetched, not more often than they may be', { skip: skip || long }, async () => {
     provider.rotate();
-    await sleep(10500); // since the last request
+    await sleep(10500); // since the last request for keys
     assert.equal((await new Browser().signIn()).status, 303);
     const asked = () => provider.asked.filter((url) => url === '/jwks').length, before_ = asked();
     provider.change = (claims, header) => { header.kid = 'made up'; };
@@ -235,7 +235,7 @@ test('who loses rights loses the session, and a smaller role counts at once', { 
     await browser.signIn();
     const none = await browser.stream();
     await none.hello();
-    delete provider.claims.groups; // as some providers say that there is none
+    delete provider.claims.groups; // some providers omit the claim when there are no groups
     assert.equal((await none.until('a close', (c) => c.closed)).code, 1008);
     provider.claims.groups = ['operators'];
     await browser.signIn();
@@ -286,7 +286,7 @@ test('without refresh tokens a session ends with its access token; nothing secre
     assert.equal(runProgram('plantcast', ['audit', 'verify', path('audit.log')]).code, 0);
 });
 
-// A request from another address of this machine; `then` is told what it is answered.
+// Sends a request from another address of this machine; resolves with the answer.
 function askFrom(localAddress, where, headers = {}) {
     return new Promise((done, fail) => {
         const asked = request({ host: '127.0.0.1', port, path: where, localAddress, headers }, (response) => {
@@ -296,7 +296,7 @@ function askFrom(localAddress, where, headers = {}) {
     });
 }
 
-// A log-in that a guesser begins: what brings an answer to it, which has the right state and cookie.
+// Begins a log-in for an attacker: returns a function that brings an answer with the right state and cookie.
 async function beginFrom(localAddress) {
     const begun = await askFrom(localAddress, '/login'), cookie = begun.headers['set-cookie'][0].split(';')[0];
     const state = new URL(begun.headers.location).searchParams.get('state');
@@ -359,7 +359,7 @@ test('a slow provider: codes wait in bounds, and the rights of 40 people end in 
     const people = async () => Number(/^plantcast_openid_people (\d+)/m.exec(await (await metrics()).text())[1]);
     t.after(() => { Object.assign(provider, { delay_ms: 0, sub: 's1' }); provider.claims.groups = ['operators']; });
     for (let i = 0; i < 40; i++) {
-        provider.sub = `s${i % 4}`; // a person has 16 at most
+        provider.sub = `s${i % 4}`; // a person may have 16 sessions at most
         assert.equal((await new Browser().signIn()).status, 303);
     }
     assert.ok(await people() >= 40);
@@ -382,12 +382,13 @@ test('a slow provider: codes wait in bounds, and the rights of 40 people end in 
     assert.equal(provider.live.size, 0, 'what ends here is revoked there');
 });
 
-// Signatures, requests and checks of rights are for threads of their own. Processor time of one thread says so on a busy machine, too.
+// Signatures, requests and checks of rights run in other threads. The processor time of the loop's thread shows that on a busy machine,
+// too.
 test('what people cost the loop: a log-in, a request by cookie, and their rights', { skip, timeout: 120000 }, async (t) => {
     const PEOPLE = 32, REQUESTS = 100;
     t.after(() => { provider.sub = 's1'; provider.claims.groups = ['operators']; });
     const { pid } = plant.daemon.child;
-    const loop = () => Number(readFileSync(`/proc/${pid}/task/${pid}/schedstat`, 'utf8').split(' ')[0]) / 1e6; // ms
+    const loop = () => Number(readFileSync(`/proc/${pid}/task/${pid}/schedstat`, 'utf8').split(' ')[0]) / 1e6; // in milliseconds
     const cost = async (times, act) => {
         const before_ = loop();
         for (let i = 0; i < times; i++)
@@ -396,7 +397,7 @@ test('what people cost the loop: a log-in, a request by cookie, and their rights
     };
     let browser;
     const login = await cost(PEOPLE, async (i) => {
-        provider.sub = `s${i % (PEOPLE / 16)}`; // a person has 16 at most
+        provider.sub = `s${i % (PEOPLE / 16)}`; // a person may have 16 sessions at most
         assert.equal((await (browser = new Browser()).signIn()).status, 303);
     });
     const asks = (headers) => cost(REQUESTS, async () => (await fetch(`http://127.0.0.1:${port}/api/v1/me`, { headers })).arrayBuffer());
@@ -408,7 +409,7 @@ test('what people cost the loop: a log-in, a request by cookie, and their rights
     while (refreshed() < from + PEOPLE)
         await sleep(20);
     const check = (loop() - began) / PEOPLE;
-    provider.claims.groups = []; // nobody is left to the tests that follow
+    provider.claims.groups = []; // no signed-in person is left for the next tests
     for (let i = 0; i < 400 && provider.live.size > 0; i++)
         await sleep(50);
     assert.equal(provider.live.size, 0);
@@ -425,7 +426,7 @@ test('keys that cannot be had end nobody; signing out during a check leaves no r
     t.after(() => { Object.assign(provider, { keysStatus: 200, delay_ms: 0 }); });
     const browser = new Browser();
     await browser.signIn();
-    await sleep(10500); // since keys were asked for last: they may be asked for again
+    await sleep(10500); // long enough that keys may be requested again
     provider.keysStatus = 503;
     provider.rotate();
     await plant.daemon.line(/openid: http.*keys.*stays so/);
@@ -458,10 +459,10 @@ test('who leaves all pages alone is signed out; a notice is there before', {
         await shoot(page, 'sign-in-notice');
         await page.locator('#token .sign-in').click();
         await waitForPicture(page);
-        for (let i = 0; i < 14; i++, await sleep(1000)) // somebody is there
+        for (let i = 0; i < 14; i++, await sleep(1000)) // simulates activity
             await page.mouse.move(400 + i, 300);
         assert.equal(await page.locator('#token').evaluate((dialog) => dialog.open), false);
-        await page.locator('#token .sign-in').waitFor({ timeout: 30000 }); // and is not any more
+        await page.locator('#token .sign-in').waitFor({ timeout: 30000 }); // the activity has ended
         assert.equal(await page.locator('.stage').evaluate((stage) => getComputedStyle(stage).visibility), 'hidden');
         await shoot(page, 'locked');
         await page.reload();
@@ -524,7 +525,7 @@ test('oidc-provider, which others wrote: code flow, refreshing, signing out', { 
     try {
         const browser = new Browser();
         let url = new URL((await browser.at('/login')).headers.get('location'));
-        // Its development pages: log-in, then consent.
+        // The provider's development pages: log-in, then consent.
         for (let i = 0; i < 12 && url.port !== String(port); i++) {
             const page = await browser.get(url);
             const next = page.headers.get('location');
@@ -560,7 +561,8 @@ test('Glewlwyd, as Debian has it: code flow, groups that change and end', {
 }, async (t) => {
     const glewlwyd = new Glewlwyd();
     t.after(() => glewlwyd.stop());
-    writeFileSync(path('secret'), 'geheim\n'); // it takes those of HTTP Basic as they are, and not encoded (RFC 6749, 2.3.1)
+    // Glewlwyd does not decode the secret in HTTP Basic (RFC 6749, 2.3.1), so it needs one that is the same when encoded
+    writeFileSync(path('secret'), 'geheim\n');
     await glewlwyd.start(`http://127.0.0.1:${port}/login/callback`);
     writeConfig('scope: openid\n', glewlwyd.issuer);
     await start();
@@ -569,7 +571,7 @@ test('Glewlwyd, as Debian has it: code flow, groups that change and end', {
     assert.equal((await browser.get(`${its}/auth/`, { method: 'POST', headers, body })).status, 200);
     const granted = JSON.stringify({ scope: 'openid' });
     assert.equal((await browser.get(`${its}/auth/grant/plant`, { method: 'PUT', headers, body: granted })).status, 200);
-    // As its log-in page does, once somebody is logged in and has agreed.
+    // Like its log-in page, after the user has logged in and agreed.
     const there = await browser.get(`${(await browser.at('/login')).headers.get('location')}&g_continue`);
     assert.match(there.headers.get('location'), /\/login\/callback\?/);
     const back = await browser.get(there.headers.get('location'));
@@ -583,6 +585,6 @@ test('Glewlwyd, as Debian has it: code flow, groups that change and end', {
     await role('operator');
     await glewlwyd.ask('PUT', 'user/lee', glewlwyd.person({ 'user-code': 'lookers' }));
     await role('viewer');
-    await glewlwyd.ask('PUT', 'user/lee', glewlwyd.person({ 'user-code': 'cleaners' })); // it renews tokens of who is disabled
+    await glewlwyd.ask('PUT', 'user/lee', glewlwyd.person({ 'user-code': 'cleaners' })); // Glewlwyd renews tokens even of disabled users
     await role('nobody');
 });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How soon a page shows the plant: measured on the page, from asking for it to the first picture on the screen.
+// How soon a page shows the plant: measured on the page, from the request to the first picture on the screen.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { browserWith, DESKTOP } from './support/browser.mjs';
@@ -9,7 +9,7 @@ import { missing, startPlant } from './support/plant.mjs';
 const why = missing();
 const options = { skip: why ?? false, timeout: 400000 };
 const MOST_MS = 1000, LOADS = 5, PATIENCE_MS = 120000;
-const LAN = { offline: false, latency: 1, downloadThroughput: 12.5e6, uploadThroughput: 12.5e6 }; // 1 ms, 100 Mbit/s
+const LAN = { offline: false, latency: 1, downloadThroughput: 12.5e6, uploadThroughput: 12.5e6 }; // latency 1 ms, 100 Mbit/s
 let plant, browser;
 
 before(async () => {
@@ -23,7 +23,7 @@ after(async () => {
     await plant?.stop();
 });
 
-// Opens the page in a fresh browser profile. Returns the milliseconds until the first picture was on the screen.
+// Opens the page in a new browser profile. Returns the milliseconds until the first picture was on the screen.
 async function load() {
     const context = await browser.newContext(DESKTOP), page = await context.newPage();
     const client = await context.newCDPSession(page);
@@ -34,7 +34,7 @@ async function load() {
             if (!document.getElementById('waiting')?.hidden)
                 return;
             observer.disconnect();
-            requestAnimationFrame(() => { globalThis.firstPictureMs = performance.now(); }); // it is drawn by then
+            requestAnimationFrame(() => { globalThis.firstPictureMs = performance.now(); }); // the picture is drawn by then
         }).observe(document, { subtree: true, childList: true, attributes: true, attributeFilter: ['hidden'] });
     });
     await page.goto(plant.url, { timeout: PATIENCE_MS });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The three real plants, from the exports of two systems to a picture with live values: what a person types and edits is counted.
+// The three real plants, from two systems' exports to a picture with live values: counts what a user types and edits.
 import assert from 'node:assert/strict';
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -19,7 +19,7 @@ const PLANTS = [
         equipment: ['M_*Boiler*', 'M_*Pump*', 'M_*Fan*', 'M_*Valve*'] },
 ];
 
-// What a person does: commands that are typed, and lines of files that are changed.
+// Records a user's steps: typed commands, and lines changed in files.
 class Walk {
     steps = [];
 
@@ -42,7 +42,7 @@ for (const { plant, model, format, equipment } of sweep(PLANTS, PLANTS.slice(0, 
         const folder = mkdtempSync(join(tmpdir(), 'plantcast-own-')), out = join(folder, 'plant'), list = join(folder, 'export');
         const walk = new Walk(), programs = [];
         try {
-            // The control system's export is there: names of the plant's own equipment, spelt as people do, and foreign ones.
+            // Makes the control system's export: names of the plant's own equipment in various spellings, and foreign ones.
             const names = runProgram('plantcast', ['nodes', join(DATA, model), '--json'], 100000).out;
             const named = [...new Set([...names.matchAll(/"name":\s*"([^"\\]{4,60})"/g)].map(([, name]) => name))];
             const wanted = named.filter((name) => (equipment.length > 0 ? /Boiler|Pump|Fan|Valve/.test(name) : /\d{3}/.test(name)));

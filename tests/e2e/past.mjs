@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Travel in time against a real daemon, by the client that was written from PROTOCOL.md alone: what was, as it was; nobody else notices.
+// Time travel with a real daemon, by the client that was written from PROTOCOL.md: past values are shown as they were, and no other session
+// notices.
 import assert from 'node:assert/strict';
 import { appendFileSync, existsSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -13,7 +14,7 @@ const BEGIN_S = Math.floor(Date.now() / 1000) - 3600;
 const at = (s) => (BEGIN_S + s) * 1e6;
 let plant;
 
-// TI-1 rises from 10 by 1 a minute for half an hour; TI-2 stands at 40 and is bad from minute 10 to 20; then nothing is recorded.
+// TI-1 rises from 10 by 1 per minute for half an hour; TI-2 stays at 40 and is bad from minute 10 to 20; then nothing is recorded.
 function series() {
     const lines = ['Tag,Time,Value,Quality'];
     for (let s = 0; s <= 1800; s += 10)
@@ -134,7 +135,7 @@ test('the same instant is drawn once for all who look at it', { skip }, async ()
         return Number(text.match(new RegExp(`^${name} (\\d+)`, 'm'))[1]);
     };
     const first = await open(), second = await open();
-    let isShared = false; // a frame is kept for half a second: on a machine that does other things they may ask too far apart, for long
+    let isShared = false; // a frame is cached for half a second; on a busy machine the two requests may be farther apart for a while
     for (let s = 440, end = performance.now() + 90000; s < 1800 && performance.now() < end && !isShared; s++) {
         const before = await metric('plantcast_renders_shared_total');
         await Promise.all([first, second].map((client) => travel(client, at(s))));
@@ -209,7 +210,7 @@ test('single pictures, pixels and films of the past', { skip, timeout: 280000 },
     assert.deepEqual([early.code, /nothing was recorded/.test(early.err), existsSync(film)], [1, true, true]);
 });
 
-// The last one: history begins earlier afterwards.
+// The last test, because history begins earlier afterwards.
 test('an imported gap, blanks and state words are no data, in pictures, readings, trends, exports and tables', { skip }, async () => {
     const file = join(plant.folder, 'gap.csv'), from = BEGIN_S - 7 * 86400, day = 86400;
     const rows = [[0, 10], [10, 10], [10, 11], [20, 'I/O Timeout'], [30, 'No Data'], [40, 12], [50, ''], [60, 12], [70, 12], [2 * day, 80],

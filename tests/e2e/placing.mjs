@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Placing sensors and proving them, by the protocol alone: what one engineer tries out nobody else sees, a list that is saved comes into
-// force with the one before beside it, and proofs outlive the daemon.
+// Placing sensors and checking loops, by the protocol alone: one engineer's trial is not visible to others, a saved list takes effect while
+// the previous one is kept, and loop checks survive the daemon.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
@@ -20,7 +20,7 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     tagsFile = join(plant.folder, 'tags.csv');
-    // A tag that stands nowhere yet, a comment in a column of somebody's own, numbers as people write them.
+    // A tag without a position, a comment in a column of the user's own, numbers in various notations.
     const list = readFileSync(tagsFile, 'utf8').replace('Stale s\n', 'Stale s,Remark\n');
     writeFileSync(tagsFile, list.replace('0.5,0,0,1\n', '0.500,0.00,0,1,"# by Kim; ""new"""\n')
         + 'TI-9,400007,Float,°C,spare,temperature,,,,,1,\n');
@@ -45,7 +45,7 @@ const probe = (client) => {
     return client.text('picked');
 };
 
-// Until distances along the surface are there.
+// Waits until distances along the surface are computed.
 async function placed(client) {
     for (;;) {
         const message = await client.text('placed');
@@ -143,12 +143,12 @@ test('a list is saved: the difference first, then in force for all, the old one 
     ]);
     assert.equal(readFileSync(tagsFile, 'utf8'), old, 'nothing is written before it is confirmed');
 
-    engineer.say('save_tags', { seq: ++seq, confirm: '0123456789abcdef' }); // of something else
+    engineer.say('save_tags', { seq: ++seq, confirm: '0123456789abcdef' }); // the hash of another change
     await engineer.text('tags_diff');
     assert.equal(readFileSync(tagsFile, 'utf8'), old);
 
     engineer.say('save_tags', { seq: ++seq, confirm: diff.hash });
-    engineer.say('save_tags', { seq: ++seq, confirm: diff.hash }); // and again, at the same time
+    engineer.say('save_tags', { seq: ++seq, confirm: diff.hash }); // the same again, at the same time
     const answers = [await engineer.text('tags_saved', 60000), await engineer.text('tags_saved', 60000)];
     const saved = answers.find((answer) => answer.saved), refused = answers.find((answer) => !answer.saved);
     assert.match(refused.errors.join(), /another list is being put in force/);
@@ -189,7 +189,7 @@ test('a list that somebody else changed meanwhile is not written over: what they
     engineer.close();
 });
 
-// Saving replaces the file behind a symlink and keeps versions beside that file, so that is where restoring has to look.
+// Saving replaces the file behind a symlink and keeps versions next to that file, so restoring must look there.
 test('a version of a list that is a symlink is found by the name that saving tells', options, async () => {
     const engineer = await enter(), now = readFileSync(tagsFile, 'utf8'), real = join(plant.folder, 'lists-v1.csv');
     const before = now.replace('TI-9', 'TI-8');
@@ -244,7 +244,7 @@ test('while another program is at work in the plant\'s folder, a list is not sav
     assert.match(refused.errors.join(), /^the plant's folder .*: (flock|sh) \(process \d+\) is at work in it; try again/);
     assert.equal(readFileSync(tagsFile, 'utf8'), good);
     assert.deepEqual(readdirSync(plant.folder).sort(), files);
-    // A short match or import is waited for; and it is the daemon's while it saves.
+    // Saving waits for a short match or import, and then locks the folder itself.
     engineer.say('save_tags', { seq: ++seq, confirm: hash });
     await new Promise((done) => setTimeout(done, 300));
     held.stdin.end();
@@ -299,7 +299,7 @@ test('proofs are exported, outlive the daemon, and end where the tag is another'
     assert.match(first, /^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ,"TI-1",pass,42,"°C",42\.3,0\.5,"local","calibrator 7",[0-9a-f]{16}$/);
     assert.ok(existsSync(join(plant.folder, 'plant.history', 'proofs.csv')));
     await plant.daemon.stop();
-    appendFileSync(join(plant.folder, 'plant.history', 'proofs.csv'), '2026-01-01T00:00:00Z,"TI-1",fa'); // cut off by a power cut
+    appendFileSync(join(plant.folder, 'plant.history', 'proofs.csv'), '2026-01-01T00:00:00Z,"TI-1",fa'); // as after a power failure
     writeFileSync(tagsFile, readFileSync(tagsFile, 'utf8').replace('TI-2,400003', 'TI-2,400011'));
     await plant.startDaemon();
     const engineer = await enter(), { begun, tags } = await engineer.text('proofs');

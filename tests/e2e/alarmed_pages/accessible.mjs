@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page for everybody: axe-core finds nothing on any panel, and the keyboard reaches everything and sees where it is.
+// Accessibility: axe-core finds nothing on any panel, and the keyboard reaches everything with a visible focus.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -14,11 +14,11 @@ const options = { skip: notBuilt(), timeout: 200000 };
 const SCREEN = { viewport: sweep({ width: 1680, height: 1000 }, { width: 1280, height: 800 }) };
 const UPRIGHT = { ...TABLET, viewport: { width: 768, height: 1024 } };
 const RULES = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
-// By default all rules in one theme, and what colours can break in the other, too, at each look: nothing else differs.
+// By default all rules run in one theme, and only the colour rules in the other: nothing else differs between themes.
 const COLOURS = { type: 'rule', values: ['color-contrast', 'link-in-text-block'] };
 const WALKS = sweep([['dark', RULES], ['light', RULES]], [['dark', RULES, 'light']]);
 const THEMES = { dark: RULES, light: sweep(RULES, COLOURS) };
-// What has opened, by the name of the look at it: by default the rest of the page is not looked at again.
+// Parts that have opened, by the name of the step: by default the rest of the page is not checked again.
 const PARTS = {
     card: '#card', place: '#place', picture: '#picture-panel', split: '#picture-panel', views: '#views', display: '#display',
     trend: '.lower', alarms: '#alarms', shelve: '#shelve',
@@ -39,20 +39,20 @@ after(async () => {
     await browser?.close();
 });
 
-// Within: of what matches that; null: of all.
+// Returns axe-core's findings. within: check only elements that match; null: the whole page.
 async function findings(on, rules = RULES, within = null) {
     if (!await on.evaluate(() => globalThis.axe !== undefined))
         await on.evaluate(readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8'));
     const { violations } = await on.evaluate(([runOnly, part]) =>
         globalThis.axe.run(part ? { include: [[part]] } : document, { runOnly, resultTypes: ['violations'], preload: !part }),
-    [rules, within]); // style sheets are loaded once more for a rule of the whole page
+    [rules, within]); // preloading style sheets is only needed for rules of the whole page
     return violations.flatMap(({ id, nodes }) => nodes.map((node) => `${id}: ${node.target.join(' ')} ${node.any[0]?.message ?? ''}`));
 }
 
 for (const [theme, rules, other] of WALKS) {
     const themes = `${theme}${other ? `, nor in colours, ${other}` : ''}`;
     test(`no word is cut off on any panel or dialog, and axe-core finds nothing, ${themes}`, options, async () => {
-        await page.goto(`${url}?theme=${theme}&lang=de`); // whose words are the longest
+        await page.goto(`${url}?theme=${theme}&lang=de`); // German has the longest words
         await waitForPicture(page);
         await lookAtEverything(theme, rules, other);
     });
@@ -124,7 +124,7 @@ async function lookAtTools(look) {
     await page.locator('#token[open]').waitFor();
     await look('token');
     await page.keyboard.press('Escape');
-    await page.evaluate(() => document.body.classList.remove('denied')); // which a welcome does
+    await page.evaluate(() => document.body.classList.remove('denied')); // a welcome message removes this class, too
 }
 
 const WALL = { viewport: sweep({ width: 3840, height: 2160 }, { width: 1920, height: 1080 }) };
@@ -144,7 +144,7 @@ for (const [row, theme] of Object.keys(THEMES).entries()) {
     });
 }
 
-// What has the focus: who it is, whether one sees that, and where it stands.
+// Returns the focused element: its name, whether the focus is visible, and its position.
 const focused = () => page.evaluate(() => {
     const element = document.activeElement;
     (globalThis.reached ??= new Set()).add(element);
@@ -182,7 +182,8 @@ test('a dialog keeps the focus within, lets go of it by Escape, and gives it bac
     await shoot(page, 'focus-help');
     for (let n = 0; n < 4; n++) {
         const where = await page.evaluate(() => document.activeElement.closest('dialog, body').id || document.activeElement.tagName);
-        assert.ok(['help', 'BODY'].includes(where), where); // between the last and the first the browser's own parts have it
+        // between the last and the first element the focus is in the browser's own interface
+        assert.ok(['help', 'BODY'].includes(where), where);
         await page.keyboard.press('Tab');
     }
     await page.keyboard.press('Escape');
@@ -193,9 +194,9 @@ test('panels open and close by keys, and the focus goes along', options, async (
     await page.locator('#viewport').focus();
     await page.keyboard.press('/');
     await page.keyboard.type('TI');
-    await page.keyboard.press('Escape'); // what was searched for is gone
+    await page.keyboard.press('Escape'); // the first Escape clears the search
     assert.deepEqual(await page.evaluate(() => [document.activeElement.id, document.activeElement.value]), ['assets-search', '']);
-    await page.keyboard.press('Escape'); // and the keys are the picture's again
+    await page.keyboard.press('Escape'); // the second Escape returns the keys to the picture
     assert.equal(await page.evaluate(() => document.activeElement.id), 'viewport');
     await page.locator('#alarm-strip').focus();
     await page.keyboard.press('Enter');

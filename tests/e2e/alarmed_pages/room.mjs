@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Room for everything on every screen: lists and panels stand beside the picture, and what it is read by stays whole and in sight.
+// Layout on every screen: lists and panels are next to the picture, and the controls needed to read the picture stay complete and visible.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { before, test } from 'node:test';
@@ -18,7 +18,7 @@ const SCREENS = {
     phone: PHONE,
     'phone across': { ...PHONE, viewport: { width: 844, height: 390 } },
 };
-// The way through all panels, by default on these; panels are held to be whole where there is little room.
+// Screens on which all panels are opened: by default only those with little room.
 const WALKED = sweep(Object.keys(SCREENS), ['tablet upright', 'phone across']);
 let url;
 
@@ -27,7 +27,7 @@ before(async () => {
         [, url] = await alarmed();
 });
 
-// What lies over the picture, or leaves it, and should not; and what of the legend is not there to be read.
+// Returns elements that overlap the picture or stick out of it and should not, and missing parts of the legend.
 const amiss = (page) => page.evaluate(() => {
     const box = (element) => element.getBoundingClientRect(), picture = box(document.getElementById('viewport'));
     const shown = (selector) => [...document.querySelectorAll(selector)].filter((e) => e.checkVisibility() && box(e).width > 0);
@@ -56,7 +56,7 @@ const amiss = (page) => page.evaluate(() => {
     return found;
 });
 
-// The marker of a tag is in the picture, and nothing is before it.
+// Returns what is wrong with a tag's marker: it must be in the picture with nothing in front of it.
 const inSight = (page, name) => page.evaluate((tag) => {
     const { overlay, session } = globalThis.plantcast, marker = overlay.marker(session.model.tag(tag));
     if (!marker)
@@ -87,7 +87,7 @@ for (const name of WALKED) {
             assert.deepEqual(await amiss(page), [], 'flown to');
             assert.equal(await inSight(page, 'TI-1'), 'in sight');
             await shoot(page, `room-${file}-alarm`);
-            await press('#card .trend'); // nothing lies over it
+            await press('#card .trend'); // fails if anything covers the button
             await page.locator('#trend-chart canvas').waitFor();
             await press('#time-toggle');
             await page.locator('#time-slider').waitFor();
@@ -100,7 +100,7 @@ for (const name of WALKED) {
             await press('#engineer-toggle');
             await page.locator('#engineer').waitFor();
             assert.equal(await page.locator('#alarms').isVisible(), false, 'one of both');
-            if (listed) { // and there is a way to and fro
+            if (listed) { // it must also be possible to switch back and forth
                 await press('#alarm-strip');
                 await page.locator('#engineer').waitFor({ state: 'hidden' });
                 await press('#engineer-toggle');
@@ -118,7 +118,7 @@ for (const name of WALKED) {
     });
 }
 
-// What of panels and dialogs leaves the screen, or lies over the buttons that opened it; and text that leaves them.
+// Returns panels and dialogs that leave the screen or cover the buttons that opened them, and texts that leave them.
 const panelsAmiss = (page) => page.evaluate(() => {
     const box = (element) => element.getBoundingClientRect(), found = [];
     const buttons = box(document.querySelector('.actions'));
@@ -191,7 +191,7 @@ test('what says that the picture is old lies over no legend', options, async () 
                 const [a, b] = ['banner', 'legend'].map((id) => document.getElementById(id).getBoundingClientRect());
                 return b.width === 0 || a.bottom <= b.top || a.right <= b.left;
             }, null, { timeout: 20000 }).catch(() => assert.fail(name));
-            if (name !== 'phone across') // there it is cut off: no room for both
+            if (name !== 'phone across') // on this screen both do not fit, so one is cut off
                 assert.deepEqual(await amiss(page), [], name);
             await shoot(page, `old-${name.replace(' ', '-')}`);
         } finally {
@@ -206,7 +206,7 @@ test('until a picture of the new shape comes, the last one is not distorted, and
         await waitForPicture(page);
         await arrive(page);
         await page.waitForFunction(() => globalThis.plantcast.overlay.markers.length > 0);
-        await page.evaluate(() => { globalThis.plantcast.session.resize = () => {}; }); // none comes
+        await page.evaluate(() => { globalThis.plantcast.session.resize = () => {}; }); // from here on no new picture arrives
         const seen = () => page.evaluate(async () => {
             const { projector } = await import('/core/camera.js');
             const { overlay, session: { picture }, viewport } = globalThis.plantcast, canvas = document.getElementById('picture');
@@ -237,7 +237,7 @@ test('until a picture of the new shape comes, the last one is not distorted, and
     }
 });
 
-// A finger drags the row; keys and the server's word bring the chosen one in sight.
+// The row of quantities can be dragged; keys and messages of the server bring the chosen one into view.
 test('of seven quantities each is named in full', options, async () => {
     const names = ['Differential pressure', 'Volume flow', 'Level', 'Vibration velocity', 'Electrical power'];
     const [many, address] = await startAlarmed((file) => writeFileSync(file, readFileSync(file, 'utf8').replace(/^sources:/m,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// On a control room's wall of any size and from any distance, legends, clock and age of the data are whole, and lie over no picture.
+// On a control room's wall of any size and distance, legends, clock and age of the data are complete and do not cover the picture.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -19,12 +19,12 @@ let plant, url;
 before(async () => {
     if (options.skip)
         return;
-    [plant, url] = await startAlarmed((file) => // what is simulated is said, too
+    [plant, url] = await startAlarmed((file) => // simulated data shows an additional notice
         writeFileSync(file, readFileSync(file, 'utf8').replace('type: modbus,', 'type: modbus, simulated: yes,')));
 });
 after(() => plant?.destroy());
 
-// What is cut off, or lies over the picture.
+// Returns elements that are cut off or cover the picture.
 const amiss = (page) => page.evaluate(() => {
     const box = (element) => element.getBoundingClientRect(), picture = box(document.getElementById('viewport')), found = [];
     const all = (selector) => [...document.querySelectorAll(selector)].filter((e) => e.checkVisibility() && box(e).width > 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page in its languages: nothing is said but by the files of words, and nothing that is said is cut off.
+// The page in its languages: all texts come from the word files, and none is cut off.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { alarmed } from './alarmed.mjs';
@@ -16,7 +16,7 @@ before(async () => {
         [, url] = await alarmed();
 });
 
-// With words that are only marks, what else can be read is the plant's own or nobody's.
+// Returns visible texts while all words of the page are replaced by marks: what can still be read must come from the plant.
 const unsaid = (page) => page.evaluate(() => {
     const { session: { model } } = globalThis.plantcast;
     const own = [model.plant, ...model.groups, ...model.assets, ...model.tags, ...model.colormaps].flatMap((one) =>
@@ -71,10 +71,10 @@ for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
         try {
             await waitForPicture(page);
             assert.equal(await page.evaluate(() => document.documentElement.lang), lang);
-            if (sweep(true, false)) // by default accessible.mjs looks at all in German
+            if (sweep(true, false)) // by default accessible.mjs checks all panels in German
                 await everyPanel(page, look);
             else
-                await page.evaluate(() => { // whose readings are listed
+                await page.evaluate(() => { // select an asset, so that its readings are listed
                     const { session } = globalThis.plantcast;
                     session.setParams({ selected: session.model.assets[0].id });
                 });
@@ -84,7 +84,8 @@ for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
             assert.ok((await page.locator('.reading .value').allTextContents()).some((text) => number.test(text)));
             for (const [name, { viewport }] of [['tablet', TABLET], ['phone', PHONE]]) {
                 await page.setViewportSize(viewport);
-                await page.waitForFunction(() => innerWidth > 1023 || // narrow from the start, the page has its sheet at once
+                // if the page is narrow from the start, it has this style sheet at once
+                await page.waitForFunction(() => innerWidth > 1023 ||
                     [...document.styleSheets].some(({ href }) => href?.endsWith('/narrow.css')));
                 await settle(page);
                 await look(`page-${name}`);

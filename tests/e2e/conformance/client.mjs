@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A client of plantcast.v1 that was written from PROTOCOL.md and RFC 6455 and shares no code with the project: what a stranger would write.
+// A client of plantcast.v1 that was written from PROTOCOL.md and RFC 6455 and shares no code with the project, like one of another
+// developer.
 import { createHash, randomBytes } from 'node:crypto';
 import { connect } from 'node:net';
 import { inflateSync } from 'node:zlib';
@@ -8,7 +9,7 @@ const GUID = '258EAFA5-E914-47DA-95CA-C5AB0DC85B11';
 const CODECS = { 1: 'jpeg', 2: 'png', 3: 'h264' };
 const PING_MS = 1000;
 
-// --- the frame header, as the page's table has it: [offset, type, name]
+// --- the frame header as in the table of PROTOCOL.md: [offset, type, name]
 
 const FIELDS = [
     [0, 'u8', 'type'], [1, 'u8', 'codec'], [2, 'u16', 'flags'], [4, 'u32', 'payload_bytes'], [8, 'u32', 'seq'], [12, 'u32', 'camera_seq'],
@@ -33,7 +34,7 @@ export function readHeader(bytes) {
     return Object.fromEntries(FIELDS.map(([at, type, name]) => [name, READ[type](bytes, at)]));
 }
 
-// --- pictures: enough of each format to know that it is whole, and how large
+// --- pictures: enough of each format to check that it is complete, and its size
 
 function jpegSize(bytes) {
     if (bytes.readUInt16BE(0) !== 0xffd8 || bytes.readUInt16BE(bytes.length - 2) !== 0xffd9)
@@ -74,7 +75,7 @@ function frameOf(opcode, payload) {
 }
 
 export class Client {
-    // headers: of the hand-shake, beside what it needs. Rejects with the HTTP status and text where it is refused.
+    // headers: additional headers of the handshake. Rejects with the HTTP status and text if the server refuses.
     static open(port, { protocols = 'plantcast.v1', headers = {} } = {}) {
         const client = new Client();
         const key = randomBytes(16).toString('base64');
@@ -103,8 +104,8 @@ export class Client {
 
     constructor() {
         Object.assign(this, { bytes: Buffer.alloc(0), message: [], opened: false, texts: [], pictures: [], closed: null, awaited: [] });
-        this.unshown = null; // parts of a picture that is not whole yet
-        this.clock = null;   // { rtt_ms, server_us, at }: of the shortest round trip
+        this.unshown = null; // parts of an incomplete picture
+        this.clock = null;   // { rtt_ms, server_us, at } of the shortest round trip
         this.acknowledges = true;
     }
 
@@ -168,7 +169,7 @@ export class Client {
 
     onBinary(bytes) {
         const header = readHeader(bytes), payload = bytes.subarray(HEADER_BYTES), began = performance.now();
-        if (header.type !== 1 || payload.length < header.payload_bytes) // another kind of message, or one that was given up
+        if (header.type !== 1 || payload.length < header.payload_bytes) // another type of message, or a picture that was given up
             return;
         const codec = CODECS[header.codec], size = SIZE_OF[codec]?.(payload);
         this.unshown = [...(this.unshown ?? []), { header, payload, codec, size }];
@@ -195,7 +196,7 @@ export class Client {
         this.socket.write(frameOf(1, JSON.stringify({ type, ...fields })));
     }
 
-    // What `question` finds, once it finds something.
+    // Waits until `question` returns something, and returns that.
     async wait(what, question, timeoutMs = 20000) {
         for (const end = performance.now() + timeoutMs; ;) {
             const found = question(this);
@@ -223,7 +224,7 @@ export class Client {
         return this.text('welcome');
     }
 
-    // The server's time now, in microseconds, by the best of some pings.
+    // Returns the server's present time in microseconds, from the best of some pings.
     async serverTime(pings = 3) {
         for (let i = 0; i < pings; i++) {
             this.say('ping', { t: performance.now() });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a real browser shows of each codec is what `plantcast snapshot` draws; and what it cannot decode it does without.
+// For each codec, a real browser shows the same picture as `plantcast snapshot` draws; a codec that it cannot decode is not used.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -16,7 +16,7 @@ const options = { skip: why ?? false, timeout: 200000 };
 const SCREEN = { viewport: { width: 960, height: 540 } };
 const QUIET_MS = 1500;
 let plant, folder;
-const drawn = new Map(); // what the command has drawn already
+const drawn = new Map(); // pictures that the command has drawn already
 
 before(async () => {
     if (why)
@@ -39,7 +39,7 @@ async function withPage(codec, init, f) {
     }
 }
 
-// The same view and readings, drawn by the command.
+// Draws the same view and readings with the command.
 async function snapshot(page) {
     const { camera } = await view(page), { width, height } = await grab(page);
     const values = join(folder, 'values.csv'), out = join(folder, 'snapshot.png');
@@ -81,7 +81,7 @@ test('a decoder that passes the trial and then breaks is left for JPEG, for good
     const { decode } = VideoDecoder.prototype;
     let count = 0;
     VideoDecoder.prototype.decode = function decodeSome(chunk) {
-        if (++count > 3) // two are the trial
+        if (++count > 3) // two of them are the trial
             throw new DOMException('it broke', 'EncodingError');
         return decode.call(this, chunk);
     };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The demo plant that all subjects of this folder look at, each by pages of its own. Its readings stand still but for what a subject
-// sets: else each page has pictures drawn all the time.
+// The demo plant that all tests of this folder use, each with pages of its own. Its readings change only when a test sets them; otherwise
+// each page would have pictures drawn all the time.
 import { after } from 'node:test';
 import { startPlant } from '../support/plant.mjs';
 
@@ -14,7 +14,7 @@ async function start() {
     return started;
 }
 
-// Started by who asks first.
+// Returns the plant; the first caller starts it.
 export function demo() {
     plant ??= start();
     return plant;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alarms in the picture: every ring is in a label or in a call-out, however small the picture, and none of these lies over a legend.
+// Alarms in the picture: every alarm ring has a label or a call-out, however small the picture, and none of these covers a legend.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { demo } from './demo.mjs';
@@ -18,7 +18,7 @@ const SCREENS = {
         wall: { viewport: { width: 1920, height: 1080 }, query: '?wall=55,4' },
     }, {}),
 };
-// Beyond their limits: what lies close together on one machine, behind something, and far from all others.
+// Tags beyond their limits: close together on one machine, hidden behind something, and far from all others.
 const ALARMS = ['TE-161', 'TE-162', 'TE-164', 'VT-161', 'VT-162', 'VT-163', 'VT-164', 'TE-151', 'TE-152',
     'TE-211', 'TE-212', 'TE-171', 'TE-101'];
 let plant;

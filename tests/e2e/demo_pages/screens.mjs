@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page on a tablet and on a phone, by touch.
+// The page on a tablet and on a phone, used by touch.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { demo } from './demo.mjs';
@@ -10,7 +10,7 @@ import { sweep } from '../support/sweep.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
-const LARGE = { viewport: { width: 1920, height: sweep(1080, 800) } }; // every control has room
+const LARGE = { viewport: { width: 1920, height: sweep(1080, 800) } }; // every control has room on this screen
 let plant;
 
 before(async () => {
@@ -31,7 +31,7 @@ async function withPage(screen, f) {
     }
 }
 
-// Touches as the hardware reports them; playwright itself has only the tap.
+// Sends touch events as the hardware does; playwright itself can only tap.
 async function touches(page) {
     const client = await page.context().newCDPSession(page);
     const send = (type, points) => client.send('Input.dispatchTouchEvent', {
@@ -49,16 +49,16 @@ async function touches(page) {
 
 const distance = ({ camera }) => Math.hypot(...camera.eye.map((x, i) => x - camera.target[i]));
 
-// What is pressed by a finger and smaller than it.
+// Returns controls that are smaller than a finger.
 const tooSmall = (page) => page.evaluate(() => [...document.querySelectorAll(
     'button, select, .segments label, input:not([type="radio"], [type="checkbox"])')].filter((e) => e.checkVisibility())
     .map((e) => ({ what: e.id || e.className || e.textContent, box: e.getBoundingClientRect() }))
     .filter(({ box }) => box.height < 43.5 || box.width < 43.5)
     .map(({ what, box }) => `${what}: ${box.width}x${box.height}`));
 
-// Parts of the page that leave the screen, or text of a button that leaves the button.
+// Returns parts of the page that leave the screen, and texts that leave their button.
 const sticksOut = (page) => page.evaluate(() => [
-    // The row of quantities is dragged.
+    // The row of quantities may stick out, because it can be dragged.
     ...[...document.querySelectorAll('header, header *:not(#groups .row *), main, footer, .legend, .card, .assets')].filter((e) => {
         const box = e.getBoundingClientRect();
         return box.width > 0 && (box.right > window.innerWidth + 0.5 || box.left < -0.5 || box.bottom > window.innerHeight + 0.5);
@@ -123,7 +123,7 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     const places = await page.evaluate(() =>
         globalThis.plantcast.overlay.markers.map(({ tag, x, half, alarm }) => ({ group: tag.group, x, half, alarm: Boolean(alarm) })));
     for (const { group, x, half, alarm } of places) {
-        assert.ok(alarm || group === (half ? 'pressure' : 'temperature'), `${group} in half ${half}`); // alarms are marked in both
+        assert.ok(alarm || group === (half ? 'pressure' : 'temperature'), `${group} in half ${half}`); // alarms are marked in both halves
         assert.equal(half, box.x + x >= middle - 1 ? 1 : 0);
     }
     assert.ok(places.some(({ half }) => half === 0) && places.some(({ half }) => half === 1));
@@ -141,7 +141,7 @@ test('desktop: two sets of parameters side by side, each with legend and markers
         return overlay.labels().filter(({ id }) => overlay.places.has(id))
             .map(({ parts, alarm }) => ({ text: parts.map(([part]) => part).join(' '), alarm: Boolean(alarm) }));
     });
-    assert.ok(labels.every(({ text, alarm }) => alarm || / m$|\u202fm/.test(text)), JSON.stringify(labels)); // none says nothing
+    assert.ok(labels.every(({ text, alarm }) => alarm || / m$|\u202fm/.test(text)), JSON.stringify(labels)); // no label is empty
     assert.ok(labels.some(({ text }) => text.startsWith(`${sensor} 0.00`)), `where it is measured from: ${JSON.stringify(labels)}`);
     assert.ok(light[0] > 0.3 && Math.abs(light[1]) < 0.02, `the sun stands in the east: ${light}`);
     assert.equal(await page.locator('#sensor').inputValue(), sensor);
@@ -178,7 +178,7 @@ test('phone: device pixels; choose equipment from the list, fly there, tap a sen
     const row = page.locator('.asset', { hasText: 'sensors' }).first();
     await shoot(page, 'phone-list');
     await row.tap();
-    await page.locator('#assets').waitFor({ state: 'hidden' }); // the list gives way
+    await page.locator('#assets').waitFor({ state: 'hidden' }); // the list closes
     await page.waitForTimeout(1000);
     await settle(page);
     const selected = (await view(page)).params.selected;
@@ -191,7 +191,7 @@ test('phone: device pixels; choose equipment from the list, fly there, tap a sen
     await shoot(page, 'phone-card');
 }));
 
-// [wide, high]: a phone upright, one on its side, a small one, one that is folded.
+// [width, height]: a phone upright, one on its side, a small one, a folded one.
 const HELD = [[390, 844], [844, 390], [360, 740], [280, 653]];
 
 test('phones: name and state are read, nothing is cut off, all is as large as a finger', options, () => withPage(PHONE, async (page) => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Views in the browser: standard views, the parallel projection, a cut, equipment hidden and shown, and what is at a place.
+// Views in the browser: standard views, parallel projection, a section, hidden and shown equipment, and what is at a place.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -26,22 +26,22 @@ after(async () => {
     await browser?.close();
 });
 
-// Until the camera is what is asked for, and nothing flies any more.
+// Waits until the camera satisfies `is` and no camera flight is under way.
 const arrive = async (is, what) => {
     await page.waitForFunction(is, what, { timeout: 60000 });
     await page.waitForFunction(() => !globalThis.plantcast.cameraController.fly);
     await settle(page);
 };
-// Until the page has it as f says.
+// Waits until f holds in the page.
 const waitFor = (f, what) => page.waitForFunction(f, what, { timeout: 60000 });
 
-// A place in the page where equipment with a field is and no marker.
+// Returns a position on the page that shows equipment with a field, and no marker.
 const middleOf = async (id) => drawnAt(page, await page.evaluate((asset) => {
     const { min, max } = globalThis.plantcast.session.model.asset(asset).bounds;
     return min.map((m, i) => (m + max[i]) / 2);
 }, id));
 
-// A value that changes; and the page has drawn what came of it.
+// Changes a value and waits until the page has drawn the result.
 async function comeIn(change) {
     const { name, index, value } = await page.evaluate(() => {
         const { model } = globalThis.plantcast.session, { name: of, index: i } = model.tags.find(({ asset }) => asset === 'TK-101');
@@ -118,7 +118,8 @@ test('a cut, ghosts and hidden equipment', options, async () => {
     await page.locator('#shows button', { hasText: 'Hide' }).click();
     await waitForShown([], ['T-101']);
     assert.match(await page.locator('#shown span').textContent(), /^1 of \d+ hidden$/);
-    await waitFor(() => !globalThis.plantcast.overlay.markers.some(({ tag, alarm }) => tag.asset === 'T-101' && !alarm)); // only alarms
+    // only alarm markers remain
+    await waitFor(() => !globalThis.plantcast.overlay.markers.some(({ tag, alarm }) => tag.asset === 'T-101' && !alarm));
     await page.locator('#show-all').click();
     await waitForShown([], []);
     assert.equal(await page.locator('#shown').isVisible(), false);
@@ -135,7 +136,7 @@ test('a cut, ghosts and hidden equipment', options, async () => {
     assert.deepEqual(browser.errors, []);
 });
 
-// Of every sixth tag: whether it would be seen from its own side at 5 m, and whether it is where one arrives.
+// For every sixth tag: whether it would be visible from its own side at 5 m, and whether it is visible from where the camera arrives.
 test('who flies to a tag sees it', options, async (t) => {
     const arrived = await page.evaluate(async () => {
         const { session, cameraController } = globalThis.plantcast, { face } = await import('/core/camera_moves.js'), from = session.camera;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Five hundred assumed places are accepted at once, by equipment, name, distance and confidence, and the list is put back to the byte.
+// Five hundred assumed positions are accepted at once, filtered by equipment, name, distance and confidence; restoring the old list gives
+// the same bytes.
 import assert from 'node:assert/strict';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -12,7 +13,7 @@ const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync
 const options = { skip, timeout: 200000 };
 const ASSUMED = 500, OFF_M = 0.4;
 const name = (i) => `TA-${String(i).padStart(3, '0')}`;
-// A hundred are off the surface of E-101, fifty are on P-101A, and twenty stand nowhere.
+// A hundred are off the surface of E-101, fifty are on P-101A, and twenty have no position.
 const isOff = (i) => i % 5 === 0, isNowhere = (i) => i >= 480, assetOf = (i) => (i % 10 === 1 ? 'P-101A' : 'E-101');
 const confidence = (i) => (i < 250 ? 0.95 : 0.6);
 const count = (of) => Array.from({ length: ASSUMED }, (_, i) => i).filter(of).length;

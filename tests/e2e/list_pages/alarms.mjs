@@ -20,7 +20,7 @@ before(async () => {
     await waitForHealth(page, 'live');
     tags = await page.evaluate(() => globalThis.plantcast.session.model.tags.map(({ name, group, limits }) => ({ name, group, limits })));
     await plant.freeze(tags.map(({ name }) => name));
-    for (const { name, limits } of tags.filter((tag) => tag.limits.H !== null)) // all are well, between L and H
+    for (const { name, limits } of tags.filter((tag) => tag.limits.H !== null)) // all values are between L and H
         await plant.ask(`set ${name} ${((limits.L ?? 0) + limits.H) / 2}`);
 });
 after(async () => {
@@ -33,7 +33,7 @@ const waitForWords = (pattern) => page.waitForFunction(
     (p) => new RegExp(p).test(document.getElementById('alarm-words').textContent), pattern,
     { timeout: 30000 });
 const limitOf = (name) => tags.find((tag) => tag.name === name).limits;
-// Of a tag's alarm: its ring's place over the picture, and the alarm itself. null: none is drawn.
+// Returns the position of a tag's alarm ring over the picture, and the alarm; null: no ring is drawn.
 const ring = (name) => page.evaluate((tag) => {
     const { overlay } = globalThis.plantcast, found = overlay.markers.find((marker) => marker.tag.name === tag && marker.alarm);
     const box = document.getElementById('viewport').getBoundingClientRect();
@@ -131,7 +131,7 @@ test('a shelf needs a reason, and keeps the alarm from being seen', options, asy
     await row.waitFor();
     assert.match(await row.textContent(), /Shelved.*until \d\d:\d\d, by local, transmitter is being changed/s);
     await row.locator('button[data-action="unshelve"]').click();
-    await page.locator(`#alarms-list li[data-alarm="${id}"].calls`).waitFor(); /* there it is again, as if new */
+    await page.locator(`#alarms-list li[data-alarm="${id}"].calls`).waitFor(); /* the alarm is listed again, as if new */
 });
 
 test('a click flies there, in its own group, and back to normal is said', options, async () => {
@@ -150,7 +150,7 @@ test('a click flies there, in its own group, and back to normal is said', option
 });
 
 const rowOf = (name) => page.locator('#alarms-list li').filter({ has: page.locator('.what b', { hasText: new RegExp(`^${name}$`) }) });
-const settleAll = async () => { // nothing is beyond a limit, and nothing waits for anybody
+const settleAll = async () => { // no value is beyond a limit, and no alarm waits for acknowledgement
     for (const { name, limits } of tags.filter((tag) => tag.limits.H !== null))
         await plant.ask(`set ${name} ${((limits.L ?? 0) + limits.H) / 2}`);
     const gone = () => globalThis.plantcast.session.model.alarms.counts().active === 0;
@@ -180,7 +180,7 @@ test('one row and one count for a tag; what has returned is not active, and draw
     await settle(page);
     const at = await ring(LOW);
     assert.equal(at.state, 'returned');
-    // Through the middle of the line of the ring: white, where what is there is of the colour of its priority.
+    // Pixels on the ring's line: it is white if an acknowledged alarm would have its priority's colour there.
     const [r, g, b] = await page.evaluate(({ x, y }) => {
         const box = document.getElementById('viewport').getBoundingClientRect(), { canvas, unit } = globalThis.plantcast.overlay;
         const ratio = canvas.width / box.width;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of equipment: areas, search, keyboard, links, selecting there and in 3D; and a plant of 20,000 tags, which scrolls smoothly.
+// The list of equipment: areas, search, keyboard, links, selection in the list and in 3D; and a plant of 20,000 tags, which scrolls
+// smoothly.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -17,7 +18,7 @@ const LINKS = `links:
   - { name: Faceplate, of: tag, url: 'https://dcs.example/faceplate?tag={name}' }
 `;
 
-// Boxes in rows of twenty, each with its sensors; only the first of each is placed on it.
+// Boxes in rows of twenty, each with its sensors; only the first sensor of each box has a position.
 function makeLarge(folder) {
     const assets = [], tags = ['Tag Name,Address,Data Type,Eng Units,Description,Group,Asset,X,Y,Z,H'];
     for (let a = 0; a < ASSETS; a++) {
@@ -77,7 +78,7 @@ test('a click selects and flies there; what is known of it and its links are sho
     await page.locator('#assets-list .asset', { hasText: 'E 137' }).click();
     await page.waitForFunction((eye) => Math.hypot(...globalThis.plantcast.session.camera.eye.map((x, i) => x - eye[i])) > 1, camera.eye);
     assert.equal((await view(page)).params.selected, 'E-137');
-    await page.waitForFunction(() => document.querySelector('#asset-about')?.textContent); // its script is loaded when it is first used
+    await page.waitForFunction(() => document.querySelector('#asset-about')?.textContent); // the script for it is loaded on first use
     assert.match(await page.locator('#asset-about').textContent(),
         /E 137.*box 137.*Unit 4.*1\.0 × 1\.0 × 1\.0 m.*100.*MakerExample WorksBuilt2007/);
     const link = page.locator('#asset-about a');
@@ -99,7 +100,7 @@ test('what is picked in 3D is selected there, a marker with its tag', options, a
     await page.mouse.click(box.x, box.y);
     await page.waitForFunction(() => globalThis.plantcast.session.params.selected === 'E-137');
     await page.locator('#place').waitFor();
-    await page.keyboard.press('Escape'); // its card may lie over the marker
+    await page.keyboard.press('Escape'); // a card may cover the marker
     await page.mouse.click(marker.x, marker.y);
     await page.waitForFunction(() => /TI-137-0/.test(document.querySelector('.reading[aria-selected="true"]')?.textContent));
     assert.equal(await page.locator('#card .links a').getAttribute('href'), 'https://dcs.example/faceplate?tag=TI-137-0');
@@ -133,7 +134,7 @@ test('by the keyboard alone', options, async () => {
     assert.deepEqual(browser.errors, []);
 });
 
-// What the page itself does for each picture of a list that scrolls, every asset of it open; drawing is the browser's and the processor's.
+// Measures the page's own work for each frame of a scrolling list with all assets open; drawing is up to the browser.
 test('20,000 tags scroll smoothly', options, async (t) => {
     const { frames, work, rows } = await page.evaluate(async (steps) => {
         const { assets, session } = globalThis.plantcast;
@@ -156,14 +157,14 @@ test('20,000 tags scroll smoothly', options, async (t) => {
     const middle = (list, part = 0.5) => list[Math.floor(list.length * part)];
     t.diagnostic(`pictures every ${middle(frames).toFixed(1)} ms (95 %: ${middle(frames, 0.95).toFixed(1)}), of which the list takes ` +
         `${middle(work).toFixed(2)} ms (95 %: ${middle(work, 0.95).toFixed(2)}); ${rows} rows in the page`);
-    assert.ok(middle(work, 0.2) < 16, `more than a picture has: ${middle(work, 0.2)} ms`); // of the others some waited for a processor
+    assert.ok(middle(work, 0.2) < 16, `more than a picture has: ${middle(work, 0.2)} ms`); // slower frames waited for the processor
     assert.ok(rows < 80, `${rows} rows`);
     await shoot(page, 'assets-20000');
 });
 
-// Forced collections before each measure; a second here, half an hour in `make test-long`.
-const USE_S = Number(process.env.USE_S ?? sweep(10, 0.8)), EACH = sweep(4, 1); // a panel is pressed at each so many-th of what is done
-// A panel is pressed ten times by default, and so it may grow by half of what it may in twenty.
+// Garbage is collected before each measurement; one second of use by default, half an hour in `make test-long`.
+const USE_S = Number(process.env.USE_S ?? sweep(10, 0.8)), EACH = sweep(4, 1); // a panel is opened or closed at every EACH-th action
+// By default a panel is used ten times, so half the growth is allowed of what twenty uses may cause.
 const MOST = sweep({ share: 0.1, megabytes: 2, nodes: 500 }, { share: 0.05, megabytes: 1, nodes: 250 });
 const isSteady = (before, after) => after.megabytes < before.megabytes * (1 + MOST.share) + MOST.megabytes &&
     after.nodes < before.nodes * (1 + 2 * MOST.share) + MOST.nodes;
@@ -179,7 +180,7 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 2
         const { assets, session, modules, selectTag, showTrend } = globalThis.plantcast, { root } = assets.list;
         const search = document.getElementById('assets-search');
         const press = (key) => document.getElementById('viewport').dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
-        // Every panel that opens and shuts, trends of some tags and their cards.
+        // Every panel that opens and closes, trends of some tags and their cards.
         const panels = ['e', 'v', 'p', 'm', 'b', 'b', 'm', 'p', 'v', 'e'];
         for (let n = 0, end = performance.now() + long; performance.now() < end || n < each * panels.length; n++) {
             if (n % each === 0) {
@@ -199,9 +200,9 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 2
         search.dispatchEvent(new Event('input'));
         await new Promise((done) => setTimeout(done, 500));
     }, [ms, EACH]);
-    await use(sweep(3000, 500)); // what is made once is made
+    await use(sweep(3000, 500)); // creates everything that is created only once
     let before = await heap(), after;
-    // A busy machine makes part of that later. What grows with use grows each time.
+    // A busy machine creates part of that later. A leak grows every time.
     for (let times = 0; times < 4 && !(after && isSteady(before, after)); times++) {
         before = after ?? before;
         await use(USE_S * 1000);

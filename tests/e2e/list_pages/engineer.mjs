@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engineer's panel in the browser: a sensor is put onto the surface, dragged, saved; and proven against a transmitter that is forced.
+// The engineer's panel in the browser: a sensor is placed on the surface, dragged and saved, and its loop is checked against a forced
+// transmitter.
 import assert from 'node:assert/strict';
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -49,7 +50,7 @@ async function look(on, eye) {
 const text = (selector, on = page) => on.locator(selector).textContent();
 const says = (selector, pattern, on = page) => on.waitForFunction(
     ([where, what]) => new RegExp(what).test(document.querySelector(where)?.textContent ?? ''), [selector, pattern], { timeout: 60000 });
-// In the page, where a place of the plant is.
+// Returns the position on the page of a point of the plant.
 const at = (place, on = page) => drawnAt(on, place);
 const moved = (on = page) => on.evaluate(() => [...globalThis.plantcast.session.model.placed.values()][0]?.position ?? null);
 const button = (name, on = page) => on.locator('#engineer').getByRole('button', { name, exact: true });
@@ -59,7 +60,7 @@ test('a tag that stands nowhere is put onto the surface by a click, and its fiel
     await says('#engineer .tags li', 'TI-9 spare.*stands nowhere yet');
     await page.locator('#engineer .tags button').first().click();
     await says('#engineer .hint', '^TI-9: click on the surface');
-    await land(page); // the panel has made room for itself
+    await land(page); // the panel's opening has moved the picture
     const { x, y } = await at([0.2, -0.5, 0.2]);
     await page.mouse.click(x, y);
     await says('#engineer .moves', 'TI-9 on E-101 .*\\d{3}along the surface');
@@ -99,7 +100,7 @@ test('gaps are told', options, async () => {
     await shoot(page, 'engineer-gaps');
 });
 
-// Of an instant that is over: only what is proven makes a difference.
+// Pictures of a past instant: only the loop checks make a difference.
 let instant, plain;
 const snapshot = async () => {
     const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?width=640&height=400&look=flat&at=${instant}`);
@@ -136,7 +137,7 @@ test('walk: who moved is pointed out, swapped ones too; a value that fits proves
     await says('#engineer .count', '^0 of 4 proven');
     await page.locator('#engineer .part:not([hidden]) .tags button', { hasText: 'TI-1' }).click();
     await says('#engineer .judge output', '^now 80');
-    await page.waitForTimeout(700); // some readings, for the noise
+    await page.waitForTimeout(700); // some readings, to measure the noise
     await button('Watch').click();
     await plant.tell('set TI-2 60');
     await says('#engineer .judge .note', 'TI-2 moved, not TI-1: are they swapped');
@@ -200,7 +201,7 @@ test('on a tablet: a tap places, a finger drags', options, async () => {
     await ready(on);
     await on.locator('#engineer-toggle').tap();
     await on.locator('#engineer .tags button', { hasText: 'TI-1' }).tap();
-    await on.waitForTimeout(800); // it may fly there
+    await on.waitForTimeout(800); // the camera may fly there
     await look(on, [2.6, -2.2, 1.6]);
     const { x, y } = await at([0.1, -0.5, 0.1], on);
     await on.touchscreen.tap(x, y);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nothing of another time passes for the present: the value at which an alarm was raised, notes that were written later, rings and lists of
-// a device or a server that is lost.
+// Nothing old is shown as present: the value at which an alarm was raised, notes written later, rings and lists of a lost device or server.
 import assert from 'node:assert/strict';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -59,7 +58,7 @@ test('an alarm says at which value it was raised, and the present one', options,
     await waitForText(desk.page, '#alarm-newest', '^TI-1 High high, raised at 95\\.5 °C, now 95\\.5 °C \\(limit 90\\.0 °C\\)$');
     await plant.tell('set TI-1 70.25');
     await waitForText(desk.page, '#alarm-newest', 'TI-1 High.*now 70\\.3 °C');
-    await plant.tell('set TI-1 40'); // gone, and nobody has acknowledged it
+    await plant.tell('set TI-1 40'); // the cause has gone, and the alarm is not acknowledged
     await waitForText(desk.page, '#alarm-newest', 'raised at .* now 40\\.0 °C \\(limit');
     await waitForText(german.page, '#alarm-newest', 'ausgelöst bei .*, jetzt 40,0 °C \\(Grenzwert');
     await desk.page.locator('#alarm-strip').click();
@@ -84,7 +83,7 @@ test('a note is shown at an instant if it was there then', options, async () => 
     const pins = () => page.evaluate(() => [...document.querySelectorAll('.note-pin')].map(({ textContent }) => textContent));
     const waitForPins = (...texts) => page.waitForFunction((wanted) => [...document.querySelectorAll('.note-pin')]
         .map(({ textContent }) => textContent).join('|') === wanted, texts.join('|'), { timeout: 30000 });
-    const later = async (us) => { // history of an instant is settled after 3 s
+    const later = async (us) => { // history of an instant is complete after 3 s
         await page.waitForFunction((then) => globalThis.plantcast.session.clockUs() > then + 3.5e6, us);
         return us;
     };

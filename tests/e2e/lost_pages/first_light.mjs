@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the register of a PLC to the pixels of a browser, and back to life after the daemon died.
+// From a PLC's register to a browser's pixels, and recovery after the daemon died.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import {
@@ -13,7 +13,7 @@ const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
 const GROUP = 'temperature';
 const SCREEN = { viewport: sweep({ width: 1920, height: 1080 }, { width: 1024, height: 640 }) };
-const QUIET_MS = 1500; // longer than any picture takes that is still under way
+const QUIET_MS = 1500; // longer than any picture under way takes
 let plant, browser, page;
 
 before(async () => {
@@ -28,7 +28,7 @@ after(async () => {
     await plant?.stop();
 });
 
-// The asset's corners in the picture, with a margin for the glow of the encoder.
+// Returns the asset's bounding box in the picture, with a margin for blurred encoded edges.
 const assetBox = (id) => page.evaluate(async (asset) => {
     const { projector } = await import('/core/camera.js');
     const { session } = globalThis.plantcast;
@@ -40,8 +40,8 @@ const assetBox = (id) => page.evaluate(async (asset) => {
     return { left: Math.min(...xs) - 16, right: Math.max(...xs) + 16, top: Math.min(...ys) - 16, bottom: Math.max(...ys) + 16 };
 }, id);
 
-// Readings go on changing, and where the machine is busy most of what is shown are previews of fewer pixels: what has arrived is gone when
-// it is grabbed.
+// Readings keep changing, and on a busy machine most pictures are smaller previews: a picture that has arrived may be replaced before it is
+// grabbed.
 const waitForWhole = (width, height) => page.waitForFunction(([w, h]) => {
     const canvas = document.getElementById('picture');
     return globalThis.plantcast.session.picture.still && canvas.width === w && canvas.height === h;
@@ -54,7 +54,7 @@ test('live frames arrive, and the page says so', options, async () => {
     const picture = await grab(page);
     assert.ok(contrast(picture) > 10, `contrast ${contrast(picture)}`);
     const box = await page.locator('#viewport').boundingBox();
-    await waitForWhole(Math.round(box.width), Math.round(box.height)); // one pixel of it per pixel of the screen
+    await waitForWhole(Math.round(box.width), Math.round(box.height)); // one picture pixel per screen pixel
     assert.match(await page.locator('#clock').textContent(), /^\w{3} \d+, \d{4} \d\d:\d\d:\d\d UTC/);
     await page.locator('#age', { hasText: /^\d+(\.\d)? s$/ }).waitFor();
     await shoot(page, 'desktop');
@@ -121,13 +121,13 @@ test('mouse, wheel and keys move the camera, and the picture follows', options, 
 });
 
 const codec = () => page.evaluate(() => globalThis.plantcast.session.picture.codec);
-// Of tags that are shown as measured.
+// Returns the number of tags with a good quality.
 const measured = () => page.evaluate(() => globalThis.plantcast.session.model.readings.filter(({ quality }) => quality === 'good').length);
 const waitForMeasured = (count) => page.waitForFunction((least) =>
     globalThis.plantcast.session.model.readings.filter(({ quality }) => quality === 'good').length >= least, count, { timeout: 60000 });
 
 test('the daemon dies: said in words, the picture stays; it returns: the same view, by itself', options, async () => {
-    await page.evaluate(async () => (await import('/app/startup.js')).probeCodecs()); // else it does so at some later picture
+    await page.evaluate(async () => (await import('/app/startup.js')).probeCodecs()); // otherwise the page does this at some later picture
     await page.evaluate(() => globalThis.plantcast.session.setParams({ distance: 'euclidean', ramp_interval: 20 }));
     await settle(page, QUIET_MS);
     const before = await grab(page), asked = await view(page), tags = await measured(), coded = await codec();

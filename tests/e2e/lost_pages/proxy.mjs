@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Proxies that let pages through and no WebSocket: the page, the log and the command line name the proxy and what it needs.
+// Proxies that pass pages but no WebSocket: the page, the log and the command line name the proxy and say what it needs.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
@@ -30,7 +30,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-// The plant under /plantcast/ of a proxy; more: further lines of its location.
+// Starts nginx with the plant under /plantcast/; more: further lines of that location.
 async function startNginx(port, more, host = '$http_host') {
     const path = (name) => join(plant.folder, name);
     const temporary = ['client_body', 'proxy', 'fastcgi', 'uwsgi', 'scgi'].map((name) => `${name}_temp_path ${path(name)};`).join('\n');
@@ -85,7 +85,7 @@ test('nginx without the lines for WebSocket is named on the page, with these lin
         }
         assert.equal(runProgram('plantcast', ['ready', `http://127.0.0.1:${plant.port}/`]).code, 0);
         await stop();
-        stop = await startNginx(port, PASSES, `127.0.0.1:${plant.port}`); // the handshake arrives, by a name that is not the page's
+        stop = await startNginx(port, PASSES, `127.0.0.1:${plant.port}`); // the handshake arrives with a host name that is not the page's
         await shown(desk.page, /his origin is not allowed/);
         await stop();
         stop = await startNginx(port, PASSES);
@@ -99,8 +99,8 @@ test('nginx without the lines for WebSocket is named on the page, with these lin
 
 const PASS = { passes: true };
 
-// A proxy that answers handshakes itself, and passes the rest on. answer: a line of status; null: it hangs up; PASS: it passes them on.
-// tls: key and certificate, or null.
+// A proxy that answers handshakes itself and passes on all other requests. answer: status line; null: it closes the connection; PASS: it
+// passes handshakes on. tls: key and certificate, or null.
 async function startOther(answer, headers, tls = null) {
     const serve = (asked, told) => {
         const on = request({ port: plant.port, path: asked.url, headers: { ...asked.headers, host: `127.0.0.1:${plant.port}` } }, (got) => {
@@ -148,7 +148,7 @@ for (const [name, answer, headers, words] of OTHERS)
 test('ready fails where /stream does, over http:// and https://, and names the proxy that keeps WebSockets out', options, async () => {
     makeCertificate(plant.folder);
     const secure = { key: readFileSync(join(plant.folder, 'mail.key')), cert: readFileSync(join(plant.folder, 'mail.pem')) };
-    const ready = async (proxy) => { // by a process of its own: the proxy is in this one
+    const ready = async (proxy) => { // run as a child process, because the proxy runs in this one
         const program = new Program('plantcast', ['ready', proxy.url, '--ca', join(plant.folder, 'mail.pem')]);
         const code = await new Promise((done) => program.child.once('close', done));
         return { code, err: program.said };

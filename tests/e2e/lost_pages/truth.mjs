@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is not now, not measured or not here says so: simulated, asleep, a page of another version; and on a wall, from afar.
+// Anything not current, not measured or not from this version is marked: simulated data, a page after sleep, a page of another version;
+// also on a wall, legible from afar.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { createHash, X509Certificate } from 'node:crypto';
@@ -43,7 +44,7 @@ async function withPage(address, screen, f, init = null) {
     }
 }
 
-// Size of what is written, in CSS pixels of the screen.
+// Returns the sizes of all texts, in CSS pixels.
 const letters = (page) => page.evaluate(() => {
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), found = [];
     for (let node = walker.nextNode(); node; node = walker.nextNode()) {
@@ -58,7 +59,7 @@ const letters = (page) => page.evaluate(() => {
     return found;
 });
 
-// How high a capital letter of that size is to an eye there, in minutes of arc; of the fonts of the page a capital has 0.72 of it.
+// Height of a capital letter (0.72 of the font size) in minutes of arc for the viewer.
 function letterMinutes(px, { inches, metres }, screen) {
     const millimetres = (0.72 * px * inches * 25.4) / Math.hypot(screen.width, screen.height);
     return (Math.atan2(millimetres, metres * 1000) * 180 * 60) / Math.PI;
@@ -106,10 +107,10 @@ test('a tablet that slept knows that its picture is old, until the server speaks
         await settle(page);
         await page.evaluate(() => {
             const { session } = globalThis.plantcast, real = Date.now;
-            session.connection.socket.onmessage = null; // as a line that is dead
+            session.connection.socket.onmessage = null; // like a dead line
             Date.now = () => real() + 7 * 3600e3;
         });
-        await page.waitForFunction(() => { // it lasts only until the page has reached the server again
+        await page.waitForFunction(() => { // visible only until the page has reached the server again
             const banner = document.getElementById('banner');
             return /This picture is 7 h old/.test(banner.textContent) && ['silent', 'lost'].includes(banner.dataset.kind) &&
                 document.getElementById('viewport').classList.contains('is-old');
@@ -126,7 +127,8 @@ test('a tablet whose date is wrong tells ages and the plant\'s time all the same
         assert.ok(await far() < -3 * 86400e3 + 60000, 'its date is wrong');
         const told = () => page.evaluate(() => ({ clock: document.getElementById('clock').textContent,
             age: document.getElementById('age').textContent, health: document.getElementById('health').dataset.kind }));
-        const ages = await page.evaluate(() => new Promise((done) => { // also while somebody sets it back: forth it would be a sleep
+        // also while the clock is set back; set forward, it would look like a sleep
+        const ages = await page.evaluate(() => new Promise((done) => {
             const seen = [], timer = setInterval(() => {
                 seen.push(document.getElementById('age').textContent);
                 globalThis.wrongMs -= 3600e3;
@@ -158,7 +160,7 @@ test('a tablet whose date is wrong tells ages and the plant\'s time all the same
         };
     }));
 
-// Of the picture as it is on the screen: colours of places of a grid.
+// Returns colours of the picture on the screen at the points of a grid.
 const samples = (page) => page.evaluate(() => {
     const canvas = document.getElementById('picture'), c = canvas.getContext('2d');
     return [...Array(64).keys()].map((n) => [...c.getImageData(Math.floor(((n % 8) + 0.5) * canvas.width / 8),
@@ -180,7 +182,7 @@ test('a slow link that comes to a halt: the last picture stays, marked as old, a
             return { camera, selected: params.selected, group: params.group };
         });
         const was = await view();
-        relay.child.kill('SIGSTOP'); // nothing comes, and nothing says so
+        relay.child.kill('SIGSTOP'); // no data arrives, and the connection stays open
         try {
             await page.waitForFunction(() => document.getElementById('viewport').classList.contains('is-old'));
             assert.match(await page.locator('#banner').textContent(), /This picture is [\d.]+ s old/);
@@ -232,7 +234,7 @@ test('legend and markers are of the picture that is seen, however late the one c
 test('a page that was kept from another version loads itself anew, once', options, async () => {
     const asked = [];
     await withPage(url, TABLET, async (page, browser) => {
-        await page.goto('about:blank'); // so that it asks for no part any more
+        await page.goto('about:blank'); // so that the page requests no more parts
         browser.page.on('domcontentloaded', () => asked.push('loaded'));
         let first = true;
         await page.route('**/made/version.js', (route) => {
@@ -265,7 +267,8 @@ test('it can be installed: a manifest with icons, all there; no service worker o
         assert.equal(await page.evaluate(async () => (await navigator.serviceWorker?.getRegistrations())?.length ?? 0), 0);
     }));
 
-// A certificate of its own, and what makes chromium take it for good: service workers are refused where one is only waved through.
+// Makes a self-signed certificate, and flags that make chromium trust it: service workers are refused on pages with ignored certificate
+// errors.
 function certify(folder) {
     const [key, cert] = ['key.pem', 'cert.pem'].map((name) => join(folder, name));
     const { status, stderr } = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes',
@@ -289,7 +292,7 @@ test('by https it is installed: it opens without its server, says so, and is liv
         const client = await page.context().newCDPSession(page);
         assert.deepEqual((await client.send('Page.getInstallabilityErrors')).installabilityErrors, []);
         await page.waitForFunction(() => navigator.serviceWorker.controller);
-        await page.reload(); // through the worker, which keeps what it sees
+        await page.reload(); // through the service worker, which caches the files
         await waitForPicture(page);
         await waitForHealth(page, 'live');
         const keptNow = () => page.evaluate(async () => (await Promise.all((await caches.keys()).map(async (name) =>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the page weighs, how soon it shows the plant, and its parts that are loaded when they are first used.
+// How much the page transfers, how soon it shows the plant, and its parts that are loaded on first use.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -21,7 +21,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-// When a picture was first on the screen, in milliseconds since the page was asked for.
+// Records when a picture was first on the screen, in milliseconds since the page was requested.
 const watchFirst = () => {
     new MutationObserver((_, observer) => {
         if (!document.getElementById('waiting')?.hidden)
@@ -31,8 +31,8 @@ const watchFirst = () => {
     }).observe(document, { subtree: true, childList: true, attributes: true, attributeFilter: ['hidden'] });
 };
 
-// { page, errors, close, fetched(): [[path, bytes], ...] of files that are ours, each as often as it was asked for }. The watchdog (4.4 kB)
-// comes 5 s after the start, which may be before or after a page is calm, and does not count.
+// { page, errors, close, fetched(): [[path, bytes], ...] of this server's files, once per request }. The watchdog (4.4 kB) is loaded 5 s
+// after the start, before or after the page is calm, so it does not count.
 async function openCounted(address, screen, before = null) {
     const answers = [];
     const browser = await openPage(address, screen, before, (page) => page.on('response', (answer) => answers.push(answer)));
@@ -42,7 +42,7 @@ async function openCounted(address, screen, before = null) {
 }
 const sum = (files) => files.reduce((all, [, bytes]) => all + bytes, 0);
 
-// Nothing has been asked for any more for a while.
+// Waits until no request was made for a while.
 async function calm(page, browser) {
     for (let before = -1, now = 0; now !== before;) {
         before = now;
@@ -70,7 +70,7 @@ for (const [name, language, screen] of PAGES)
     });
 
 const DESK = { viewport: { width: 1024, height: 640 } };
-// A page of its own that shows the plant.
+// Runs f on a new page that shows the plant.
 async function withPage(f, arrange) {
     const browser = await openPage(`${url}?lang=en`, DESK, null, arrange);
     try {
@@ -89,25 +89,25 @@ const press = async (page, key) => {
 const isSaid = (page) => page.locator('#toast', { hasText: 'could not be loaded' }).waitFor();
 
 test('a part that cannot be loaded says so, and comes by itself once it can be', options, async () => {
-    const parts = [['m', 'app/help/timings.css', '#timings'], ['y', 'core/history.js', '#timeline'], // which some that follow have, too
+    const parts = [['m', 'app/help/timings.css', '#timings'], ['y', 'core/history.js', '#timeline'], // some later parts load this file, too
         ['p', 'app/picture/picture.html', '#picture-panel.open'], ['v', 'app/views/views.js', '#views.open']];
-    const words = [['v', 'words/lazy.en.js', '#views.open']]; // those of all parts
+    const words = [['v', 'words/lazy.en.js', '#views.open']]; // the words of all lazily loaded parts
     const away = (page, file) => page.route(`**/${file}*`, (route) => route.abort());
     for (const all of [parts, words])
         await withPage(async (page) => {
             await page.waitForFunction(() => globalThis.plantcast.session.recorded);
             for (const [key, file, opened] of all) {
-                await page.evaluate(() => { document.getElementById('toast').hidden = true; }); // of the part before
+                await page.evaluate(() => { document.getElementById('toast').hidden = true; }); // hides the previous part's message
                 await away(page, file);
                 await press(page, key);
                 await isSaid(page);
                 assert.equal(await page.locator(opened).isVisible(), false, file);
-                await press(page, key); // once more does not shut it again
+                await press(page, key); // pressing again does not close it
                 await page.unroute(`**/${file}*`);
                 await page.locator(opened).waitFor();
-                await page.waitForFunction(() => globalThis.plantcast.session.picture); // the page goes on
+                await page.waitForFunction(() => globalThis.plantcast.session.picture); // the page goes on working
             }
-        }, (page) => all === words && away(page, all[0][1])); // a ring round a late reading would fetch them before
+        }, (page) => all === words && away(page, all[0][1])); // a ring around a late reading would fetch them earlier
 });
 
 test('no part says anything before the words of parts are there', options, () => {
@@ -162,7 +162,7 @@ test('what hands and keys do first is done, though what steers by them is still 
     const firsts = [
         async (page) => drag(page),
         async (page) => press(page, 'ArrowLeft'),
-        async (page) => page.locator('#home').click(), // of a camera that is elsewhere
+        async (page) => page.locator('#home').click(), // the camera is elsewhere before
         async (page) => page.locator('#assets-list .asset').first().click(),
     ];
     for (const act of firsts)
@@ -182,7 +182,7 @@ test('a drag that began before what steers was there is followed, however long t
     const { x, y, width, height } = await page.locator('#viewport').boundingBox(), [left, top] = [x + width / 2, y + height / 2];
     await page.mouse.move(left, top);
     await page.mouse.down();
-    await page.waitForTimeout(2500); // longer than a click is worth waiting for
+    await page.waitForTimeout(2500); // longer than a click is delayed for
     await page.mouse.move(left + 90, top, { steps: 3 });
     assert.equal(await isCameraControllerThere(page), false);
     assert.deepEqual(await eye(page), ELSEWHERE.eye);
@@ -193,7 +193,7 @@ test('a drag that began before what steers was there is followed, however long t
 
 test('what a hand points at is said, though it moved no more since', options, () => withPage(async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ occluded }) => !occluded));
-    await land(page); // what is pointed at stands still
+    await land(page); // so that the pointed marker stands still
     const marker = await page.evaluate(() => {
         const { x, y } = globalThis.plantcast.overlay.markers.find(({ occluded }) => !occluded);
         return [x, y];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OPC UA servers that lie about sizes, fall silent between rare messages, tell times of the future or of a wrong clock, or are at the
+// OPC UA servers that send wrong sizes, fall silent between rare messages, send future timestamps or have a wrong clock, or are at the
 // second address of their name.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -16,7 +16,7 @@ import { cpuMs } from '../support/processes.mjs';
 const options = opcuaOptions(180000);
 const ROWS = ['TI-1,nsu=urn:test:plant%3B1;s=TI-1,,°C,temperature,E-101,0.5,0,0,,,,,,'];
 const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'true']).status === 0;
-const MOST_MB = 48; // that a liar may cost
+const MOST_MB = 48; // maximum memory in MB that a lying server may cost
 const good = { quality_name: 'Good' };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let server, plant;
@@ -24,14 +24,14 @@ let server, plant;
 shareOpcua(options, (...made) => { [server, plant] = made; });
 const peakMb = () => Number(/VmHWM:\s+(\d+)/.exec(readFileSync(`/proc/${plant.daemon.child.pid}/status`, 'utf8'))[1]) / 1024;
 
-// Waits until the daemon has drawn what it draws for nobody when it starts: on a busy machine that takes a while, and memory.
+// Waits until the daemon has finished its warm-up, which takes time and memory on a busy machine.
 async function rest() {
     const taken = () => cpuMs(plant.daemon.child.pid);
     for (let before = -Infinity, end = performance.now() + 20000; taken() - before > 20 && performance.now() < end; await sleep(500))
         before = taken();
 }
 
-// Has the daemon meet something at the server's port; returns what that costs it, in MB, beyond `before`.
+// Lets the daemon connect to whatever listens at the server's port; returns its memory in MB beyond `before`.
 async function meet(before = 0) {
     await plant.start('security: none', ROWS);
     await plant.said(/no readings \(/);
@@ -42,13 +42,13 @@ async function meet(before = 0) {
 test('what lies about sizes is left, named, and costs nothing', options, async () => {
     const real = server.port;
     server.port = await freePort();
-    const before = await meet(); // nobody
+    const before = await meet(); // nothing listens
     await plant.daemon.stop();
     for (const [name, lies] of Object.entries(LIES)) {
         const liar = await tellLies(server.port, lies);
         try {
             let moreMb = await meet(before);
-            if (moreMb >= MOST_MB) { // of a busy machine: what a lie costs, it costs each time
+            if (moreMb >= MOST_MB) { // repeated, because a busy machine may cause this once: a real leak costs it each time
                 await plant.daemon.stop();
                 moreMb = Math.min(moreMb, await meet(before));
             }
@@ -87,7 +87,7 @@ test('a reading whose source is an hour ahead is shown, and not as if it came fr
     assert.ok(ahead.age_ms >= 0 && ahead.age_ms < 5000, `${ahead.age_ms} ms`);
 });
 
-// The first of its two addresses takes no connection.
+// The first of its two addresses refuses connections.
 const named = { ...options, skip: options.skip || !canMount && 'no right to mount' };
 test('of a name with several addresses, each is tried', named, async () => {
     const hosts = join(server.folder, 'hosts');
@@ -96,7 +96,7 @@ test('of a name with several addresses, each is tried', named, async () => {
     await server.anew({});
     const real = server.port;
     server.port = await freePort();
-    const link = await distort(server.port, real, Infinity); // at 127.0.0.1 alone
+    const link = await distort(server.port, real, Infinity); // listens on 127.0.0.1 only
     server.host = 'plc.test';
     await plant.run('security: none', ROWS);
     await plant.until('TI-1', good);
@@ -136,7 +136,7 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
         assert.equal(plant.daemon.said.match(/its times are/g).length, 1, 'it is said once');
     });
 
-// By such a clock certificates that were made just now are not valid yet: the server's own, and ours.
+// By such a clock, certificates that were just made are not valid yet: the server's and the client's.
 test('a server whose clock is before its certificate is read, and said; a certificate of tomorrow is refused by name', clocks, async () => {
     const day = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;
     for (const [name, from, to] of [['tomorrow', 1, 2], ['today', -1 / 48, 1], ['us', -1 / 48, 1]])
@@ -147,7 +147,7 @@ test('a server whose clock is before its certificate is read, and said; a certif
     await plant.said(/BadCertificateTimeInvalid: the server's certificate: certificate is not yet valid/);
     assert.equal((await server.tell({})).sessions, 0);
     await plant.daemon.stop();
-    await server.restart({ ahead_s: -3600, certificate: 'today' }); // since half an hour, by ours
+    await server.restart({ ahead_s: -3600, certificate: 'today' }); // valid since half an hour ago, by the daemon's clock
     await plant.run(server.security('', 'us'), ROWS);
     await server.set('TI-1', 35);
     const { age_ms } = await plant.until('TI-1', { ...good, value: 35 });

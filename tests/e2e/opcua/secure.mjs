@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who an OPC UA server lets in, and which servers are believed: users, and certificates that are wrong, ours and theirs.
+// Access control of OPC UA: users, and wrong certificates of client and server.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';

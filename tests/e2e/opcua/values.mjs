@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sources of type opcua, against node-opcua's server: values, status codes and times bit by bit, arrays, namespaces that move, deadbands,
-// browsing, and a server that is killed, frozen, full and started again.
+// Sources of type opcua with node-opcua's server: values, status codes and timestamps bit by bit, arrays, namespaces that move, deadbands,
+// browsing, and a server that is killed, frozen, full and restarted.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -51,7 +51,7 @@ test('values, status codes and times come as they are, and nothing is ever writt
         await server.set('TI-1', 42, { status });
         await until('TI-1', { quality_name: name, value: status >= 0x80000000 ? null : 42 });
     }
-    await sleep(Math.max(0, first + 1600 - performance.now())); // no value of a tag is taken to be older than the one before it
+    await sleep(Math.max(0, first + 1600 - performance.now())); // a value that is older than the tag's last one would be ignored
     await server.set('TI-2', 43, { at: Date.now() - 1500 });
     const old = await until('TI-2', { ...good, value: 43 });
     assert.ok(old.age_ms >= 1500 && old.age_ms < 9000, `${old.age_ms} ms`);
@@ -120,7 +120,8 @@ test(`${MANY} nodes, and changes of all of them`, options, async () => {
     const rows = Array.from({ length: MANY }, (_, i) => `N${i},${NODE}N${i},,,,,,,,,,,,,`);
     await server.anew({ many: MANY });
     await plant.run(server.security(), rows);
-    for (const each of [0, 1e6, 2e6]) { // all have come before all change: the server keeps only the newest of each
+    // waits until all values have arrived before the next change: the server keeps only the newest of each
+    for (const each of [0, 1e6, 2e6]) {
         if (each > 0)
             await server.tell({ each });
         const sent = performance.now();
@@ -135,7 +136,7 @@ test(`${MANY} nodes, and changes of all of them`, options, async () => {
 });
 
 test('plantcast tags --browse writes a tag list that is read as it is', options, async () => {
-    await server.anew({ many: MANY }); // more than come in one answer
+    await server.anew({ many: MANY }); // more than fit into one answer
     const url = `opc.tcp://127.0.0.1:${server.port}`, at = (file) => join(server.folder, file);
     const secure = ['--certificate', at('client.crt'), '--key', at('client.key'), '--trusted', at('trusted')];
     const { code, out, err } = browse(url, ...secure);

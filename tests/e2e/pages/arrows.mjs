@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A wind that blows round a tank, from four sensors with directions to arrows: what a client is told, what the page draws, what a snapshot
-// shows; and a lost direction, whose place is unknown.
+// Wind around a tank, from four sensors with directions to arrows: what a client receives, what the page draws, what a snapshot shows; and
+// a lost direction, which leaves its surroundings without arrows.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -9,10 +9,11 @@ import { DESKTOP, FLYING, openPage, PHONE, settle, shoot, waitForPicture } from 
 import { notBuilt, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
-const SENSORS = [0, 90, 180, 270], LOST = 270; // whose direction goes Bad once it fails; others stay uncertain while the device is away
+// the sensor whose direction goes Bad; other readings stay uncertain while the device is away
+const SENSORS = [0, 90, 180, 270], LOST = 270;
 let plant, browser;
 
-// A sphere of radius 1, its poles on the z axis.
+// Returns a sphere of radius 1 with its poles on the z axis.
 function tank(around = 48, up = 24) {
     const positions = [], indices = [];
     for (let j = 0; j <= up; j++)
@@ -69,7 +70,7 @@ tags: tags.csv
     await plant.startDaemon();
     for (const [i, degrees] of SENSORS.entries()) {
         await plant.tell(`set ${speedTag(degrees)} ${6 + 2 * i}`);
-        await plant.tell(`set ${bearingTag(degrees)} ${(360 - degrees) % 360}`); // counter-clockwise round the tank, seen from above
+        await plant.tell(`set ${bearingTag(degrees)} ${(360 - degrees) % 360}`); // counter-clockwise around the tank, seen from above
     }
     browser = await openPage(`http://127.0.0.1:${plant.port}/`, { ...DESKTOP, ...FLYING });
     await waitForPicture(browser.page);
@@ -79,8 +80,8 @@ after(async () => {
     await plant?.destroy();
 });
 
-// Of the picture that is drawn, as the page was told: [x, y, dx, dy, value, uncertain, half], and the picture's size. whole: it is no
-// preview of fewer pixels, as a busy machine makes them, which has fewer arrows.
+// Returns the arrows of the drawn picture as sent to the page: [x, y, dx, dy, value, uncertain, half], and the picture's size. whole: the
+// picture has its full size; smaller previews of a busy machine have fewer arrows.
 const arrows = () => browser.page.evaluate(() => {
     const { session } = globalThis.plantcast, { picture, size } = session;
     return { rows: session.markersOf(picture.seq)?.arrows ?? [], width: picture.fullWidth, height: picture.fullHeight,
@@ -98,7 +99,7 @@ async function until(what, good) {
 }
 
 test('arrows go round the tank as the wind does, from where sensors are to where none is', options, async () => {
-    // At the pole the four of them cancel out.
+    // At the pole the four directions cancel out.
     const known = ({ rows }) => rows.length > 15 && rows.filter(isUnknown).length < 3 && rows.every((row) => row[5] === 0);
     const { rows, width, height } = await until('directions known', known);
     let front = 0;
@@ -136,7 +137,7 @@ test('strokes follow the wind round the tank, each to the right where it is seen
         for (const [i, [x, y, toX, toY]] of points.slice(1).entries()) {
             const [px, py, fromX, fromY] = points[i], dx = (fromX + toX) / 2, dy = (fromY + toY) / 2, long = Math.hypot(x - px, y - py);
             if (long < 4 || Math.hypot(dx, dy) < 0.3)
-                continue; // towards the eye
+                continue; // points towards the eye
             const along = ((x - px) * dx + (y - py) * dy) / long / Math.hypot(dx, dy);
             assert.ok(along > 0.8, `goes where its direction says: ${along} at ${px}, ${py}`);
             if (Math.abs(px - width / 2) < height / 8 && Math.abs(py - height / 2) < height / 8) {
@@ -157,7 +158,7 @@ test('strokes follow the wind round the tank, each to the right where it is seen
         assert.ok(Date.now() < end, 'dashes run');
     for (const points of strokes.values())
         assert.ok(points.length > 1, 'a head alone is no stroke');
-    await browser.page.waitForFunction(() => !document.querySelector('.arrow-key canvas')); // their length says nothing
+    await browser.page.waitForFunction(() => !document.querySelector('.arrow-key canvas')); // strokes have no length scale
     await shoot(browser.page, 'strokes');
     const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?width=960&height=540&arrows=strokes`);
     const png = Buffer.from(await answer.arrayBuffer());
@@ -199,7 +200,7 @@ test('where a direction is lost it is unknown, and only there', options, async (
 test('dashed arrows are those of uncertain readings, and the legend says so', options, async () => {
     const key = browser.page.locator('.legend .arrow-key');
     assert.doesNotMatch(await key.textContent(), /Uncertain/);
-    await plant.tell('pause'); // no communication: the last usable values
+    await plant.tell('pause'); // no communication: the last usable values are shown
     await until('uncertain', ({ rows }) => rows.some((row) => row[5]));
     await browser.page.waitForFunction(() => /Uncertain/.test(document.querySelector('.legend .arrow-key')?.textContent));
     await settle(browser.page);
@@ -246,7 +247,7 @@ test('on a phone no choice of Display is cut; legends have units, and nothing th
             assert.equal(found.below, show === 'value' ? 1 : 0, what);
             assert.equal(found.why.length > 20, show !== 'value', what);
             keys ||= found.keys;
-            assert.equal(found.keys, show === 'value' ? keys : keys - 1, what); // no reading, nothing uncertain
+            assert.equal(found.keys, show === 'value' ? keys : keys - 1, what); // without a value there is no uncertainty, so one key less
         }
         await shoot(page, `display-phone-${language}`);
         assert.deepEqual(errors, []);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is cut away, by hand: arrows on the plane, on the sides of the box and for all of it, in both halves, for mouse, keys and finger.
+// Clipping by direct manipulation: arrows on the plane, on the box's sides and for the whole box, in both halves, by mouse, keys and touch.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { drawnAt, openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
@@ -29,7 +29,7 @@ const setClip = async (on, clip) => {
 };
 const readClip = (on) => on.evaluate(() => globalThis.plantcast.session.params.clip);
 const readCamera = (on) => on.evaluate(() => globalThis.plantcast.session.camera);
-// Its middle in the page.
+// Returns the centre of a handle on the page.
 const gripAt = async (on, id) => {
     const box = await on.locator(`.grip[data-id="${id}"]`).boundingBox();
     return [box.x + box.width / 2, box.y + box.height / 2];
@@ -38,7 +38,7 @@ const gripAt = async (on, id) => {
 test('a plane is dragged by its arrow: it goes where the hand goes, and the camera stays', options, async () => {
     await setClip(page, { planes: [[1, 0, 0, 0.1]] });
     const camera = await readCamera(page), [x, y] = await gripAt(page, 'plane0');
-    const to = await drawnAt(page, await page.evaluate(async () => { // where the grip will be half a metre on
+    const to = await drawnAt(page, await page.evaluate(async () => { // the handle's position after half a metre
         const { spotsOf } = await import('/core/clip_gizmo.js'), { grip, spot } = document.querySelector('.grip');
         const [px, py, pz] = spotsOf(grip)[spot.number];
         return [px + 0.5, py, pz];

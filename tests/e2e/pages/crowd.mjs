@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A hundred sensors on one side of a box: some markers are left out, a click where one was shows the surface, and who asks for one by
-// its name, or comes nearer, sees it.
+// A hundred sensors on one side of a box: some markers are left out; a click at a hidden one selects the surface; searching for its name or
+// zooming in shows it.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -9,7 +9,7 @@ import { openPage, shoot, waitForHealth, waitForPicture } from '../support/brows
 import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 120000 };
-const MANY = 100, ACROSS = 10, REACH_PX = 15; // of a click
+const MANY = 100, ACROSS = 10, REACH_PX = 15; // distance within which a click hits a marker
 const TO_THE_SIDE = { eye: [3.25, 0, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 45 };
 let plant, browser;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sensor that drifts away from what the others say: found in recorded history, by the daemon as by the tool, and told on the page.
+// A sensor that drifts away from its neighbours' estimate: found in recorded history by the daemon and by the tool, and shown on the page.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -18,7 +18,7 @@ PI-1,400009,Float,bar,pump,pressure,P-101A,3,0,0.5,1
 `;
 let plant, url;
 
-// All four go up and down with the day; TI-3 reads ever more, by 8 K in the week. TI-4 is lost for a day.
+// All four follow the time of day; TI-3 drifts upwards by 8 K in the week. TI-4 is lost for a day.
 function series() {
     const lines = ['Tag,Time,Value,Quality'];
     for (let quarter = 0; quarter < HOURS * 4; quarter++) {
@@ -78,7 +78,7 @@ test('the tool says the same; a week before nothing is known', options, async ()
         assert.equal((await ask(query))[0], 400, query);
 });
 
-// By how many pixels something in the card passes what its padding leaves.
+// Returns by how many pixels the card's content exceeds its padding.
 const overhang = (page) => page.evaluate(() => {
     const card = document.querySelector('#card'), padding = parseFloat(getComputedStyle(card).paddingRight);
     const right = card.getBoundingClientRect().right - padding;

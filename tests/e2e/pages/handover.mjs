@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The handover of a shift: notes, alarms, who acknowledged and shelved them, as a page and as a PDF.
+// The shift handover: notes, alarms, and who acknowledged and shelved them, as a page and as a PDF.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, shoot, waitForPicture } from '../support/browser.mjs';
@@ -36,7 +36,7 @@ after(async () => {
 });
 
 test('it says what was noted, raised, acknowledged and shelved', options, async () => {
-    for (let tries = 0; tries < 20; tries++) { // the journal is written behind
+    for (let tries = 0; tries < 20; tries++) { // the journal is written with a delay
         await page.goto(`${plant.url}handover.html`);
         await page.locator('[data-part=notes]').waitFor({ timeout: 30000 });
         if (await page.locator('[data-part=shelved] td', { hasText: 'sensor is checked' }).count() > 0)

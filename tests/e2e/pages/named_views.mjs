@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Views with names: those of the plant file and those that somebody saves in the page, for all, in one order, with what they were before.
+// Named views: those of the plant file and those that users save in the page, shared by all, in one order, with their earlier versions.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, view, waitForPicture } from '../support/browser.mjs';

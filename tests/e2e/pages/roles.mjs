@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each role may do about an alarm, by the site's mode: seen in the page, and held to by the server; over plain http, by a name.
+// What each role may do with an alarm in each alarm mode: shown by the page and enforced by the server; over plain http with a host name.
 import assert from 'node:assert/strict';
 import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -11,7 +11,8 @@ const absent = missing(), chromium = process.env.CHROMIUM ?? '/usr/bin/chromium'
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync(chromium) ? 'chromium is not installed' : false;
 const options = { skip, timeout: 200000 };
 const SCREENS = { viewer: PHONE, operator: { ...TABLET, viewport: { width: 768, height: 1024 } }, engineer: TABLET };
-const DOES = { viewer: [], operator: ['acknowledge', 'shelve'], engineer: ['acknowledge', 'shelve'] }; // about a new one, where it may
+// actions on a new alarm, where the mode allows them
+const DOES = { viewer: [], operator: ['acknowledge', 'shelve'], engineer: ['acknowledge', 'shelve'] };
 const pages = {};
 let plant, browsers;
 
@@ -22,7 +23,7 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     appendFileSync(plant.file, 'alarms: local\n');
-    plant.keepFresh(); // there is no other alarm than the one that is meant
+    plant.keepFresh(); // so that there is only the intended alarm
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H' : ',60')).join('\n'));
     assert.equal(plant.prepare().code, 0);
@@ -31,7 +32,7 @@ before(async () => {
         runProgram('plantcast', ['token', 'add', file, '--role', role, '--name', `${role}-1`]).out.trim();
     const tokens = Object.fromEntries(Object.keys(SCREENS).map((role) => [role, make(role)]));
     chmodSync(file, 0o600);
-    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]]) // before anybody reads: there is one alarm
+    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]]) // before the daemon reads: there is one alarm
         await plant.tell(`set ${tag} ${value}`);
     await plant.startDaemon('--behind-proxy', '--host', 'plant.example', '--tokens', file);
     browsers = await Promise.all(Object.entries(SCREENS).map(async ([role, screen]) => {
@@ -58,12 +59,12 @@ const waitForState = (page, states) => page.waitForFunction((any) =>
     any.includes(globalThis.plantcast.session.model.alarms.list()[0]?.state ?? 'none'), states);
 const waitForMode = (page, mode) => page.waitForFunction((is) => globalThis.plantcast.session.welcomed &&
     globalThis.plantcast.session.model.alarms.known && globalThis.plantcast.session.model.alarms.mode === is, mode);
-// What can be pressed about the first alarm of the list, or of those that are set aside.
+// Returns the actions offered for the first alarm of the list, or of those set aside.
 const offered = async (page, list = '#alarms-list') => {
     await page.locator(`${list} li`).first().waitFor();
     return page.locator(`${list} li`).first().locator('.do button').evaluateAll((all) => all.map((button) => button.dataset.action));
 };
-// What the server answers to who asks all the same.
+// Returns the server's answer to an action that the page does not offer.
 const ask = (page, action) => page.evaluate(async (what) => {
     const { actOnAlarm } = await import('/core/requests.js'), { session } = globalThis.plantcast;
     return new Promise((done) => {
@@ -89,7 +90,7 @@ test('where alarms are this site\'s own, operators and engineers act on them, vi
     });
     assert.equal(await ask(pages.viewer, 'acknowledge'), 'not_allowed');
     assert.equal(await ask(pages.viewer, 'shelve'), 'not_allowed');
-    await waitForState(pages.viewer, ['unacknowledged']); // and nothing came of it
+    await waitForState(pages.viewer, ['unacknowledged']); // the action had no effect
     await pages.operator.locator('[data-action="shelve"]').tap();
     await pages.operator.locator('#shelve-reason').fill('calibration');
     await pages.operator.locator('#shelve button[type="submit"]').tap();
@@ -115,7 +116,7 @@ for (const mode of ['display', 'mirror']) {
             await waitForMode(page, mode);
             await page.waitForFunction((words) => document.getElementById('alarm-mode').textContent === words,
                 mode === 'display' ? 'Shown here, acknowledged in the control system' : 'As the control system has them');
-            if (mode === 'display') // of limits there are alarms; of `mirror` only those that the control system has
+            if (mode === 'display') // `display` mode has alarms from limits; `mirror` only those of the control system
                 assert.deepEqual(await offered(page), [], role);
             assert.equal(await page.locator('#alarms [data-action]').count(), 0, role);
         });

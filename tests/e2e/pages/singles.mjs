@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A group with one sensor on an asset, whose triangles are left whole: what cannot be drawn truly on them is refused, with what helps, to
-// every client; and drawn once the plant file asks for it.
+// A group with a single sensor on an asset, whose triangles were not refined: what cannot be drawn correctly on them is refused for every
+// client, with a hint; and drawn once the plant file asks for refinement.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -40,17 +40,17 @@ test('paper and distances of a single sensor are refused, until the plant file h
         const refused = runProgram('plantcast', [...args, '--interpolation', 'paper']);
         assert.deepEqual([refused.code, PAPER.test(refused.err)], [2, true], refused.err);
 
-        // The page goes back to what it had, and says why.
+        // The page returns to its last view and shows why.
         await ask({ group: 'pressure' });
         await shown('pressure', 'shepard');
         await ask({ interpolation: 'paper' });
         await page.getByText('Paper cannot be drawn truly where pressure has one sensor (1 of 2 assets, the first P-101A)').waitFor();
         await shown('pressure', 'shepard');
         assert.equal(await page.evaluate(() => globalThis.plantcast.session.params.interpolation), 'shepard');
-        await ask({ group: 'temperature', interpolation: 'paper' }); // two sensors, on the only asset that has any
+        await ask({ group: 'temperature', interpolation: 'paper' }); // two sensors, on the only asset that has sensors of this group
         await shown('temperature', 'paper');
 
-        // Cut, it is shown; whole again, whoever looked on goes back.
+        // Refined, the view is shown; unrefined again, viewers return to the former view.
         await reload(whole.replace('unit: bar,', 'unit: bar, singles: cut,'));
         assert.equal((await picture('interpolation=paper'))[0], 200);
         assert.equal((await picture('show=distance&sensor=PI-1'))[0], 200);

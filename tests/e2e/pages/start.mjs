@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Assets that start hidden or as ghosts: what begins with it, how it ends, and what a link and a reload of the plant make of it.
+// Assets that start hidden or as ghosts: what begins with them, how the user shows them, and what a link and a plant reload do to them.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -21,7 +21,7 @@ test('a plant that was changed and not prepared since is prepared when the daemo
         assert.match(tiny.daemon.said, /preparing the plant: prepared files are missing or outdated/);
         const { assets } = await (await fetch(`http://127.0.0.1:${tiny.port}/api/v1/plant`)).json();
         assert.ok(assets.some(({ id }) => id === 'NEW'));
-        // What cannot be prepared is one line, and no daemon.
+        // A plant that cannot be prepared: the daemon prints one line and does not start.
         await tiny.daemon.stop();
         writeFileSync(join(tiny.folder, 'box.gltf'), '{');
         const { code, err } = runProgram('plantcastd', [tiny.file, '--port', '0']);
@@ -56,7 +56,7 @@ test('a plant may begin with less than all of it; whoever asks for the rest keep
         assert.ok(outline.every((place) => Math.abs(place[1]) < 0.6), 'what starts hidden is not in the first view');
         await shoot(page, 'start');
 
-        // Pictures for which nobody says more are of the same.
+        // Pictures without further parameters use the same start.
         const picture = async (more = '') => {
             const answer = await fetch(`${url}snapshot.png?width=320&height=200&camera=6,-9,5,1.5,0,0${more}`);
             return (await answer.arrayBuffer()).byteLength;
@@ -72,7 +72,7 @@ test('a plant may begin with less than all of it; whoever asks for the rest keep
         });
         assert.ok(files[0].equals(files[1]) && !files[0].equals(files[2]));
 
-        // The way back, and the link to it.
+        // Showing all assets, and the link to that view.
         await page.locator('#shown button').click();
         await page.waitForFunction(() => globalThis.plantcast.session.confirmed.hidden.length === 0);
         assert.deepEqual(await sets(), NONE);
@@ -83,7 +83,7 @@ test('a plant may begin with less than all of it; whoever asks for the rest keep
         await page.waitForFunction(() => globalThis.plantcast.session.confirmed);
         assert.deepEqual(await sets(), NONE, 'the link says so');
 
-        // Another start is for those who come.
+        // A changed start applies to new sessions.
         await page.evaluate(() => globalThis.plantcast.session.setParams({ hidden: ['E-101', 'HOUSE'] }));
         await page.waitForFunction(() => globalThis.plantcast.session.confirmed.hidden.length === 2);
         write('ROOF', 'ghost');
