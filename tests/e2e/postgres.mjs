@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// History to Debian's PostgreSQL: every point once, with its quality, whatever happens to the server, the connection and the daemon; a
-// machine that is replaced gets its past back.
+// History in Debian's PostgreSQL: every point once, with its quality, despite failures of the server, the connection and the daemon; a
+// replacement machine gets the history back.
 import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -13,7 +13,7 @@ import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { until as waitFor } from './support/until.mjs';
 
 const skip = notBuilt() || (missingPostgres() ?? false);
-const AWAY_MS = sweep(600000, 0); // for so long more is the database away
+const AWAY_MS = sweep(600000, 0); // additional time for which the database is away
 const options = { skip, timeout: 240000 + AWAY_MS };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const TAGS = ['TI-1', 'TI-2', 'PI-1'];
@@ -39,7 +39,7 @@ after(async () => {
     await server?.destroy();
 });
 
-// Readings that move all the time, so that each is recorded.
+// Changes readings all the time, so that each sample is recorded.
 function feed() {
     let going = true;
     const done = (async () => {
@@ -58,7 +58,7 @@ async function stopFeeding() {
 }
 
 const historyOf = (name) => join(plant.folder, `${name}.history`);
-// A database and a folder of history of their own.
+// Configures a new database and a new folder of history.
 function configure({ port, more = '', space = '', folder = `h${databases}`, keep = false } = {}) {
     if (!keep)
         server.makeDatabase(`d${++databases}`, space);
@@ -82,7 +82,7 @@ const settled = () => until('nothing waits', async () => await metric('postgres_
 const sent = (count) => until(`${count} points are sent`, async () => await metric('postgres_points_total') >= count);
 const waiting = (count) => until(`${count} points wait`, async () => await metric('postgres_waiting_points') >= count);
 
-// The database has what the API has up to three seconds ago, and no point twice.
+// Asserts that the database has the same points as the API up to three seconds ago, each once.
 async function assertSame(from) {
     await stopFeeding();
     await settled();
@@ -90,7 +90,7 @@ async function assertSame(from) {
     const lacks = (all, of) => [...all.keys()].filter((key) => !of.has(key));
     const keyed = (rows) => new Map(rows.map(([tag, us, value, quality]) => [`${tag} ${us} ${quality}`, value]));
     let api, sql, here, there;
-    const isSame = async () => { // the database follows the files by some seconds
+    const isSame = async () => { // the database lags behind the files by some seconds
         api = [];
         for (const tag of TAGS) {
             const url = `http://127.0.0.1:${plant.port}/api/v1/history?tags=${tag}&from=${from / 1e6}&to=${to / 1e6}&points=20000`;
@@ -114,7 +114,7 @@ async function assertSame(from) {
 }
 
 const begin = () => Math.floor(Date.now() / 1000) * 1e6;
-// A daemon that has sent points already; since when.
+// Starts a daemon and waits until it has sent points; returns since when.
 async function startSending() {
     const from = begin();
     await plant.startDaemon();
@@ -165,7 +165,7 @@ test('a gap and a Bad sample of an import are there, and a later import removes 
     assert.deepEqual(rows().filter(([, , quality]) => quality === none), [[86410.000001, '', none]]);
 });
 
-// As Grafana does, with these plants, tags and units chosen.
+// Replaces Grafana's macros and variables, with these plants, tags and units chosen.
 function expanded(sql, from, chosen) {
     const time = (at) => `${at} BETWEEN to_timestamp(${from / 1e6}) AND now()`;
     const text = (name) => [chosen[name]].flat().map((one) => `'${one.replaceAll("'", "''")}'`).join(',');
@@ -349,7 +349,7 @@ test('a machine that is replaced gets the past of its plant, and goes on with it
     await sent(200);
     const to = Date.now() / 1000;
     await assertSame(from);
-    // The newest samples follow every 5 s: until then the lines end earlier there.
+    // The newest samples are sent every 5 s: until then the database's lines end earlier.
     const ends = `SELECT count(*) FROM plantcast.newest WHERE t > to_timestamp(${to})`;
     await until('the lines are that long there', () => Number(server.ask(ends)[0][0]) === TAGS.length);
     const url = (to) => `http://127.0.0.1:${plant.port}/api/v1/history?tags=${TAGS}&from=${from / 1e6}&to=${to}&points=20000`;
@@ -369,7 +369,7 @@ test('a machine that is replaced gets the past of its plant, and goes on with it
     await assertSame(from);
 });
 
-// The extension is not in Debian: what is shown is that it is asked for, and how.
+// The extension is not in Debian: the test shows only that and how it is used.
 test('a database with TimescaleDB: the points are a hypertable of weeks', options, async () => {
     configure();
     server.ask(`SET allow_system_table_mods = on; INSERT INTO pg_extension(oid, extname, extowner, extnamespace, extrelocatable, extversion)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Readings and alarms to Debian's mosquitto, and from there into another Plantcast.
+// Readings and alarms published to Debian's mosquitto, and from there into another Plantcast.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -42,7 +42,7 @@ after(async () => {
     await broker?.destroy();
 });
 
-// From now on, what a stranger hears.
+// Records from now on what any subscriber receives.
 async function listen() {
     client?.end(true);
     heard = {};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Long answers about the past: whoever does not read them costs little memory, and whoever asks for all leaves others their answers.
+// Long answers about history: a client that does not read its answer costs little memory, and one that asks for everything does not delay
+// others.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { connect } from 'node:net';
@@ -11,7 +12,7 @@ import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
 const TAGS = 64, POINTS = Number(process.env.PLANTCAST_POINTS ?? 4000), BEGIN_S = 1793500000, READERS = 64;
-const SECONDS = Number(process.env.PLANTCAST_SECONDS ?? 2); // longer, and with more points, by hand
+const SECONDS = Number(process.env.PLANTCAST_SECONDS ?? 2); // set longer, and with more points, for manual runs
 const GREEDY = { localAddress: '127.0.0.2' }, OTHER = { localAddress: '127.0.0.3' };
 const names = Array.from({ length: TAGS }, (_, i) => `T-${i + 1}`);
 const query = (tags, points) => `/api/v1/history?tags=${tags}&from=${BEGIN_S}&to=${BEGIN_S + POINTS}&points=${points}`;
@@ -62,7 +63,7 @@ test('a long answer comes whole, in pieces', options, async () => {
     const csv = await (await fetch(`${url}${all}&format=csv`)).text();
     assert.equal(csv.split('Tag,Time').length, 2, 'one line that names the columns');
     assert.equal((await get(plant.port, all, 'HEAD')).status, 200);
-    const old = await new Promise((done) => { // the connection's end is the body's
+    const old = await new Promise((done) => { // the end of the connection ends the body
         const socket = connect(plant.port, '127.0.0.1', () => socket.write(head(all).replace('1.1', '1.0')));
         let said = '';
         socket.on('data', (bytes) => { said += bytes; });
@@ -101,7 +102,7 @@ test('who asks for all, all the time, leaves others their answers', options, asy
             had += bytes.length;
             if (!going)
                 socket.destroy();
-            else if (bytes.toString('latin1', 0, 12).endsWith(' 503')) // those of before were not missed yet
+            else if (bytes.toString('latin1', 0, 12).endsWith(' 503')) // the server has not noticed yet that the earlier connections closed
                 setTimeout(() => socket.write(head(all)), 200);
             else if (bytes.subarray(-5).toString() === '0\r\n\r\n')
                 socket.write(head(all));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much the log grows: what each thing that happens in normal life writes, measured in the longest of its formats, and what a day of
-// many of them comes to. Nothing is written while nothing happens.
+// Growth of the log: bytes that each normal event writes, in the longest log format, and the total of a busy day. Nothing is written while
+// nothing happens.
 import assert from 'node:assert/strict';
 import { chmodSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -12,7 +12,7 @@ const options = { skip: notBuilt(), timeout: 280000 };
 const DAY_BYTES = 10e6, DAY_S = 24 * 3600;
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, token;
-const costs = {}; // bytes and lines of each, by what happens
+const costs = {}; // bytes and lines of each kind of event
 
 before(async () => {
     if (options.skip)
@@ -34,9 +34,9 @@ before(async () => {
 after(() => plant?.destroy());
 
 const said = () => plant.daemon.said;
-// What the log grew by while `times` of something happened, and a while after that.
+// Returns how much the log grew while an event happened `times` times, and for a while after.
 async function measure(what, times, happen, settleMs = 3000) {
-    await sleep(1500); // repeats are counted for a second
+    await sleep(1500); // repeated lines are counted for a second
     const from = said().length;
     for (let i = 0; i < times; i++)
         await happen(i);
@@ -97,8 +97,9 @@ test('a device that stays lost is not told of again and again', options, async (
 test('a busy day stays under 10 MB, and one with a device that flaps all day, too', options, () => {
     for (const [what, { bytes, lines }] of Object.entries(costs))
         console.log(`# ${what}: ${bytes.toFixed(0)} bytes, ${lines.toFixed(1)} lines`);
-    // Of each plant: 40 people and walls that come back 50 times each, a scraper and programs that ask every 5 s, ISA-18.2's flood all day
-    // long (10 alarms in 10 minutes), a wrong token a minute, a reload an hour, a cable that is pulled 100 times.
+    // A day of each plant: 40 people and walls that reconnect 50 times each, a scraper and programs that ask every 5 s, a permanent alarm
+    // flood as defined by ISA-18.2 (10 alarms in 10 minutes), a wrong token per minute, a reload per hour, a cable that is unplugged 100
+    // times.
     const day = { session: 2000, 'picture or question': DAY_S / 5, 'alarm that comes and goes': DAY_S / 60, 'wrong token': DAY_S / 60,
         reload: 24, 'device that is lost and comes back': 100, 'second of a lost device': DAY_S, '10 s of changing readings': DAY_S / 10 };
     assert.deepEqual(Object.keys(day).sort(), Object.keys(costs).sort());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Readings that change are shown at once, readings that do not cost next to nothing, and a reading gets stale without anyone writing it.
+// Changed readings are shown at once, unchanged readings cost almost nothing, and a reading becomes stale without a write.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -25,7 +25,7 @@ after(async () => {
     await plant?.destroy();
 });
 
-// Of the loop: how often it went to sleep, in a second.
+// Returns how often the loop's thread went to sleep per second.
 async function sleeps(seconds) {
     const { pid } = plant.daemon.child;
     const count = () => Number(readFileSync(`/proc/${pid}/task/${pid}/status`, 'utf8').match(/^voluntary_ctxt_switches:\s*(\d+)/m)[1]);
@@ -37,10 +37,10 @@ async function sleeps(seconds) {
 test('a loop with nothing to do sleeps', options, async () => {
     await sleep(2000);
     const rate = await sleeps(3);
-    assert.ok(rate < 5, `woken ${rate} times a second`); // ten times, were it to ask every tenth of a second
+    assert.ok(rate < 5, `woken ${rate} times a second`); // it would be ten times if it polled every tenth of a second
 });
 
-// The device is read every 100 ms, so the oldest reading of a frame is as old as the change that the frame was made for.
+// The device is read every 100 ms, so the oldest reading of a frame is as old as the change that caused the frame.
 test('a changed reading does not wait for a tick', options, async (t) => {
     const ages = [];
     for (let i = 0; i < CHANGES; i++) {
@@ -50,7 +50,7 @@ test('a changed reading does not wait for a tick', options, async (t) => {
         ages.push((await client.frameWhere(`change ${i}`, made)).oldest_age_ms);
         await sleep(350 + 37 * (i % 5));
     }
-    // 50 ms if the loop asked every tenth of a second.
+    // It would be 50 ms if the loop polled every tenth of a second.
     promise(t, `from a reading to its frame, median of ${ages.join(', ')} ms`, median(ages), 35);
 });
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plant loaded anew under clients that look at it: all of it or nothing, and nobody is sent away.
+// Plant reload while clients are connected: completely or not at all, and no client is disconnected.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { closeSync, constants, openSync, readFileSync, renameSync, writeFileSync } from 'node:fs';
@@ -12,7 +12,7 @@ import { until } from './support/until.mjs';
 
 const skip = notBuilt();
 const options = { skip, timeout: 300000 };
-const patienceMs = 100000; // a plant is loaded in a second, but not beside a full machine
+const patienceMs = 100000; // a reload takes a second, but longer on a busy machine
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, tagsFile, firstTags;
 
@@ -21,7 +21,7 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     tagsFile = join(plant.folder, 'tags.csv');
-    // A busy machine makes a reading late, or a poll: that is no gap by a reload.
+    // On a busy machine a late reading or poll must not look like a gap caused by the reload.
     firstTags = readFileSync(tagsFile, 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',60,');
     writeFileSync(tagsFile, firstTags.replace('E-101,0.5,0,0,60,', 'E-101,0.5,0,0,60,-1')); // TI-1 is beyond H
     writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000')}alarms: local\n`);
@@ -80,7 +80,7 @@ test('what changed is said; sessions, alarms and readings go on', options, async
     assert.equal(again.session, welcome.session, 'the same session');
     assert.equal(again.view.ramp_interval, 10, 'and the same view');
     assert.deepEqual(again.tags.map(({ name }) => name), ['TI-1', 'TI-2', 'PI-1', 'XX-9']);
-    await client.wait('a picture of the new plant', () => client.pictures.length > shown); // they go on
+    await client.wait('a picture of the new plant', () => client.pictures.length > shown); // pictures continue
     assert.ok((await active()).includes('TI-1/H acknowledged'), 'nobody has to acknowledge it again');
     assert.match(await metric(`plantcast_configuration_info{hash="${first}"}`), / 0$/);
     const tags = (await (await fetch(url('/api/v1/tags'))).json()).tags;
@@ -150,7 +150,7 @@ test('again and again, by signal, under clients that move', options, async () =>
     }
 });
 
-// Whoever reads a pipe waits until somebody writes: so the reload is not ready before the test says so.
+// Reading a named pipe waits until a writer opens it: so the test decides when the reload becomes ready.
 test('who waits too long for an answer is told so, and can ask again', options, async () => {
     const other = await TinyPlant.create(), tags = join(other.folder, 'tags.csv'), aside = join(other.folder, 'aside.csv');
     const ask = () => fetch(`http://127.0.0.1:${other.port}/api/v1/reload`, { method: 'POST' });
@@ -167,12 +167,12 @@ test('who waits too long for an answer is told so, and can ask again', options, 
         const pipe = join(other.folder, 'pipe');
         renameSync(tags, pipe);
         renameSync(aside, tags);
-        let again; // the empty pipe is refused, also to who asks before that is known; 503 on a slow machine
+        let again; // the empty pipe is refused, also for requests made before that is known; 503 on a slow machine
         for (let i = 0; i < 100 && again?.status !== 200; i++) {
             try {
-                closeSync(openSync(pipe, constants.O_WRONLY | constants.O_NONBLOCK)); // whoever waits to read it goes on
+                closeSync(openSync(pipe, constants.O_WRONLY | constants.O_NONBLOCK)); // releases the reload that waits for the pipe
             } catch (error) {
-                assert.equal(error.code, 'ENXIO'); // nobody does
+                assert.equal(error.code, 'ENXIO'); // no reload waits for it
             }
             again = await ask();
         }

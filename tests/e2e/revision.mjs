@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A new export of a plant that is there: what was matched stays matched, sensors follow what they are on, a review says the rest; under a
-// daemon that runs; taken back; killed, and out of disk.
+// A new CAD export of an existing plant: matches stay, sensors follow their equipment, a review lists the rest; with a running daemon;
+// undone; killed, and on a full disk.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import {
@@ -36,11 +36,11 @@ async function inFolder(f) {
 const rowsOf = (path) => readFileSync(path, 'utf8').trim().split('\n').slice(1).map((line) => line.split(','));
 const review = (folder) => rowsOf(join(folder, 'review.csv'))
     .map(([what, change, name]) => `${what} ${change} ${name.replace(/^'/, '')}`).sort();
-// All that people see of a folder, by name.
+// Returns all user-visible files of a folder, by name.
 const filesOf = (folder) => Object.fromEntries(readdirSync(folder, { withFileTypes: true })
     .filter((entry) => entry.isFile()).map(({ name }) => [name, readFileSync(join(folder, name)).toString('base64')]));
 
-// One pump moves and a second one comes, another has a new name, a pipe is gone, and a part of a tank.
+// A pump moves, a second one is added, another is renamed, a pipe and a part of a tank are removed.
 function revise(folder) {
     const rvm = readRvm(readFileSync(`${SAMPLE}.rvm`)), path = join(folder, 'plm-sample.rvm');
     const replace = (name, by) => {
@@ -67,7 +67,7 @@ function bring(folder, ...more) {
     good(run('plantcast', 'import', `${SAMPLE}.rvm`, '-o', folder));
     writeFileSync(join(folder, 'export.csv'), LIST);
     good(run('plantcast', 'match', folder, join(folder, 'export.csv'), ...more));
-    // Somebody has confirmed the place on the pump that will move.
+    // The user has confirmed the sensor's position on the pump that will move.
     const list = join(folder, 'tags.csv'), text = readFileSync(list, 'utf8');
     writeFileSync(list, text.replace(/(TT-1101,.*-ART1101PO-,)equipment(,,).*/, '$1$2-4.700,-4.150,3.3'));
     assert.notEqual(readFileSync(list, 'utf8'), text);
@@ -93,13 +93,13 @@ test('a real plant: rename, move, delete, add; and back', { skip: noData }, () =
     assert.match(file, /- \{ id: "-ART1102PO-", /);
     assert.doesNotMatch(file, /ART1010TY/);
     good(run('plantcastd', '--check', join(plant, 'plant.yaml')));
-    // Matched again, nothing is undone; a tag that left the list is named.
+    // Matching again undoes nothing; a tag that left the list is named.
     writeFileSync(join(plant, 'export.csv'), LIST.replace(/^art1111po.*\n/m, ''));
     const again = good(run('plantcast', 'match', plant, join(plant, 'export.csv')));
     assert.match(again.stdout, /1 tags of before are no longer in the list; what was decided about them stays: art1111po\.TE-03/);
     assert.equal(readFileSync(join(plant, 'tags.csv'), 'utf8'), list);
     assert.match(readFileSync(join(plant, 'matches.csv'), 'utf8'), /^art1111po\.TE-03,sure,-ART1111PO-,/m);
-    // matches.csv is another one now, so it is not lost without being asked.
+    // matches.csv has changed since, so undoing requires --force.
     const refused = run('plantcast', 'import', '--undo', '-o', plant);
     assert.equal(refused.status, 1);
     assert.match(refused.stderr, /changed since the import: matches\.csv; --force undoes/);
@@ -114,7 +114,7 @@ test('a real plant: rename, move, delete, add; and back', { skip: noData }, () =
     assert.ok(readdirSync(plant).every((name) => !name.startsWith('.')), readdirSync(plant).join(' '));
 }));
 
-// Boxes of a metre at places, as glTF.
+// Writes a glTF model of boxes of one metre at given positions.
 function boxes(path, nodes) {
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, i >> 1 & 1, i >> 2]);
     const faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -157,8 +157,8 @@ T5;temperature;second;;equipment;;;;e
 T6;temperature;second;TT-9;;;;;f
 `);
     const first = filesOf(plant);
-    // A and B change their names with each other; A is turned about the vertical and moved; C has another number; TT-9 has gone; D is
-    // elsewhere; F is new; E, which no asset has, has gone.
+    // A and B exchange their names; A is rotated about the vertical and moved; C has another number; TT-9 is gone; D moved; F is new; E,
+    // which no asset uses, is gone.
     boxes(model, [{ ...D, at: [20, 0, -3] }, { name: 'F', at: [40, 0, 0] }, C, { ...B, name: 'A' },
         { ...A, name: 'B', at: [0, 1, 0], turned: true }]);
     const said = good(run('plantcast', 'import', model, '-o', plant));
@@ -168,7 +168,7 @@ T6;temperature;second;TT-9;;;;;f
     assert.match(file, /nodes: "#2"\n/);
     assert.match(file, /- \{ id: "F", model: "m\.glb", nodes: "F" \}/);
     assert.doesNotMatch(file, /id: "E"/);
-    // (0.5, 1, 0), Y up, a quarter turn about Y and 1 m up: (0, 2, -0.5).
+    // (0.5, 1, 0), Y up, after a quarter turn about Y and 1 m upwards: (0, 2, -0.5).
     assert.match(tags, /^T1;temperature;first;;;0;0\.5;2;a$/m);
     assert.match(tags, /^T2;temperature;second;;equipment;;;;b$/m);
     assert.match(tags, /^T3;temperature;third;"?#2"?;;;;;c$/m);
@@ -177,16 +177,16 @@ T6;temperature;second;TT-9;;;;;f
     assert.match(said.stdout, /tag +place lost +T2 +on second: its node TT-9 is no longer in the model/);
     assert.match(said.stdout, /tags: 2 moved, 2 place lost/);
     assert.ok(review(plant).includes('node removed E'));
-    // The same once more changes nothing, and what can be undone is still the first one.
+    // Importing the same again changes nothing, and undo still restores the state before the first import.
     assert.match(good(run('plantcast', 'import', model, '-o', plant)).stdout, /plant\.yaml: stays as it is/);
     good(run('plantcast', 'import', '--undo', '-o', plant));
     assert.deepEqual(filesOf(plant), first);
-    // Nothing of the plant is in the new model: it is another plant's.
+    // No name of the plant is in the new model: it belongs to another plant.
     boxes(model, [{ name: 'X', at: [100, 0, 0] }]);
     const other = run('plantcast', 'import', model, '-o', plant);
     assert.equal(other.status, 1);
     assert.match(other.stderr, /nothing of this plant is in it/);
-    // One more model is one more: its assets are added.
+    // An additional model adds its assets.
     boxes(join(folder, 'n.gltf'), [{ name: 'G', at: [50, 0, 0] }, { name: 'A', at: [60, 0, 0] }]);
     good(run('plantcast', 'import', join(folder, 'n.gltf'), '-o', plant));
     assert.match(readFileSync(join(plant, 'plant.yaml'), 'utf8'), /- \{ id: "G", model: "n\.glb", nodes: "G" \}\n/);
@@ -244,7 +244,7 @@ test('under a daemon that runs: readings, history and alarms keep their tags', {
         await until('a reading', async () => (await value('TT-1101')).value === 77);
         const before = await api('/api/v1/plant');
         good(run('plantcast', 'import', revise(outside), '-o', plant));
-        assert.equal((await value('TT-1101')).value, 77); // nothing has changed for who looks
+        assert.equal((await value('TT-1101')).value, 77); // nothing has changed for connected users
         assert.equal(tiny.prepare().code, 0);
         const reload = async () => {
             const answer = await fetch(`http://127.0.0.1:${tiny.port}/api/v1/reload`, { method: 'POST' }), said = await answer.json();
@@ -289,10 +289,10 @@ test('killed in the middle, or out of disk: the old plant or the new one', patie
         child.kill('SIGKILL');
         await ended;
         const now = filesOf(plant), hourAgo = new Date(Date.now() - 3600000);
-        writeFileSync(join(plant, `.trial.${child.pid}.yaml`), ''); // as one that is killed while it tries the new plant file leaves
+        writeFileSync(join(plant, `.trial.${child.pid}.yaml`), ''); // like a program that was killed while it tried the new plant file
         for (const name of readdirSync(plant).filter((left) => left.includes(`.${child.pid}.`))) // a file of the last minute may be in use
             utimesSync(join(plant, name), hourAgo, hourAgo);
-        const untouched = Object.keys(old).every((name) => now[name] === old[name]); // else the next import goes on where this one ended
+        const untouched = Object.keys(old).every((name) => now[name] === old[name]); // otherwise the next import completes this one
         kept += untouched;
         if (untouched)
             good(run('plantcastd', '--check', join(plant, 'plant.yaml')));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The daemon as a service: what it tells its manager, who starts it again, what its log and its metrics look like, and what a reload
-// that was refused leaves to be seen.
+// The daemon as a service: its messages to the service manager, restarts by the manager, its log and metrics, and what a refused reload
+// leaves visible.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -16,11 +16,11 @@ import { BIN, notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
 const has = (program) => spawnSync('which', [program]).status === 0;
-const WATCHDOG_S = 10, WITHIN_S = 30; // as in the unit
+const WATCHDOG_S = 10, WITHIN_S = 30; // as in the systemd unit
 let plant, runtime;
 const running = new Set();
 
-// plantcastd below a service manager: { lines of the manager, err of the daemon, pid, order(), ended }.
+// Starts plantcastd under a service manager: { lines of the manager, err of the daemon, pid, order(), ended }.
 function serve(args, managed = []) {
     const child = spawn('tests/support/service_manager.py', [...managed, join(BIN, 'plantcastd'), plant.file, ...args],
         { stdio: 'pipe', env: { ...process.env, RUNTIME_DIRECTORY: runtime } });
@@ -76,7 +76,7 @@ test('plantcast-prep asks for time while it works', { skip }, () => {
     assert.match(stdout, /^notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing/m);
 });
 
-// A plant whose preparing lasts, since one of its models is made by a program that does not end.
+// A plant whose preparing does not end, because a program that makes one of its models does not end.
 async function unprepared() {
     const tiny = await TinyPlant.create();
     assert.equal(tiny.prepare().code, 0);
@@ -92,7 +92,8 @@ test('a start that prepares the plant asks for time as long as it does, and ends
     try {
         plant = tiny;
         const service = serve(['--port', '0']);
-        await service.said(/(notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing the plant\n[^]*){2}/); // plantcast-prep
+        // reported twice while plantcast-prep runs
+        await service.said(/(notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing the plant\n[^]*){2}/);
         assert.equal(await service.stop(), 0, service.err);
         assert.match(service.err, /stopping; the next start continues preparing/);
     } finally {
@@ -126,7 +127,7 @@ for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 't
     test(`if ${what} hangs, the watchdog ends the daemon within ${WITHIN_S} s; before, it lives`, { skip, timeout: 240000 }, async (t) => {
         const service = serve(['--port', '0'], ['--watchdog', String(WATCHDOG_S)]);
         await service.said(/^notify: READY=1$/m);
-        await service.said(/(notify: WATCHDOG=1[^]*){6}/); // 2 s apart, so for longer than the manager waits for one
+        await service.said(/(notify: WATCHDOG=1[^]*){6}/); // 2 s apart, so six last longer than the watchdog's interval
         service.order(`freeze ${thread}`);
         await service.said(new RegExp(`^frozen: ${thread}$`, 'm'));
         const began = performance.now();
@@ -140,7 +141,7 @@ for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 't
 
 test('connections wait in the socket of the manager while the daemon is started again; it says when it will be back',
     { skip, timeout: 120000 }, async () => {
-        const service = serve(['--port', '1'], ['--socket']); // which it does not ask for
+        const service = serve(['--port', '1'], ['--socket']); // which plantcastd ignores when it gets a socket
         const port = Number((await service.said(/^port: (\d+)$/m))[1]);
         assert.equal((await get(port, '/readyz')).status, 200, 'asked before anything ran');
         assert.equal(runProgram('plantcast', ['ready', `http://127.0.0.1:${port}/`]).code, 0);
@@ -244,7 +245,7 @@ test('metrics: build, process and certificate; no old name of one that was renam
     assert.equal(made.status, 0, String(made.stderr));
     const port = await freePort(), service = serve(['--port', String(port), '--tls-cert', cert, '--tls-key', key]);
     await service.said(/^notify: READY=1$/m);
-    await new Promise((done) => setTimeout(done, 3000)); // one look of the supervision
+    await new Promise((done) => setTimeout(done, 3000)); // longer than an interval of the supervision
     const text = spawnSync('curl', ['-s', '--cacert', cert, `https://127.0.0.1:${port}/metrics`], { encoding: 'utf8' }).stdout;
     const number = (name) => Number(text.match(new RegExp(`^${name} (.*)$`, 'm'))?.[1]);
     assert.match(text, /^plantcast_build_info\{version="[\d.]+",commit="\w+"\} 1$/m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What there is goes to addresses in equal shares: one that takes all it can get leaves another its place, its frames and its pictures.
+// Resources are shared equally among addresses: a greedy one leaves another its sessions, frames and pictures.
 import assert from 'node:assert/strict';
 import { connect } from 'node:net';
 import { after, before, test } from 'node:test';
@@ -9,7 +9,7 @@ import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 const options = { skip: notBuilt(), timeout: 240000 };
 const GREEDY = { localAddress: '127.0.0.2' }, OTHER = { localAddress: '127.0.0.3' };
 const LARGE = { width: 4096, height: 4096 }, BIG_PICTURE = '/snapshot.png?width=4096&height=4096';
-// This machine's own addresses have limits of an address only where these are given.
+// Addresses of this machine have per-address limits only if these are given.
 const LIMITS = ['address-sessions=32', 'address-pixels=134217728', 'address-snapshots=4'].flatMap((one) => ['--limit', one]);
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant;
@@ -25,7 +25,7 @@ after(() => plant?.destroy());
 
 const settled = (client) => client.until('an answer', (c) => c.closed || c.texts.some((m) => m.type === 'welcome'), 30000);
 
-// Sessions of one address, whether or not they are let in.
+// Opens sessions from one address, admitted or not.
 async function crowd(count, from, hello) {
     const clients = await Promise.all(Array.from({ length: count }, () => PlainClient.open(plant.port, from)));
     for (const client of clients)
@@ -34,7 +34,7 @@ async function crowd(count, from, hello) {
     return { clients, admitted: clients.filter((client) => !client.closed), close: () => clients.forEach((client) => client.close()) };
 }
 
-// Frames per second of a camera that moves 30 times a second.
+// Returns the frames per second of a camera that moves 30 times a second.
 async function framesPerSecond(client, seconds) {
     const began = performance.now(), before = client.frames.length;
     for (let seq = 1; performance.now() - began < seconds * 1000; seq++) {
@@ -58,7 +58,7 @@ test('hidden views of the largest size leave room for another address', options,
     greedy.close();
 });
 
-// What another address gets: frames per second, and a small picture.
+// Measures what another address gets: frames per second, and a small picture.
 async function othersPart() {
     const other = await PlainClient.open(plant.port, OTHER);
     await other.hello();
@@ -93,7 +93,7 @@ test('who has all drawn that may be leaves another address its frames and its pi
     clearInterval(timer);
     greedy.close();
     await Promise.all(large);
-    // On a machine that has other things to do all takes as much longer.
+    // On a busy machine everything takes longer.
     assert.ok(beside.rate >= Math.min(5, alone.rate / 8), `${beside.rate.toFixed(1)} frames/s`);
     assert.equal(beside.status, 200);
     assert.ok(beside.seconds <= Math.max(3, 12 * alone.seconds), `${beside.seconds.toFixed(1)} s`);
@@ -106,7 +106,7 @@ test('behind a proxy, connections are those of the address that it names', optio
         assert.equal(proxied.prepare().code, 0);
         await proxied.startDaemon('--behind-proxy', '--host', 'plant.example', '--open-viewers', '--limit', 'connections=200');
         const head = (from) => `GET /healthz HTTP/1.1\r\nHost: plant.example\r\nX-Forwarded-For: ${from}\r\n\r\n`;
-        // The status that a connection gets which stays open, if it may.
+        // Resolves with the status of a request on a connection that is kept open.
         const keep = (from) => new Promise((done) => {
             const socket = connect(proxied.port, '127.0.0.1', () => socket.write(head(from)));
             socket.once('data', (bytes) => done({ socket, status: Number(bytes.toString().split(' ')[1]) }));
@@ -122,7 +122,7 @@ test('behind a proxy, connections are those of the address that it names', optio
         assert.equal((await keep(`${'198.51.100.1, '.repeat(50)}203.0.113.9`)).status, 431);
         assert.equal((await keep('127.0.0.1')).status, 200);
         for (let i = 0; i < 70; i++)
-            kept.push(await keep('127.0.0.1')); // nobody is near behind a proxy
+            kept.push(await keep('127.0.0.1')); // behind a proxy no address counts as local
         assert.equal(kept.at(-1).status, 503);
         for (const { socket } of kept)
             socket.destroy();

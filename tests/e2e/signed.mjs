@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Signed pictures: whole ones are good and are drawn again pixel for pixel, of now and of the past; whatever is changed in one is found.
+// Signed pictures: intact ones are verified and drawn again pixel for pixel, of the present and the past; every alteration is detected.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { createPrivateKey, sign } from 'node:crypto';
@@ -26,7 +26,7 @@ function makeKey(name) {
     chmodSync(path(`${name}.pem`), 0o600);
     openssl('pkey', '-in', path(`${name}.pem`), '-pubout', '-out', path(`${name}.pub`));
 }
-// By a connection of its own: while this program waits for another one, the server may end one that is idle.
+// Fetches over a new connection, because the server may close an idle one while this program waits for something else.
 const fetchPicture = (query, token = null) => new Promise((done, fail) => {
     get({ host: '127.0.0.1', port: plant.port, path: `/snapshot.png?${query}`, agent: false,
         headers: token ? { Authorization: `Bearer ${token}` } : {} }, (answer) => {
@@ -114,7 +114,7 @@ test('so is a statement of another picture, and a signature of another key', { s
         /the signature is wrong/);
 });
 
-// The picture with another statement, signed by the server's key.
+// Returns the picture with a changed statement, signed by the server's key.
 function resigned(png, change) {
     const key = createPrivateKey(readFileSync(path('server.pem'))), text = change(textOf(png, STATEMENT));
     assert.notEqual(text, textOf(png, STATEMENT));
@@ -130,7 +130,7 @@ test('a statement of another version is signed well, and not understood', { skip
         refused(resigned(picture, (text) => text.replace(from, to)), /the statement is none of Plantcast's/);
 });
 
-// Until pictures of sessions were signed, statements said nothing of overlay and tier: all were whole pictures of /snapshot.png.
+// Before pictures of sessions were signed, statements contained no overlay and tier: all were complete pictures of /snapshot.png.
 test('a statement of version 1 is verified, and its picture drawn again', { skip }, () => {
     const first = resigned(picture, (text) => text.replace('"plantcast_statement":2', '"plantcast_statement":1')
         .replace('"overlay":"full",', '').replace('"tier":"refined",', ''));
@@ -201,7 +201,7 @@ test('no file that would show something else is good: the chunk is named', { ski
 const url = () => `http://127.0.0.1:${plant.port}/`;
 const probe = (...args) => runProgram('plantcast', ['probe', url(), '--size', '320x200', '--seconds', '1', ...args], 120000);
 const FLAG = { still: 2, signed: 64 };
-let frame; // a refined one of a session
+let frame; // a refined frame of a session
 
 test('refined frames of a session come signed where it asks for that, and are drawn again', { skip }, () => {
     mkdirSync(path('refined'));
@@ -272,7 +272,7 @@ test('a session says what it wants signed, and is told why something is not', { 
     client.say({ type: 'camera', seq: 2, eye: [4, -3, 2], target: [1, 0, 0], up: [0.2, 0.1, 1], fov: 40 });
     client.say({ type: 'sign', frames: 'refined' });
     const signed = await client.frameWhere('a signed frame', (one) => one.flags & FLAG.signed && one.camera_seq === 2);
-    const { code, out, err } = redraw(signed.payload); // split, cut, tilted
+    const { code, out, err } = redraw(signed.payload); // a split, clipped and tilted view
     assert.equal(code, 0, out + err);
     client.say({ type: 'params', seq: 3, split: null, show: 'difference', baseline: 'now' });
     assert.match((await client.text('error')).text, /has no name/);
@@ -286,7 +286,7 @@ test('the page saves what is on its screen, signed, and a picture with legend an
     try {
         await waitForPicture(page);
         await waitForHealth(page, 'live');
-        await page.evaluate(() => { // the pixels on the screen when a signed frame was drawn there, as the statement has them
+        await page.evaluate(() => { // records the pixels on the screen when a signed frame was drawn, and its statement
             const { session, viewport: { context, canvas } } = globalThis.plantcast, { drawn } = session;
             session.drawn = (of, ...more) => {
                 drawn.call(session, of, ...more);
@@ -309,7 +309,7 @@ test('the page saves what is on its screen, signed, and a picture with legend an
         assert.match(again.out, new RegExp(`  ${statement.width * statement.height} of ${statement.width * statement.height} pixels`));
         assert.equal(await page.evaluate(() => globalThis.signedPixels), statement.pixels_sha256, 'the pixels that were on the screen');
         await plant.tell('set TI-1 70');
-        await page.waitForFunction(() => !(globalThis.plantcast.session.picture.flags & 64)); // it goes on as before
+        await page.waitForFunction(() => !(globalThis.plantcast.session.picture.flags & 64)); // the session continues as before
         await plant.tell('set TI-1 80');
         const whole = await save('again'), { code, out, err } = redraw(whole);
         assert.equal(code, 0, out + err);
@@ -487,7 +487,7 @@ test('a key that is none, or that everybody may read, is refused', { skip }, () 
     assert.match(err, /everybody may read it/);
 });
 
-// CPU time of each thread so far, in ns, by id.
+// Returns the CPU time of each thread so far in ns, by thread id.
 function threadTimes(pid) {
     const folder = `/proc/${pid}/task`;
     return new Map(readdirSync(folder).map((id) => [id, Number(readFileSync(join(folder, id, 'schedstat'), 'utf8').split(' ')[0])]));
@@ -499,7 +499,7 @@ test('the loop does not wait for a signature: 10,000 readings are stated and sig
     assert.equal(plant.prepare().code, 0);
     await plant.daemon.stop();
     chmodSync(path('server.pem'), 0o600);
-    await plant.sim.stop(); // readings that change would be work of the loop, too
+    await plant.sim.stop(); // changing readings would be work of the loop, too
     await plant.startDaemon('--signing-key', path('server.pem'));
     const { pid } = plant.daemon.child, count = 10;
     const whole = await fetchPicture('width=320&height=200');
@@ -507,12 +507,12 @@ test('the loop does not wait for a signature: 10,000 readings are stated and sig
     for (let i = 0; i < count; i++)
         await fetchPicture(`width=320&height=${200 + 2 * i}`);
     const spent = [...threadTimes(pid)].map(([id, ns]) => [id, (ns - (before_.get(id) ?? 0)) / 1e6 / count]);
-    const loop = spent.find(([id]) => Number(id) === pid)[1]; // the main thread
+    const loop = spent.find(([id]) => Number(id) === pid)[1]; // the main thread runs the loop
     const report = spent.map(([id, ms]) => `${readFileSync(`/proc/${pid}/task/${id}/comm`, 'utf8').trim()} ${ms.toFixed(2)}`).join(', ');
     console.log(`# ms of CPU a signed picture, by thread: ${report}`);
     assert.match(verify(whole).out, /signature is good/);
     assert.ok(loop < 5, `${loop} ms of the loop a picture: ${report}`);
-    // A plant that is loaded anew while pictures are signed: each is answered, and those that are pictures are good.
+    // A reload while pictures are signed: each request is answered, and all pictures are valid.
     const asked = Array.from({ length: 6 }, (_, i) => fetch(`http://127.0.0.1:${plant.port}/snapshot.png?width=320&height=${240 + 2 * i}`));
     writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace(/^name: .*$/m, 'name: Another'));
     plant.daemon.child.kill('SIGHUP');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sparkplug B, against Debian's mosquitto and the Eclipse project's own client: births, deaths, aliases, types, gaps and rebirths; a node
-// and a broker that are killed.
+// Sparkplug B with Debian's mosquitto and the Eclipse project's client: births, deaths, aliases, types, gaps and rebirths; a node and a
+// broker that are killed.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 import sparkplug from 'sparkplug-client';
@@ -19,7 +19,7 @@ const good = { quality_name: 'Good' }, dead = { quality_name: 'Bad_Communication
 let broker, plant, nodes = [];
 const until = (...args) => plant.until(...args), metric = (name) => plant.metric(name);
 
-// A node with one device; births: how often it was asked for them, or gave them.
+// Starts a node with one device; births: how often births were requested or sent.
 async function startNode(more = {}) {
     const node = sparkplug.newClient({ serverUrl: `mqtt://127.0.0.1:${broker.port}`, username: '', password: '', groupId: 'U100',
         edgeNode: 'edge', clientId: `edge${Math.random()}`, ...more });
@@ -46,7 +46,7 @@ async function startNode(more = {}) {
     return node;
 }
 
-// Gone without a word: the broker publishes the death certificate.
+// Closes without a message: the broker publishes the death certificate.
 const kill = (node) => node.client.stream.destroy();
 
 before(async () => {
@@ -81,7 +81,7 @@ test('births and data, by name and by alias, of every kind of number', options, 
     await until('TI-1', { ...good, value: 21.25 });
     await until('XS-1', { ...good, value: 0 });
     await until('TI-2', { quality_name: 'Uncertain_NoCommunicationLastUsableValue', value: 3.5 });
-    await until('PI-1', { ...good, value: 5 }); // history is not now
+    await until('PI-1', { ...good, value: 5 }); // historical metrics do not change the present value
     assert.equal(await metric('historical_total'), 1);
     node.publishDeviceData('skid', { timestamp: Date.now(), metrics: [{ alias: 3, type: 'UInt16', value: null, isNull: true },
         { alias: 4, type: 'Boolean', value: true, properties: { Quality: { type: 'Int32', value: 0 } } }] });
@@ -104,7 +104,7 @@ test('the death of a device and of a node makes all its tags Bad at once', optio
     kill(node);
     for (const name of ['TI-1', 'TI-2', 'PI-1', 'XS-1'])
         await until(name, dead, 1);
-    await until('TI-1', { ...good, value: 20.5 }); // it has come back by itself
+    await until('TI-1', { ...good, value: 20.5 }); // the node has reconnected by itself
 });
 
 test('an old death certificate is ignored', options, async () => {
@@ -188,7 +188,7 @@ test('what is no Sparkplug, and metrics that change their type, are refused by n
     await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.from([0xff, 0xff, 0xff, 0xff, 0x0f, 1, 2, 3]));
     await plant.daemon.line(/NDATA\/edge: 8 bytes are refused: no Sparkplug B payload/);
     await stranger.tell(`spBv1.0/U100/DDATA/edge/${'x'.repeat(65000)}`, encode({ metrics: [] }));
-    await refused(2); // of these the log has one line a minute
+    await refused(2); // the log has one line a minute about these
     await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.alloc(5 << 20)).catch(() => {});
     await stranger.leave();
     node.bear();
@@ -199,12 +199,12 @@ test('what is no Sparkplug, and metrics that change their type, are refused by n
     await until('XS-1', { ...good, value: 0 });
     await refused(3);
     node.publishDeviceBirth('skid', { timestamp: Date.now(), metrics: [{ name: 'TI-2', type: 'Int32', value: -5 }] });
-    await until('TI-2', { ...good, value: -5 }); // it may be born anew
+    await until('TI-2', { ...good, value: -5 }); // the device may send another birth
     await until('PI-1', { quality_name: 'Bad_ConfigurationError' });
     await plant.daemon.line(/U100\/edge\/skid: its birth certificate has no metric 'Raw', and not some others/);
 });
 
-// Each of 4,000 metrics five times a second, in messages of so many.
+// 4,000 metrics, five times a second, `each` of them per message.
 for (const each of [4000, 40])
     test(`20,000 metrics a second, ${each} in a message`, options, async () => {
         const MANY = 4000, SECONDS = 4, name = (i) => `N-${i}`;

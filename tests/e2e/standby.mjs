@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two cores and a database: one polls and owns the alarms, the other takes its place within 5 s of a kill -9. At no instant do two poll,
-// whatever is cut, stopped or killed; nothing that operators did is lost, and nobody is told twice.
+// Two cores and a database: one polls and owns the alarms, the other takes over within 5 s of a kill -9. The two never poll at the same
+// time, whatever is cut, stopped or killed; no operator action is lost, and no notification is sent twice.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { linkSync, renameSync, writeFileSync } from 'node:fs';
@@ -38,7 +38,7 @@ after(async () => {
 });
 
 const begin = () => Math.floor(Date.now() / 1000) * 1e6;
-// TI-2 moves all the time, so that each sample is recorded.
+// TI-2 changes all the time, so that each sample is recorded.
 function feed() {
     let going = true;
     const done = (async () => {
@@ -88,13 +88,13 @@ test('kill -9, there and back: within 5 s the other polls; what operators did is
         anna.say({ type: 'note', seq: 50 + round, text: `round ${round}`, asset: 'E-101' });
         await anna.text('noted');
         anna.close();
-        const cut = round === 3 ? two.other(core).toOther : null; // the last one does not hear what the leader still records
+        const cut = round === 3 ? two.other(core).toOther : null; // in the last round the standby misses what the leader records
         if (cut) {
             await cut.cut();
             cutAt = (Date.now() + 100) * 1000;
             await sleep(2000);
             await feeding();
-            await sleep(2500); // what it recorded is sent
+            await sleep(2500); // all recorded points have been sent
             killedAt = Date.now() * 1000;
         }
         const { leads, pause_ms } = await two.takeOver(t, core, kill(core, 'SIGKILL'));
@@ -118,8 +118,8 @@ test('kill -9, there and back: within 5 s the other polls; what operators did is
     t.diagnostic(JSON.stringify(hook.taken.map(({ alarms, ...more }) => [more.id, alarms.map(({ tag, state }) => `${tag} ${state}`)])));
 });
 
-// A line begins at each core with the first sample that it gets: that point may lie within a line of the database, and says the same. Nor
-// has the database the last sample of a leader that was killed, where that had not changed.
+// Each core begins a line with the first sample that it gets: such a point may lie on a line in the database and mean the same. The
+// database also lacks the last unchanged sample of a killed leader.
 function isOnLine(points, us, value, quality) {
     const all = [...points].map(([at, text]) => [Number(at), ...text.split(' ')]).filter((one) => one[2] === quality);
     const next = all.findIndex(([at]) => at > Number(us)), [a, b] = [all[next - 1], all[next]];
@@ -130,13 +130,13 @@ function isOnLine(points, us, value, quality) {
     return Math.abs(a[1] - value + (b[1] - a[1]) * (us - a[0]) / (b[0] - a[0])) < 1e-9;
 }
 
-// While nothing changed a core needs no point; the one that came back has sent the database the first of its own.
+// While nothing changes a core needs no point; the returning core has sent its own first point to the database.
 function isOfRest(points, us, value, quality) {
     const all = [...points].map(([at, text]) => [Number(at), ...text.split(' ')]), next = all.findIndex(([at]) => at > Number(us));
     return [all[next - 1], all[next]].every((one) => one && one[1] === value && one[2] === quality);
 }
 
-const FEW = 50; // points that wait for their turn: there are new ones all the time
+const FEW = 50; // points may wait to be sent: there are always new ones
 
 test('history is whole: what the database has is what the API has, and the gaps are the take-overs', options, async () => {
     await sleep(5000);
@@ -147,7 +147,7 @@ test('history is whole: what the database has is what the API has, and the gaps 
     for (const node of [core, two.other(core)].map((one) => one.node))
         await until('the files are up to date', async () => await node.metric('plantcast_history_waiting_points') < FEW, 30);
     await until('the database is up to date', async () => await core.node.metric('plantcast_postgres_waiting_points') < FEW, 30);
-    for (const [one, often] of [[core, 2], [two.other(core), 1]]) // again once the other was back
+    for (const [one, often] of [[core, 2], [two.other(core), 1]]) // twice for the core whose standby went away and came back
         await until('what it lacked is read', () => one.program.said.split('polls devices and owns').pop()
             .match(/points of \d+ s when another core led are read/g)?.length >= often, 60);
     const to = Math.floor(Date.now() / 1000 - 3) * 1e6;
@@ -176,7 +176,8 @@ test('history is whole: what the database has is what the API has, and the gaps 
 });
 
 test('nobody was told of an alarm twice, and the journal has each change once, on both', options, async () => {
-    const messages = [...new Map(hook.taken.map((one) => [one.id, one])).values()]; // as its sender is killed, one may come again
+    // a message may be repeated because its sender was killed
+    const messages = [...new Map(hook.taken.map((one) => [one.id, one])).values()];
     const told = messages.flatMap(({ alarms }) => alarms.map(({ tag, state, raised }) => `${tag} ${state} ${raised}`));
     assert.deepEqual(told.filter((one, i) => told.indexOf(one) !== i), []);
     const core = await two.leader(), rows = [];
@@ -218,7 +219,7 @@ test('a standby that is loading its plant takes over as fast', options, async (t
     const { pause_ms } = await two.takeOver(t, core, kill(core, 'SIGKILL'));
     assert.doesNotMatch(other.program.said, /reload:/);
     renameSync(`${list}.kept`, list);
-    writeFileSync(`${list}.fifo`, ''); // whoever waits for it goes on, and finds that it is no file
+    writeFileSync(`${list}.fifo`, ''); // the waiting reload continues and finds that the list is no file
     await other.program.line(/reload:/);
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);

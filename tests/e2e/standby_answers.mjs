@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whoever is told that something is done finds it done whatever happens to the leader: also where the way to the standby is slow
-// (tests/faults/late_peer.c) and the leader is killed the moment the answer is there.
+// An action that was answered as done survives any fate of the leader: also if the connection to the standby is slow
+// (tests/faults/late_peer.c) and the leader is killed the moment the answer arrives.
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { resolve } from 'node:path';

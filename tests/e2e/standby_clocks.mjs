@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two cores whose clocks are an hour apart: the standby says so, takes over as fast, and nothing is lost, told twice or older than it is.
-// What a core whose clock is behind recorded while the other was away, the other does not read afterwards: the database has it.
+// Two cores whose clocks are an hour apart: the standby reports that and takes over as fast; nothing is lost, notified twice or shown older
+// than it is. If a core whose clock is behind recorded while the other was away, the other does not read those points afterwards: the
+// database has them.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -21,7 +22,7 @@ after(() => server?.destroy());
 const json = async (node, path) => (await node.fetch(path)).json();
 const alarm = async (node) => (await json(node, '/api/v1/alarms')).alarms.find(({ tag, kind }) => tag === 'TI-1' && kind === 'H');
 
-// What is recorded of TI-2 and good, [[time_us, value], ...], at a core and in its database.
+// Returns the good points of TI-2, [[time_us, value], ...], recorded at a core and in its database.
 async function recorded(node) {
     const now_s = Date.now() / 1000, span = `from=${now_s - 2 * HOUR_S}&to=${now_s + 2 * HOUR_S}`;
     const { series } = await json(node, `/api/v1/history?tags=TI-2&${span}&points=20000`);
@@ -38,7 +39,7 @@ async function move(two) {
     }
 }
 
-// A device that a busy machine keeps from answering is not away: each time that its readings are Bad, the journal has it.
+// Allows late answers of the device on a busy machine: otherwise the journal would list Bad readings.
 function allowLateAnswers({ file, plant }) {
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(file, readFileSync(file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000'));
@@ -84,7 +85,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await move(two);
             await two.restart(other);
             await two.followed(one);
-            await sleep(7000); // the newest samples are sent
+            await sleep(7000); // the newest samples have been sent by then
             const { rows } = await json(one.node, '/api/v1/alarms/journal?tag=TI-1');
             const events = rows.map(({ kind, event }) => `${kind} ${event}`);
             assert.equal(new Set(events).size, events.length, `each once: ${events}`);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two cores, and what lies between them and the database cut, frozen and restarted: one cut changes nothing, two end the leader before the
-// other begins, and at no instant do two poll.
+// Two cores whose connections to each other and to the database are cut, frozen and restarted: one cut changes nothing, two cuts end the
+// leader before the other begins, and the two never poll at the same time.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -147,7 +147,7 @@ test('of bids that the database takes up at the same time one is taken', options
     const waiting = () => server.ask("SELECT 1 FROM pg_stat_activity WHERE wait_event_type = 'Lock' AND query LIKE 'UPDATE lease%'").length;
     try {
         await Promise.all([two.start('one'), two.start('two')]);
-        await sleep(4000); // both have bid
+        await sleep(4000); // both have asked for the lease
         await until('bids that wait', () => waiting() >= 4);
         t.diagnostic(`${waiting()} bids wait`);
     } finally {
@@ -178,7 +178,7 @@ test('a standby of another version is named, shows nothing, votes, and takes ove
     await until('its promise', async () => await core.node.metric('plantcast_core_standby_differs') === 1);
     assert.equal(await core.node.metric('plantcast_core_standby'), 0, 'of another version it is no standby');
     assert.equal(await (await core.node.fetch('/readyz')).text(), 'ok, but no standby follows: the log says why\n');
-    await core.toDatabase.cut(); // by its promise alone
+    await core.toDatabase.cut(); // the standby's promise alone keeps the lead
     await two.goesOn(t, core, 4);
     await core.toDatabase.mend();
     const { leads } = await two.takeOver(t, core, kill(core, 'SIGTERM'));

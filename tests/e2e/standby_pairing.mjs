@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display that was let in at the core that leads is so at the one that takes its place, and one that was revoked there stays out when the
-// first one leads again.
+// A display that was paired at the leading core is also paired at the core that takes over; one that was revoked there stays revoked when
+// the first core leads again.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { PostgresServer } from './support/postgres_server.mjs';
@@ -37,7 +37,7 @@ const ask = async ({ port }) => {
     const headers = { Authorization: `Pairing ${SECRET}` };
     return (await fetch(`http://127.0.0.1:${port}/api/v1/pair?wall=room&display=1`, { headers })).json();
 };
-// At a renderer, whose answers come once the standby has what was done. While it has no core it refuses.
+// Sends an action at a renderer; it is answered once the standby has it too, and refused while the renderer has no core.
 const act = (message) => until('the answer of the core', async () => {
     const client = await renderer.client({}, { token: engineer });
     client.say({ seq: 1, ...message });
@@ -45,7 +45,7 @@ const act = (message) => until('the answer of the core', async () => {
     client.close();
     return answer.type === 'paired' && answer;
 }, 60);
-// The picture of its wall.
+// Checks that the display is shown its wall's picture.
 async function shows(node) {
     const client = await until('being let in',
         () => node.client({ headers: [`Authorization: Bearer ${SECRET}`] }, { token: SECRET }).catch(() => null));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A core that took another's place and is loaded anew at once still reads what that one recorded behind a cut; for a standby that comes
-// again and again it reads it twice more at most.
+// A core that took over and is reloaded at once still reads the points that the other recorded during a cut; for a standby that keeps
+// reconnecting it reads them twice more at most.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -34,7 +34,7 @@ const valuesOf = async (core, from_us, to_us) => {
 test('what was recorded behind a cut is read although the plant is loaded anew meanwhile', options, async (t) => {
     const core = await two.leader(), other = two.other(core), from_us = Date.now() * 1000;
     await other.toOther.cut();
-    for (let i = 0; i < CUT_S * 2; i++) { // of these the other knows nothing
+    for (let i = 0; i < CUT_S * 2; i++) { // the other core misses these changes
         await two.plant.tell(`set TI-1 ${i % 2 ? 71 : 31}`);
         await sleep(500);
     }
@@ -55,7 +55,7 @@ test('what was recorded behind a cut is read although the plant is loaded anew m
 
 test('a standby that comes again and again does not have it read as often', { ...options, skip: skip || long }, async () => {
     const core = await two.leader(), other = two.other(core);
-    await until('nothing left', async () => { // of the test before
+    await until('nothing left', async () => { // waits for the end of the previous test's work
         const { length } = core.program.said.match(READ) ?? [];
         await sleep(13000);
         return length === core.program.said.match(READ)?.length;

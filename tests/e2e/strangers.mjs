@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who comes through a proxy that the daemon was not told of is nobody, however it listens; and who is let in, or is not, is in the log.
+// A client that comes through a proxy of which the daemon was not told has no rights, however the daemon listens; and the log says who was
+// admitted or refused.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
@@ -49,7 +50,7 @@ async function serve(...args) {
     await plant.daemon?.stop();
     await plant.startDaemon(...args);
 }
-// { status, headers, body } of a request from this machine.
+// Returns { status, headers, body } of a request from this machine.
 function ask(path, headers = {}, secure = false) {
     return new Promise((done, fail) => {
         const to = { port: plant.port, host: '127.0.0.1', path }, all = { Host: 'localhost', ...headers };
@@ -71,7 +72,7 @@ const metric = async (name) => {
 
 test('through a proxy that nobody told of: 403, on every way to listen', { skip }, async () => {
     const any = ['--listen', '0.0.0.0', '--host', 'plant.example'], more = ['--tokens', tokensFile];
-    const ways = [ // arguments, and what somebody on this machine gets without a token
+    const ways = [ // [arguments, status that a local client gets without a token]
         [[], 200], [more, 401], [[...more, '--trust-local'], 200], [[...tls, ...more], 401], [[...any, '--open-viewers'], 200],
         [[...any, '--open-viewers', ...more], 403], [[...any, ...tls, ...more], 401], [[...any, ...tls, ...more, '--trust-local'], 200],
     ];
@@ -83,12 +84,13 @@ test('through a proxy that nobody told of: 403, on every way to listen', { skip 
             for (const Host of args.includes('--host') ? ['localhost', 'plant.example'] : ['localhost'])
                 for (const [path, headers] of [['/api/v1/tags', {}], ['/metrics', bearer(tokens.viewer)], ['/stream', UPGRADE]])
                     assert.equal((await ask(path, { ...headers, Host, [name]: value }, secure)).status, 403, `${what}: ${name} ${path}`);
-        if (args.includes('--host') && !args.includes('--trust-local')) // nor is who asks by a name that others have, too
+        // a client that uses a host name open to others has no rights, either
+        if (args.includes('--host') && !args.includes('--trust-local'))
             assert.ok([401, 403].includes((await ask('/api/v1/tags', { Host: 'plant.example' }, secure)).status), what);
     }
 });
 
-// Its name in what an engineer keeps, says and proves; and numbers of sessions, which nobody is to come by.
+// Tag names appear in what an engineer saves, writes and checks; session numbers must not be guessable.
 test('anyone who looks on is told of no reading, tag or person, and follows nobody by counting', { skip }, async () => {
     await plant.startSim();
     await serve('--behind-proxy', '--host', 'plant.example', '--open-viewers', '--tokens', tokensFile);
@@ -117,7 +119,7 @@ test('anyone who looks on is told of no reading, tag or person, and follows nobo
         assert.equal((await stranger.text('error')).code, 'bad_field', String(session));
     }
     assert.ok(Math.abs(engineer.welcome.session - welcome.session) > 1000 && Number.isSafeInteger(welcome.session));
-    stranger.say({ type: 'follow', session: engineer.welcome.session }); // of a link that the engineer gave away
+    stranger.say({ type: 'follow', session: engineer.welcome.session }); // from a link that the engineer shared
     const following = await stranger.text('following');
     assert.deepEqual([following.session, following.sensors, following.baselines], [engineer.welcome.session, {}, []]);
     stranger.say({ type: 'follow', session: null });
@@ -131,7 +133,7 @@ test('anyone who looks on is told of no reading, tag or person, and follows nobo
     assert.ok(picks.some((pick) => pick.asset && pick.position), 'what is there may be asked');
     assert.ok(picks.every((pick) => pick.value === null && pick.nearest.length === 0 && pick.sensor === null));
     await plant.tell('set TI-1 82.5');
-    await new Promise((done) => setTimeout(done, 1500)); // whatever would be said of that
+    await new Promise((done) => setTimeout(done, 1500)); // longer than any message about the change takes
     const types = new Set(stranger.texts.map((m) => m.type));
     for (const type of ['tags', 'markers', 'alarms', 'proofs', 'alarmed'])
         assert.ok(!types.has(type), type);
@@ -139,7 +141,7 @@ test('anyone who looks on is told of no reading, tag or person, and follows nobo
     assert.doesNotMatch(all, /TI-\d|PI-\d|Kim|engineer-1|8[12]\.\d|20\.5/);
     const picture = (headers = {}) => ask('/snapshot.png?width=320&height=200', { Host: 'plant.example', ...headers });
     assert.equal((await picture()).status, 200);
-    // A name of a tag is answered as a name that is none, wherever it can stand.
+    // An existing tag's name gets the same answer as an unknown name, wherever a name may appear.
     const hidden = (text, name) => text.replaceAll(name, 'NAME');
     for (const [i, names] of [['TI-1', 'TI-9'], ['PI-1', 'PI-9']].entries()) {
         const answers = [];
@@ -203,7 +205,7 @@ test('text that is not UTF-8 is closed with 1007, and what people write is no fo
     }
     const client = await PlainClient.open(plant.port);
     await client.hello();
-    client.write(encodeFrame(10, Buffer.from([0x80, 0xff, 0xc0, 1]))); // a pong is no text, though texts came before
+    client.write(encodeFrame(10, Buffer.from([0x80, 0xff, 0xc0, 1]))); // a pong is no text, although a text came before it
     const two = Buffer.from('{"type":"ping","t":7,"x":"\u20ac"}'), half = two.indexOf(0x82); // cut within a character
     client.write(Buffer.concat([encodeFrame(1, two.subarray(0, half), { fin: false }), encodeFrame(0, two.subarray(half))]));
     assert.equal((await client.text('pong')).t, 7);
@@ -227,7 +229,7 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
     const engineer = await PlainClient.open(plant.port);
     assert.equal((await engineer.hello({ token: tokens.engineer })).role, 'engineer');
     engineer.close();
-    await plant.daemon.line(/token engineer-1/); // and what was said before
+    await plant.daemon.line(/token engineer-1/); // the earlier log lines exist by then, too
     assert.equal(lines(/login from 127\.0\.0\.1 by HTTP: token \(unknown\), role none: refused, nobody's \(\d within/g).length, 6);
     assert.equal(lines(/by HTTP: token operator-1, role operator: refused, its time is over/g).length, 1);
     assert.equal(lines(/by stream: token \(unknown\), role none: refused/g).length, 1);
@@ -246,7 +248,7 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
     assert.equal((await late.text('error')).retry_after_s, 5);
     assert.equal((await late.until('a close', (c) => c.closed)).code, 1013);
     assert.equal((await ask('/api/v1/tags', bearer(tokens.viewer))).status, 200, 'who was let in before is not held up');
-    await new Promise((done) => setTimeout(done, 1200)); // gauges are set once a second at least
+    await new Promise((done) => setTimeout(done, 1200)); // gauges are updated once a second at least
     assert.equal(await metric('plantcast_logins_slowed_addresses'), 1);
     assert.equal(await metric('plantcast_logins_held_total'), 2);
     await plant.daemon.line(/: slowed/);
@@ -283,7 +285,7 @@ function speak(text, secure = false, idleMs = 0) {
 
 const ENDING = 'a header whose name is the beginning of a known one ends its request within seconds, with 408';
 test(ENDING, { skip, timeout: 60000 }, async () => {
-    await serve('--limit', 'address-connections=2000', '--limit', 'patience=60'); // which would end it otherwise
+    await serve('--limit', 'address-connections=2000', '--limit', 'patience=60'); // so that the idle timeout does not end it first
     const names = [...new Set(KNOWN.flatMap((name) => [...name].map((_, i) => name.slice(0, i + 1))))], heads = {};
     const said = await Promise.all(names.map((name) => speak(`GET /healthz HTTP/1.1\r\nHost: localhost\r\n${name}: 1\r\n\r\n`)));
     said.forEach((text) => { heads[text.slice(9, 12)] = 1 + (heads[text.slice(9, 12)] ?? 0); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The field held against simulated heat conduction in a bent pipe of coarse elements (tests/validation has the parts and the whole).
+// The field compared with simulated heat conduction in a bent pipe of coarse elements (tests/validation has the parts and all cases).
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
@@ -29,13 +29,13 @@ after(() => folder && rmSync(folder, { recursive: true }));
 const errors = (sensors, interpolation, distance = '') => part.rows.find((row) => row.sensors === sensors &&
     row.interpolation === interpolation && row.distance === distance).outside;
 
-// The solution itself: no hotter than where it is held at 200, no colder than what is around; mostly at neither.
+// The solution itself: no hotter than the fixed 200, no colder than the surroundings, and mostly in between.
 test('CalculiX solves what was asked', { skip }, () => {
     assert.ok(part.nodes > 2000 && part.triangles > 4000, `${part.nodes} nodes`);
     assert.ok(Math.abs(part.high - 200) < 0.01 && part.low > 20 && part.low < 40, `${part.low} to ${part.high}`);
 });
 
-// In kelvin, of 180 between hottest and coldest. Bounds are a third above what was measured.
+// In kelvin, of 180 between hottest and coldest. Bounds are a third above the measured errors.
 for (const [sensors, interpolation, distance, mean, p95] of [
     [20, 'shepard', 'geodesic', 6.3, 18.6], [20, 'harmonic', '', 4.6, 13], [20, 'fin', '', 4.8, 27], [5, 'fin', '', 11.8, 54],
     [20, 'gp', '', 3.3, 6.8], [5, 'gp', '', 21.7, 93],
@@ -47,7 +47,7 @@ for (const [sensors, interpolation, distance, mean, p95] of [
     });
 }
 
-// The walls of both legs are as far apart as the pipe is thick: straight distances mix a hot leg with a cold one.
+// The walls of the two legs are as far apart as the pipe is thick: straight distances mix a hot leg with a cold one.
 test('along the surface is nearer than straight across the gap', { skip }, () => {
     const along = errors(20, 'shepard', 'geodesic').mean, straight = errors(20, 'shepard', 'euclidean').mean;
     assert.ok(along < 0.85 * straight, `${along} K along, ${straight} K straight`);

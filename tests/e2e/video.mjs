@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A view as video, read by programs that others wrote: constant rate, the clock in its pixels, and a card in place of an old picture.
+// A view as video, read by other programs: constant frame rate, the clock encoded in its pixels, and a card in place of an old picture.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { appendFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -27,7 +27,7 @@ async function startVideo(...args) {
     return program;
 }
 
-// What ffmpeg reads of a stream, frame by frame: the row of blocks at the bottom, as [{ tenths, card, sound }].
+// Decodes a stream's frames with ffmpeg: the row of blocks at the bottom, as [{ tenths, card, sound }].
 const BITS = 36, BLOCKS = BITS + 4;
 function codeOf(row) {
     const bits = [...row].map((value) => (value > 127 ? 1 : 0));
@@ -180,7 +180,8 @@ test('counters are for this machine alone, and connections that say nothing keep
         await assert.rejects(fetch(`http://${elsewhere.address}:${ports.http}/metrics`));
     const idle = Array.from({ length: 20 }, () => connect(ports.http, '127.0.0.1').on('error', () => {}).resume());
     idle[0].write('GET /metrics HT');
-    const answered = () => http('/metrics').then(({ status }) => status, () => 0); // 0: it was closed, as more than 8 are
+    // 0: the connection was closed, because there are more than 8
+    const answered = () => http('/metrics').then(({ status }) => status, () => 0);
     for (const end = Date.now() + 60000; await answered() !== 200; await new Promise((done) => setTimeout(done, 100)))
         assert.ok(Date.now() < end, 'connections that say nothing are not closed');
     assert.equal((await http('/')).status, 404);
@@ -205,7 +206,7 @@ test('a token that is none, or is revoked, and a view that is not there: a card 
     const begun = Date.now();
     assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'video']).code, 0);
     const { at } = await reader.until(({ card }) => card);
-    promise(t, 'to the card', at - begun, 5400); // 3 s to the server's, 1 s to the next picture, and the reader's buffers
+    promise(t, 'to the card', at - begun, 5400); // 3 s for the server's message, 1 s to the next picture, and the reader's buffers
     assert.match(program.said, /does not take this token/);
     await reader.stop();
     await program.stop();
@@ -238,7 +239,7 @@ test('a view with a name: all that it says is understood by the server, in persp
     }
 });
 
-// The mean difference of two grey pictures that wide within a box, in parts of their size.
+// Returns the mean difference of two grey pictures of that width within a box, whose sides are shares of the picture's size.
 function difference(a, b, wide, [left, top, right, bottom]) {
     const tall = a.length / wide;
     let sum = 0, count = 0;
@@ -295,7 +296,7 @@ test('a token for one view shows that view, and no other; losing it ends the pic
         assert.equal(reader.frames.some(({ card }) => !card), shown);
         if (shown) {
             const refused = readFileSync(join(folder, 'audit'), 'utf8').split('/api/v1/views').length - 1;
-            await new Promise((done) => setTimeout(done, 6000)); // views are asked for every 5 s by who may
+            await new Promise((done) => setTimeout(done, 6000)); // a permitted client would request views every 5 s
             assert.equal(readFileSync(join(folder, 'audit'), 'utf8').split('/api/v1/views').length - 1, refused);
             assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'lobby']).code, 0);
             await reader.until(({ card }) => card);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// preprocess/YOUR_PLANT.md, walked: each command is typed as it stands there, and each line that stands below it has to be among what it
-// says; what is clicked on the page is called as it is there, and what it answers stands there. Only ports are others, and times are not
-// compared.
+// Follows preprocess/YOUR_PLANT.md: types each command as it is printed there, and expects each printed output line; clicks the page's
+// controls by their printed names, and expects the printed results. Only ports differ, and times are not compared.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -18,7 +17,7 @@ const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync
 const page = readFileSync(join(import.meta.dirname, '../../preprocess/YOUR_PLANT.md'), 'utf8');
 const blocks = (text, kind) => [...text.matchAll(/^```(\w*)\n([^]*?)^```$/gm)].filter(([, of]) => of === kind).map(([, , code]) => code);
 
-// [{ command, said: [line, ...] }], from the section of this number on.
+// Returns [{ command, said: [line, ...] }] from the section with this number on.
 function stepsOf(text) {
     const steps = [];
     for (const line of blocks(text, '').filter((code) => code.startsWith('$ ')).join('').split('\n').filter(Boolean))
@@ -59,7 +58,7 @@ test('what the page says is typed, and what it shows comes', { skip, timeout: 40
             for (const line of said)
                 assert.ok(out.includes(line), `${command}: on the page:\n${line}\nit said:\n${out}`);
             console.log(`# ${command}: as on the page, ${said.length} lines`);
-            if (/^plantcast match/.test(command) && said.length > 0) // shown below it
+            if (/^plantcast match/.test(command) && said.length > 0) // the expected file content is printed below the command
                 for (const line of blocks(page, '').find((code) => code.startsWith('Tag,Status')).trim().split('\n'))
                     assert.ok(readFileSync(join(folder, 'plant/matches.csv'), 'utf8').includes(`${line}\n`), line);
             if (/^plantcastd --port/.test(command)) {
@@ -84,12 +83,12 @@ test('what the page says is typed, and what it shows comes', { skip, timeout: 40
     }
 });
 
-// The steps of the section `On a page`, in the order in which they stand there.
+// The steps of the section `On a page`, in their printed order.
 test('what the page says is clicked, and what it shows comes', { skip, timeout: 400000 }, async () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-walk-')), device = await freePort(), running = [];
     const section = page.slice(page.indexOf('## On a page'), page.indexOf('## 1. The model'));
     const written = section.slice(section.indexOf('1. ')).replace(/\s+/g, ' ');
-    let at = 0; // how far it was read
+    let at = 0; // how far the section was read
     const read = (text) => {
         const found = written.indexOf(text, at);
         assert.ok(found >= 0, `not on the page, or before what was done last: ${text}`);
@@ -175,7 +174,7 @@ test('what the page says is clicked, and what it shows comes', { skip, timeout: 
         await room.mouse.up();
         await room.waitForFunction(() => globalThis.plantcast.session.model.placed.size === 1);
         assert.equal(await room.locator('#engineer .off').count(), 0, 'it is on its equipment');
-        await room.mouse.move(640, 5); // no card over the picture
+        await room.mouse.move(640, 5); // so that no card covers the picture
         await arrive(room);
         await shoot(room, 'page-4-placed');
         await room.locator('#engineer').getByRole('button', { name: named('Save …') }).click();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Displays of a control room, as `walls` of the plant file has them: each pane, an alarm that takes the place of a view, and a lost server.
+// Displays of a control room, as configured in `walls` of the plant file: each pane, an alarm that replaces a view, and a lost server.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { join } from 'node:path';
@@ -68,7 +68,7 @@ test('each pane shows what it is for', options, async () => {
         const { clientWidth, clientHeight } = document.querySelector('.pane.views iframe').contentDocument.getElementById('viewport');
         return clientWidth > 400 && clientHeight > 300;
     }, null, { timeout: 30000 });
-    await page.waitForFunction(() => { // from home, of the shape that the pane has in the end
+    await page.waitForFunction(() => { // from the home camera, with the pane's final shape
         const { session } = document.querySelector('.pane.views iframe').contentWindow.plantcast, { width, height } = session.size;
         const { eye } = session.homeIn(width, height);
         return session.picture?.camera.eye.every((m, i) => Math.abs(m - eye[i]) < 0.01);
@@ -87,7 +87,7 @@ test('views follow each other without a flight', options, async () => {
     await page.locator('.pane.views h2', { hasText: 'Whole unit' }).waitFor({ timeout: 60000 });
     await page.waitForFunction(() => {
         const { picture } = document.querySelector('.pane.views iframe').contentWindow.plantcast.session;
-        return Math.abs(picture.camera.eye[2] - 30) > 1; // home
+        return Math.abs(picture.camera.eye[2] - 30) > 1; // the camera is at home
     }, null, { timeout: 60000, polling: 100 });
 });
 
@@ -136,7 +136,7 @@ test('another display has its own panes', options, async () => {
     await gone.close();
 });
 
-// Another picture in its place would pass for it.
+// Another picture in its place would be taken for the requested one.
 test('a view that names what the plant does not have is not shown, and said', options, async () => {
     const { list } = await (await fetch(new URL('api/v1/views', plant.url))).json();
     const wrong = Object.fromEntries(list.map(({ id, wrong: why }) => [id, why]));
@@ -156,7 +156,7 @@ test('a view that names what the plant does not have is not shown, and said', op
     await right.locator('h2 .about', { hasText: 'Temperature' }).waitFor({ timeout: 60000 });
     assert.equal(await right.locator('.why').isVisible(), false);
     await shoot(other.page, 'wall-display-wrong-view');
-    await plant.ask('set TI-2 95'); // an alarm's place is another matter
+    await plant.ask('set TI-2 95'); // showing an alarm in the pane is still possible
     await other.page.waitForFunction(() => document.querySelector('.pane.views.called:not(.unshown, .coming)'), null, { timeout: 60000 });
     assert.equal(await left.locator('iframe').isVisible(), true);
     await plant.ask('set TI-2 20');
@@ -168,7 +168,7 @@ test('a view that names what the plant does not have is not shown, and said', op
     await other.close();
 });
 
-// As long as an alarm waits the tour rests: whatever comes, as where the PLC answers late, is acknowledged.
+// The tour pauses while an alarm waits: any alarm, for example after a late answer of the PLC, is acknowledged here.
 test('a tour shows each view for its time, with its text', options, async () => {
     await page.evaluate(() => {
         const { session } = globalThis.wall;
@@ -181,7 +181,7 @@ test('a tour shows each view for its time, with its text', options, async () => 
         session.on('alarms', acknowledge);
         acknowledge();
     });
-    // What the title said when, and for how long the page could not turn to another view: its timers were late, or an alarm waited.
+    // Records the titles with their times, and for how long the page could not switch views because timers were late or an alarm waited.
     const watch = () => {
         const log = globalThis.titles = [];
         let last = performance.now(), late = 0;
@@ -201,7 +201,7 @@ test('a tour shows each view for its time, with its text', options, async () => 
     await shoot(other.page, 'wall-tour');
     const titles = await other.page.evaluate(() => globalThis.titles), texts = ['From above · Seen from the stack', 'Whole unit'];
     assert.deepEqual(titles.slice(0, 4).map(({ text }) => text), [...texts, ...texts]);
-    for (const [i, dwellMs] of [[1, 6000], [2, 4000]]) { // the first begins once the page has its shape
+    for (const [i, dwellMs] of [[1, 6000], [2, 4000]]) { // the first view begins once the page has its shape
         const tookMs = titles[i + 1].at - titles[i].at, { late } = titles[i + 1];
         assert.ok(tookMs > dwellMs - late - 300 && tookMs < dwellMs + late + 600, `${i}: ${tookMs} ms, late by ${late}`);
     }

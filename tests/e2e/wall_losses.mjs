@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display of a wall whose server is killed again and again: it says so, shows no old picture as new, and comes back each time.
+// A wall display whose server is killed repeatedly: it reports that, shows no old picture as new, and recovers each time.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
@@ -34,7 +34,7 @@ after(async () => {
     await plant?.stop();
 });
 
-// Of when the pane's picture and the words beside it are, by this connection.
+// Returns the times of the pane's picture and of the texts next to it, for the present connection.
 const shown = () => wall.page.evaluate(() => {
     const inner = document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session, { session } = globalThis.wall;
     return { picture: inner?.isCurrent ? inner.picture?.dataTimeUs ?? 0 : 0, words: session.isCurrent ? session.freshAt : 0 };
@@ -46,7 +46,7 @@ const live = (since) => wall.page.waitForFunction(([picture, words]) => {
 }, [since.picture, since.words], { polling: 200 });
 
 test(`${LOSSES} losses: each is said, and ends by itself`, options, async (t) => {
-    await wall.page.waitForFunction(() => globalThis.wall?.panes.length > 0); // until then it is another page
+    await wall.page.waitForFunction(() => globalThis.wall?.panes.length > 0); // until then another page is loaded
     await live({ picture: 0, words: 0 });
     let slowest = 0;
     for (let i = 0; i < LOSSES; i++) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pane of a wall that shows another plant: by two daemons; what is said where there is no picture of it,
-// whatever its server does instead of sending one.
+// A pane of a wall that shows another plant, with two daemons; and what it shows if the other server does not send a picture.
 import assert from 'node:assert/strict';
 import { appendFileSync, chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { once } from 'node:events';
@@ -20,7 +19,7 @@ const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const tokens = {};
 let plant, other, otherArgs, fake, fakePort, picture, small;
 
-// What servers do instead of sending a picture; told by the first part of the path.
+// Behaviours of a fake server, chosen by the first part of the path.
 const FRAME = { 'plantcast-frame': 'data_time_us=1, oldest_age_ms=1500, plant=Fake%20plant', 'content-type': 'image/png' };
 const MANNERS = {
     good: (response) => response.writeHead(200, FRAME).end(picture),
@@ -89,7 +88,7 @@ async function startOther() {
         await other.tell(`set ${tag} ${value}`);
 }
 
-// Its wall shows the other plant large, and beside it one whose server answers nonsense.
+// Starts the plant: its wall shows the other plant large, and next to it one whose server answers nonsense.
 async function startPlant() {
     plant = await TinyPlant.create();
     const at = (id, more = '') => `- { id: ${id}, url: "http://127.0.0.1:${fakePort}/${id}", every_s: 2${more} }\n`;
@@ -167,7 +166,7 @@ test('a paired display asks for what it shows, and for nothing else', options, a
 test('its picture, its name and the age of its readings; a server that is gone and since when; and back', options, async () => {
     const screen = { viewport: { width: SIZE[0], height: SIZE[1] } };
     const { page, close, errors } = await openPage(`http://127.0.0.1:${plant.port}/wall.html?wall=room`, screen,
-        `top === window && sessionStorage.setItem('plantcast.token', '${tokens.display}')`); // frames of the page are sandboxed
+        `top === window && sessionStorage.setItem('plantcast.token', '${tokens.display}')`); // frames in the page are sandboxed
     const image = page.locator('.pane.snapshot img').first(), card = page.locator('.pane.snapshot .gone').first();
     const title = () => page.locator('.pane.snapshot h2').first().textContent();
     await image.waitFor();
@@ -186,7 +185,7 @@ test('its picture, its name and the age of its readings; a server that is gone a
     assert.doesNotMatch(await title(), /old/);
     await shoot(page, 'wall-other-plant-gone');
 
-    writeFileSync(join(plant.folder, 'other.token'), 'pc_nonsense\n'); // it is read anew for each request
+    writeFileSync(join(plant.folder, 'other.token'), 'pc_nonsense\n'); // the token file is read for each request
     await other.startDaemon(...otherArgs);
     await card.filter({ hasText: 'Its server does not accept the token' }).waitFor();
     writeFileSync(join(plant.folder, 'other.token'), `${tokens.other}\n`);

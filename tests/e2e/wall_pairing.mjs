@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display that nobody types a token into: its six digits, an engineer who lets it in, the display that it is from then on, and the end.
+// Pairing of a display without typing a token there: its six digits, an engineer who approves it, the display's rights from then on, and
+// its removal.
 import assert from 'node:assert/strict';
 import { chmodSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -83,7 +84,7 @@ test('a tile takes the token of its display: who only looks on can neither lead 
     assert.match((await hello(tokens.tile, 1)).texts[0].text, /this token is that of display 2 of wall tiled/);
     const tile = await hello(tokens.tile, 2);
     await tile.until('the lead', () => tile.texts.some(({ type, leads }) => type === 'tiles' && leads));
-    assert.deepEqual((await tile.text('tiles')).missing, [1]); // nobody counts whom it refused
+    assert.deepEqual((await tile.text('tiles')).missing, [1]); // refused clients do not count as displays
     const other = await hello(tokens.engineer, 1);
     await other.until('both', () => other.texts.some(({ type, missing: gone }) => type === 'tiles' && gone.length === 0));
     open.forEach((client) => client.close());
@@ -94,7 +95,7 @@ test('it shows six digits, and nothing of the plant', options, async () => {
     assert.equal(await wall.page.locator('.pane').count(), 0);
     await shoot(wall.page, 'wall-pairing');
     await wall.page.reload();
-    assert.equal(await digitsOf(wall.page), digits); // they are its own until they expire
+    assert.equal(await digitsOf(wall.page), digits); // the digits stay the same until they expire
 });
 
 test('digits that no display shows, other secrets and other people change nothing', options, async () => {
@@ -108,7 +109,8 @@ test('digits that no display shows, other secrets and other people change nothin
     assert.equal((await get('api/v1/devices')).status, 401);
     for (let i = 0; i < 7; i++)
         assert.equal((await get('api/v1/pair?wall=room&display=2', `Pairing pc_${String(i).repeat(64)}`)).status, 200);
-    assert.equal((await get('api/v1/pair?wall=room&display=2', `Pairing pc_${'a'.repeat(64)}`)).status, 503); // the wall is the eighth
+    // the wall is the eighth waiting device
+    assert.equal((await get('api/v1/pair?wall=room&display=2', `Pairing pc_${'a'.repeat(64)}`)).status, 503);
 });
 
 test('an engineer lets it in, and who did it is in the audit trail', options, async () => {
@@ -143,7 +145,7 @@ test('it is that display only, as a viewer, also after a restart of the daemon',
     await wall.page.locator('.pane.alarms').waitFor({ timeout: 60000 });
 });
 
-// A client of that display; letIn: by the desk, which reads its digits.
+// Opens a client of that display; pairs: the desk approves its digits first.
 async function displayClient(display, secret, pairs) {
     if (pairs) {
         const { digits } = await (await get(`api/v1/pair?wall=room&display=${display}`, `Pairing ${secret}`)).json();
@@ -172,7 +174,7 @@ const PATHS = ['tags', 'plant', 'views', 'notes', 'alarms', 'alarms/journal', 'p
 
 test('its secret reads nothing but its display, before it has said a word', options, async () => {
     const first = await wall.page.evaluate(() => localStorage.getItem('plantcast.wall.room.1'));
-    const second = `pc_${'1'.repeat(64)}`; // which has its digits
+    const second = `pc_${'1'.repeat(64)}`; // the secret whose digits were approved
     const tiles = await displayClient(2, second, true), pictures = await displayClient(1, first, false);
     for (const secret of [first, second])
         for (const path of [...PATHS.map((one) => `api/v1/${one}`), 'metrics', 'snapshot.png', 'snapshot.png?view=whole'])
@@ -189,12 +191,12 @@ test('its secret reads nothing but its display, before it has said a word', opti
     const mine = ['TI-1', 'TI-2'].map((name) => tags.findIndex((tag) => tag.name === name));
     const read = new Set();
     for (let n = 0; n < 5; n++) {
-        for (const tag of ['TI-1', 'TI-2', 'PI-1']) // all change
+        for (const tag of ['TI-1', 'TI-2', 'PI-1']) // all tags change
             await plant.ask(`set ${tag} ${30 + n}`);
         const { values } = await tiles.text('tags', 20000);
         values.forEach(([tag]) => read.add(tag));
     }
-    assert.deepEqual([...read].sort((a, b) => a - b), mine.sort((a, b) => a - b)); // readings of what it shows, and of nothing else
+    assert.deepEqual([...read].sort((a, b) => a - b), mine.sort((a, b) => a - b)); // only the readings that its display shows
     const frame = await tiles.frameWhere('a picture', () => true);
     assert.deepEqual([frame.width, frame.height], [16, 16]);
     assert.equal(tiles.texts.filter(({ type }) => ['markers', 'proofs'].includes(type)).length, 0);
@@ -204,8 +206,8 @@ test('its secret reads nothing but its display, before it has said a word', opti
         assert.match((await tiles.text('error')).text, /this token is that of display 2 of wall room/, message.type);
     }
     await pictures.hello({ width: 640, height: 480 });
-    assert.equal((await pictures.text('tags', 20000)).values.length, 3); // an alarm may call any place of the plant into its picture
-    pictures.say({ type: 'pick', seq: 1, x: 320, y: 240 }); // and it looks for a side from which that is seen
+    assert.equal((await pictures.text('tags', 20000)).values.length, 3); // an alarm may move the camera to any place of the plant
+    pictures.say({ type: 'pick', seq: 1, x: 320, y: 240 }); // and the display picks to find a side from which that place is visible
     assert.equal((await pictures.text('picked', 20000)).seq, 1);
     assert.deepEqual((await pictures.text('views', 20000)).list.map(({ id: view }) => view), ['whole']);
     pictures.close();
@@ -220,7 +222,7 @@ test('its secret reads nothing but its display, before it has said a word', opti
     await reload(PICTURE, TILES);
 });
 
-// The page of a display, with a secret or token that it was given before.
+// Opens the page of a display, with a secret or token stored before.
 async function wallPage(display, key, token) {
     const screen = await openPage(`${plant.url}healthz`, { viewport: { width: 1280, height: 720 } });
     await screen.page.evaluate(([name, text]) => localStorage.setItem(name, text), [key, token]);
@@ -241,7 +243,7 @@ test('the pages of a display that is let in, and of a token of some views, show 
     const file = join(folder, 'tokens');
     const made = runProgram('plantcast', ['token', 'add', file, '--role', 'viewer', '--name', 'lobby', '--unattended', '--views', 'whole']);
     const lobby = made.out.trim();
-    await new Promise((done) => setTimeout(done, 4000)); // the daemon looks every 3 s
+    await new Promise((done) => setTimeout(done, 4000)); // the daemon reads the file of tokens every 3 s
     const seen = await wallPage(1, 'plantcast.wall', lobby);
     await seen.page.locator('.pane.views .said', { hasText: 'Whole unit' }).waitFor({ timeout: 60000 });
     await seen.page.waitForFunction(() => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture, null,

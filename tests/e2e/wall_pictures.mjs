@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Three walls as a control room would have them, to be looked at from their distance. What is taken at 1920x1080 is in the README
+// Three walls like those of a control room, to be viewed from their distance. The screenshots at 1920x1080 are in the README
 // (deploy/pictures).
 import assert from 'node:assert/strict';
 import { mkdirSync } from 'node:fs';
@@ -66,19 +66,19 @@ async function keep(page, name, [width]) {
     await page.screenshot({ path: `${path}.png` });
 }
 
-// Until each pane of views has a refined picture of its own size and each trend its curves.
+// Whether each pane of views has a refined picture of its own size, and each trend its curves.
 const whole = () => [...document.querySelectorAll('.pane iframe')].every((frame) => {
     const { session } = frame.contentWindow.plantcast ?? {}, { picture } = session ?? {};
     return frame.closest('.trend') ? frame.contentWindow.plantcast?.trends?.series.length > 0 :
         picture?.still && picture.cameraSeq === session.cameraSeq && picture.paramsSeq === session.paramsSeq && !session.cameraNews;
 });
 
-// Letters that do not fit into what they stand in.
+// Returns texts that do not fit into their element.
 const cut = () => [...document.querySelectorAll('.pane h2, .pane p, .pane li, .pane b, .tile *, .clock *')].filter((element) =>
     element.children.length === 0 && element.clientWidth > 0 && element.scrollWidth > element.clientWidth + 1)
     .map((element) => `${element.className}: ${element.textContent}`);
 
-// What is not whole or lies otherwise than it says within a pane: its chart, how old its readings are, the ticks beside its colours.
+// Returns parts of panes that are incomplete or misplaced: the chart, the age of the readings, the ticks next to the colour bar.
 const amiss = () => [...document.querySelectorAll('.pane iframe')].flatMap((frame) => {
     const { contentDocument: inner, contentWindow: { innerHeight } } = frame, found = [];
     const box = (selector) => inner.querySelector(selector)?.getBoundingClientRect();
@@ -109,7 +109,7 @@ for (const wall of ['overview', 'six']) {
     }
 }
 
-// As they hang beside each other, bezels between them.
+// Arranged next to each other, with bezels in between.
 for (const size of SIZES) {
     test(`tiles at ${size.join('x')}`, more, async () => {
         const each = [size[0] / COLUMNS, size[1] / ROWS];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A crew's notes, and a wall from a desk: a view sent to a pane, held, pointed at and given back, with who did it; after reloads, too.
+// Notes of a shift, and a wall controlled from a desk: a view sent to a pane, held, pointed at and released, with the user's name; also
+// after reloads.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
@@ -113,7 +114,7 @@ test('a click while pointing is answered', options, async () => {
         askPick(session, viewport.pixelOf(viewport.width * 0.45, viewport.height * 0.55), 'place');
         remote.askedAt = -1e6;
         remote.ask(); // the pointer is due at once
-        for (let i = 0; i < 100 && !heard.includes('place'); i++) // a pointer may have been under way
+        for (let i = 0; i < 100 && !heard.includes('place'); i++) // a pointer may still be under way
             await new Promise((done) => setTimeout(done, 50));
         return [Boolean(remote.page.pointed), heard.includes('place')];
     });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forty displays of walls that lose their server at one moment: they come back one after another, and all show values again. Each is the
-// page's own connection and session, on a plain socket.
+// Forty wall displays lose their server at the same time: they reconnect one after another, and all show values again. Each uses the page's
+// own connection and session code on a plain socket.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Connection, FIRST_WAIT_MS, JITTER } from '../../clients/web/core/connection.js';
@@ -14,7 +14,7 @@ const DISPLAYS = 40, TEXT = 1, PATIENCE_MS = 120000;
 const clock = { now: () => performance.now(), setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) };
 let plant, displays = [];
 
-// As a browser's, so far as core/connection.js uses it.
+// A WebSocket with the members that core/connection.js uses.
 class Socket {
     constructor(port) {
         PlainClient.open(port, { acknowledge: false }).then((client) => this.use(client), () => this.end({ code: 1006, reason: '' }));
@@ -49,12 +49,12 @@ class Display {
     constructor() {
         this.tries = [];
         this.waits = [];
-        this.liveAt = 0; // of this connection: the first picture
+        this.liveAt = 0; // time of this connection's first picture
         this.connection = new Connection({ url: '', clock, open: () => {
             this.tries.push(clock.now());
             return new Socket(plant.port);
         } });
-        this.connection.spreadMs = SPREAD_MS; // as clients/web/wall/main.js has it
+        this.connection.spreadMs = SPREAD_MS; // as in clients/web/wall/main.js
         this.session = new Session({ connection: this.connection, now: clock.now, codecs: ['jpeg'] });
         this.session.size = { width: 64, height: 36 };
         this.session.on('frame', (frame) => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Displays beside each other, as people see them: the picture goes on from one to the next, though it is moved so that nothing burns in.
+// Adjacent displays as people see them: the picture continues from one to the next, although it is shifted to prevent burn-in.
 import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -37,7 +37,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-// All of the picture, as one client of that size has it: { width, at(x, y) }.
+// Returns the whole picture as one client of that size gets it: { width, at(x, y) }.
 async function wholePicture() {
     const client = await PlainClient.open(plant.port), width = 2 * WIDTH + 2 * MARGIN, height = HEIGHT + 2 * MARGIN;
     await client.hello({ width, height, codecs: ['png'] });
@@ -52,8 +52,8 @@ async function wholePicture() {
 const pictureOf = ({ width, height, rgb }) => ({ width, height, at: (x, y) => [0, 1, 2].map((i) => rgb[3 * (y * width + x) + i]) });
 const isNear = (a, b) => a.every((value, i) => Math.abs(value - b[i]) < 40); // pictures are sent as JPEG or H.264
 
-// Which parts of two displays are those of the large picture, as the least share of pixels: beside the seam, at the lower edge between
-// legend and corner, and where a box stands, which is neither white nor gray.
+// Returns the smallest share of pixels in two displays that equal the large picture: along the seam, at the lower edge between legend and
+// corner, and where a box is, which is neither white nor grey.
 function agreement(screens, large, [x0, y0]) {
     const parts = { edges: [0, 0], box: [0, 0] };
     const look = (i, x, y, part = parts.edges) => {
@@ -75,7 +75,7 @@ function agreement(screens, large, [x0, y0]) {
     return Math.min(...Object.values(parts).map(([same, all]) => same / all));
 }
 
-// Until they are refined; a move meanwhile, every 3 minutes, is waited for.
+// Waits for refined pictures; a burn-in shift, every 3 minutes, is waited for.
 async function expectOnePicture(grab, name) {
     const large = await wholePicture();
     let share = 0, screens;

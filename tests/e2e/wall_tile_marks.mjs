@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Marks on a picture over two displays: alarms on either display, notes, the desk's pointer, and the title of the view, in either order in
-// which the displays came.
+// Marks on a picture over two displays: alarms on either display, notes, the desk's pointer, and the view's title, in either order of
+// connecting.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -11,7 +11,7 @@ import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
 const [WIDTH, HEIGHT] = [640, 360], SCREEN = { viewport: { width: WIDTH, height: HEIGHT } }, FAR = [1.5, -20, 0];
-// TI-2 is on the far side of E-101, on display 1; PI-1 on P-101A, on display 2.
+// TI-2 is on the far side of E-101, on display 1; PI-1 is on P-101A, on display 2.
 const WALLS = `
 views:
 - { id: all, title: All of it, view: "group=temperature&camera=3.5,-7,1,1.5,0,0,0,0,1,30" }
@@ -27,7 +27,7 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     plant.addAlarms();
-    const tags = join(plant.folder, 'tags.csv'); // no alarm but ours, however busy the machine is
+    const tags = join(plant.folder, 'tags.csv'); // so that there is no other alarm, however busy the machine is
     writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1,90$/gm, ',600,90'));
     writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000') + WALLS);
     assert.equal(plant.prepare().code, 0);
@@ -51,7 +51,7 @@ const point = (position, wall = 'wide') => crew.say({ type: 'point', wall, displ
 const mark = (i, text) => pages[i].page.locator('.marks .alarm', { hasText: text });
 const count = (i, what) => pages[i].page.locator(what).count();
 
-// Where a mark is on a display, in shares of its sides: beyond them where it stands on the display beside.
+// Returns the position of a mark on a display, as shares of its sides; below 0 or above 1 if it is on the neighbouring display.
 const placeOf = (i, what, hasText) => pages[i].page.locator(what, { hasText }).evaluate((element) =>
     ['--x', '--y'].map((name) => parseFloat(element.style.getPropertyValue(name)) / 100));
 
@@ -87,7 +87,7 @@ test('alarms are marked behind something, and of a quantity that is not shown', 
         const { top, bottom } = legend.getBoundingClientRect();
         return [top < 0, bottom > innerHeight + 4, legend.scrollHeight > legend.clientHeight + 1];
     });
-    assert.deepEqual(cut, [false, false, false]); // all displays are moved by up to 3 pixels
+    assert.deepEqual(cut, [false, false, false]); // burn-in shifts move all displays by up to 3 pixels
     for (const [i, { page }] of pages.entries())
         await shoot(page, `wall-tile-marks-${i + 1}`);
     said({ type: 'alarm', action: 'acknowledge', alarms: [['TI-2', 'H'], ['PI-1', 'H']], name: 'kim' });
@@ -103,7 +103,8 @@ test('notes and where a desk points stand where they are', options, async () => 
     note('Manhole open', { asset: 'P-101A' });
     const { id } = await crew.text('noted');
     await pages[1].page.locator('.marks .note', { hasText: 'Manhole open' }).waitFor();
-    const here = () => point([0, 0, 0.5]), pointing = setInterval(here, 1000); // it goes by itself after some seconds
+    // repeated, because the pointer disappears after some seconds
+    const here = () => point([0, 0, 0.5]), pointing = setInterval(here, 1000);
     try {
         here();
         await pages[0].page.locator('.marks .pointer', { hasText: 'Desk 2' }).waitFor();

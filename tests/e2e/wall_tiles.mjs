@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One picture over many displays, as the server makes it: drawn once, cut without a seam, shown by all at one instant or not at all.
+// One picture over many displays, on the server's side: drawn once, cut without a seam, shown by all at one instant or not at all.
 import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -63,14 +63,14 @@ function canvasAt(client, seq) {
     return canvas;
 }
 
-// The newest picture that all were told to show: [{ seq, at_us }, ...] by client.
+// Returns the newest picture that all clients were told to show: [{ seq, at_us }, ...] by client.
 const picture = (clients) => clients[0].until('a picture that all show', () => {
     const common = presents(clients[0]).reverse().find(({ picture: number }) => clients.every((client) =>
         presents(client).some((one) => one.picture === number)));
     return common && clients.map((client) => presents(client).find((one) => one.picture === common.picture));
 });
 
-// Moves a client's camera until there is a picture as it is wanted; the number of that frame, and of its camera.
+// Moves a client's camera until a matching picture arrives; returns the numbers of that frame and of its camera.
 async function moveUntil(client, wanted, still) {
     for (let seq = 1; seq < 200; seq++) {
         client.say(camera(seq, 0.3));
@@ -86,7 +86,7 @@ async function moveUntil(client, wanted, still) {
     throw new Error('no such picture');
 }
 
-// What one client with all of the picture sees.
+// Returns what one client sees that has the whole picture.
 async function whole(width, height, still) {
     const client = await PlainClient.open(plant.port);
     await client.hello({ width, height, codecs: ['png'] });
@@ -97,18 +97,17 @@ async function whole(width, height, still) {
     return canvas;
 }
 
-// What all tiles see is moved within the large picture, by the clock.
+// The burn-in shift moves all tiles within the large picture, by the clock.
 const MARGIN = 3, shiftNow = () => burnShift(Date.now() * 1000), margins = (size) => size + 2 * MARGIN;
 
-// What a picture shows that is begun now: one begun before the last move may still be on its way right after it.
+// Returns the shift of pictures that are begun now; waits if one with the previous shift may still be on its way.
 async function shiftHeld() {
     const HELD_MS = 180000, SETTLED_MS = 3000, sinceMove = Date.now() % HELD_MS;
     await sleep(Math.max(0, SETTLED_MS - sinceMove));
     return shiftNow();
 }
 
-// Readings stand still meanwhile, and so does what is seen, between two moves. Fewer pixels, as a loaded machine has it, would be compared
-// with others.
+// Compares while readings and shift stand still. Smaller previews of a loaded machine are not compared.
 async function compare(wall, columns, rows, [across, down]) {
     const width = columns * WIDTH + (columns - 1) * across, height = rows * HEIGHT + (rows - 1) * down;
     for (const still of [false, true]) {
@@ -136,7 +135,7 @@ async function compare(wall, columns, rows, [across, down]) {
     return undefined;
 }
 
-// The pictures differed once beside other programs, in a preview: make test-long runs the case.
+// Once a preview differed while other programs ran: make test-long runs the case.
 test('six tiles are the large picture, pixel by pixel, preview and refined', { ...options, skip: options.skip || long },
     () => compare('seamless', 3, 2, [0, 0]));
 test('behind bezels the picture goes on', options, async () => {
@@ -158,8 +157,8 @@ test('every 3 minutes all tiles are moved at one instant', { ...options, timeout
     assert.equal(new Set(shown.map(({ at_us: us }) => us)).size, 1);
     assert.ok(shown[0].at_us % 180e6 < 5e6, `${shown[0].at_us % 180e6 / 1e6} s after the clock says so`);
     const more = await metric('plantcast_renders_total') - drawn;
-    assert.ok(more <= 6, `${more} pictures were drawn`); // not one for each tile and step
-    for (const [i, client] of clients.entries()) { // what was within it then, and is now
+    assert.ok(more <= 6, `${more} pictures were drawn`); // not one picture for each tile and step
+    for (const [i, client] of clients.entries()) { // compares the area that was inside the tile before and after the shift
         const now = canvasAt(client, shown[i].seq), was = canvases[i], edge = 8, bytes = (WIDTH - 2 * edge) * 3;
         for (let row = edge; row < HEIGHT - edge; row++) {
             const at = (row * WIDTH + edge) * 3, then = ((row + shift[1] - y) * WIDTH + edge + shift[0] - x) * 3;

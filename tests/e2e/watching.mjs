@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What watches a server: the rules of deploy/prometheus and the panels of deploy/grafana, in a real Prometheus that reads a real daemon.
+// Monitoring: the rules of deploy/prometheus and the panels of deploy/grafana, in a real Prometheus that reads a real daemon.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -27,7 +27,7 @@ test('every rule is one to promtool, fires when it should, and has its place in 
     assert.deepEqual([...runbook.matchAll(/^## (\w+)$/gm)].map(([, name]) => name), alerts);
 });
 
-// Of a plant without notifications, a certificate or a backup, and without clients: these are empty.
+// Metrics that are empty for a plant without notifications, certificate, backup and clients.
 const EMPTY = /notify|certificate|backup|histogram_quantile|\[1d|predict_linear/;
 
 test('Prometheus reads a daemon, takes the rules, and every panel asks for what there is',

@@ -180,7 +180,7 @@ test('one row and one count for a tag; what has returned is not active, and draw
     await settle(page);
     const at = await ring(LOW);
     assert.equal(at.state, 'returned');
-    // Pixels on the ring's line: it is white if an acknowledged alarm would have its priority's colour there.
+    // The ring of a returned alarm is white where an active alarm's ring has the colour of its priority.
     const [r, g, b] = await page.evaluate(({ x, y }) => {
         const box = document.getElementById('viewport').getBoundingClientRect(), { canvas, unit } = globalThis.plantcast.overlay;
         const ratio = canvas.width / box.width;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Debian's mosquitto on a free port, and who publishes to it.
+// Debian's mosquitto on a free port, and clients that publish to it.
 import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { connect as connectTcp } from 'node:net';
@@ -11,7 +11,7 @@ import { freePort } from './ports.mjs';
 const PROGRAM = ['/usr/sbin/mosquitto', '/usr/local/sbin/mosquitto'].find(existsSync);
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-// Why there is no broker here, or null.
+// Returns why there is no broker on this machine, or null.
 export const missingBroker = () => (PROGRAM ? null : 'no mosquitto');
 
 const answers = (port) => new Promise((done) => {
@@ -30,7 +30,7 @@ export class Broker {
         return broker;
     }
 
-    // Ends it if it runs, and starts it with the same configuration.
+    // Ends the broker if it runs, and starts it with the same configuration.
     async restart() {
         await this.kill();
         const file = join(this.folder, 'mosquitto.conf'), user = process.getuid() === 0 ? ['user root'] : [];
@@ -53,14 +53,14 @@ export class Broker {
         }
     }
 
-    // The source's line of the plant file; keys: what else it says.
+    // Returns the source's line for the plant file; keys: further keys.
     source(keys) { return `{ id: broker, type: mqtt, host: 127.0.0.1, port: ${this.port}, ${keys} }`; }
 
-    // Stops answering, without closing a connection.
+    // Stops answering without closing connections.
     freeze() { this.child.kill('SIGSTOP'); }
     thaw() { this.child.kill('SIGCONT'); }
 
-    // A client that publishes; options: of npm's mqtt.
+    // Returns a publishing client; options: those of npm's mqtt.
     async client(options = {}) {
         const client = mqtt.connect(`${options.ca ? 'mqtts' : 'mqtt'}://127.0.0.1:${this.port}`, { protocolVersion: 4, ...options });
         await new Promise((done, fail) => { client.once('connect', done); client.once('error', fail); });
@@ -79,7 +79,7 @@ export class Broker {
     }
 }
 
-// A certificate authority, and certificates of a server (127.0.0.1, localhost) and of a client, as PEM files in a folder.
+// Makes a certificate authority and certificates of a server (127.0.0.1, localhost) and of a client, as PEM files in a folder.
 export function makeCertificates(folder, name = 'ca') {
     const run = (...args) => {
         const { status, stderr } = spawnSync('openssl', args, { cwd: folder, encoding: 'utf8' });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Debian's chromium, driven by playwright-core, and questions to ask the page.
+// Debian's chromium, driven by playwright-core, and functions that read the page's state.
 import { existsSync, mkdirSync, mkdtempSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
@@ -8,31 +8,34 @@ import { after } from 'node:test';
 import { BUILD } from './plant.mjs';
 import { sweep } from './sweep.mjs';
 
-// Imported, node reads through all of it for names first: 0.2 s of a processor. Loaded only where a page is opened.
+// Loaded with require() and only when a page is opened: as an import, node would scan the whole module for names, which takes 0.2 s of
+// processor time.
 const playwright = () => createRequire(import.meta.url)('playwright-core');
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
-// The same engine without windows, menus and their own processes, which take four times as long as an empty page. `make test-long` has all.
+// The same engine without windows and menus, whose processes take four times as long as an empty page. `make test-long` uses the full
+// browser.
 const SHELL = '/usr/bin/chromium-headless-shell';
 const HEADLESS = sweep(CHROMIUM, existsSync(SHELL) && !process.env.CHROMIUM ? SHELL : CHROMIUM);
 const QUIET = [
     '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
-    '--disable-sync', '--host-resolver-rules=MAP plant.example 127.0.0.1', // a name, where one is needed
+    '--disable-sync', '--host-resolver-rules=MAP plant.example 127.0.0.1', // maps this name to the loopback address
 ];
-const PATIENCE_MS = 120000; // of whatever waits for a page: slower than that is no page, how busy the machine ever is
+const PATIENCE_MS = 120000; // limit for everything that waits for a page, even on a very busy machine
 export const SCREENSHOTS = join(BUILD, 'screenshots');
-// Layout depends on CSS pixels, what a picture costs on those of the device: these are halved but in `make test-long`, or with `...SHARP`.
+// Layout depends on CSS pixels, the cost of a picture on device pixels: their density is halved except in `make test-long`, or with
+// `...SHARP`.
 export const SHARP = { deviceScaleFactor: 2 };
 const DENSITY = sweep(SHARP, { deviceScaleFactor: 1 });
 export const DESKTOP = { viewport: sweep({ width: 1920, height: 1080 }, { width: 1280, height: 800 }) };
 export const TABLET = { viewport: { width: 1024, height: 768 }, ...DENSITY, hasTouch: true };
 export const PHONE = { viewport: { width: 390, height: 844 }, ...DENSITY, hasTouch: true, isMobile: true };
 
-// The camera of pages goes where it is sent at once, as for people who want no motion: of a flight each frame costs 15 ms of a processor
-// in the browser alone. `make test-long` has all flights, and who opens a page with `...FLYING` those that it is about.
+// The camera jumps instead of flying, as for users who prefer reduced motion, because each frame of a flight costs 15 ms of processor time
+// in the browser. `make test-long` flies everywhere; tests about flights use `...FLYING`.
 export const FLYING = { reducedMotion: 'no-preference' };
 const MOTION = sweep(FLYING, { reducedMotion: 'reduce' });
 
-// One browser for all pages of a test program, for each set of its own arguments.
+// One browser for all pages of a test program, per set of browser arguments.
 const browsers = new Map();
 
 export async function browserWith(args) {
@@ -46,7 +49,7 @@ after(async () => {
     await Promise.all([...browsers.values()].map(async (browser) => (await browser).close()));
 });
 
-// Pages that no test has closed: a failed test leaves its page open. Each with its newest console lines and failed requests.
+// Pages that no test has closed, because a failed test leaves its page open. Each with its newest console lines and failed requests.
 const open = new Map(), MAX_LINES = 30;
 
 function record(page) {
@@ -65,12 +68,12 @@ async function report([page, lines]) {
     console.log([`# left open: ${page.url()}`, ...lines, `text: ${text.replace(/\s+/g, ' ').slice(0, 1500)}`].join('\n#   '));
 }
 
-// One with a profile on the disk, as people have: only there a page can be installed, or fill a screen.
+// A browser with a profile on disk: only there a page can be installed or go full screen.
 async function profileWith(args, shape) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
     const whole = { executablePath: CHROMIUM, ...shape, args: [...QUIET, ...args] };
     const context = await playwright().chromium.launchPersistentContext(folder, whole);
-    process.once('exit', () => { // not before: a browser that is closed goes on writing for a while
+    process.once('exit', () => { // at exit, because a closed browser goes on writing for a while
         try {
             rmSync(folder, { recursive: true, force: true });
         } catch {
@@ -80,7 +83,7 @@ async function profileWith(args, shape) {
     return context;
 }
 
-// A browser of its own that fills an X display of that size. clockMs: so much its clock is ahead.
+// Starts a browser that fills an X display of that size. clockMs: how far its clock is ahead.
 export async function browserOn(display, url, width, height, clockMs = 0) {
     const args = ['--kiosk', '--window-position=0,0', `--window-size=${width},${height}`];
     const context = await profileWith(args, { headless: false, viewport: null, env: { ...process.env, DISPLAY: display } });
@@ -95,37 +98,36 @@ export async function browserOn(display, url, width, height, clockMs = 0) {
     return { page, close: () => context.close() };
 }
 
-// Asks every 50 ms whether what is waited for has come: at each animation frame, as playwright does, it has the browser draw 60 a second.
-// What is there for less than that is waited for with { polling: 'raf' }.
+// Makes waitForFunction poll every 50 ms: playwright's default, every animation frame, makes the browser draw 60 times a second. For
+// conditions that last less long use { polling: 'raf' }.
 function waitingSeldom(page) {
     const wait = page.waitForFunction.bind(page);
     page.waitForFunction = (f, arg, options) => wait(f, arg, { polling: 50, ...options });
     return page;
 }
 
-// Pages that were closed, by what they were made with but for their size. Each is opened anew as another one: that saves the browser a
-// process and all that is in it, 0.2 s of a processor.
+// Closed pages for reuse, by their options except the size. Reusing a page saves 0.2 s of processor time for a new process.
 const closed = new Map();
 const kindOf = ({ viewport, ...shape }) => JSON.stringify(shape);
 const HEARD = ['pageerror', 'console', 'request', 'requestfailed', 'response', 'domcontentloaded', 'load', 'download', 'dialog'];
 
-// Nothing is left of what was in it.
+// Removes all state of a page before it is reused.
 async function leave(page, kind) {
     const { origin } = new URL(page.url());
     HEARD.forEach((name) => page.removeAllListeners(name));
     await page.unrouteAll({ behavior: 'ignoreErrors' });
     await page.evaluate(() => sessionStorage.clear());
     await page.goto('about:blank');
-    await page.mouse.move(-1, -1); // points at nothing of what comes
+    await page.mouse.move(-1, -1); // so that the pointer is over nothing in the next page
     const client = await page.context().newCDPSession(page);
     await client.send('Storage.clearDataForOrigin', { origin, storageTypes: 'all' });
     await client.detach();
     closed.set(kind, [...closed.get(kind) ?? [], page]);
 }
 
-// { page, errors, close }. The page remembers nothing of others. errors: what went wrong in it and what it tried to fetch from elsewhere.
-// before: a function that runs in the page before its own scripts, or [one, what it is given]; arrange(page): what else to do before, of
-// routes and events. screen.args: the browser's; screen.profile: it has a browser of its own, with a profile.
+// Returns { page, errors, close }. The page has no stored state. errors: script errors and requests to other origins. before: a function
+// that runs in the page before its scripts, or [function, argument]; arrange(page): further set-up of routes and events. screen.args:
+// browser arguments; screen.profile: use a browser of its own with a profile.
 export async function openPage(url, screen = DESKTOP, before = null, arrange = null) {
     const { args = [], profile = false, ...own } = screen, shape = { ...MOTION, ...own }, kind = kindOf(shape);
     const isPlain = !before && !profile && args.length === 0, left = isPlain ? closed.get(kind)?.pop() : null;
@@ -152,7 +154,7 @@ export async function openPage(url, screen = DESKTOP, before = null, arrange = n
     return { page, errors, close };
 }
 
-// Of what is to be looked at: in `make test-long`, or with PLANTCAST_SHOTS=1. Many would take longer than all else that a test does.
+// Whether to take screenshots: in `make test-long`, or with PLANTCAST_SHOTS=1, because they would take longer than the tests themselves.
 export const SHOOTS = sweep(true, process.env.PLANTCAST_SHOTS === '1');
 
 export async function shoot(page, name) {
@@ -167,8 +169,8 @@ export const waitForHealth = (page, kind, timeout = PATIENCE_MS) =>
     page.waitForFunction((k) => document.getElementById('health').dataset.kind === k, kind, { timeout });
 export const waitForPicture = (page) => page.waitForFunction(() => globalThis.plantcast?.session.picture);
 
-// Until the refined picture of the newest camera and parameters is on the screen; and, where readings are frozen, nothing has come
-// after it for quietMs.
+// Waits until the refined picture of the newest camera and parameters is on the screen; with quietMs, and frozen readings, also until no
+// picture has followed for that long.
 export async function settle(page, quietMs = 0) {
     try {
         await page.waitForFunction((quiet) => {
@@ -186,7 +188,8 @@ export async function settle(page, quietMs = 0) {
     }
 }
 
-// Until the picture on the screen is of the page's camera and size, and nothing flies any more: what is clicked is where it is drawn.
+// Waits until the picture on the screen has the page's camera and size and no flight is under way, so that objects are where they are
+// drawn.
 export const land = (page) => page.waitForFunction(() => {
     const { cameraController, session, viewport } = globalThis.plantcast, { picture, size } = session, ratio = devicePixelRatio;
     return !cameraController?.fly && !session.cameraNews && picture.cameraSeq === session.cameraSeq &&
@@ -195,31 +198,31 @@ export const land = (page) => page.waitForFunction(() => {
         picture.fullWidth === size.width && picture.fullHeight === size.height;
 });
 
-// Likewise, and then as settle().
+// Waits like land() and then like settle().
 export async function arrive(page) {
     await land(page);
     await settle(page);
 }
 
-// Until the picture at a place is another colour than it was.
+// Waits until the picture's colour at a position has changed.
 export const waitForChange = (page, { x, y }, { width, rgba }, least) => page.waitForFunction(([px, py, was, step]) => {
     const now = document.getElementById('picture').getContext('2d').getImageData(px, py, 1, 1).data;
     return was.some((value, i) => Math.abs(value - now[i]) > step);
 }, [x, y, [...rgba.subarray(4 * (y * width + x), 4 * (y * width + x) + 3)], least], { timeout: 30000, polling: 100 });
 
-// The view as the page would say it: camera and parameters.
+// Returns the view as the page would send it: camera and parameters.
 export const view = (page) => page.evaluate(() => {
     const { camera, params } = globalThis.plantcast.session;
     return { camera, params };
 });
 
-// Goes to an instant; null: to now.
+// Goes to an instant; null: to the present.
 export const travel = (page, us) => page.evaluate(async (to) => {
     const requests = await import('/core/requests.js');
     requests.travel(globalThis.plantcast.session, to);
 }, us);
 
-// Where a place of the plant is in the page by the camera that the page asks for: [x, y].
+// Returns the position on the page of a point of the plant for the camera that the page requested: [x, y].
 export const pageOf = (page, point) => page.evaluate(async (at) => {
     const { projector } = await import('/core/camera.js');
     const box = document.getElementById('viewport').getBoundingClientRect();
@@ -227,7 +230,7 @@ export const pageOf = (page, point) => page.evaluate(async (at) => {
     return [box.left + x, box.top + y];
 }, point);
 
-// Where the picture on the screen has a place of the plant, in the page: { x, y }.
+// Returns the position on the page of a point of the plant in the picture on the screen: { x, y }.
 export const drawnAt = (page, point) => page.evaluate(async (place) => {
     const [{ projector }, { halves }] = await Promise.all([import('/core/camera.js'), import('/core/split_view.js')]);
     const { session: { picture, params }, viewport } = globalThis.plantcast, box = viewport.element.getBoundingClientRect();
@@ -235,13 +238,13 @@ export const drawnAt = (page, point) => page.evaluate(async (place) => {
     return { x: box.left + (x * box.width) / picture.shownWidth, y: box.top + (y * box.height) / picture.fullHeight };
 }, point);
 
-// What the hand took hold of, once the server has said where that is; null: nothing.
+// Returns the point that a drag has grabbed, once the server has located it; null: none.
 export async function held(page) {
     await page.waitForFunction(() => globalThis.plantcast.cameraController?.anchor?.sure, null, { timeout: 20000 });
     return page.evaluate(() => globalThis.plantcast.cameraController.anchor.point);
 }
 
-// Markers of the shown group: name, asset, place in pixels of the picture, in sight or not.
+// Returns the markers of the shown group: name, asset, position in pixels of the picture, visible or hidden.
 export const markers = (page) => page.evaluate(() => {
     const { overlay, session } = globalThis.plantcast;
     const box = document.getElementById('viewport').getBoundingClientRect();
@@ -252,7 +255,7 @@ export const markers = (page) => page.evaluate(() => {
     }));
 });
 
-// The picture as it was received, { width, height, rgba }: no marker, label or panel in it.
+// Returns the received picture, { width, height, rgba }, without markers, labels or panels.
 export async function grab(page) {
     const { width, height, text } = await page.evaluate(() => {
         const canvas = document.getElementById('picture');
@@ -265,7 +268,7 @@ export async function grab(page) {
     return { width, height, rgba: Buffer.from(text, 'base64') };
 }
 
-// Of a PNG file, likewise.
+// Returns the pixels of a PNG file in the same form.
 export async function readPng(page, bytes) {
     const { width, height, text } = await page.evaluate(async (base64) => {
         const picture = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], { type: 'image/png' }));

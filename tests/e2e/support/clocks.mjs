@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Programs whose wall clock is wrong (tests/faults/clock_off.c).
+// Runs programs with a wrong wall clock (tests/faults/clock_off.c).
 import { existsSync, writeFileSync } from 'node:fs';
 import { resolve } from 'node:path';
 
@@ -8,10 +8,10 @@ export const missingClocks = () => (existsSync(LIBRARY) ? null : 'not built: clo
 
 const variables = (by) => ({ LD_PRELOAD: LIBRARY, ...by, ASAN_OPTIONS: 'verify_asan_link_order=0' });
 const starter = (by) => ['env', ...Object.entries(variables(by)).map(([name, value]) => `${name}=${value}`)];
-// The program that starts another with its clock so many seconds ahead.
+// Returns the command prefix that starts a program with its clock that many seconds ahead.
 export const withClockOff = (seconds) => starter({ CLOCK_OFF_S: String(seconds) });
 
-// A clock that is set while programs run by it.
+// A clock that the test sets while programs use it.
 export class SetClock {
     constructor(file) {
         this.file = file;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clients by the dozen, and what they cost the daemon.
+// Many clients, and what they cost the daemon.
 import { readdirSync, readFileSync, readlinkSync } from 'node:fs';
 import { get, PlainClient } from './plain_client.mjs';
 
@@ -8,7 +8,7 @@ export const sanitized = /asan|tsan/.test(process.env.PLANTCAST_OUT ?? '');
 
 export const residentKb = (pid) => Number(readFileSync(`/proc/${pid}/status`, 'utf8').match(/^VmRSS:\s+(\d+)/m)[1]);
 
-// What a process has open, as /proc says it.
+// Returns the files that a process has open, from /proc.
 export function openFiles(pid) {
     const folder = `/proc/${pid}/fd`, list = [];
     for (const fd of readdirSync(folder)) {
@@ -21,7 +21,7 @@ export function openFiles(pid) {
 
 export const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
 
-// The counters and gauges of /metrics whose names are asked for; labels are added up.
+// Returns the named counters and gauges of /metrics, summed over their labels.
 export async function metrics(port, ...names) {
     const text = (await get(port, '/metrics')).body.toString();
     const values = (name) => [...text.matchAll(new RegExp(`^${name}(?:\\{[^}]*\\})? (\\d+)`, 'gm'))].map((m) => Number(m[1]));
@@ -32,8 +32,7 @@ export const camera = (seq, angle) => ({
     type: 'camera', seq, eye: [1.5 + 7 * Math.cos(angle), 7 * Math.sin(angle), 4], target: [1.5, 0, 0],
 });
 
-// Moves its camera at that rate until stop(), from a number of the client's on; how long each was waited for is in `waits`, by the time of
-// its showing.
+// Moves its camera at that rate until stop(), starting at sequence number seq. `waits`: time until each camera was shown.
 export class Mover {
     constructor(client, hz = 60, seq = 0) {
         Object.assign(this, { client, seq, shown: seq, frames: 0, sent: new Map(), waits: [] });
@@ -55,7 +54,7 @@ export class Mover {
         }
     }
 
-    // Pictures in a second, over that time.
+    // Returns the pictures per second over that time.
     async rate(ms) {
         const before = this.frames, start = performance.now();
         await sleep(ms);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Somebody who tries everything, by dice: every look, light, backdrop, group, show, split, cut, ghost, size, instant and snapshot that the
-// protocol has. Each step waits for its answer, so that what a person does in an hour takes as long as the machine needs for it.
+// A random user who tries everything: every look, light, backdrop, group, quantity, split, section, ghost, size, instant and snapshot that
+// the protocol offers. Each step waits for its answer, so that an hour of a person's actions takes as long as the machine needs for it.
 import { http, PlainClient } from './plain_client.mjs';
 
 const SIZES = [[640, 360], [1280, 720], [1366, 768], [1920, 1080], [390, 844], [1024, 1366]];
 const PATIENCE_MS = 120000, QUIET_MS = 10000;
-const REFINED_MS = 30000; // a machine with much else to do may show new readings for longer, and refine none
+const REFINED_MS = 30000; // a busy machine may show only previews of new readings for longer
 const get = (port, path) => http(port, `GET ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`, { timeoutMs: PATIENCE_MS });
 
-// 0 <= x < 1, the same for the same seed (mulberry32).
+// Returns a generator of numbers 0 <= x < 1, the same for the same seed (mulberry32).
 export function dice(seed) {
     let a = seed >>> 0;
     return () => {
@@ -36,13 +36,13 @@ export class Curious {
     some(list, most) { return Array.from({ length: Math.floor(this.random() * (most + 1)) }, () => this.any(list)); }
     get ids() { return this.welcome.assets.map((asset) => asset.id); }
 
-    // Until a refined picture of what was said last is there; while the past is played, any picture of it.
+    // Waits until a refined picture of the last request is there; while the past is played, any picture.
     async still() {
         const { seq, playing } = this;
         const said = performance.now(), any = () => playing || performance.now() - said > REFINED_MS;
         const is = (f) => (any() || (f.flags & 2) !== 0) && Math.max(f.camera_seq, f.params_seq) >= seq;
         const wrong = (t) => t.type === 'error';
-        const quiet = (c) => performance.now() - (c.frames.at(-1)?.at ?? said) > QUIET_MS; // nothing to refine
+        const quiet = (c) => performance.now() - (c.frames.at(-1)?.at ?? said) > QUIET_MS; // no refined picture is due
         await this.client.until(`a picture of ${seq}`, (c) => c.closed !== null || c.texts.some(wrong) || c.frames.some(is) || quiet(c),
             PATIENCE_MS);
         if (this.client.closed)
@@ -58,7 +58,7 @@ export class Curious {
 
     async params(params) { await this.say({ type: 'params', ...params }); }
 
-    // One thing that a person does, and looks at.
+    // Performs one random action and waits for its picture.
     async act(history) {
         const acts = Object.entries(ACTS).filter(([name]) => history || !name.startsWith('past'));
         const all = acts.reduce((sum, [, [weight]]) => sum + weight, 0);
@@ -76,7 +76,7 @@ export class Curious {
             Math.max(1, target[2] + z * zoom + rise)];
     }
 
-    // A drag: each picture is waited for, so that as many are drawn as a person would see.
+    // Drags; waits for each picture, so that as many are drawn as a person would see.
     async drag(pictures) {
         const turn = this.between(-0.08, 0.08), rise = this.between(-0.4, 0.4);
         for (let n = 0; n < pictures; n++) {
@@ -113,11 +113,11 @@ const looks = (one) => one.any([{ colormap: one.any(one.welcome.colormaps).name 
 const LOOKS = ['default', 'glossy', 'flat', 'materials'];
 const snapshot = (one, more) => get(one.port, `/snapshot.png?width=1280&height=720&look=${one.any(LOOKS)}` +
     `&group=${one.any(one.welcome.groups).id}${more}`);
-const ago = (one) => Math.round(one.between(one.from, Date.now() * 1000)); // since it came
+const ago = (one) => Math.round(one.between(one.from, Date.now() * 1000)); // since the client connected
 
 const PLAIN = { split: null, clip: null, hidden: [], ghost: [], isolate: [], look: 'default' };
 
-// What one does, and how often.
+// The actions and their relative frequency.
 const ACTS = {
     drag: [10, (one) => one.drag(8)],
     zoom: [4, (one) => { one.camera.target = one.any(one.welcome.tags.filter((t) => t.position)).position; return one.drag(4); }],

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 const REPORTED = /WARNING: ThreadSanitizer|ERROR: \w*Sanitizer|runtime error:/;
 
-// What went wrong in a program, whatever the tests saw of that: it fell over, though it was not to end, or a sanitizer found
-// something; or null.
+// Returns a program's fault that the tests may not have noticed: it ended although it should not, or a sanitizer reported an error;
+// otherwise null.
 export function faultOf(name, { exitCode, signalCode }, said, mayEnd) {
     const fell = !mayEnd && (exitCode !== null || signalCode !== null);
     if (!fell && !REPORTED.test(said))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A GPU that fails on demand, before the daemon's own way to GL (tests/faults/gl_faults.c).
+// A GPU that fails on demand: a library that replaces the daemon's libEGL (tests/faults/gl_faults.c).
 import { spawnSync } from 'node:child_process';
 import { closeSync, existsSync, ftruncateSync, mkdtempSync, openSync, readSync, rmSync, writeSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -7,7 +7,7 @@ import { join, resolve } from 'node:path';
 
 const FOLDER = join(resolve(process.env.PLANTCAST_OUT ?? 'build/release'), 'tests/faults');
 const LIBRARY = 'libEGL.so.1', BYTES = 64;
-// struct faults: where a number lies, and how wide it is.
+// Offsets and widths of the numbers in struct faults.
 const FIELDS = {
     losses: [0, 4], loss_calls: [4, 4], refusals: [8, 4], hardware: [12, 4], room_bytes: [16, 8], lost: [24, 4], contexts: [28, 4],
     used_bytes: [32, 8], most_bytes: [40, 8], objects: [48, 4], refused: [52, 4], made: [56, 4],
@@ -18,7 +18,7 @@ function realLibrary() {
     return said.match(new RegExp(`^\\s*${LIBRARY.replaceAll('.', '\\.')} .*=> (.*)$`, 'm'))?.[1];
 }
 
-// Why it cannot be, or null.
+// Returns why this is not possible on this machine, or null.
 export function faultsMissing() {
     const ours = join(FOLDER, LIBRARY);
     return !existsSync(ours) ? `not built: ${ours}` : realLibrary() ? null : `no ${LIBRARY}`;

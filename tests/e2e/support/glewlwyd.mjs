@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Debian's Glewlwyd as an identity provider on this machine, with one client and one person.
+// Debian's Glewlwyd as an identity provider on this machine, with one client and one user.
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -67,7 +67,7 @@ export class Glewlwyd {
         await this.ask('POST', 'user/', this.person({}));
     }
 
-    // A user code is one of the few properties that a user has from the beginning: it stands for the groups.
+    // The property `user-code` is one of the few that users have by default: here it holds the groups.
     person(more) {
         const lee = { username: 'lee', name: 'Lee', password: 'pass word 1', enabled: true, scope: ['openid'] };
         return { ...lee, 'user-code': 'operators', ...more };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Debian's HAProxy with the configuration that is shipped, but for addresses, TLS and paths.
+// Debian's HAProxy with the configuration that Plantcast ships, except for addresses, TLS and paths.
 import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -11,7 +11,7 @@ const PROGRAM = '/usr/sbin/haproxy', SHIPPED = new URL('../../../deploy/proxy/ha
 export const missingHaproxy = () => (existsSync(PROGRAM) ? null : 'haproxy is not installed');
 
 export class Haproxy {
-    // renderers: [{ port, agentPort }], core and standby: { port }
+    // renderers: [{ port, agentPort }]; core and standby: { port }
     static async start(renderers, core, standby = null) {
         const proxy = new Haproxy();
         proxy.folder = mkdtempSync(join(tmpdir(), 'plantcast-haproxy-'));
@@ -36,7 +36,7 @@ export class Haproxy {
         return proxy;
     }
 
-    // What `show stat` says of each server of a backend: { r1: { status, weight, sessions } }
+    // Returns the state of each server of a backend from `show stat`: { r1: { status, weight, sessions } }
     async servers(backend = 'renderers') {
         const text = await new Promise((done, fail) => {
             const socket = connect(join(this.folder, 'admin.sock'), () => socket.end('show stat\n'));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An identity provider (OpenID Connect) on this machine that does what a test says, also what none may do.
+// An identity provider (OpenID Connect) on this machine that does what a test says, including what a provider must not do.
 import { createHash, createSign, generateKeyPairSync, randomUUID } from 'node:crypto';
 import { createServer } from 'node:http';
 
@@ -8,21 +8,21 @@ const encode = (value) => Buffer.from(typeof value === 'string' ? value : JSON.s
 export class IdentityProvider {
     constructor() {
         this.sub = 's1';
-        this.claims = { preferred_username: 'kim', groups: ['operators'] }; // of whoever logs in
-        this.change = () => {}; // (claims, header): of the next ID tokens
-        this.sign = null;       // (text): another signature
-        this.refreshes = true;  // refresh tokens are given, and taken
-        this.status = 200;      // of refreshing
-        this.delay_ms = 0;      // until the token endpoint answers
+        this.claims = { preferred_username: 'kim', groups: ['operators'] }; // claims of the next user who logs in
+        this.change = () => {}; // change(claims, header) modifies the next ID tokens
+        this.sign = null;       // sign(text) makes a different signature; null: the right one
+        this.refreshes = true;  // whether refresh tokens are issued and accepted
+        this.status = 200;      // HTTP status of refresh requests
+        this.delay_ms = 0;      // delay of the token endpoint
         this.keysStatus = 200;
-        this.fault = null;      // [status, JSON] that the token endpoint answers, whatever it is asked
-        this.live = new Map();  // refresh tokens that could be used, and whose they are
+        this.fault = null;      // [status, JSON] of all answers of the token endpoint; null: normal answers
+        this.live = new Map();  // valid refresh tokens and their users
         this.codes = new Map();
         this.asked = [];
         this.rotate();
     }
 
-    // From now on another key signs; keep: those before stay published.
+    // Signs with a new key from now on; keep: earlier keys stay published.
     rotate(keep = false) {
         const { privateKey, publicKey } = generateKeyPairSync('rsa', { modulusLength: 2048 });
         this.kid = randomUUID();
@@ -40,7 +40,7 @@ export class IdentityProvider {
         return `${text}.${signature}`;
     }
 
-    // What follows a log-in there: where the browser is sent.
+    // Performs a log-in; returns the URL to which the browser is redirected.
     login(url) {
         const { searchParams: asked } = new URL(url), code = randomUUID(), back = new URL(asked.get('redirect_uri'));
         this.codes.set(code, { challenge: asked.get('code_challenge'), nonce: asked.get('nonce'),
@@ -104,7 +104,7 @@ export class IdentityProvider {
                 }
                 const [status, json] = this.answer(request.url, new URLSearchParams(body), request.headers.authorization);
                 const say = () => response.writeHead(status, { 'Content-Type': 'application/json' }).end(JSON.stringify(json));
-                response.once('close', () => { // who has waited too long does not have what was given
+                response.once('close', () => { // a client that gave up waiting does not have the new token
                     if (!response.writableFinished)
                         this.live.delete(json.refresh_token);
                 });

@@ -2,13 +2,13 @@
 // Small IFC files, one for each kind of shape, with the volume (m3) and the size (m) that geometry gives.
 const R = 25, PIPE = Math.PI * R * R * 1e-9, HALF_TURN = Math.PI * 500;
 
-// Statements are given without numbers, as {$name} = text; #{name} refers to one.
+// Statements are written without numbers, as {$name} = text; #{name} refers to another one.
 function statements(lines, first) {
     const numbers = new Map(lines.map(([name], i) => [name, first + i]));
     return lines.map(([name, text]) => `#${numbers.get(name)}=${text.replace(/#\{(\w+)\}/g, (_, to) => `#${numbers.get(to)}`)};`);
 }
 
-// An IFC file in millimetres with one element, "K-1", of these statements; "item" is its shape.
+// Returns an IFC file in millimetres with one element, "K-1", made of these statements; "item" is its shape.
 export function ifcOf(schema, lines, type = 'SweptSolid') {
     const head = [['o', 'IFCCARTESIANPOINT((0.,0.,0.))'], ['frame', 'IFCAXIS2PLACEMENT3D(#{o},$,$)'],
         ['z', 'IFCDIRECTION((0.,0.,1.))'], ['y', 'IFCDIRECTION((0.,1.,0.))'], ['x', 'IFCDIRECTION((1.,0.,0.))'],
@@ -40,7 +40,7 @@ const bend = [point('m', 0, 500, 0), ['v', 'IFCDIRECTION((0.,-1.,0.))'], ['at', 
     ['arc', 'IFCTRIMMEDCURVE(#{circle},(IFCPARAMETERVALUE(0.)),(IFCPARAMETERVALUE(3.14159265358979)),.T.,.PARAMETER.)']];
 const disk = (curve, rest = '$,$,$') => ['item', `IFCSWEPTDISKSOLID(#{${curve}},${R}.,${rest})`];
 
-// A cylinder of 100 mm radius and 300 mm height as an advanced B-rep; its edges are circles, or B-splines that are exactly these.
+// A cylinder of 100 mm radius and 300 mm height as an advanced B-rep; its edges are circles, or exactly equal B-splines.
 function cylinder(splines) {
     const ring = (name, z) => splines
         ? [...Array.from({ length: 9 }, (_, i) => {
@@ -75,7 +75,7 @@ const turned = [point('far', 0, 500, 0), ['axis', 'IFCAXIS1PLACEMENT(#{far},#{x}
 const upright = (name, along) => [[`${name}at`, `IFCPOINTBYDISTANCEEXPRESSION(IFCLENGTHMEASURE(${along.toFixed(6)}),$,$,$,$)`],
     [name, `IFCAXIS2PLACEMENTLINEAR(#{${name}at},$,$)`]];
 
-// [name, schemas, statements, what is right, representation type]
+// [name, schemas, statements, expected volume and size, representation type]
 export const KINDS = [
     ['extrusion', ['IFC2X3', 'IFC4'], [rectangle, ['item', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame},#{z},50.)']], ofBox],
     ['hollow circle extruded', ['IFC4'], [['profile', 'IFCCIRCLEHOLLOWPROFILEDEF(.AREA.,$,$,100.,20.)'],

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands in for an OPC UA server and lies: messages by hand, and a real server's messages with other numbers in them.
+// A fake OPC UA server that lies: hand-made messages, and a real server's messages with altered numbers.
 import { connect, createServer } from 'node:net';
 
 const u32 = (number) => { const bytes = Buffer.alloc(4); bytes.writeUInt32LE(number >>> 0); return bytes; };
-// TYPE F size body; size: what it says of itself.
+// Builds a message: TYPE F size body; size: the stated size, which may be wrong.
 const message = (type, body, size = 8 + body.length) => Buffer.concat([Buffer.from(`${type}F`), u32(size), body]);
 const ACK = message('ACK', Buffer.concat([0, 65536, 65536, 0, 0].map(u32)));
 const POLICY = Buffer.from('http://opcfoundation.org/UA/SecurityPolicy#None');
@@ -25,7 +25,7 @@ export const LIES = {
 
 const end = (listener, sockets) => new Promise((done) => { sockets.forEach((socket) => socket.destroy()); listener.close(done); });
 
-// Listens on the port; lies: buffers, sent once something has come in. Returns { stop, seen() }.
+// Listens on the port; lies: buffers, sent once data has arrived. Returns { stop, seen() }.
 export async function tellLies(port, lies) {
     let seen = 0;
     const sockets = new Set();
@@ -38,7 +38,7 @@ export async function tellLies(port, lies) {
     return { seen: () => seen, stop: () => end(listener, sockets) };
 }
 
-// Passes connections on to a server at `to`; after `spared` bytes of it, every message gets a number somewhere that is too large.
+// Relays connections to a server at `to`; after `spared` bytes from the server, one number in every message is made too large.
 export async function distort(port, to, spared) {
     let distorted = 0;
     const sockets = new Set();

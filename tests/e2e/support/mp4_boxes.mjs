@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alters boxes of a signed film (MP4, one track): what a player would show differently, and why `plantcast verify` refuses it.
+// Alters boxes of a signed video (MP4, one track): what a player would show differently, and why `plantcast verify` refuses it.
 
-const HEADS = { moov: 8, trak: 8, edts: 8, mdia: 8, minf: 8, stbl: 8, stsd: 16, avc1: 86, udta: 8 }; // bytes before the boxes within
+const HEADS = { moov: 8, trak: 8, edts: 8, mdia: 8, minf: 8, stbl: 8, stsd: 16, avc1: 86, udta: 8 }; // bytes before the inner boxes
 const typeOf = (bytes, at) => bytes.toString('latin1', at + 4, at + 8);
 
-// Rewrites a list of boxes. `change` gets each box and where it stands ("moov/trak"), and returns the boxes that take its place.
+// Rewrites a list of boxes. `change` gets each box and its path ("moov/trak"), and returns the boxes that replace it.
 function rewrite(bytes, change, place = '') {
     const out = [];
     for (let at = 0; at < bytes.length;) {
@@ -28,7 +28,7 @@ function box(type, hex) {
     return sized(Buffer.concat([Buffer.alloc(4), Buffer.from(type, 'latin1'), content]));
 }
 
-// Puts a box within another, behind its others.
+// Appends a box inside another.
 const into = (path, extra) => (one, at) => (at === path ? [sized(Buffer.concat([one, extra]))] : null);
 const beside = (path, extra) => (one, at) => (at === path ? [one, extra] : null);
 const without = (path) => (one, at) => (at === path ? [] : null);
@@ -43,7 +43,7 @@ function patched(path, at, hex) {
 const TRAK = 'moov/trak', STBL = `${TRAK}/mdia/minf/stbl`, AVC1 = `${STBL}/stsd/avc1`;
 const else_ = (type) => `its box ${type} says something else`, none = (type) => `a box that none of our films has: ${type}`;
 
-// Returns [what, bytes, why] for each alteration. Offsets of samples are left as they are: the boxes are refused before.
+// Returns [what, bytes, why] for each alteration. Sample offsets are not adjusted: verification refuses the boxes first.
 export function alteredFilms(film) {
     const alter = (change) => rewrite(film, change);
     return [
@@ -63,7 +63,7 @@ export function alteredFilms(film) {
         ['turned', alter(patched(`${TRAK}/tkhd`, 48, 'ffff0000')), else_('tkhd')],
         ['the whole film turned', alter(patched('moov/mvhd', 44, 'ffff0000')), else_('mvhd')],
         ['wider', alter(patched(`${TRAK}/tkhd`, 84, '0282')), else_('tkhd')],
-        ['another size of samples', alter((one, at) => { // wherever it is said
+        ['another size of samples', alter((one, at) => { // in every box that states it
             if (at === AVC1)
                 one.writeUInt16BE(one.readUInt16BE(32) + 16, 32);
             if (at === `${TRAK}/tkhd`)

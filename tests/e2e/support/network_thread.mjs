@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Links that can be cut, and a tap before a device, on a thread of their own: a test that waits for a program does not hold them up.
+// Links that can be cut, and a tap before a device, on a thread of their own: a test that waits for a program does not delay them.
 import { connect, createServer } from 'node:net';
 import { isMainThread, parentPort, Worker } from 'node:worker_threads';
 import { CuttableLink } from './postgres_server.mjs';
 
-const now = () => performance.timeOrigin + performance.now(); // the same for all threads
+const now = () => performance.timeOrigin + performance.now(); // the same time base in all threads
 
-// Passes requests on to the device, and notes when each connection asked first and last.
+// Relays requests to the device, and records the first and last request of each connection.
 async function openTap(pollers, port, devicePort) {
     const server = createServer((near) => {
         const far = connect(devicePort, '127.0.0.1');
@@ -54,7 +54,7 @@ export class Network {
         });
     }
 
-    // A link to a port of this machine: { port, cut(), freeze(), mend() }.
+    // Opens a link to a port of this machine: { port, cut(), freeze(), mend() }.
     async link(port, at = {}) {
         const { n, port: own } = await this.ask('link', port, at);
         return { port: own, cut: () => this.ask('set', n, 'cut'), freeze: () => this.ask('set', n, 'freeze'),
@@ -62,7 +62,7 @@ export class Network {
     }
     tap(port, devicePort) { return this.ask('tap', port, devicePort); }
 
-    // What two polled at the same time, by how many milliseconds; [] is what is wanted.
+    // Returns for how many milliseconds two pollers overlapped, per pair; expected: [].
     async overlaps() {
         const pollers = await this.ask('pollers'), found = [];
         for (let i = 1; i < pollers.length; i++)
@@ -71,7 +71,7 @@ export class Network {
                     found.push(pollers[k].last - pollers[i].first);
         return found;
     }
-    // How long nobody polled at most, in milliseconds, since then.
+    // Returns the longest time without polling since then, in milliseconds.
     async longestPause(since) {
         const turns = (await this.ask('pollers')).filter(({ last }) => last >= since);
         return Math.max(0, ...turns.slice(1).map(({ first }, i) => first - turns[i].last));

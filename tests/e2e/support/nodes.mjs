@@ -12,7 +12,7 @@ export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
 export { until };
 
-// Of a program; one that has ended has none.
+// Returns a program's sockets; none if it has ended.
 function sockets(pid) {
     try {
         return openFiles(pid).filter((name) => name.startsWith('socket:'));
@@ -22,7 +22,7 @@ function sockets(pid) {
 }
 
 export class Node {
-    // before: the program that starts the daemon, which takes its path and arguments after these.
+    // before: command prefix that starts the daemon; it gets the daemon's path and arguments.
     constructor(plant, args, file = plant.file, before = []) {
         this.program = new Program('plantcastd', [file, ...args], {}, before);
     }
@@ -60,8 +60,8 @@ export class Node {
 }
 
 export class Nodes {
-    // With alarms at 90, and a token for each of a viewer, an operator, a renderer and a standby. slowDevice: it may take its time, as on
-    // a machine that has much else to do.
+    // Makes a plant with alarms at 90 and a token for each of a viewer, an operator, a renderer and a standby. slowDevice: allow slow
+    // answers of the device, for a busy machine.
     static async create({ slowDevice = false } = {}) {
         const nodes = new Nodes();
         nodes.plant = await TinyPlant.create();
@@ -82,7 +82,7 @@ export class Nodes {
         chmodSync(nodes.tokenFile, 0o600);
         await nodes.plant.startSim();
         nodes.all = [];
-        nodes.trustsLocal = true; // until a test says otherwise: daemons take who connects from here for engineers
+        nodes.trustsLocal = true; // until a test changes it: daemons treat local connections as engineers
         return nodes;
     }
 
@@ -93,7 +93,7 @@ export class Nodes {
         return node.ready();
     }
 
-    // At a port that stays this test's while it is away.
+    // Starts the core at a port that stays reserved while the core is away.
     async core(port = 0, ...more) {
         return this.start(['--role', 'core', '--port', String(port || await freePort()), ...more]);
     }
@@ -104,8 +104,8 @@ export class Nodes {
         return this.start(['--role', 'render', ...urls, '--core-token-file', this.rendererFile, '--node', name, ...at, ...more]);
     }
 
-    // Connections of these daemons to the device: the address that each comes from. Another test's daemon, which outlives its test for a
-    // moment, may go on polling a port that was free since.
+    // Returns these daemons' connections to the device, by local address. Another test's daemon may outlive its test for a moment and poll
+    // a port that was reused.
     pollers() {
         const port = this.plant.modbusPort.toString(16).toUpperCase().padStart(4, '0'), established = '01';
         const ours = new Set(this.all.flatMap(({ program }) => sockets(program.child.pid)));
@@ -114,8 +114,8 @@ export class Nodes {
             remote?.endsWith(`:${port}`) && state === established && ours.has(`socket:[${inode}]`)).map(([, local]) => local);
     }
 
-    // Waits until there is one; never two, and none only while it connects anew. The system lists connections piece by piece, so that one
-    // that ends meanwhile can stand beside the one that follows it: two are those that are both there at a second look.
+    // Waits until exactly one daemon polls; there may be none only while it reconnects. The system lists connections piece by piece, so an
+    // ending connection may appear together with its successor: only two that are both there at a second look count.
     onePoller() {
         let before = [];
         return until('one poller', () => {

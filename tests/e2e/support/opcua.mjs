@@ -13,21 +13,21 @@ import { missing, runProgram } from './tiny_plant.mjs';
 
 const HERE = dirname(fileURLToPath(import.meta.url));
 
-// Why there can be no test of OPC UA here, or null.
+// Returns why OPC UA cannot be tested on this machine, or null.
 function missingOpcua() {
     if (/without OPC UA/.test(runProgram('plantcastd', ['--version']).out))
         return 'built without OPC UA';
     return existsSync(join(HERE, '../node_modules/node-opcua-server')) ? null : 'no node-opcua-server';
 }
 
-// Of a test; a reason to skip it where there can be none.
+// Returns a test's options, with a reason to skip it if it cannot run.
 export function opcuaOptions(timeout) {
     const absent = missing();
     return { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingOpcua() ?? false, timeout };
 }
 
-// NAME.crt and NAME.key in a folder, of its own authority; uri and hosts: among its names; dates: [from, to], as openssl has them. All have
-// one key, which takes longest to make; ownKey: but not this one.
+// Makes NAME.crt and NAME.key in a folder, with an authority of its own; uri, hosts: subject alternative names; dates: [from, to], in
+// openssl's format. All share one key, because making keys is slow; ownKey: make a new one.
 export function makeCertificate(folder, name, { uri = `urn:test:${name}`, hosts = 'IP:127.0.0.1,DNS:localhost', dates, ownKey } = {}) {
     const run = (...args) => {
         const { status, stderr } = spawnSync('openssl', args, { cwd: folder, encoding: 'utf8' });
@@ -56,7 +56,7 @@ x509_extensions = v3\n[any]\ncommonName = supplied\n`);
 }
 
 export class OpcuaServer {
-    // Makes the certificates `server` (trusted) and `client`; does not start yet.
+    // Makes the certificates `server` (trusted) and `client`; does not start the server.
     static async create() {
         const server = new OpcuaServer();
         server.folder = mkdtempSync(join(tmpdir(), 'plantcast-opcua-'));
@@ -67,7 +67,7 @@ export class OpcuaServer {
         return server;
     }
 
-    // Has the folder of trusted certificates hold just these.
+    // Makes the folder of trusted certificates contain exactly these.
     trust(...names) {
         rmSync(join(this.folder, 'trusted'), { recursive: true, force: true });
         mkdirSync(join(this.folder, 'trusted'));
@@ -75,7 +75,7 @@ export class OpcuaServer {
             spawnSync('openssl', ['x509', '-in', `${name}.crt`, '-out', `trusted/${name}.pem`], { cwd: this.folder });
     }
 
-    // As if it had just been started with these settings.
+    // Resets the server to its state after a start with these settings.
     async anew(settings = this.settings ?? {}) {
         if (this.runs && isDeepStrictEqual(settings, this.settings))
             await this.tell({ anew: true });
@@ -85,8 +85,8 @@ export class OpcuaServer {
 
     get runs() { return this.child?.exitCode === null && this.child.signalCode === null; }
 
-    // Ends it if it serves, and has it serve with these settings (opcua_server.mjs). ahead_s: of its wall clock. What runs stays the same
-    // process: to load node-opcua takes three seconds of a processor.
+    // Stops serving, and serves again with these settings (opcua_server.mjs). ahead_s: how far its wall clock is ahead. The process keeps
+    // running, because loading node-opcua takes three seconds of processor time.
     async restart(settings = this.settings ?? {}) {
         if (!this.runs)
             this.run();
@@ -127,10 +127,10 @@ export class OpcuaServer {
     freeze() { this.child.kill('SIGSTOP'); }
     thaw() { this.child.kill('SIGCONT'); }
 
-    // The source's line of the plant file; keys: what else it says.
+    // Returns the source's line for the plant file; keys: further keys.
     source(keys) { return `{ id: plc, type: opcua, host: ${this.host ?? '127.0.0.1'}, port: ${this.port}, poll_ms: 100, ${keys} }`; }
 
-    // The key `security`, with our certificate.
+    // Returns the key `security` with the client's certificate.
     security(more = '', name = 'client') {
         const at = (file) => join(this.folder, file);
         return `security: { certificate: ${at(name)}.crt, key: ${at(name)}.key, trusted: ${at('trusted')}${more} }`;

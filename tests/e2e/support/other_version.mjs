@@ -3,7 +3,8 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { BIN, runProgram } from './tiny_plant.mjs';
 
-// A daemon with another number, in a folder: nothing else of it differs. { program, version, other }: its path, our number and its own.
+// Writes a copy of the daemon with another version number into a folder. Returns { program, version, other }: its path, the real version
+// and its own.
 export function otherVersion(folder) {
     const { out } = runProgram('plantcastd', ['--version']), [, version] = /^plantcastd (\d\S*)/.exec(out);
     const program = join(folder, 'plantcastd'), other = version.replace(/\d$/, (digit) => String((Number(digit) + 5) % 10));

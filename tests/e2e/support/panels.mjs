@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plant with alarms, and the way through everything of the page that opens.
+// A plant with alarms, and a tour of everything on the page that opens.
 import assert from 'node:assert/strict';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { drawnAt, land } from './browser.mjs';
 import { TinyPlant } from './tiny_plant.mjs';
 
-// [plant, url]. arrange(file): what else is to be done to the plant file.
+// Returns [plant, url]. arrange(file): further changes of the plant file.
 export async function startAlarmed(arrange = () => {}) {
     const plant = await TinyPlant.create();
     appendFileSync(plant.file, 'alarms: local\n');
@@ -22,12 +22,12 @@ export async function startAlarmed(arrange = () => {}) {
 
 const PARTS = { picture: '#picture-panel.open', views: '#views.open', trend: '#timeline', alarms: '#alarms', timings: '#timings' };
 
-// Everything that opens, one after the other; f looks at each.
+// Opens everything, one after the other; calls f for each.
 export async function everyPanel(page, f) {
     const press = async (key, name) => {
         await page.locator('#viewport').focus();
         await page.keyboard.press(key);
-        // It is loaded when it is first opened; where that takes seconds the page forgets the key, and a person presses it again.
+        // A part is loaded when it is first opened; if that takes seconds the page forgets the key, and a user would press it again.
         if (PARTS[name])
             await page.locator(PARTS[name]).waitFor({ timeout: 10000 }).catch(() => page.keyboard.press(key));
         if (PARTS[name])
@@ -35,7 +35,7 @@ export async function everyPanel(page, f) {
         await f(name);
     };
     await page.waitForFunction(() => globalThis.plantcast.session.recorded && globalThis.plantcast.session.model.alarms.list().length > 0);
-    await land(page); // what is clicked stands still
+    await land(page); // so that clicked objects stand still
     await f('page');
     const places = await page.evaluate(() => {
         const { model } = globalThis.plantcast.session;
@@ -47,7 +47,7 @@ export async function everyPanel(page, f) {
     await page.locator('#card').waitFor();
     await f('card');
     await page.mouse.click(at[1].x - 6, at[1].y + 30);
-    await page.locator('#place').waitFor({ timeout: 10000 }).catch(async () => { // a card or a label that came meanwhile lay over it
+    await page.locator('#place').waitFor({ timeout: 10000 }).catch(async () => { // a card or a label appeared meanwhile and covered it
         await page.keyboard.press('Escape');
         await page.mouse.click(at[1].x - 6, at[1].y + 30);
     });
@@ -90,7 +90,7 @@ export async function everyPanel(page, f) {
     await page.keyboard.press('Escape');
 }
 
-// Words that do not fit where they stand, and parts of the page beyond the screen.
+// Returns texts that do not fit into their element, and parts of the page beyond the screen.
 export const cutOff = (page) => page.evaluate(() => {
     const seen = (element) => element.checkVisibility() && element.getBoundingClientRect().width > 0;
     const tight = [...document.querySelectorAll('button, label > span, legend, h2, th, td, dt, dd, .state, .choice > span, output')]

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Comparing pictures.
 
-// Largest difference of a channel at each pixel, as one byte per pixel.
+// Returns the largest channel difference of each pixel, one byte per pixel.
 export function difference(a, b) {
     if (a.width !== b.width || a.height !== b.height)
         throw new Error(`${a.width}x${a.height} is not ${b.width}x${b.height}`);
@@ -13,7 +13,7 @@ export function difference(a, b) {
     return { width: a.width, height: a.height, at: out };
 }
 
-// Mean over a square around a place, of what lies in the picture.
+// Returns the mean over a square around a position, as far as it is inside the picture.
 export function meanAround({ width, height, at }, x, y, radius) {
     let sum = 0, count = 0;
     for (let j = Math.max(0, y - radius); j <= Math.min(height - 1, y + radius); j++) {
@@ -25,7 +25,7 @@ export function meanAround({ width, height, at }, x, y, radius) {
     return count > 0 ? sum / count : 0;
 }
 
-// How many pixels differ by more than `least`, outside of a box.
+// Counts pixels outside of a box that differ by more than `least`.
 export function countOutside({ width, height, at }, least, box) {
     let count = 0;
     for (let y = 0; y < height; y++) {
@@ -38,7 +38,7 @@ export function countOutside({ width, height, at }, least, box) {
     return count;
 }
 
-// Spread of the brightness: a black or an empty picture has none.
+// Returns the spread of the brightness: 0 for a black or empty picture.
 export function contrast({ rgba }) {
     let sum = 0, squares = 0;
     const count = rgba.length / 4;
@@ -53,7 +53,7 @@ export function contrast({ rgba }) {
 const toLinear = (v) => (v <= 10.31475 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4);
 const LINEAR = Float64Array.from({ length: 256 }, (_, v) => toLinear(v));
 
-// Of two colours by WCAG: 1 (none) to 21.
+// Returns the WCAG contrast ratio of two colours: 1 (none) to 21.
 export function contrastRatio(a, b) {
     const lights = [a, b].map((rgb) => [0.2126, 0.7152, 0.0722].reduce((sum, k, i) => sum + k * toLinear(rgb[i]), 0.05));
     return Math.max(...lights) / Math.min(...lights);
@@ -67,11 +67,11 @@ function lab(r, g, b) {
     return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
 }
 
-// Distances in CIELAB (1976) between two pictures: { mean, p99 }.
+// Returns the CIELAB distances (1976) between two pictures: { mean, p99 }.
 export function deltaE(a, b) {
     if (a.width !== b.width || a.height !== b.height)
         throw new Error(`${a.width}x${a.height} is not ${b.width}x${b.height}`);
-    const all = new Float64Array(a.width * a.height), known = new Map(); // pictures have far fewer colours than pixels
+    const all = new Float64Array(a.width * a.height), known = new Map(); // cache: pictures have far fewer colours than pixels
     const at = ({ rgba }, i) => {
         const [r, g, b] = [rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]], key = r << 16 | g << 8 | b;
         if (!known.has(key))

@@ -3,11 +3,11 @@
 import { createHash, randomBytes } from 'node:crypto';
 import { connect } from 'node:net';
 
-const MORE = 8; // another part of the same picture follows
+const MORE = 8; // flag: another part of the same picture follows
 const OPCODE = { continuation: 0, text: 1, binary: 2, close: 8, ping: 9, pong: 10 };
 
-// { status, headers (lower case), body } of one HTTP request, written as given.
-// localAddress: whom it comes from, 127.0.0.1 or another of this machine's.
+// Resolves with { status, headers (lower case), body } of one HTTP request; `head` is sent as given. localAddress: source address,
+// 127.0.0.1 or another one of this machine.
 export function http(port, head, { timeoutMs = 60000, localAddress } = {}) {
     return new Promise((done, fail) => {
         const socket = connect({ port, host: '127.0.0.1', localAddress }, () => socket.write(head));
@@ -51,7 +51,7 @@ function big(n) {
     return out;
 }
 
-// The header of a frame, by the names of PROTOCOL.md.
+// Parses the header of a frame, with the names of PROTOCOL.md.
 function readFrame(bytes) {
     const f32 = (at, count) => Array.from({ length: count }, (_, i) => bytes.readFloatLE(at + 4 * i));
     const u32 = (at) => bytes.readUInt32LE(at), u16 = (at) => bytes.readUInt16LE(at);
@@ -66,7 +66,7 @@ function readFrame(bytes) {
 }
 
 export class PlainClient {
-    // Resolves once the server has agreed. options: protocol (null: none), origin, host, path, headers, acknowledge (true),
+    // Resolves once the server accepts the handshake. options: protocol (null: none), origin, host, path, headers, acknowledge (true),
     // localAddress.
     static open(port, options = {}) {
         const { protocol = 'plantcast.v1', origin = null, host = `127.0.0.1:${port}`, path = '/stream', headers = [] } = options;
@@ -142,9 +142,10 @@ export class PlainClient {
         } else {
             const frame = readFrame(message);
             if (frame.payload.length < frame.payload_bytes)
-                return; // given up by the server
+                return; // the server gave this frame up
             this.frames.push({ ...frame, at: performance.now() });
-            if (this.acknowledge && !(frame.flags & MORE)) // a picture in parts with its last one, as the rest may be given up
+            // a picture in parts is acknowledged with its last part, as the rest may be given up
+            if (this.acknowledge && !(frame.flags & MORE))
                 this.say({ type: 'ack', seq: frame.seq });
         }
         this.wake();
@@ -168,7 +169,7 @@ export class PlainClient {
             this.socket.write(bytes);
     }
 
-    // One byte at a time. What else is written meanwhile, as the pong to a ping, waits: no frame may begin inside another.
+    // Sends one byte at a time. Other frames, such as pongs, wait meanwhile: no frame may begin inside another.
     async trickle(bytes, pauseMs) {
         this.held = [];
         for (const byte of bytes) {
@@ -186,7 +187,7 @@ export class PlainClient {
         this.write(encodeFrame(OPCODE.text, typeof message === 'string' ? message : JSON.stringify(message)));
     }
 
-    // Until question(this) is neither null nor false nor undefined; what it was.
+    // Waits until question(this) is neither null nor false nor undefined; returns that.
     async until(what, question, timeoutMs = 60000) {
         const end = performance.now() + timeoutMs;
         for (;;) {
@@ -202,7 +203,7 @@ export class PlainClient {
         }
     }
 
-    // The first text of that type that has not been taken yet.
+    // Waits for the first message of that type that was not taken yet, and takes it.
     text(type, timeoutMs) {
         return this.until(`a message of type ${type}`, () => {
             const i = this.texts.findIndex((message) => message.type === type);

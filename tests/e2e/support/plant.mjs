@@ -13,14 +13,14 @@ export const BUILD = resolve('build');
 const DEMO = join(BUILD, 'demo');
 const START_MS = 120000;
 
-// Why this test cannot run here, or null.
+// Returns why this test cannot run on this machine, or null.
 export function missing() {
     const needed = [join(BIN, 'plantcastd'), join(BIN, 'plantcast-sim'), join(DEMO, 'plant.yaml'), join(DEMO, 'plant.prepared')];
     const absent = needed.filter((path) => !existsSync(path));
     return absent.length > 0 ? `not built: ${absent.join(', ')}` : null;
 }
 
-// Started when it prints a line that begins with `ready`; what it says afterwards is kept for the report.
+// Starts a program and waits for an output line that begins with `ready`; later output is kept for the report.
 function start(program, args, ready) {
     const child = spawn(join(BIN, program), args, { stdio: ['ignore', 'pipe', 'pipe'] });
     let said = '';
@@ -52,7 +52,7 @@ function start(program, args, ready) {
     return up.then(() => ({ pid: child.pid, end, said: () => said, running, fault }));
 }
 
-// One line to the simulator, one line back.
+// Sends one line to the simulator; returns one line.
 function ask(port, line) {
     return new Promise((done, fail) => {
         const socket = connect(port, '127.0.0.1', () => socket.write(`${line}\n`));
@@ -72,14 +72,14 @@ function ask(port, line) {
     });
 }
 
-// A plant file of its own, with a port of its own; everything else is the demo's.
+// Writes a plant file with a port of its own; everything else is the demo's.
 function copyPlant(folder, modbusPort, more) {
     for (const name of readdirSync(DEMO)) {
-        if (name !== 'plant.yaml' && !name.endsWith('.history')) // what was recorded elsewhere stays there
+        if (name !== 'plant.yaml' && !name.endsWith('.history')) // recorded history is not copied
             symlinkSync(join(DEMO, name), join(folder, name));
     }
     const text = readFileSync(join(DEMO, 'plant.yaml'), 'utf8');
-    // Its values are taken for measured ones: what simulated ones look like is said elsewhere.
+    // Removes `simulated`, so that its values count as measured; other tests cover simulated values.
     const bare = /^(views|walls):/m.test(more) ? text.replace(/\nviews:\n[^]*$/, '\n') : text; // `more` has its own
     const moved = bare.replace(/^(\s+port:\s*)\d+/m, `$1${modbusPort}`).replace(/^\s+simulated: yes\n/m, '');
     if (moved === bare)
@@ -88,8 +88,8 @@ function copyPlant(folder, modbusPort, more) {
     return join(folder, 'plant.yaml');
 }
 
-// more: what else the plant file says. arrange(plant): what to do once its simulator runs, before its daemon does.
-// flags: more of the daemon's.
+// more: further lines of the plant file. arrange(plant): called when the simulator runs and the daemon does not yet. flags: further
+// arguments of the daemon.
 export async function startPlant(more = '', arrange = () => {}, flags = []) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-e2e-'));
     const [modbusPort, controlPort, httpPort] = [await freePort(), await freePort(), await freePort()];
@@ -105,7 +105,7 @@ export async function startPlant(more = '', arrange = () => {}, flags = []) {
         async startDaemon() {
             daemon = await startDaemon();
         },
-        // Holds every tag at the value that it has, until the daemon has read that: from then on nothing changes by itself.
+        // Freezes every tag at its present value, and waits until the daemon has read it: from then on nothing changes by itself.
         async freeze(tags) {
             for (const tag of tags)
                 await plant.ask(`set ${tag} ${await plant.ask(`get ${tag}`)}`);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PNG files as lists of chunks, so that a test can alter one and write it with the right check sum.
+// PNG files as lists of chunks, so that a test can alter one and write it with the right checksum.
 import { crc32, deflateSync, inflateSync } from 'node:zlib';
 
 const SIGNATURE = 8;
@@ -14,7 +14,7 @@ export function chunksOf(png) {
     return chunks;
 }
 
-export const crc = crc32 ?? ((bytes) => { // node before 22 has none
+export const crc = crc32 ?? ((bytes) => { // node before version 22 has no crc32
     let sum = ~0;
     for (const byte of bytes) {
         sum ^= byte;
@@ -50,7 +50,7 @@ export function withText(png, keyword, change) {
     }));
 }
 
-// The bytes of all rows, each with its filter in front.
+// Returns the PNG with changed rows; change() gets the bytes of all rows, each preceded by its filter.
 export function withRows(png, change) {
     const chunks = chunksOf(png), rows = inflateSync(Buffer.concat(chunks.filter(({ type }) => type === 'IDAT').map(({ data }) => data)));
     change(rows);

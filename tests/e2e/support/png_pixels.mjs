@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pixels of PNG files of 8 bits, and of pictures that come in parts.
+// Pixels of 8-bit PNG files, and of pictures that are sent in parts.
 import { inflateSync } from 'node:zlib';
 import { chunksOf } from './png_chunks.mjs';
 
@@ -10,7 +10,7 @@ function paeth(a, b, c) {
     return pa <= pb && pa <= pc ? a : pb <= pc ? b : c;
 }
 
-// { width, height, rgb }: three bytes per pixel, rows from the top.
+// Returns { width, height, rgb }: three bytes per pixel, rows from the top.
 export function pixelsOf(png) {
     const chunks = chunksOf(Buffer.from(png)), header = chunks.find(({ type }) => type === 'IHDR').data;
     const [width, height, depth, kind] = [header.readUInt32BE(0), header.readUInt32BE(4), header[8], header[9]], n = CHANNELS[kind];
@@ -32,7 +32,7 @@ export function pixelsOf(png) {
     return { width, height, rgb };
 }
 
-// What a client of codec "png" shows after all of these frames.
+// The picture that a client of codec "png" shows after all of these frames.
 export class Canvas {
     constructor() {
         Object.assign(this, { width: 0, height: 0, rgb: Buffer.alloc(0) });
@@ -47,7 +47,7 @@ export class Canvas {
             rgb.copy(this.rgb, ((frame.y + y) * this.width + frame.x) * 3, y * width * 3, (y + 1) * width * 3);
     }
 
-    // That part of it, as another one has it; how many pixels differ.
+    // Compares this picture with the part of `whole` at (x, y); returns how many pixels differ.
     differsFrom(whole, x, y) {
         let count = 0;
         for (let row = 0; row < this.height; row++) {

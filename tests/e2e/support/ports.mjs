@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Port numbers for programs that must be told theirs: no other test gets the same one, nor does an outgoing connection of this machine.
+// Port numbers for programs that cannot choose their own: no other test gets the same one, nor does an outgoing connection of this machine.
 import { createServer } from 'node:net';
 
-// As in tests/support/ports.c. Below the ports that the system gives away by itself (net.ipv4.ip_local_port_range begins at 32768).
-// Four in a row belong together: the simulator of a plant with several devices takes the ports that follow its first.
+// As in tests/support/ports.c. Below the system's own range for outgoing connections (net.ipv4.ip_local_port_range begins at 32768). Ports
+// come in groups of four: the simulator of a plant with several devices uses the ports after its first.
 const FIRST = 20000, COUNT = 1500, EACH = 4, LOCKS = FIRST + COUNT * EACH;
 
 function listen(port, host) {
@@ -14,14 +14,14 @@ function listen(port, host) {
     });
 }
 
-// Each has another port that is its lock: whoever listens there has it until the process ends, however it ends.
+// Each group has a lock, another port: the process that listens there owns the group until it ends, however it ends.
 export async function freePort() {
     for (let tries = 0; tries < COUNT; tries++) {
         const n = Math.floor(Math.random() * COUNT), port = FIRST + n * EACH, lock = await listen(LOCKS + n, '127.0.0.1');
         if (!lock)
             continue;
         lock.unref();
-        const probe = await listen(port, '0.0.0.0'); // somebody else may listen
+        const probe = await listen(port, '0.0.0.0'); // another program may listen there
         if (!probe) {
             lock.close();
             continue;

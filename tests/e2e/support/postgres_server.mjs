@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Debian's PostgreSQL on a free port with a database of its own, and a relay before it that can cut connections.
+// Debian's PostgreSQL on a free port with a database of its own, and a relay in front of it that can cut connections.
 import { spawn, spawnSync } from 'node:child_process';
 import { chownSync, existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
@@ -11,10 +11,10 @@ const VERSIONS = '/usr/lib/postgresql';
 const FOLDER = existsSync(VERSIONS) && readdirSync(VERSIONS).map((version) => join(VERSIONS, version, 'bin'))
     .findLast((folder) => existsSync(join(folder, 'initdb')));
 const NOBODY = 65534, sleep = (ms) => new Promise((done) => setTimeout(done, ms));
-const as = process.getuid() === 0 ? { uid: NOBODY, gid: NOBODY } : {}; // root may not run it
+const as = process.getuid() === 0 ? { uid: NOBODY, gid: NOBODY } : {}; // PostgreSQL refuses to run as root
 const PASSWORD = 'not secret';
 
-// Why there is no server here, or null.
+// Returns why there is no server on this machine, or null.
 export const missingPostgres = () => (FOLDER ? null : 'no PostgreSQL');
 
 export class PostgresServer {
@@ -37,7 +37,7 @@ export class PostgresServer {
             chownSync(path, as.uid, as.gid);
     }
 
-    // Ends it as a loss of power would, if it runs, and starts it.
+    // Ends the server as a power failure would, if it runs, and starts it.
     async restart() {
         await this.kill();
         rmSync(join(this.data, 'postmaster.pid'), { force: true });
@@ -52,7 +52,7 @@ export class PostgresServer {
                 throw new Error(`PostgreSQL does not start:\n${this.said}`);
     }
 
-    // SIGQUIT: all of its processes end at once, and it recovers from its log.
+    // SIGQUIT ends all of its processes at once, and the next start recovers from its log.
     async kill() {
         if (this.child && this.child.exitCode === null && this.child.signalCode === null) {
             this.child.kill('SIGQUIT');
@@ -60,7 +60,7 @@ export class PostgresServer {
         }
     }
 
-    // Processes stop answering without closing a connection.
+    // Makes its processes stop answering without closing connections.
     freeze(signal = 'SIGSTOP') {
         const { stdout } = spawnSync('ps', ['-o', 'pid=', '--ppid', String(this.child.pid)], { encoding: 'utf8' });
         for (const pid of [this.child.pid, ...stdout.trim().split(/\s+/).map(Number)])
@@ -73,7 +73,7 @@ export class PostgresServer {
             '-U', user, '-d', database, '-c', sql], { encoding: 'utf8', env: { ...process.env, TZ: 'UTC', PGTZ: 'UTC' } });
     }
 
-    // Locks what the query finds until the function that is returned is called.
+    // Locks the query's rows until the returned function is called.
     async lock(query) {
         const held = `/* held */ BEGIN; ${query} FOR UPDATE; SELECT pg_sleep(600)`;
         const child = spawn(join(FOLDER, 'psql'), ['-XAtq', '-h', this.folder, '-p', String(this.port), '-U', 'owner', '-d', this.database,
@@ -89,7 +89,7 @@ export class PostgresServer {
         };
     }
 
-    // Rows of columns.
+    // Returns the rows of a query as lists of columns.
     ask(sql) {
         const { status, stdout, stderr } = this.psql(sql);
         if (status !== 0)
@@ -97,7 +97,7 @@ export class PostgresServer {
         return stdout.split('\n').filter(Boolean).map((line) => line.split('\t'));
     }
 
-    // An empty database that belongs to a user of its own; more: further words of the statement.
+    // Makes an empty database that belongs to a user of its own; more: further words of the statement.
     makeDatabase(name, more = '') {
         this.database = name;
         const made = this.psql(`CREATE DATABASE ${name} ${more}`, 'postgres');
@@ -112,7 +112,7 @@ export class PostgresServer {
     }
     get login() { return `plantcast\n${PASSWORD}\n`; }
 
-    // A tablespace on a disk of so many megabytes; null: this user may not mount one.
+    // Makes a tablespace on a disk of that many megabytes; null: this user may not mount one.
     smallDisk(megabytes) {
         const path = join(this.folder, 'disk');
         mkdirSync(path);
@@ -135,10 +135,10 @@ export class PostgresServer {
     }
 }
 
-// Passes bytes on to a port of this machine until it is cut: then all connections end, and new ones are refused until it is mended.
+// Relays bytes to a port of this machine until it is cut: then all connections end, and new ones are refused until it is mended.
 export class CuttableLink {
-    // at: where it listens, and from where it connects, { host, port, from }; freeze() lets nothing through without closing anything, as a
-    // cut cable does.
+    // at: where it listens, and from where it connects, { host, port, from }; freeze() passes nothing on and closes nothing, like an
+    // unplugged cable.
     static async open(port, at = {}) {
         const link = new CuttableLink();
         link.sockets = new Set();
@@ -158,7 +158,7 @@ export class CuttableLink {
             far.on('data', (bytes) => near.write(bytes));
             near.on('data', (bytes) => {
                 count += bytes.length;
-                if (link.cutAfter && count >= link.cutAfter) { // the server has got a part
+                if (link.cutAfter && count >= link.cutAfter) { // the server has received a part
                     far.write(bytes.subarray(0, bytes.length / 2), () => link.cut());
                     link.cutAfter = 0;
                 } else {

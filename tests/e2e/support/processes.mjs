@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a process has taken, and whom it started.
+// Processor time and descendants of a process.
 import { readdirSync, readFileSync } from 'node:fs';
 
-// Milliseconds of a processor, all threads together, in steps of ten.
+// Returns the processor time of all threads in milliseconds, in steps of ten.
 export function cpuMs(pid) {
     const [, user, system] = readFileSync(`/proc/${pid}/stat`, 'utf8').match(/\) .(?: \S+){10} (\d+) (\d+)/);
     return 10 * (Number(user) + Number(system));
 }
 
-// The process, and all that descend from it.
+// Returns the process and all its descendants.
 export function family(pid) {
     const children = new Map();
     for (const name of readdirSync('/proc').filter((one) => /^\d+$/.test(one))) {
         try {
             const parent = Number(readFileSync(`/proc/${name}/stat`, 'utf8').match(/\) . (\d+)/)[1]);
             children.set(parent, [...(children.get(parent) ?? []), Number(name)]);
-        } catch { // it has ended
+        } catch { // the process has ended
         }
     }
     const out = [pid];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plant of two boxes whose only source is a broker or a server, and how its tags are read.
+// A plant of two boxes whose only source is a broker or a server, and functions that read its tags.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -20,7 +20,7 @@ export class PublishedPlant {
     get folder() { return this.plant.folder; }
     get daemon() { return this.plant.daemon; }
 
-    // The source's keys and the rows of the tag list, anew.
+    // Writes the plant file and the tag list with the source's keys and the rows.
     write(keys, rows) {
         writeFileSync(this.file, `plant: { name: Two boxes }
 assets:
@@ -36,19 +36,19 @@ tags: tags.csv
         writeFileSync(join(this.folder, 'tags.csv'), `${[HEAD, ...rows].join('\n')}\n`);
     }
 
-    // The same, prepared, with a daemon that need not reach its server.
+    // Writes and prepares the plant, and starts a daemon that need not reach its server.
     async start(keys, rows) {
         this.write(keys, rows);
         this.plant.prepare();
         await this.plant.startDaemon();
     }
 
-    // Waits until the daemon says so.
+    // Waits until the daemon's log matches.
     said(pattern, ms = 120000) {
         return this.daemon.line(pattern, ms);
     }
 
-    // The same as write, prepared, with a daemon that has subscribed.
+    // Writes and prepares the plant, and starts a daemon; waits until it has subscribed.
     async run(keys, rows) {
         this.write(keys, rows);
         const prepared = this.plant.prepare();
@@ -61,12 +61,12 @@ tags: tags.csv
         return (await fetch(`http://127.0.0.1:${this.plant.port}${path}`)).json();
     }
 
-    // By name; of at most 5,000.
+    // Returns at most 5,000 tags, by name.
     async tags() {
         return Object.fromEntries((await this.get('/api/v1/tags?count=5000')).tags.map((tag) => [tag.name, tag]));
     }
 
-    // Waits until the tag is as said; returns it. seconds: where nothing is held to a time, patience.
+    // Waits until the tag has these properties; returns it. seconds: only a limit on the wait.
     async until(name, wanted, seconds = 90) {
         for (const end = performance.now() + seconds * 1000; ; await sleep(20)) {
             const tag = (await this.tags())[name];
@@ -76,7 +76,7 @@ tags: tags.csv
         }
     }
 
-    // A number of /metrics, by the beginning of its line.
+    // Returns a number of /metrics, by the beginning of its line.
     async metric(name) {
         const text = await (await fetch(`http://127.0.0.1:${this.plant.port}/metrics`)).text();
         return Number(text.split('\n').find((line) => line.startsWith(`plantcast_source_${name}`))?.split(' ').at(-1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Those who are told of alarms: a mail server with TLS and an HTTP server on loopback, which can hang, refuse and go away.
+// Receivers of alarm notifications: a mail server with TLS and an HTTP server on loopback, which can hang, refuse and disappear.
 import { spawnSync } from 'node:child_process';
 import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
@@ -8,7 +8,7 @@ import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { createSecureContext, TLSSocket } from 'node:tls';
 
-// FOLDER/mail.pem and .key, for localhost; the .pem is its own authority.
+// Makes FOLDER/mail.pem and .key, for localhost; the .pem is its own authority.
 export function makeCertificate(folder, name = 'mail') {
     const { status, stderr } = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes',
         '-keyout', join(folder, `${name}.key`), '-out', join(folder, `${name}.pem`), '-days', '30', '-subj', '/CN=localhost',
@@ -17,8 +17,8 @@ export function makeCertificate(folder, name = 'mail') {
         throw new Error(String(stderr));
 }
 
-// RFC 5321, as much of it as one message needs. mode: 'take', 'hang' (says nothing), 'refuse' (550 to every recipient), 'busy' (451).
-// starttls: TLS only once it is asked for, and nothing is taken before; else from the first byte.
+// As much of RFC 5321 as one message needs. mode: 'take', 'hang' (never answers), 'refuse' (550 to every recipient), 'busy' (451).
+// starttls: TLS starts on request, and no mail is accepted before; otherwise TLS from the first byte.
 export class MailServer {
     constructor(folder, { starttls = false, user = null, password = null } = {}) {
         Object.assign(this, { starttls, user, password, mode: 'take', mails: [], tried: 0, sockets: new Set() });
@@ -127,7 +127,7 @@ function readMail(text) {
     return { headers, subject: words(headers.subject), body: Buffer.from(rest.join(''), 'base64').toString() };
 }
 
-// Takes JSON by POST. status: what it answers; 0: nothing, ever.
+// Accepts JSON by POST. status: status of its answers; 0: never answers.
 export class HookServer {
     constructor() {
         Object.assign(this, { posts: [], status: 200 });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An RVM model as a tree of groups that a test can rename, move, copy and leave out, and then write again.
+// An RVM model as a tree of groups that a test can rename, move, copy and remove, and then write again.
 
 const HEADER = 24;
 
@@ -13,7 +13,7 @@ function texts(body, at, count) {
     return { found, at };
 }
 
-// { before, groups, after }: chunks as [id, body], and groups of { name, rest, items }, whose items are groups and chunks.
+// Returns { before, groups, after }: chunks as [id, body], and groups of { name, rest, items }, whose items are groups and chunks.
 export function readRvm(bytes) {
     const root = { items: [] }, stack = [root], after = [];
     for (let at = 0; at < bytes.length;) {
@@ -70,7 +70,7 @@ export function writeRvm({ items, after }) {
 
 const isGroup = (item) => !Array.isArray(item);
 
-// The first group of this name, with the group above it.
+// Returns the first group with this name, and its parent group.
 export function findGroup(above, name) {
     for (const item of above.items.filter(isGroup)) {
         const found = item.name === name ? { group: item, above } : findGroup(item, name);
@@ -80,7 +80,7 @@ export function findGroup(above, name) {
     return undefined;
 }
 
-// A copy of a group with all below it, `by` metres away, its names changed.
+// Returns a copy of a group with its descendants, `by` metres away, with changed names.
 export function copyGroup(group, by = [0, 0, 0], rename = (name) => name) {
     return { name: rename(group.name), rest: group.rest, items: group.items.map((item) => {
         if (isGroup(item))

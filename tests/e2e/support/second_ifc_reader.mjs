@@ -6,8 +6,8 @@ import { createRequire } from 'node:module';
 const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
 const minus = (a, b) => a.map((v, i) => v - b[i]);
 
-// Returns null where it is not installed, else a function that takes the bytes of a file and returns { area (m2), size (m: x, y, z) } of
-// all that the file shows, or null if that is nothing. Openings are left out.
+// Returns null if it is not installed; otherwise a function that takes a file's bytes and returns { area (m2), size (m: x, y, z) } of
+// everything that the file shows, or null if that is nothing. Openings are left out.
 export async function secondReader() {
     let lite;
     try {

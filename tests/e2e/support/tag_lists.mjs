@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tag lists as a control system of a plant may export them, made from nothing but the names of its equipment: names by ANSI/ISA-5.1-2009
-// (letters of table 4.1, loop numbers, suffixes) and by equipment, as OPC servers and control systems build them; with slips of spelling,
-// repeated rows and tags of other plants. The truth is kept aside. Nothing in here knows how tags are matched.
+// Generates tag lists like those of a plant's control system from its equipment names: tags by ANSI/ISA-5.1-2009 (letters of table 4.1,
+// loop numbers, suffixes) and by equipment, as OPC servers and control systems build them; with spelling slips, repeated rows and tags of
+// other plants. The truth is kept separately. This file uses nothing of the matching code.
 const VARIABLES = [['T', 'temperature', '°C', [0, 150]], ['P', 'pressure', 'bar(g)', [0, 16]], ['F', 'flow', 'm3/h', [0, 400]],
     ['L', 'level', '%', [0, 100]], ['V', 'vibration', 'mm/s rms', [0, 20]], ['PD', 'differential pressure', 'mbar', [0, 500]],
     ['A', 'analysis', 'ppm', [0, 50]], ['S', 'speed', 'rpm', [0, 3000]]];
@@ -9,7 +9,7 @@ const FUNCTIONS = ['T', 'T', 'T', 'I', 'E', 'IC', 'IT', 'SH', 'AH', 'SHH'];
 const ENDS = ['inlet', 'outlet', 'top', 'bottom', 'shell side', 'discharge', 'suction', 'bearing DE', 'bearing NDE', ''];
 const ATTRIBUTES = ['.PV', '.PV', '.DACA.PV', '.SP', '.OP', '.Value', '/PV.CV'];
 
-function randomOf(seed) { // mulberry32
+function randomOf(seed) { // the mulberry32 generator
     let state = seed >>> 0;
     return () => {
         state = (state + 0x6d2b79f5) >>> 0;
@@ -19,13 +19,14 @@ function randomOf(seed) { // mulberry32
     };
 }
 
-// What operators call a piece of equipment: its name without signs at its ends; of a family of building services its first word and number.
+// Returns an operator's name for a piece of equipment: its name without signs at its ends; for a family of building services its first word
+// and number.
 function spoken(id) {
     const family = id.match(/^M_([A-Z][a-z]+(?: [A-Z][a-z]+)*).*:(\d+)$/);
     return family ? `${family[1].replaceAll(' ', '_')}-${family[2]}` : id.replace(/^[^\p{L}\d]+|[^\p{L}\d]+$/gu, '');
 }
 
-// Of a name the number that loops are called by: the longest run of digits, the last of those as long.
+// Returns the number that loops of this equipment use: the longest run of digits, the last one of equal length.
 function numberOf(id) {
     return (id.match(/\d+/g) ?? []).reduce((best, run) => (run.length >= best.length ? run : best), '');
 }
@@ -58,10 +59,10 @@ export function makeTagList(equipment, { seed, count = 5000, foreign = 0.15, rep
         if (digit)
             return name.slice(0, i) + (letter === '0' ? 'O' : letter === '1' ? 'I' : letter) + name.slice(i + 1);
         if (kind < 0.35)
-            return name.slice(0, i) + letter + name.slice(i);                       // doubled
+            return name.slice(0, i) + letter + name.slice(i);                       // a doubled letter
         if (kind < 0.7)
-            return name.slice(0, i) + name[i + 1] + letter + name.slice(i + 2);     // swapped
-        return name.slice(0, i) + name.slice(i + 1);                                // left out
+            return name.slice(0, i) + name[i + 1] + letter + name.slice(i + 2);     // two letters swapped
+        return name.slice(0, i) + name.slice(i + 1);                                // a letter left out
     };
     const add = (name, equipmentId, about) => {
         if (used.has(name.trim().toLowerCase()))

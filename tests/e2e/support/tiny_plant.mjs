@@ -15,10 +15,10 @@ const NOBODY = 65534;
 export const PROGRAMS = ['plantcastd', 'plantcast-prep', 'plantcast-sim', 'plantcast'];
 export const missing = () => PROGRAMS.filter((name) => !existsSync(join(BIN, name)));
 
-// Why a test of the tiny plant is skipped, or false.
+// Returns why a test of the tiny plant is skipped, or false.
 export const notBuilt = () => (missing().length > 0 ? `not built: ${missing().join(', ')}` : false);
 
-// A glTF of one box, a metre wide, deep and high, every face with its own corners.
+// Returns a glTF of one box, one metre wide, deep and high; each face has its own corners.
 function boxModel() {
     const positions = [], normals = [], indices = [];
     for (let axis = 0; axis < 3; axis++) {
@@ -72,7 +72,7 @@ PI-1,400005,Float,bar,pump,pressure,P-101A,3,0,0.5,1
 `;
 const BOXES = { 'E-101': 'TI-1,TI-2', 'P-101A': 'PI-1' }; // assets and their sensors
 
-// Ends by itself: { code, out, err }.
+// Runs a program that ends by itself: { code, out, err }.
 export function runProgram(name, args, timeout = 120000) {
     const { status, stdout, stderr } = spawnSync(join(BIN, name), args, { encoding: 'utf8', timeout });
     return { code: status, out: stdout, err: stderr };
@@ -113,7 +113,7 @@ export class Program {
     }
 }
 
-// A copy that is there whole or not at all.
+// Copies a file atomically.
 function copyWhole(from, to) {
     copyFileSync(from, `${to}.${process.pid}`);
     renameSync(`${to}.${process.pid}`, to);
@@ -131,7 +131,7 @@ export class TinyPlant {
         return plant;
     }
 
-    // Prepared, with simulator and daemon, and a warm and a cold side.
+    // Returns a prepared plant with simulator and daemon, one side warm and one cold.
     static async running() {
         const plant = await TinyPlant.create(), { code, err } = plant.prepare();
         if (code !== 0)
@@ -152,8 +152,8 @@ export class TinyPlant {
         return ended;
     }
 
-    // The two boxes with their three sensors cost plantcast-prep a quarter of a second of a processor: all programs of one run of tests/run
-    // share what was made of them first. It is named by all that it was made from.
+    // Preparing the two boxes with their three sensors takes plantcast-prep a quarter of a second of processor time: all programs of one
+    // run of tests/run share the first result, whose name is a hash of everything that it depends on.
     get prepared() { return join(this.folder, 'plant.prepared'); }
     takePrepared() {
         const shared = process.env.PLANTCAST_SHARED;
@@ -174,8 +174,8 @@ export class TinyPlant {
                     copyWhole(join(this.prepared, name), join(shared, `box-${name}`));
     }
 
-    // How open each place is costs a daemon half of its start, and is the same wherever the same was prepared: it is shared by all programs
-    // of one run of tests/run.
+    // Computing the ambient openness takes half of a daemon's start and is the same for the same prepared plant: all programs of one run of
+    // tests/run share it.
     openness() {
         const manifest = join(this.prepared, 'manifest.json');
         if (!process.env.PLANTCAST_SHARED || !existsSync(manifest))
@@ -184,14 +184,14 @@ export class TinyPlant {
         return { own: join(this.prepared, 'openness'), shared: join(process.env.PLANTCAST_SHARED, `tiny-${name}`) };
     }
 
-    // Every tag has a limit of 90, of this server's own alarms.
+    // Gives every tag a limit of 90, for local alarms.
     addAlarms() {
         const tags = join(this.folder, 'tags.csv');
         appendFileSync(this.file, 'alarms: local\n');
         writeFileSync(tags, readFileSync(tags, 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',1,90'));
     }
 
-    // No reading goes stale because the machine is busy, or is Bad because the device is.
+    // Prevents stale or Bad readings when the machine is busy.
     keepFresh() {
         const tags = join(this.folder, 'tags.csv');
         writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1$/gm, ',600'));
@@ -208,7 +208,7 @@ export class TinyPlant {
         await this.sim.line(/^plantcast-sim: (listening|publishing)/m);
     }
 
-    // From now on the daemon is somebody whom the rights of files hold for, as its service is; root they do not.
+    // Runs the daemon as an unprivileged user from now on, like a service: file permissions do not apply to root.
     disown() {
         if (process.getuid() !== 0)
             return;
@@ -217,12 +217,12 @@ export class TinyPlant {
             chownSync(join(this.folder, name), NOBODY, NOBODY);
     }
 
-    // From now on the daemon is started by another program, which takes its path and arguments after these.
+    // Starts the daemon by another program from now on, which gets the daemon's path and arguments.
     confine(...before) {
         this.before = before;
     }
 
-    // One line to the simulator, one line back.
+    // Sends one line to the simulator; returns one line.
     tell(line) {
         return new Promise((done, fail) => {
             const socket = connect(this.controlPort, '127.0.0.1', () => socket.write(`${line}\n`));
@@ -231,7 +231,8 @@ export class TinyPlant {
         });
     }
 
-    // Its port, where none is said, stays this test's also while the daemon is away: one that the system gives may be another's then.
+    // Without --port it uses a port that stays reserved while the daemon is away: a port chosen by the system could be another program's
+    // then.
     async startDaemon(...args) {
         const at = args.includes('--port') ? [] : ['--port', String(await freePort())];
         this.daemon = new Program('plantcastd', [this.file, ...at, ...args], this.as, this.before, this.bin);
@@ -253,8 +254,8 @@ export class TinyPlant {
     }
 }
 
-// Served on one port, to be driven as the demo of plant.mjs is, which takes several times as much of a processor to start and to draw. Its
-// readings stay good where the machine is busy, and have a limit of 90. more: what else the plant file says. flags: more of the daemon's.
+// Returns a plant with the interface of plant.mjs; the demo takes several times as much processor time to start and to draw. Its readings
+// stay good on a busy machine and have a limit of 90. more: further lines of the plant file. flags: further arguments of the daemon.
 export async function startTiny(more = '', flags = []) {
     const plant = await TinyPlant.create(), tags = join(plant.folder, 'tags.csv'), port = await freePort();
     plant.addAlarms();

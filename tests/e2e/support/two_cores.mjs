@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two cores of one plant, each with a network of its own that can be cut: to the other, to the database; and a tap before the device that
-// knows who polls, and when.
+// Two cores of one plant, each with a network of its own that can be cut: to the other core and to the database; and a tap before the
+// device that records who polls, and when.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -13,9 +13,9 @@ import { promise } from './promise.mjs';
 import { missing, runProgram } from './tiny_plant.mjs';
 
 export const TAKE_OVER_MS = 5000;
-export const STANDBY_HOST = '127.0.0.9'; // where the leader sees the other come from
+export const STANDBY_HOST = '127.0.0.9'; // source address of the standby's connections to the leader
 
-// Why these tests cannot run here; false: they can.
+// Returns why these tests cannot run on this machine; false: they can.
 export function missingTwoCores() {
     const absent = missing();
     if (absent.length > 0)
@@ -24,12 +24,12 @@ export function missingTwoCores() {
     return missingPostgres() ?? (canMount ? false : 'nothing can be mounted here');
 }
 
-// How often it began to poll.
+// Returns how often a core began to poll.
 export const terms = (core) => core.program.said.match(/polls devices and owns the alarms/g)?.length ?? 0;
 export const kill = (core, signal) => () => core.program.child.kill(signal);
 
 export class TwoCores {
-    // server: PostgresServer with a database; more: YAML at the end of the plant file; access: who is let in to the cores.
+    // server: PostgresServer with a database; more: YAML at the end of the plant file; access: the cores' access options.
     static async create(server, more = '', access = ['--trust-local']) {
         const two = new TwoCores();
         Object.assign(two, { server, access });
@@ -46,7 +46,7 @@ export class TwoCores {
   deadband_percent: 0
   postgres: { url: "${url}", login: login }
 ${more}`);
-        cpSync(plant.prepared, join(plant.folder, 'two.prepared'), { recursive: true }); // it has another port, and the same equipment
+        cpSync(plant.prepared, join(plant.folder, 'two.prepared'), { recursive: true }); // two.yaml has another port and the same equipment
         const prepared = runProgram('plantcast-prep', [two.file]);
         if (prepared.code !== 0)
             throw new Error(prepared.err);
@@ -57,7 +57,7 @@ ${more}`);
         return two;
     }
 
-    // With a history, a port and a way to the database of its own.
+    // Makes a core with a history, a port and a connection to the database of its own.
     async makeCore(name, host) {
         const { plant } = this.nodes;
         mkdirSync(join(plant.folder, name));
@@ -67,7 +67,7 @@ ${more}`);
             toDatabase: await this.network.link(this.server.port, { host, port: this.databasePort }) };
     }
 
-    // It follows the other or leads, as it comes. as: the name that it has. Its member before: the program that starts it.
+    // Starts a core, which follows or leads. as: its node name. Its member `before`: command prefix that starts it.
     start(name, as = name) { return this.startCore(this.cores[name], as); }
     async startCore(core, as = core.name) {
         const { plant, standbyFile, tokenFile } = this.nodes;
@@ -100,7 +100,7 @@ ${more}`);
             return false;
         }
     }
-    // What both said, at the end of an error's text.
+    // Waits; on failure adds both cores' output to the error's text.
     async waitsFor(what, good, seconds) {
         try {
             return await until(what, good, seconds);
@@ -111,7 +111,7 @@ ${more}`);
             throw error;
         }
     }
-    // Waits for the one that leads; never two.
+    // Waits for the leader; fails if there are two.
     leader(seconds) {
         return this.waitsFor('one that leads', async () => {
             const ready = [];
@@ -122,13 +122,13 @@ ${more}`);
         }, seconds);
     }
     other(core) { return Object.values(this.cores).find((one) => one !== core); }
-    // Waits until the other follows, and its promises count.
+    // Waits until the other core follows, and its promises count.
     followed(core) {
         return this.waitsFor('a standby that is named', async () => await core.node.metric('plantcast_core_standby') === 1 &&
             (await this.other(core).node.tags())['TI-1'].quality_name === 'Good');
     }
 
-    // Kills or stops who leads; returns who leads then, and for how long nobody polled.
+    // Kills or stops the leader; returns the new leader, and for how long no core polled.
     async takeOver(t, core, how) {
         const other = this.other(core), since = this.network.now() - 500;
         core.program.stopped = true;
@@ -147,7 +147,7 @@ ${more}`);
         await core.program.ended;
         await this.start(core.name);
     }
-    // For so long nothing may change: who leads goes on, and nobody else.
+    // Asserts that for this long the leader goes on and the other core does not begin.
     async goesOn(t, core, seconds) {
         const since = this.network.now(), other = this.other(core), before = terms(other);
         await sleep(seconds * 1000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An X display without a screen, by Xvfb, and what is seen on it.
+// A virtual X display (Xvfb), and its pixels.
 import { spawn } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -10,7 +10,7 @@ import { crc } from './png_chunks.mjs';
 const PROGRAM = '/usr/bin/Xvfb';
 export const missingDisplay = () => (existsSync(PROGRAM) ? null : 'no Xvfb');
 
-// { name, pid, env: of programs that show on it, grab(): { width, height, at(x, y): [r, g, b] }; stop }.
+// Returns { name, pid, env: environment for programs that use it, grab(): { width, height, at(x, y): [r, g, b] }; stop }.
 export async function startDisplay(width, height, more = []) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-display-'));
     const args = ['-displayfd', '3', '-screen', '0', `${width}x${height}x24`, '-fbdir', folder, '-nolisten', 'tcp', ...more];
@@ -34,7 +34,7 @@ export async function startDisplay(width, height, more = []) {
     };
 }
 
-// X window dump, as Xvfb keeps it: a header of big-endian numbers, colours, then rows of B, G, R and one more.
+// Layout of an X window dump as Xvfb writes it: a header of big-endian numbers, the colour map, then rows of B, G, R and a pad byte.
 function layoutOf(bytes) {
     const number = (i) => bytes.readUInt32BE(4 * i);
     return { width: number(4), height: number(5), stride: number(12), from: number(0) + 12 * number(19) };
@@ -49,7 +49,7 @@ function readXwd(bytes) {
     return { width, height, at };
 }
 
-// Saves what was grabbed.
+// Saves a grabbed picture as PNG.
 export function savePng({ width, height, at }, path) {
     const rows = Buffer.alloc(height * (1 + 3 * width));
     for (let y = 0; y < height; y++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Markers and labels in step with the picture while a hand moves it, over a link that is slow: each stands where the very frame that is
-// on the screen has its place, not where the camera is by then.
+// Markers and labels stay in step with the picture while the user moves it over a slow link: each is drawn where the frame on the screen
+// shows its position, not where the newest camera would.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
@@ -11,7 +11,7 @@ import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 const absent = [...missing(), relayMissing()].filter(Boolean);
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
 const LEAST_VIEWS = 10, LEAST_RUN_PX = 12;
-const MARK_PX = 1.5, PICTURE_PX = 5; // edges of what is coded, and coarse while it moves, bleed a little
+const MARK_PX = 1.5, PICTURE_PX = 5; // encoded edges bleed a little, more so while the picture moves
 let plant, relay;
 
 before(async () => {
@@ -19,7 +19,7 @@ before(async () => {
         return;
     plant = await TinyPlant.running();
     await plant.tell('set TI-1 94');
-    await plant.tell('set TI-2 94'); // of one colour all over
+    await plant.tell('set TI-2 94'); // a uniform colour everywhere
     relay = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 120 });
 });
 after(async () => {
@@ -27,16 +27,15 @@ after(async () => {
     await plant?.destroy();
 });
 
-// From now on, of every frame as it is drawn: where this test's own perspective has the markers and the corners of the box by that frame's
-// camera and by the camera that the page has by now; where the page says that markers are, the pixels of its markers, and what the picture
-// shows in colour.
+// Records for every drawn frame: the positions of markers and box corners by this test's own projection, for that frame's camera and for
+// the page's newest camera; where the page has drawn markers, their pixels, and the coloured area of the picture.
 const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
     const { viewport, session, overlay } = globalThis.plantcast, { onDrawn } = viewport, picture = document.getElementById('picture');
     const marks = document.getElementById('overlay'), ratio = devicePixelRatio, { min, max } = session.model.asset('E-101').bounds;
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
     const minus = (a, b) => a.map((v, i) => v - b[i]), dot = (a, b) => a.reduce((sum, v, i) => sum + v * b[i], 0);
     const cross = ([a, b, c], [d, e, f]) => [b * f - c * e, c * d - a * f, a * e - b * d], unit = (a) => a.map((v) => v / Math.hypot(...a));
-    const seenFrom = ({ eye, target, up, fov }) => (point) => { // a share of the picture's height, from its middle
+    const seenFrom = ({ eye, target, up, fov }) => (point) => { // in multiples of the picture's height, from its centre
         const forward = unit(minus(target, eye)), right = unit(cross(forward, up)), d = minus(point, eye);
         const far = 2 * Math.tan((fov * Math.PI) / 360) * dot(d, forward);
         return [dot(d, right) / far, -dot(d, cross(right, forward)) / far];
@@ -46,7 +45,7 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
         return [width / 2 + x * height, height / 2 + y * height];
     };
     const bounds = (points) => [0, 1].flatMap((i) => [Math.min(...points.map((p) => p[i])), Math.max(...points.map((p) => p[i]))]);
-    // Of runs of coloured pixels: single ones are what a codec left of pictures before.
+    // Only runs of coloured pixels count: single ones are remains of earlier frames in the codec.
     const coloured = () => {
         const { width, height } = picture, { data } = picture.getContext('2d').getImageData(0, 0, width, height), ends = [];
         for (let y = 0, run = 0; y < height; y++, run = 0)
@@ -62,7 +61,7 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
             }
         return ends.length > 100 ? bounds(ends.map(([x, y]) => [(x * viewport.width) / width, (y * viewport.height) / height])) : null;
     };
-    const whiteAt = ([x, y]) => { // of the disc of a marker
+    const whiteAt = ([x, y]) => { // the disc of a marker is white
         const { data } = marks.getContext('2d').getImageData(Math.round(x * ratio), Math.round(y * ratio), 1, 1);
         return Math.min(...data) > 200;
     };
@@ -74,7 +73,7 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
         const shown = seenFrom(session.picture.camera), asked = seenFrom(session.camera);
         globalThis.frames.push({
             eye: session.picture.camera.eye, coloured: coloured(),
-            box: bounds(corners.map((corner) => inPage(shown, corner)).map(([x, y]) => // as much of it as is in the picture
+            box: bounds(corners.map((corner) => inPage(shown, corner)).map(([x, y]) => // the part inside of the picture
                 [Math.max(0, Math.min(viewport.width, x)), Math.max(0, Math.min(viewport.height, y))])),
             markers: overlay.markers.filter(({ occluded }) => !occluded).map((marker) => {
                 const at = inPage(shown, marker.tag.position), { x, y } = overlay.placeOf(marker);
@@ -99,7 +98,7 @@ async function look(page) {
     await watch(page);
 }
 
-// step(i): the hand goes on, until enough was seen.
+// step(i) moves the pointer on, until enough frames were seen.
 async function move(page, step) {
     const enough = () => page.evaluate((least) => new Set(globalThis.frames.map(({ eye }) => eye.join())).size >= least, LEAST_VIEWS);
     for (let i = 1; i < sweep(100, 50) || (i < 4000 && !await enough()); i++) {

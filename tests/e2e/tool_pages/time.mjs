@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trends and the time slider in the browser: what was is shown, said in words, compared, exported, played, and left again.
+// Trends and the time slider in the browser: the past is shown and labelled, compared, exported, played, and left again.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -37,7 +37,7 @@ before(async () => {
     const imported = runProgram('plantcast', ['history', 'import', plant.file, join(plant.folder, 'series.csv')]);
     assert.equal(imported.code, 0, imported.err);
     await plant.startSim();
-    for (const [tag, value] of [['TI-1', 50], ['TI-2', 40], ['PI-1', 5]]) // no other alarm than the one that a test raises
+    for (const [tag, value] of [['TI-1', 50], ['TI-2', 40], ['PI-1', 5]]) // so that there is only the alarm that a test raises
         await plant.tell(`set ${tag} ${value}`);
     await plant.startDaemon();
     browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1280, height: 720 } });
@@ -84,7 +84,7 @@ test('a click on a marker leads to its trend, with unit and gap; a chart library
         return blue;
     });
     assert.ok(ink > 300, `a line of ${ink} pixels`);
-    const names = await page.evaluate(() => { // what is written in the chart, and where
+    const names = await page.evaluate(() => { // records the texts in the chart and their positions
         const { chart } = globalThis.plantcast.trends, { prototype } = CanvasRenderingContext2D, { fillText } = prototype, found = {};
         prototype.fillText = function write(words, x, y) {
             found[words] = { y, inside: x >= chart.bbox.left && x < chart.bbox.left + chart.bbox.width };
@@ -140,7 +140,7 @@ test('in the dark theme the chart is dark, and its lines and limits are read', o
     const rgbOf = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
     const { ground, lines, limit, grave, ink } = await page.evaluate(() => globalThis.plantcast.trends.look);
     await page.waitForFunction((is) => getComputedStyle(document.getElementById('trends')).backgroundColor === is,
-        `rgb(${rgbOf(ground).join(', ')})`); // the panel is of that colour, too, once its sheet is there
+        `rgb(${rgbOf(ground).join(', ')})`); // the panel has that colour, too, once its style sheet is loaded
     assert.ok(Math.max(...rgbOf(ground)) < 90, ground);
     for (const colour of [...lines, limit, grave, ink])
         assert.ok(contrastRatio(rgbOf(colour), rgbOf(ground)) >= 4.5, `${colour} on ${ground}`);
@@ -185,18 +185,19 @@ test('a gap is a gap in the picture too', options, async () => {
 test('it plays, pauses, and goes back to live', options, async () => {
     await travel(page, (BEGIN_S + 100) * 1e6);
     await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, (BEGIN_S + 100) * 1e6);
-    await page.locator('#time-speed').selectOption('60'); // it is at now after 48 s, on a busy machine before another one
+    // playback reaches the present after 48 s; on a busy machine before another picture
+    await page.locator('#time-speed').selectOption('60');
     await page.locator('#time-play').click();
     await page.waitForFunction((us) => globalThis.plantcast.session.picture.dataTimeUs > us, (BEGIN_S + 160) * 1e6);
     assert.match(await page.locator('#banner .detail').textContent(), /playing 60×/);
     assert.equal(await page.locator('#time-play').getAttribute('aria-label'), 'Pause');
     await page.locator('#time-play').click();
-    await page.waitForFunction(() => { // the picture of the instant at which it was stopped comes a little later
+    await page.waitForFunction(() => { // the picture of the instant at which it was paused arrives a little later
         const { time, picture } = globalThis.plantcast.session;
         return time.speed === 0 && Math.abs(picture.dataTimeUs - time.atUs) < 1e6;
     });
     const { atUs } = await shown();
-    await page.waitForTimeout(800); // 48 s by that speed
+    await page.waitForTimeout(800); // 48 s at that speed
     assert.ok(Math.abs((await shown()).atUs - atUs) < 1e6);
     await page.locator('#time-live').click();
     await waitForHealth(page, 'live');
@@ -228,14 +229,14 @@ test('a click into a trend goes there; a link to an instant opens there; a reloa
 test('alarms are marked where they were raised', options, async () => {
     await plant.tell('set TI-2 92');
     await page.waitForFunction(() => globalThis.plantcast.session.model.alarms.list().some(({ kind }) => kind === 'HH'));
-    await page.waitForFunction(async () => { // the journal is written a little later
+    await page.waitForFunction(async () => { // the journal is written with a delay
         const { rows } = await (await fetch('/api/v1/alarms/journal')).json();
         return rows.some(({ event, tag }) => event === 'raise' && tag === 'TI-2');
     }, null, { polling: 200 });
     if (await page.locator('#timeline').isVisible())
         await page.locator('#time-toggle').click();
     await page.locator('#time-toggle').click();
-    // First or not: marks that lie close together are one, which names them in the order of their time.
+    // The mark may not be the first: marks close together are merged into one, which lists them in the order of their time.
     const mark = page.locator('#time-track .alarm title', { hasText: /\bTI-2 HH?, \d\d:\d\d:\d\d/ }).first();
     await mark.waitFor({ state: 'attached' });
     assert.match(await page.locator('#time-alarms').textContent(), /^\d+ alarms? raised$/);
@@ -251,7 +252,7 @@ test('marks lead to their instant, from alarm to alarm, and to a date', options,
         const { rows } = await (await fetch('/api/v1/alarms/journal')).json();
         return rows.filter(({ event }) => event === 'raise').map(({ time_us: us }) => us).reverse();
     });
-    const old = (us) => globalThis.plantcast.session.clockUs() - us > 4e6; // what is newer counts as now
+    const old = (us) => globalThis.plantcast.session.clockUs() - us > 4e6; // newer instants count as the present
     await page.waitForFunction(old, raises.at(-1));
     await page.locator('#time-track .alarm').last().click();
     await page.waitForFunction((all) => all.includes(globalThis.plantcast.session.time.atUs), raises);
@@ -279,7 +280,7 @@ test('marks lead to their instant, from alarm to alarm, and to a date', options,
     await page.locator('#time-span').selectOption('2592000');
     await page.locator('#time-slider').focus();
     await page.keyboard.press('ArrowRight');
-    await instantOf(us + 60e6); // a minute, not the 21 of a slider of 2000 steps
+    await instantOf(us + 60e6); // a minute, although a step of the 2000-step slider would be 21 minutes
     await page.locator('#time-span').selectOption('3600');
     await page.locator('#time-live').click();
     await waitForHealth(page, 'live');
@@ -292,7 +293,8 @@ test('while the daemon did not run nothing looks recorded: hatched, without data
     await new Promise((done) => setTimeout(done, 3500));
     await plant.startDaemon();
     const url = `http://127.0.0.1:${plant.port}/`, gaps = [];
-    for (const end = performance.now() + 20000; !(gaps.at(-1)?.[1] > stopped) && performance.now() < end;) // it is written within a second
+    // the gap is recorded within a second
+    for (const end = performance.now() + 20000; !(gaps.at(-1)?.[1] > stopped) && performance.now() < end;)
         gaps.splice(0, Infinity, ...(await (await fetch(`${url}api/v1/history/gaps?from=-10m`)).json()).gaps);
     const [from, to] = gaps.at(-1);
     assert.ok(Math.abs(from - stopped) < 2e6 && to - from > 3e6, JSON.stringify([stopped, gaps]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tools of the toolbar: values that stand still, a distance, a picture, links with a code, following and leading, dark and light.
+// The tools of the toolbar: frozen values, a distance, a picture, links with a QR code, following and leading, dark and light.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, afterEach, before, test } from 'node:test';
@@ -31,10 +31,10 @@ after(async () => {
     await plant?.destroy();
 });
 
-// What a test that failed left open is not the next one's affair.
+// Closes dialogs that a failed test left open.
 afterEach(() => page?.evaluate(() => document.querySelectorAll('dialog[open]').forEach((dialog) => dialog.close())));
 
-// CSS pixels in the page of a place of the plant.
+// Returns the position on the page, in CSS pixels, of a point of the plant.
 const placeOf = (point) => drawnAt(page, point);
 
 test('values stand still, and go on again', options, async () => {
@@ -161,7 +161,7 @@ test('the picture that is kept is the one that is seen', options, async () => {
     assert.match(file.suggestedFilename(), /^Two boxes \d{4}-\d\d-\d\dT\d\d-\d\d-\d\dZ\.png$/);
     const kept = await readPng(page, readFileSync(await file.path()));
     assert.ok(contrast(kept) > 5);
-    const { mean } = deltaE(shown, kept); // markers, legend and clock are drawn into the one that is kept
+    const { mean } = deltaE(shown, kept); // the saved picture also contains markers, legend and clock
     assert.ok(mean < 4, `they differ by ${mean}`);
     await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'difference', baseline: 'now' }));
     await page.locator('#snapshot').click();
@@ -179,7 +179,7 @@ test('the legend says that values are not to be read from a glossy look', option
     await page.locator('#legend .note').waitFor({ state: 'detached' });
 });
 
-// What a camera reads from the code on the screen.
+// Returns the text that a camera reads from the QR code on the screen.
 async function scan(where) {
     const { width, height, rgba } = await readPng(where, await where.locator('#share-code svg').screenshot());
     return jsqr.default ? jsqr.default(rgba, width, height)?.data : jsqr(rgba, width, height)?.data;
@@ -196,7 +196,7 @@ test('an engineer sets range, factors and one sensor\'s own, and has them as con
     await page.evaluate(() => globalThis.plantcast.showTag(globalThis.plantcast.session.model.tag('TI-1')));
     await page.locator('#picture-toggle').click();
     await page.locator('#range-max').press('Control+a');
-    await page.keyboard.type('62'); // a digit that is written chooses no quantity
+    await page.keyboard.type('62'); // digits typed into a field do not switch the quantity
     await page.keyboard.press('Tab');
     await waitForParam('range', [0, 62]);
     assert.equal((await params()).group, 'temperature');
@@ -366,7 +366,7 @@ test('others follow; the lead is handed over, and what is shown stays', options,
         await page.waitForFunction((words) => document.getElementById('following').textContent.includes(words), `view of session ${heir}`);
         await second.page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
         await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
-        await second.page.waitForFunction(() => { // it may have been given the lead before it had a picture
+        await second.page.waitForFunction(() => { // it may have received the lead before its first picture
             const { picture, paramsSeq } = globalThis.plantcast.session;
             return picture?.paramsSeq === paramsSeq;
         });
@@ -385,12 +385,12 @@ test('others follow; the lead is handed over, and what is shown stays', options,
 
 test('dark, and light again; it stays as it was left', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature' }));
-    // What keys and buttons do is loaded when it is first needed: it may come a little later.
+    // The code for keys and buttons is loaded when it is first needed, so the effect may come a little later.
     const waitForTheme = (name) => page.waitForFunction((is) => document.documentElement.dataset.theme === is, name);
     await page.keyboard.press('z');
     await waitForTheme('dark');
     await settle(page);
-    await page.waitForFunction(() => { // what is behind the plant, too
+    await page.waitForFunction(() => { // the background of the plant, too
         const canvas = document.getElementById('picture');
         return Math.max(...canvas.getContext('2d').getImageData(4, Math.floor(canvas.height / 2), 1, 1).data.slice(0, 3)) < 110;
     });
