@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances computed during subdivision, stored as one row of sensors per position; written to the asset file as it has them, in blocks of
-   vertices, sensor by sensor. */
+/* Distances computed during subdivision, stored as one row of sensors per position, and written to the asset file in its format: blocks of
+ * vertices, sensor by sensor. */
 #ifndef PREPROCESS_SUBDIVISION_DISTANCE_ROWS_H
 #define PREPROCESS_SUBDIVISION_DISTANCE_ROWS_H
 #include <stddef.h>
@@ -10,18 +10,18 @@
 #include "base/workers.h"
 
 struct distance_rows {
-    float *distances_m; /* [place][sensor] */
-    uint32_t *place_of; /* of each vertex */
+    float *distances_m; /* [position][sensor], metres */
+    uint32_t *place_of; /* position index of each vertex */
     size_t sensor_count;
     uint32_t vertex_count;
 };
 
-/* Frees the arrays. A zeroed one is fine. */
+/* Frees the arrays. A zeroed struct is fine. */
 void distance_rows_finish(struct distance_rows *rows);
-/* Renumbers the vertices by new_of (TRIMESH_NONE: dropped), after which there are `kept` of them. */
+/* Renumbers the vertices by new_of (TRIMESH_NONE: dropped); `kept` is the new number of vertices. */
 void distance_rows_renumber(struct distance_rows *rows, const uint32_t *new_of, uint32_t kept);
-/* Writes the codes of an asset file (protocol/asset_distance.h) to fd from offset `at` on. It writes rather than storing through a mapping,
-   which would cost as much again for each page. workers may be NULL. Returns 0 or an errno. */
+/* Writes the distances as codes of an asset file (protocol/asset_distance.h) to fd, from offset `at` on. Uses write() and not a mapping,
+ * whose page faults would double the cost. workers may be NULL. Returns 0 or an errno value. */
 int distance_rows_write(const struct distance_rows *rows, struct workers *workers, int fd, off_t at);
 
 #endif

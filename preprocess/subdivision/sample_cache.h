@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cache of the surface triangles that sample points were projected onto: KEY.spots in the folder of prepared files. Projections do not
-   depend on sensors, and are half of the work of subdivision. Safe to delete; a damaged file counts as absent. It holds what was asked for
-   when it was last written, and is written anew when less than half of what was asked for was in it. */
+ * depend on sensors and are half of the work of subdivision. Can be deleted at any time; a damaged file counts as absent. The file holds
+ * all lookups of the run that wrote it. It is rewritten if less than half of a run's lookups were found in it. */
 #ifndef PREPROCESS_SUBDIVISION_SAMPLE_CACHE_H
 #define PREPROCESS_SUBDIVISION_SAMPLE_CACHE_H
 #include <pthread.h>
@@ -10,16 +10,16 @@
 
 struct sample_cache {
     struct cache_file file;
-    const uint64_t *known; /* in the file; NULL: none */
+    const uint64_t *known; /* table in the mapped file; NULL: none */
     size_t slot_count;
     pthread_mutex_t lock;
-    /* --- below: under lock */
+    /* --- members protected by `lock` */
     struct sample_cache_asked *asked;
     size_t asked_count, asked_capacity, missed_count;
 };
 
 #define SAMPLE_CACHE_NOTES 128
-struct sample_cache_notes { /* of one thread, zeroed at first */
+struct sample_cache_notes { /* lookups recorded by one thread; zero-initialise */
     struct sample_cache_asked {
         uint64_t key;
         uint32_t tri;
@@ -27,18 +27,18 @@ struct sample_cache_notes { /* of one thread, zeroed at first */
     size_t count, missed;
 };
 
-/* Opens the cache of this key; a missing file gives an empty cache. Close with sample_cache_close(). */
+/* Opens the cache of a key. A missing file gives an empty cache. Close with sample_cache_close(). */
 void sample_cache_open(struct sample_cache *sample_cache, const char *folder, uint64_t key);
-/* Unmaps the file and frees the notes. */
+/* Unmaps the file and frees the recorded lookups. */
 void sample_cache_close(struct sample_cache *sample_cache);
-/* Writes what was asked for in this run, if that is worth it. Errors are ignored: then nothing is cached. */
+/* Writes the lookups of this run if enough of them were missing. Ignores errors: then nothing is cached. */
 void sample_cache_write(const struct sample_cache *sample_cache, const char *folder, uint64_t key);
 
-/* Looks up the triangle that a sample point projects onto; *tri is TRIMESH_NONE if it projects nowhere. key: a hash of all that the
-   projection depends on, except the surface. Returns false if it is not cached. Thread: any. */
+/* Looks up the triangle that a sample point projects onto; *tri is TRIMESH_NONE if it projects onto none. key: a hash of everything the
+ * projection depends on, except the surface. Returns false if it is not cached. Thread: any. */
 bool sample_cache_find(const struct sample_cache *sample_cache, uint64_t key, uint32_t *tri);
-/* Records in the calling thread's notes that this point was asked for, its triangle, and whether it was cached. Full notes are handed over.
-   Thread: any, one per notes. */
+/* Records a lookup in the calling thread's notes: its triangle, and whether it was cached. Full notes are moved to the cache. Thread: any,
+ * one per notes. */
 void sample_cache_note(struct sample_cache *sample_cache, struct sample_cache_notes *notes, uint64_t key, uint32_t tri, bool known);
 /* Moves a thread's notes into the cache, for sample_cache_write(). Thread: any. */
 void sample_cache_hand_over(struct sample_cache *sample_cache, struct sample_cache_notes *notes);

@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache of the errors measured at edges and triangles: KEY.splitting in the folder of prepared files. Where few of many sensors have
-   changed since, these findings still hold everywhere except near those sensors, and only there is measured again.
-
-   A sensor that has at most the fraction x of a value changes an edge's error by about x times that error, and so does one that is
-   removed. Such fractions add up from run to run (doubt) until the edge is measured again; together they stay far below the tenth of a
-   colour step that subdivision keeps in reserve (SUBDIV_AIM). With larger doubt a finding still holds if its error is far from any limit.
-   This is so for Shepard interpolation with one strength for all sensors of a group. Under Algorithm 1 every sensor counts everywhere, and
-   a reach bends the weights where it ends: an asset with such a group is not cached.
-
-   Coarser levels that were given up are not tried again before as many sensors have changed as findings may outlive at once. Safe to
-   delete; a damaged file counts as absent. Thread: one, except where a function says otherwise. */
+/* Cache of the errors measured at edges and triangles ("findings"): KEY.splitting in the folder of prepared files. If few of many sensors
+ * have changed since the last run, its findings still hold everywhere except near those sensors; only there errors are measured again. A
+ * new or removed sensor with at most the weight x at an edge changes the edge's error by about x times that error. Such changes add up from
+ * run to run ("doubt") until the edge is measured again; in total they stay far below the tenth of a colour step that subdivision keeps in
+ * reserve (SUBDIV_AIM). With larger doubt, a finding still holds if its error is far from any limit. This is valid for Shepard
+ * interpolation with one strength for all sensors of a group. Under Algorithm 1 every sensor matters everywhere, and a reach bends the
+ * weights at its end: assets with such a group are not cached. Coarser levels that were dropped are not tried again until as many sensors
+ * have changed as findings can survive at once. Can be deleted at any time; a damaged file counts as absent. Thread: one, unless a function
+ * says otherwise. */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIV_CACHE_H
 #define PREPROCESS_SUBDIVISION_SUBDIV_CACHE_H
 #include "base/files/cache_file.h"
@@ -17,32 +15,32 @@
 #include "preprocess/subdivision/linear_error.h"
 
 struct subdiv_cache {
-    bool applies; /* else nothing is kept */
+    bool applies; /* the cache is applicable; false: nothing is cached */
     struct cache_file file;
-    const uint64_t *keys; /* of the findings of the last time, in the file */
+    const uint64_t *keys; /* keys of the last run's findings, in the mapped file */
     const float *errors, *rest;
     const unsigned char *kinds;
-    uint32_t *rest_at; /* of each finding */
-    uint32_t *slots;   /* findings by key, one more than their number; 0: none. NULL: none of use */
+    uint32_t *rest_at; /* by finding: index of its first number in `rest` */
+    uint32_t *slots;   /* hash table by key: finding index + 1; 0: empty slot. NULL: no usable findings */
     size_t mask, finding_count;
-    struct subdiv_sensor_change { /* a sensor that is new or gone */
+    struct subdiv_sensor_change { /* a sensor that was added or removed */
         float place_m[3], power;
-        uint32_t group;  /* of straight's */
-        uint32_t column; /* of a new one; UINT32_MAX: it is gone */
+        uint32_t group;  /* index of the group in struct linear_error */
+        uint32_t column; /* column of an added sensor; UINT32_MAX: the sensor was removed */
     } * changes;
     size_t change_count;
-    uint64_t hopeless, given_up; /* levels by bits: those that need not be tried; those given up this time */
-    uint64_t changes_since;      /* they were tried */
-    struct text sensors, found;  /* of this time */
+    uint64_t hopeless, given_up; /* bit masks of levels: those not to try in this run; those dropped in this run */
+    uint64_t changes_since;      /* sensor changes since the dropped levels were last tried */
+    struct text sensors, found;  /* data of this run, to be written */
     size_t measured_count, kept_count;
 };
 
-/* Opens the findings of the last run under this key and works out which sensors have changed since. Never fails: without a usable file the
-   cache is empty. linear must outlive it. */
+/* Opens the findings of the last run under this key and determines which sensors have changed since. Never fails: without a usable file the
+ * cache is empty. linear must outlive the cache. */
 void subdiv_cache_open(struct subdiv_cache *cache, const char *folder, uint64_t key, const struct linear_error *linear);
-/* Unmaps and frees the cache. A zeroed one is fine. */
+/* Unmaps and frees the cache. A zeroed cache is fine. */
 void subdiv_cache_close(struct subdiv_cache *cache);
-/* Writes this run's findings, after subdivision. Errors are ignored: then nothing is cached. */
+/* Writes this run's findings, after subdivision. Ignores errors: then nothing is cached. */
 void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, uint64_t key);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The mesh that subdivision works on: a geometry whose edges are cut at new vertices, and the triangles of one level at a time. Cuts are
-   shared by all levels. */
+/* The mesh that subdivision works on: a geometry whose edges are split at new vertices, and the triangles of one level at a time. Splits
+ * are shared by all levels. */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIV_MESH_H
 #define PREPROCESS_SUBDIVISION_SUBDIV_MESH_H
 #include "base/mem.h"
@@ -10,66 +10,68 @@
 
 struct subdiv_tri {
     uint32_t v[3], e[3];        /* e[i]: the edge from v[i] to v[i + 1] */
-    uint32_t primitive, origin; /* of the level: its primitive; the triangle that this is a piece of, by its first index / 3 */
-    bool good;                  /* it has been looked at */
-    bool aimed;                 /* it has been looked at whether it is flat */
+    /* primitive: index within the level; origin: the original triangle that this one is a piece of, as its first index / 3 */
+    uint32_t primitive, origin;
+    bool good;  /* the inside of the triangle has been measured */
+    bool aimed; /* the triangle has been checked for flatness (aim_at_corners()) */
 };
 
-struct subdiv_edge {    /* between two places; all levels share them */
-    uint32_t a, b;      /* vertices at its ends, one pair of several where normals or textures part */
-    uint32_t origin[2]; /* of the level that it was first seen in: two triangles that it is part of; or TRIMESH_NONE */
-    uint32_t middle;    /* the place where it is cut, or TRIMESH_NONE */
-    uint32_t load;      /* the last level that it is cut in */
-    uint32_t corner;    /* of triangles of the level in hand, the first that it begins at: 3 t + i; TRIMESH_NONE: none has it */
-    float share;        /* of the way from place a to place b: where it is cut, or should be */
-    float error;        /* of the field along it, if cutting may mend that; less than 0: not known yet */
-    float barred;       /* of the field along it, if not */
-    bool jumps;         /* likewise: because the distance jumps, not because it is short */
-    bool unasked;       /* in the level in hand it is too short to be cut: what it errs by is not known */
-    bool proven;        /* measured, and needs no cut; coarser levels ask for no more */
+struct subdiv_edge {    /* an edge between two positions, shared by all levels */
+    uint32_t a, b;      /* vertices at its ends; where normals or texture coordinates split, one of several pairs */
+    uint32_t origin[2]; /* two original triangles that contain the edge, of the first level that had it; TRIMESH_NONE: none */
+    uint32_t middle;    /* position index of the split point; TRIMESH_NONE: not split */
+    uint32_t load;      /* number of the last level (mesh.loads) that splits the edge */
+    /* first corner of the current level's triangles at which the edge begins, 3 * triangle + i; TRIMESH_NONE: no triangle has the edge */
+    uint32_t corner;
+    float share;  /* fraction of the way from a to b at which the edge is, or should be, split */
+    float error;  /* field error along the edge that a split may fix; below 0: not measured yet */
+    float barred; /* field error along the edge that no split may fix */
+    bool jumps;   /* reason for `barred`: the distance jumps; false: the edge is too short */
+    bool unasked; /* too short to split in the current level, so not measured */
+    bool proven;  /* measured and needs no split; coarser levels have looser limits */
 };
 
-struct subdiv_list { /* of numbers of triangles, or of corners */
+struct subdiv_list { /* a list of triangle or corner indices */
     uint32_t *at;
     size_t count, capacity;
-    bool sorted; /* each once, the lowest first */
+    bool sorted; /* ascending, without duplicates */
 };
 
 struct subdiv_mesh {
     struct geometry *geometry;
     struct welded_positions welded;
     size_t place_capacity, of_vertex_capacity, position_capacity, normal_capacity, texcoord_capacity, second_capacity, color_capacity;
-    struct edge_table edges, vertex_edges; /* by places; by vertices */
+    struct edge_table edges, vertex_edges; /* `edges` by positions, `vertex_edges` by vertices */
     struct subdiv_edge *cuts;
-    uint32_t *vertex_middles; /* by vertex edge */
+    uint32_t *vertex_middles; /* by vertex edge: the vertex at its split point */
     size_t cut_capacity, middle_capacity;
-    uint32_t loads;          /* levels taken in hand so far */
-    struct subdiv_tri *tris; /* of the level in hand */
+    uint32_t loads;          /* number of levels loaded so far */
+    struct subdiv_tri *tris; /* triangles of the current level */
     size_t tri_count, tri_capacity;
-    uint32_t *next; /* of each corner: the next at its edge, or TRIMESH_NONE */
+    uint32_t *next; /* by corner: the next corner at the same edge; TRIMESH_NONE: none */
     size_t next_capacity;
-    struct subdiv_list made; /* since the list was emptied */
-    struct subdiv_list open; /* with edges that are cut, or that were when they were listed */
+    struct subdiv_list made; /* triangles made since the list was last emptied */
+    struct subdiv_list open; /* triangles that had a split edge when they were listed */
 };
 
-/* Builds the mesh over a geometry, to which vertices will be added. Returns false if out of memory; call subdiv_mesh_finish() in both
-   cases. */
+/* Builds the mesh over a geometry, to which it will add vertices. Returns false if out of memory. Call subdiv_mesh_finish() in both
+ * cases. */
 bool subdiv_mesh_init(struct subdiv_mesh *mesh, struct geometry *geometry);
-/* Frees the mesh; the geometry stays. */
+/* Frees the mesh, but not the geometry. */
 void subdiv_mesh_finish(struct subdiv_mesh *mesh);
 
-/* Makes a level's triangles the current ones. */
+/* Loads a level's triangles as the current ones. */
 void subdiv_mesh_load(struct subdiv_mesh *mesh, const struct level *level);
 /* Writes the current triangles back to the level, primitive by primitive. */
 void subdiv_mesh_store(const struct subdiv_mesh *mesh, struct level *level);
 
-/* Returns whether this edge is cut in the current level. */
-static inline bool subdiv_mesh_is_split(const struct subdiv_mesh *mesh, uint32_t edge) /* in the level in hand */
+/* Returns whether the current level splits this edge. */
+static inline bool subdiv_mesh_is_split(const struct subdiv_mesh *mesh, uint32_t edge)
 {
     return mesh->cuts[edge].load == mesh->loads;
 }
-/* Cuts an edge at its stored fraction, at position_m; triangles change only in subdiv_mesh_apply(). Returns true if the position is new
-   (cuts[edge].middle), false if another level had cut the edge already. */
+/* Splits an edge at its stored fraction, at position_m. Triangles change only in subdiv_mesh_apply(). Returns true if the position
+ * cuts[edge].middle is new, false if another level had already split the edge. */
 bool subdiv_mesh_split_edge(struct subdiv_mesh *mesh, uint32_t edge, const float position_m[3]);
 /* Appends a number to a list. */
 static inline void subdiv_mesh_list(struct subdiv_list *list, uint32_t number)
@@ -83,18 +85,18 @@ static inline void subdiv_mesh_list(struct subdiv_list *list, uint32_t number)
 void subdiv_mesh_sort(struct subdiv_list *list);
 /* Marks all triangles of the current level as new (mesh->made). */
 void subdiv_mesh_list_all(struct subdiv_mesh *mesh);
-/* Splits triangles until none has a cut edge. Returns the number of triangles made. */
+/* Splits triangles until none has a split edge. Returns the number of triangles added. */
 size_t subdiv_mesh_apply(struct subdiv_mesh *mesh);
 /* Inserts a vertex into a triangle at these barycentric weights. Returns the vertex. */
 uint32_t subdiv_mesh_insert(struct subdiv_mesh *mesh, size_t tri, const double weights[3], const float position_m[3]);
 
-/* Returns the edge between the other corners of two triangles at an edge, tris[1] having it the other way round; it need not be in the
-   level. TRIMESH_NONE if the triangles do not share the edge's two vertices. */
+/* Returns the other diagonal of the two triangles at an edge: the edge between their opposite corners, which need not exist in the level.
+ * tris[1] must have the edge in the reverse direction. Returns TRIMESH_NONE if the triangles do not share the edge's two vertices. */
 uint32_t subdiv_mesh_opposite_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge);
-/* Replaces the two triangles' common edge by that one, `across`. */
+/* Flips the two triangles' common edge to the other diagonal, `across`. */
 void subdiv_mesh_flip_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge, uint32_t across);
 
-/* Writes the surface's normal at an edge, of no certain length. */
+/* Writes the surface normal at an edge, not normalised. */
 void subdiv_mesh_normal(const struct subdiv_mesh *mesh, const struct subdiv_edge *edge, double normal[3]);
 
 #endif
