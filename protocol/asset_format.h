@@ -11,7 +11,7 @@
 #define ASSET_VERSION 5u
 #define ASSET_ALIGN 64u
 #define ASSET_NO_TEXTURE UINT32_MAX
-#define ASSET_SECOND_MASK 0x1eu /* bits of asset_material.second that may be set */
+#define ASSET_SECOND_MASK 0x1eu /* material bits: which bits of asset_material.second may be set */
 
 enum asset_section {
     ASSET_POSITIONS,        /* float[3] per vertex: asset frame (metres, Z up) minus header.origin_m */
@@ -33,7 +33,7 @@ enum asset_section {
 };
 
 struct asset_section_entry {
-    uint64_t offset, bytes; /* from the start of the file */
+    uint64_t offset, bytes; /* offset: from the start of the file */
 };
 
 struct asset_header {
@@ -43,13 +43,13 @@ struct asset_header {
     uint64_t checksum;  /* XXH3-64 of the file with this field 0 */
     uint64_t key;       /* XXH3-64 of all inputs: model bytes, node pattern, units, sensor positions, the program's format version */
     double origin_m[3]; /* in the asset frame */
-    float bounds_min_m[3], bounds_max_m[3]; /* of the positions, relative to origin_m */
+    float bounds_min_m[3], bounds_max_m[3]; /* bounding box of all positions, relative to origin_m */
     uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, cluster_count;
     struct asset_section_entry sections[ASSET_SECTION_COUNT];
 };
 
 struct asset_primitive {               /* a run of triangles with one material, from one node of the model */
-    uint32_t first_index, index_count; /* into ASSET_INDICES; a multiple of 3 */
+    uint32_t first_index, index_count; /* range in ASSET_INDICES; index_count is a multiple of 3 */
     uint32_t material;
     uint32_t name; /* offset in ASSET_NAMES: the node's name */
 };
@@ -76,7 +76,8 @@ struct asset_material { /* glTF 2.0 metallic-roughness; factors linear */
     float emissive[3], alpha_cutoff;
     uint32_t base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture; /* or ASSET_NO_TEXTURE */
     uint32_t alpha, double_sided, name;
-    uint32_t second; /* bit n: the n-th of these textures uses the second texture coordinates; never the base colour's */
+    /* material bits: bit n says that the n-th texture of the material uses the second texture coordinates; never the base colour's */
+    uint32_t second;
 };
 
 struct asset_texture {
@@ -85,7 +86,7 @@ struct asset_texture {
 };
 
 struct asset_sensor {
-    float position_m[3];      /* relative to origin_m: as configured, or the node's position */
+    float position_m[3];      /* position, relative to origin_m: as configured, or the model node's */
     float surface_m[3];       /* nearest point of the surface, relative to origin_m */
     float surface_distance_m; /* distance between both */
     uint32_t nearest_vertex;
@@ -115,7 +116,7 @@ struct asset_view {
 /* Checks an asset file completely (magic, version, size, checksum, section bounds, every index, finiteness) and makes a view of it. bytes
    must be aligned to ASSET_ALIGN and outlive the view. Returns false if the file is invalid, with the reason in `why`. */
 bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, char why[200]);
-/* Does the same for bytes just made by asset_build(), without checking the checksum. */
+/* Makes a view of bytes that asset_build() has just made: checks them like asset_view_init(), but not their checksum. */
 bool asset_view_fresh(struct asset_view *view, const void *bytes, size_t size, char why[200]);
 
 /* Computes the bounding box and the normal cone of a cluster from its triangles. */
@@ -134,7 +135,7 @@ struct asset_parts {
     const uint8_t (*colors)[4];         /* NULL: none */
     const uint32_t *indices;
     const struct asset_primitive *primitives;
-    const struct asset_level *levels;     /* NULL: one level with all primitives */
+    const struct asset_level *levels;     /* levels of detail; NULL: a single level with all primitives */
     const struct asset_cluster *clusters; /* NULL: one for each primitive */
     const struct asset_material *materials;
     const struct asset_texture *textures;

@@ -15,7 +15,7 @@ layout(location = 1) uniform mat4 sun_from_plant;
 layout(location = 4) uniform mat3 plant_from_normal;
 layout(location = 8) uniform vec4 sun;             // direction; w: texel size of the sun's map in metres
 layout(location = 9) uniform float sky_texel_m;
-layout(location = 10) uniform ivec2 range; // first index, and one beyond the last
+layout(location = 10) uniform ivec2 range; // range of vertices or points: first index, and one beyond the last
 #ifdef GROUND
 const int TAPS = 16;
 const float SPREAD = 0.05;  // relative to the map's width
@@ -28,7 +28,7 @@ layout(std430, binding = 2) readonly buffer Positions { float positions_m[]; };
 layout(std430, binding = 3) readonly buffer Normals { uint normals[]; }; // packed as in normal.glsl
 layout(std430, binding = 4) buffer Light { uint baked[]; }; // bytes: light, ambient, openness, cosine to the sun
 layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // three per large triangle: render/light/bake_faces.h
-layout(std430, binding = 6) buffer Sums { uint sums[]; }; // per vertex, over samples in large triangles: weight, openness, sun
+layout(std430, binding = 6) buffer Sums { uint sums[]; }; // sums per vertex over samples in large triangles: weight, openness, sun
 layout(location = 12) uniform float large_m;
 layout(location = 13) uniform bool has_faces;
 layout(location = 14) uniform float least_open; // lower bound of openness while some of the plant is hidden
@@ -133,7 +133,7 @@ void main()
 #else
     float open = unpackUnorm4x8(baked[i]).z;
 #endif
-    open = round(max(open, least_open) * 255.0) / 255.0; // rounded as it is read back when the sun moves
+    open = round(max(open, least_open) * 255.0) / 255.0; // openness is rounded as it will be when read back after the sun has moved
     float ambient = open * sky_brightness(normal);
     float facing = max(dot(normal, sun.xyz), 0.0);
     float sun_visible = weight > 0.0 ? float(sums[3 * i + 2]) / weight : sun_visibility(sun_from_plant, place, normal, sun.w);

@@ -4,7 +4,7 @@
 #include "constants.glsl"
 layout(binding = 0) uniform sampler2D colormap;
 #ifdef RICH
-layout(binding = 15) uniform sampler2D lines; // by position on the scale: the nearest position with an isoline
+layout(binding = 15) uniform sampler2D lines; // nearest position with an isoline, by position on the scale
 #endif
 
 const int PLACES = COLORMAP_PLACES, HATCH_LIGHT = PLACES + 2, HATCH_DARK = PLACES + 3, STIPPLE = PLACES + 4,

@@ -3,7 +3,7 @@
 layout(std140, binding = 0) uniform Frame {
     mat4 clip_from_eye;
     mat4 eye_from_clip;
-    mat4 sun_from_eye;   // to texture coordinates and depth of the shadow map
+    mat4 sun_from_eye;   // matrix from eye space to texture coordinates and depth of the shadow map
     vec4 sun;            // unit vector towards the sun; w: texel size of the shadow map in metres
     vec4 up;             // the plant's up direction; w: brightness of muted assets without a field; 0: not muted
     vec4 scale;          // x: MIN, y: 1/(MAX - MIN), of binary logarithms if z is 1 (logarithmic scale); w: cell size of patterns in pixels

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Data that differs between assets drawn by one call: placement, and per-vertex numbers in buffers that many assets share (gpu/pool.h). The
 // layout must match struct draw_instance.
-layout(location = 4) in mat3x4 eye_from_normal; // three rows; in w: first block of light, first block of field (-1: none), unused
+
+// Three rows of the matrix for normals; in w: first block of light, first block of field (-1: none), unused
+layout(location = 4) in mat3x4 eye_from_normal;
 layout(location = 8) in mat4 clip_from_file;
-layout(location = 12) in mat3x4 from_file; // as rows: to eye space; previews: to texture coordinates and depth of the shadow map
+// rows of the matrix from file to eye space; in previews: to texture coordinates and depth of the shadow map
+layout(location = 12) in mat3x4 from_file;
 layout(binding = 12) uniform samplerBuffer lights;
 layout(binding = 13) uniform usamplerBuffer scalars; // value as float bits; then bytes: no data, uncertain, no limits
 

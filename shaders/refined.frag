@@ -15,7 +15,8 @@ layout(location = 3) centroid in vec4 tint;
 layout(location = 4) centroid in vec3 sky; // x: baked ambient light; y: baked openness; z: 1 as interpolated to the centroid
 layout(location = 5) centroid in FIELD_TYPE field;
 layout(location = 2) uniform int material;
-// bits: base colour, metallic-roughness, normal, occlusion, emissive; from bit 8 on: uses the second coordinates
+// maps of the material as bits: base colour, metallic-roughness, normal, occlusion, emissive; from bit 8 on: the map uses the second
+// coordinates
 layout(location = 3) uniform int textures;
 layout(binding = 3) uniform sampler2D base_color_map;
 layout(binding = 4) uniform sampler2D metallic_roughness_map;
@@ -81,7 +82,7 @@ void main()
     vec3 glow = m.emissive.rgb;
 #ifdef GLOSSY
     s.base = linear_from_srgb(color.rgb);
-    s.metallic = 0.0; // a metal would reflect the sky instead of showing the field
+    s.metallic = 0.0; // non-metallic, since a metal would reflect the sky instead of showing the field
 #endif
 #ifdef TEXTURED
     if ((textures & 2) != 0) {

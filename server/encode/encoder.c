@@ -8,7 +8,8 @@
 #include "base/clock.h"
 #include "encode/encoder_impl.h"
 
-static const double MAX_DIRTY_SHARE = 0.6; /* from this fraction of the frame on, one whole frame costs less than its rectangles */
+/* if more than this fraction of a frame changed, the whole frame is encoded: that costs less than its rectangles */
+static const double MAX_DIRTY_SHARE = 0.6;
 static const struct encoder_impl *const table[] = {
     &jpeg_impl,
     &png_impl,

@@ -13,8 +13,9 @@ struct encoder_params {
     int quality;          /* 1..100, for codecs that have a quality */
     bool full_chroma;     /* 4:4:4 instead of 4:2:0, for codecs that have both */
     bool key;             /* makes a key frame: its packet does not depend on earlier ones */
-    struct workers *workers; /* for encoding in parallel; may be NULL */
-    struct frame *before; /* the frame that the client shows, in this quality; NULL: unknown. Parts equal to it are not sent */
+    struct workers *workers; /* threads for encoding in parallel; may be NULL */
+    /* frame that the client shows, in this quality; unchanged parts are not sent. NULL: unknown, everything is sent */
+    struct frame *before;
 };
 
 /* Creates an encoder. name: "jpeg", "png" or, unless left out of the build, "h264", whose packets depend on each other, so each stream has

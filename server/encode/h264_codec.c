@@ -32,7 +32,7 @@ enum { RATE_HZ = 60, SLICED_PX = 1500000, MANY_CORES = 8, MAX_THREADS = 8 };
 struct h264_codec {
     const AVCodec *codec;
     const struct library *library;
-    AVCodecContext *context; /* for the size of the last frame */
+    AVCodecContext *context; /* libavcodec context for frames of the last frame's size */
     AVFrame *picture;
     AVPacket *out;
     struct h264_upload *upload;

@@ -16,7 +16,7 @@ struct h264_planes { /* YUV 4:2:0 at full range, filled by the caller; width and
     int width_px, height_px;
 };
 struct h264_access_unit {
-    const uint8_t *bytes; /* owned by the codec, valid until its next call */
+    const uint8_t *bytes; /* bytes of the access unit; owned by the codec, valid until the codec's next call */
     size_t count;
     bool key;
 };

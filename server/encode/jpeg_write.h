@@ -11,7 +11,7 @@
 
 #include "encode/planes.h"
 
-enum { JPEG_READ_QUALITY = 75 }; /* below this quality all tables are the standard ones */
+enum { JPEG_READ_QUALITY = 75 }; /* JPEG quality below which the standard quantization tables are used */
 
 struct jpeg_writer;
 struct jpeg_writer *jpeg_writer_create(void); /* NULL: out of memory */

@@ -18,11 +18,11 @@ struct packet {
     _Atomic int refs;
     struct frame *frame; /* metadata of the frame, without the pixels (frame->bgrx is NULL) */
     enum wire_codec codec;
-    bool key; /* does not depend on the previous packet */
-    bool is_signed; /* a PNG file with statement and signature (provenance/signed_picture.h) */
+    bool key; /* key packet: can be decoded without the previous packet */
+    bool is_signed; /* the bytes are a PNG file with statement and signature (provenance/signed_picture.h) */
     uint8_t *bytes;
     size_t count;
-    /* for PNG of a frame with a record: hash of the pixels as red, green, blue, rows from the top */
+    /* SHA-256 of the pixels (red, green, blue, rows from the top), for PNG of a frame with a record */
     uint8_t pixels_sha256[PACKET_SHA256_BYTES];
     struct packet_part parts[PACKET_PARTS];
     int part_count;

@@ -63,7 +63,7 @@ SIMD_BODY void weigh_pair(const uint32_t *pixels, uint8_t out[2][TILE_W])
         v[0][i] += v[1][i];
         weight[0][i] += weight[1][i];
     }
-    for (int i = 0; i < TILE_W; i++) { /* the mean is within -127.5..127.5; 128.5 includes rounding */
+    for (int i = 0; i < TILE_W; i++) { /* the mean of chroma is within -127.5..127.5; adding 128.5 shifts and rounds it */
         float part = 1 / (weight[0][2 * i] + weight[0][2 * i + 1]);
         out[0][i] = (uint8_t)least((int)((u[0][2 * i] + u[0][2 * i + 1]) * part + 128.5f), 255);
         out[1][i] = (uint8_t)least((int)((v[0][2 * i] + v[0][2 * i + 1]) * part + 128.5f), 255);

@@ -46,7 +46,7 @@ static void hash_pixels(const struct frame *frame, const uint8_t *packed, uint8_
 static int png_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
                     int count)
 {
-    (void)params; /* no choices: PNG is lossless, and the frame is always whole */
+    (void)params; /* parameters are ignored: PNG is lossless and always encodes the whole frame */
     (void)rects;
     (void)count;
     png_image image = {

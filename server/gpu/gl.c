@@ -109,7 +109,7 @@ static void set_conventions(struct gl *gl)
 /* Tries all kinds. why: receives the reasons of failed attempts, each after "; ". */
 static struct gl *attempt_all(enum gl_kind kind, const struct gl_device *device, struct text *why)
 {
-    bool asked = kind != GL_AUTO || device; /* then a software device is accepted at once */
+    bool asked = kind != GL_AUTO || device; /* a caller that asks for a kind or device gets a software device at once */
     for (int i = 0; i < ATTEMPTS; i++) {
         const struct attempt *attempt = &attempts[i];
         bool wanted = kind == GL_AUTO ? !device || attempt->impl->kind == GL_EGL_DEVICE : attempt->impl->kind == kind;

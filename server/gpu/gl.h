@@ -16,7 +16,7 @@ struct gl_device { /* an EGL device, by index in the list or by PCI address */
 };
 
 struct gl {
-    enum gl_kind kind; /* the kind that was created; never GL_AUTO */
+    enum gl_kind kind; /* kind of the context; never GL_AUTO */
     char vendor[128], renderer[128], version[128];
     bool software; /* llvmpipe, softpipe, swrast */
     bool reads_in_place; /* a software driver that reads the caller's memory without a copy (GL_AMD_pinned_memory) */
@@ -44,7 +44,7 @@ bool gl_lost(const struct gl *gl);
 void gl_lose(struct gl *gl);
 
 void gl_clear_errors(void); /* discards errors of earlier calls, so that the next error belongs to later ones */
-bool gl_no_errors(void);    /* returns whether there was no error since */
+bool gl_no_errors(void);    /* returns whether GL reported no error since the last check */
 /* Returns how often this thread's contexts ran out of GPU memory, as far as the functions above and below noticed. Anything created or
    drawn while the count rose is invalid. */
 unsigned gl_out_of_memory_count(void);

@@ -12,7 +12,7 @@ struct gl_impl {
        software: may use a software device, if none is requested. NULL: failed, with the reasons appended to `why`. */
     struct gl *(*create)(const struct gl_device *device, bool software, struct text *why);
     void (*destroy)(struct gl *gl);
-    bool (*current)(const struct gl *gl); /* the context exists and is current */
+    bool (*current)(const struct gl *gl); /* returns whether the context exists and is current */
     void (*lose)(struct gl *gl);          /* destroys the context but keeps the struct */
 };
 

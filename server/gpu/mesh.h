@@ -37,7 +37,7 @@ struct gpu_mesh {
 };
 
 bool mesh_init(struct gpu_mesh *mesh, const struct gl *gl, const char *name,
-               const struct mesh_params *params); /* returns false when out of memory, logged */
+               const struct mesh_params *params); /* params: data to upload; mesh_init() returns false when out of memory, logged */
 void mesh_finish(struct gpu_mesh *mesh);
 void mesh_bind(const struct gpu_mesh *mesh);                             /* binds the mesh for the next draws */
 /* instances: a buffer of MESH_INSTANCE_VECTORS vectors per instance */

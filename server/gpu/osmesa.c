@@ -27,7 +27,7 @@ struct osmesa {
     unsigned char (*make_current)(void *context, void *buffer, unsigned type, int width, int height);
     GLADapiproc (*get_proc)(const char *name);
     void *(*get_current)(void);
-    unsigned char buffer[4 * 4 * 4]; /* required by OSMesa to make a context current; frames are drawn to framebuffers instead */
+    unsigned char buffer[4 * 4 * 4]; /* buffer that OSMesa requires to make a context current; frames are drawn to framebuffers instead */
 };
 
 static bool osmesa_current(const struct gl *gl)

@@ -18,7 +18,7 @@ struct pool_page {
     struct pool *pool;
     GLuint buffer, texture;
     size_t texels;
-    struct pool_slice *first; /* first slice of the page, in order of offset */
+    struct pool_slice *first; /* first slice of the page; slices are listed in order of offset */
 };
 struct pool_slice {
     struct pool_page *page;
@@ -36,7 +36,7 @@ void pool_expect(struct pool *pool, size_t texels, size_t slices);
 struct pool_slice *pool_take(struct pool *pool, size_t count);
 struct pool_slice *pool_ref(struct pool_slice *slice); /* NULL is fine */
 void pool_unref(struct pool_slice **slice);            /* &NULL is fine; sets it to NULL */
-size_t pool_offset(const struct pool_slice *slice);    /* in bytes, within the page's buffer */
+size_t pool_offset(const struct pool_slice *slice);    /* returns the slice's offset in its page's buffer, in bytes */
 size_t pool_bytes(const struct pool_slice *slice);
 size_t pool_bytes_taken(const struct pool *pool); /* bytes of all pages */
 

@@ -7,7 +7,7 @@
 #include "base/log/log.h"
 
 struct program_params {
-    const char *vertex, *fragment; /* names of embedded files; or set `compute` */
+    const char *vertex, *fragment; /* names of embedded shader files; NULL if `compute` is set */
     const char *compute;
     const char *defines; /* lines inserted before the source; NULL: none */
 };

@@ -12,13 +12,14 @@
 
 struct target {
     int width_px, height_px, samples;
-    GLuint framebuffer, color, depth;                            /* the framebuffer that is drawn to */
-    GLuint resolved_framebuffer, resolved_color, resolved_depth; /* one sample; the same objects when samples = 1 */
+    GLuint framebuffer, color, depth; /* framebuffer that is drawn to, and its textures */
+    /* resolved framebuffer with one sample; the same objects if samples is 1 */
+    GLuint resolved_framebuffer, resolved_color, resolved_depth;
     GLuint over_framebuffer; /* resolved colour only, for drawing over the picture while reading its depth */
 };
 
 /* target_init() returns false when out of GPU memory, logged. */
-size_t target_bytes(const struct target *target); /* of its textures; 0 for an empty target */
+size_t target_bytes(const struct target *target); /* returns the bytes of the target's textures; 0 for an empty target */
 bool target_init(struct target *target, struct log *log, int width_px, int height_px, int samples);
 void target_finish(struct target *target);
 /* Resolves a rectangle: averages colour, takes the depth of one sample. A no-op without multisampling. */

@@ -17,9 +17,9 @@ struct assumed_filter {
 };
 
 enum assumed_outcome {
-    ASSUMED_NOT_MEANT, /* its position is not assumed, or asset, group or pattern do not match */
+    ASSUMED_NOT_MEANT, /* the tag's position is not assumed, or asset, group or pattern do not match */
     ASSUMED_ACCEPTED,
-    ASSUMED_NOWHERE,   /* its row has neither a node nor X, Y, Z */
+    ASSUMED_NOWHERE,   /* the tag's row has neither a node nor X, Y, Z */
     ASSUMED_MISSING,   /* its asset has no model */
     ASSUMED_FAR,       /* too far from the surface */
     ASSUMED_UNSURE,    /* confidence too low or unknown */

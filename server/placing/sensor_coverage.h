@@ -11,13 +11,13 @@ struct sensor_coverage_query {
     enum distance_mode mode;
     double reach_m; /* INFINITY: no limit */
     double far_m;   /* distance from which a point counts as far from all sensors; 0: half of the reach, or a fifth of the asset's size */
-    const uint8_t *good; /* by tag: its reading is usable now */
+    const uint8_t *good; /* by tag: 1 if the sensor's reading is usable now */
 };
 
 struct sensor_coverage {
     size_t sensors;
     double far_m;            /* the limit used */
-    double farthest_m;       /* largest distance of a connected surface point to its nearest sensor */
+    double farthest_m;       /* metres from the farthest connected surface point to its nearest sensor */
     double farthest_at_m[3]; /* position of that point, in the plant frame */
     double far_share;        /* fraction of the surface's area that is far, 0..1 */
     double lost_share;       /* fraction of the area that no sensor reaches, or whose nearest sensor has no usable reading */

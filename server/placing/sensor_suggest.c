@@ -16,7 +16,7 @@
 #include "plant/influence.h"
 #include "plant/models/transform.h"
 
-#define MAX_CANDIDATES 1500 /* per asset, spread evenly over the unseen area */
+#define MAX_CANDIDATES 1500 /* candidates per asset, spread evenly over the unseen area */
 #define MAX_MEASURED 40     /* geodesic distances computed per suggestion, at most; the bounds of the remaining candidates are smaller */
 #define MIN_GAIN 1e-6       /* gains below this part of the measure are ignored */
 
@@ -25,7 +25,7 @@ struct suggest_asset { /* an asset */
     size_t count;
     const float (*at_m)[3];
     double *area_m2, whole_m2;
-    float *near_m;            /* by vertex: distance to the nearest sensor */
+    float *near_m;            /* metres from each vertex to its nearest sensor */
     struct relocation *mover; /* NULL: not needed yet */
 };
 

@@ -21,8 +21,8 @@ struct suggest_query {
 
 struct suggestion {
     int asset;
-    double at_m[3];                     /* on the surface, in the plant frame */
-    double before, after;               /* the measure over all requested assets */
+    double at_m[3];                     /* suggested position on the surface, in the plant frame */
+    double before, after;               /* the measure over all requested assets, before and after adding this sensor */
     double unseen_before, unseen_after; /* fraction of the area where even a hot spot of the whole range is undetectable */
 };
 

@@ -170,10 +170,10 @@ struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
     return frame;
 }
 
-/* What one half of the frame subtracts from its readings: nothing, or a baseline. */
+/* The baseline that one half of a frame subtracts from its readings, if any. */
 struct then {
     bool wanted, distance;           /* distance: the half shows distances, which the markers hold already */
-    const struct snapshot *snapshot; /* of the baseline; NULL: it no longer exists */
+    const struct snapshot *snapshot; /* snapshot of the baseline; NULL: the baseline no longer exists */
 };
 
 static struct then take_then(const struct field_params *params, struct baselines *baselines)

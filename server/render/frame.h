@@ -17,7 +17,7 @@ struct frame_marker {
     /* reading in engineering units, 0 where the quality is Bad; SHOW_DIFFERENCE: now minus baseline; SHOW_DISTANCE: metres, NAN if
        unknown */
     double value;
-    uint8_t half;     /* of a split view: 0 left, 1 right */
+    uint8_t half;     /* half of a split view that the marker is in: 0 left, 1 right */
 };
 
 struct frame_label { /* a visible point of an isoline, or of an arrow, that may carry a label */
@@ -45,7 +45,7 @@ struct frame {
     struct frame_label *labels; /* candidate points for isoline labels, more than fit; and arrows */
     size_t label_count;
     int64_t data_utc_ns;                      /* UTC of the snapshot that the frame shows */
-    bool clock_unset;                         /* true: the clock that gave data_utc_ns was not synchronised */
+    bool clock_unset;                         /* true if the clock that gave data_utc_ns was not synchronised */
     int64_t oldest_age_ns;                    /* age of the oldest reading used; INT64_MAX: no reading contributes */
     double drawn_error; /* error bound, in engineering units and rounded up, at places marked uncertain; 0: no place is */
     int64_t field_ns, render_ns, readback_ns; /* duration of each stage */
@@ -59,7 +59,7 @@ struct frame {
 /* Fills in values and qualities of the markers from the snapshot that the frame was drawn from, and removes markers behind the eye. Call
    this before other threads see the frame. baselines: for differences; NULL: there are none. */
 void frame_read_markers(struct frame *frame, const struct snapshot *snapshot, struct baselines *baselines);
-struct frame *frame_create(int width_px, int height_px); /* NULL: out of memory. The caller owns one reference. */
+struct frame *frame_create(int width_px, int height_px); /* returns NULL when out of memory. The caller owns one reference */
 /* Returns a frame that shows a part of `whole` and shares its pixels. The part must lie inside. Markers and labels near the part are
    copied. Never NULL. */
 struct frame *frame_cut(struct frame *whole, const struct frame_part *part);

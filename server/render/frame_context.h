@@ -17,14 +17,14 @@ struct frame_context {
     const struct light_set *light;
     const struct target *target;
     struct field *field;
-    const struct fields_entry **fields; /* per asset; NULL: the asset shows no field */
+    const struct fields_entry **fields; /* field of each asset; NULL: the asset shows no field */
     const int *visible;                 /* indices of visible assets, nearest first */
     size_t visible_count;
     struct shaded_colormap colormap;
-    struct reference *reference; /* NULL: the field is interpolated between vertices; else it is computed at each fragment */
+    struct reference *reference; /* computes the field at each fragment; NULL: the field is interpolated between vertices */
     double error_px;             /* largest error of levels of detail in pixels (render/plan/lod_selection.h); 0: finest levels only */
     uint64_t shape;              /* content_hash_shape() of the frame plan */
-    bool measured;               /* true: draws the field's numbers instead of colours, into a float target */
+    bool measured;               /* the frame holds the field's numbers instead of colours, as floats */
 };
 
 /* Returns the level of an asset that the frame plan chose. */

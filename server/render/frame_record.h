@@ -7,11 +7,11 @@
 #include "render/view.h"
 #include "value/baselines.h"
 
-enum { FRAME_RECORD_BASELINES = 2 }; /* one for each half of a split view */
+enum { FRAME_RECORD_BASELINES = 2 }; /* baselines: one for each half of a split view */
 struct frame_record {
     _Atomic int refs;
     struct snapshot *readings;
-    bool *unproven; /* by tag: the tag's loop was not checked, and its marker says so */
+    bool *unproven; /* by tag: true if the tag's loop was not checked, which its marker shows */
     struct {
         struct baseline what;
         struct snapshot *readings;

@@ -4,7 +4,8 @@
 #define RENDER_MATRIX_H
 
 void matrix_identity(double out[16]);
-void matrix_multiply(const double a[16], const double b[16], double out[16]); /* out = a b: b is applied first; out may be a or b */
+/* writes the product a b (b is applied first) to out, which may be a or b */
+void matrix_multiply(const double a[16], const double b[16], double out[16]);
 void matrix_translation(const double by[3], double out[16]);
 void matrix_point(const double m[16], const double p[3], double out[4]);
 /* Inverts any regular matrix, also one with perspective. The matrix must not be singular. */

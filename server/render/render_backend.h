@@ -13,7 +13,7 @@ struct renderer;
 
 struct render_backend {
     const char *name;
-    bool draws_from_gpu; /* true: the backend reads fields from the GPU, so a job copies them there */
+    bool draws_from_gpu; /* the backend reads fields from the GPU, so a job copies them on the GPU */
     /* Creates the backend's resources before its first frame; a no-op afterwards. Returns false on failure, logged. */
     bool (*init)(struct renderer *renderer);
     void (*finish)(struct renderer *renderer);

@@ -17,7 +17,7 @@ struct render_job {
         struct gl_job *gl;
         struct soft_job *soft;
     } of;
-    struct frame_context context; /* its view, fields and visible point into this struct */
+    struct frame_context context; /* context of the frame; its view, fields and visible list point into this struct */
     struct view view;
     struct frame *frame;
     struct light_set *light;            /* reference to the light, held once the light is ready; NULL: not yet */
@@ -25,7 +25,7 @@ struct render_job {
     struct fields_entry *copies;        /* copies of the shown fields, per asset; NULL: the frame is drawn at once and needs no copies */
     int *visible;
     struct isoline_points isolines;
-    bool keeps; /* true: once the job has ended, a frame with the same view and other readings is quick */
+    bool keeps; /* after this job, a frame with the same view and other readings can be drawn quickly */
 };
 
 /* Takes ownership of the frame; copies the context's lists and view. */

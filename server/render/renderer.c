@@ -231,7 +231,7 @@ void renderer_abandon(struct renderer *renderer, struct render_job **job_ptr)
 static void bake_wanted_light(struct renderer *renderer, const struct view *view)
 {
     struct light_key wanted = frame_plan_wanted_light(view);
-    /* false while a user drags a section plane: each of its positions would need a light of its own */
+    /* not while a user drags a section plane: each position of the plane would need a light of its own */
     bool steady = visibility_equal(&wanted.shown, &renderer->shown);
     if (renderer->bake_budget_ns && steady)
         light_step(&renderer->light, &wanted, renderer->bake_budget_ns);

@@ -51,10 +51,10 @@ bool renderer_set_bake_budget(struct renderer *renderer, int64_t bake_ns);
 /* Bakes the default light for about budget_ns; call while no client wants a frame. Returns true when nothing is left to bake. */
 bool renderer_bake_idle(struct renderer *renderer, int64_t budget_ns);
 
-/* true: GL draws everything, also what the software backend would draw on machines without a GPU. */
+/* Lets GL draw everything (always true), also what the software backend would draw on machines without a GPU. */
 void renderer_use_gl(struct renderer *renderer, bool always);
-/* true: computes the field at each fragment, over all sensors, on the finest level (render/reference/reference.h); slow. false:
-   interpolates between vertices again. */
+/* Chooses how the field is computed: per_fragment true: at each fragment, over all sensors, on the finest level
+   (render/reference/reference.h), which is slow; false: interpolated between vertices. */
 void renderer_set_per_fragment(struct renderer *renderer, bool per_fragment);
 
 #endif

@@ -16,7 +16,7 @@ struct view;
 void renderer_set_occlusion_least(struct renderer *renderer, int least_triangles);
 /* Returns how many assets occlusion culling removed from the last frame that GL drew; waits for that frame. */
 size_t renderer_occluded_count(const struct renderer *renderer);
-/* true: draws each asset with GL calls of its own instead of batching equal ones. */
+/* Draws each asset with GL calls of its own (one_by_one true) instead of batching equal ones. */
 void renderer_set_batching_off(struct renderer *renderer, bool one_by_one);
 /* Fills `out` with the field's numbers at one sample per pixel, rows from the top: position in the range (unclamped, always linear), no
    data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth (1 near, 0 far). finest: finest levels

@@ -27,7 +27,7 @@ struct colormap_shades {
 void colormap_shades_init(const struct colormap *map, struct colormap_shades *out);
 struct shaded_colormap {
     uint32_t (*texels)[COLORMAP_COLUMNS]; /* COLORMAP_ROWS rows: blue | green << 8 | red << 16 | 0xff000000 */
-    float *nearest; /* for each position on the scale the nearest position that has an isoline; NULL: there are no lines */
+    float *nearest; /* nearest position that has an isoline, for each position on the scale; NULL: there are no isolines */
     GLuint colors, lines;                 /* textures of texels and nearest; lines 0: there are no lines */
     uint64_t version;                     /* unique number of each colour map made, from 1 */
 };

@@ -13,8 +13,9 @@ struct shaded_colormap_cache_entry {
 };
 
 enum { SHADED_COLORMAPS = 16 };
-struct shaded_colormap_cache {       /* zero-initialise */
-    struct colormap_shades **shades; /* by index of colour map, then one for the operator display; entries are NULL until first used */
+struct shaded_colormap_cache { /* zero-initialise */
+    /* shaded colours by index of colour map, then one for the operator display; entries are NULL until first used */
+    struct colormap_shades **shades;
     struct shaded_colormap_cache_entry at[SHADED_COLORMAPS];
     int count;
     uint64_t uses;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What one session wants to see: a plain struct, copied between threads. */
+/* The view of one session: everything that it wants to see, in a plain struct that is copied between threads. */
 #ifndef RENDER_VIEW_H
 #define RENDER_VIEW_H
 #include <stdbool.h>
@@ -61,13 +61,13 @@ struct view {
     double light_dir[3]; /* unit vector towards the sun, in the plant frame */
     bool dark;           /* dark backdrop; field colours are unchanged */
     enum directions_look directions;
-    enum language language; /* of the texts in an overlay, where one is drawn */
-    bool strip;          /* the overlay has a machine-readable legend strip */
+    enum language language; /* language of the texts in an overlay, where one is drawn */
+    bool strip;          /* draws a machine-readable legend strip into the overlay */
     int environment;     /* index of the surroundings: 0 the built-in sky, then the plant's own */
     struct visibility visibility;
     int64_t at_us;           /* the instant shown, UTC microseconds; 0: now. Set by view_set_instant */
-    bool split;              /* two halves side by side under one camera: this struct is the left half, `right` the right half */
-    struct split_half right; /* zero where the view is not split */
+    bool split;              /* true: two halves side by side under one camera: this struct is the left half, `right` the right half */
+    struct split_half right; /* right half; zero if the view is not split */
 };
 
 /* Returns the unit of the shown values: the group's unit, or "m" for distances. */

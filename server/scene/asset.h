@@ -11,7 +11,7 @@
 struct asset {
     char *path;
     struct asset_view view;
-    void *map; /* NULL: built in memory, see `made` */
+    void *map; /* mapped file; NULL: the asset was built in memory, see `made` */
     void *made;
     size_t bytes;
     struct cache_file influence_file; /* the file KEY.influence next to the asset's; zero: not opened */
@@ -19,7 +19,7 @@ struct asset {
     /* bit per level: preparation subdivided the level's triangles until they show the field exactly (field/drawn_error.h) */
     uint64_t resolved_levels;
     _Atomic int refs;
-    struct closed_bodies *_Atomic *closed; /* per level; NULL: not computed yet */
+    struct closed_bodies *_Atomic *closed; /* closed bodies per level; NULL: not computed yet */
 };
 
 /* Opens a file. Returns NULL on failure, logged with path and reason. */

@@ -7,8 +7,8 @@
 
 #include "base/math/vec.h"
 
-#define FIT_MARGIN 1.06      /* a fitted box fills 1/1.06 of the picture */
-#define LEAST_BOX_M 1e-4     /* a smaller or empty box is framed as if it had this size */
+#define FIT_MARGIN 1.06      /* margin: a fitted box fills 1/1.06 of the picture */
+#define LEAST_BOX_M 1e-4     /* smallest box: a smaller or empty one is framed as if it had this size */
 #define LEAST_NEAR_M 1e-6
 #define LEAST_HEIGHT_M 1e-5  /* smallest height of an orthographic picture */
 
@@ -231,7 +231,7 @@ static void depth_range(const struct camera *camera, const struct basis *basis, 
         *far_m = farthest + margin_m;
         return;
     }
-    *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M); /* the box is behind the camera: any range will do */
+    *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M); /* if the box is behind the camera, any range will do */
     *near_m = fmax(fmax(nearest * 0.999, *far_m * CAMERA_NEAR_TO_FAR), LEAST_NEAR_M);
     if (*near_m >= *far_m) /* a box without depth */
         *near_m = *far_m / 2;

@@ -9,7 +9,7 @@
 #include "base/mem.h"
 
 enum { MAX_INDICES = 3 * 1000 * 1000 };
-static const float WELD_PART = 1e-5f; /* relative to the asset's size: vertices nearer than this are welded */
+static const float WELD_PART = 1e-5f; /* welding distance of vertices, relative to the asset's size */
 
 struct edge_count {
     uint64_t ends; /* two vertices, the lower one in the upper half; 0: a free slot, since no edge joins a vertex to itself */
@@ -24,7 +24,7 @@ struct bodies {
     float apart_m;
     size_t table_mask, edge_mask;
     struct edge_count *edges;
-    uint8_t *open; /* by root: 1 if the body is open */
+    uint8_t *open; /* 1 if the body is open, by root */
 };
 
 static size_t power_above(size_t count)
@@ -85,7 +85,7 @@ static uint32_t find_place_near(const struct bodies *bodies, const float at[3], 
     }
     for (int k = 0; k < 8; k++) {
         int32_t cell[3];
-        bool again = false; /* the cell equals that of another k */
+        bool again = false; /* true if the cell was searched already for another k */
         for (int i = 0; i < 3; i++) {
             cell[i] = k >> i & 1 ? beside[i] : own[i];
             again |= (k >> i & 1) && beside[i] == own[i];

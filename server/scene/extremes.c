@@ -12,8 +12,9 @@
 enum { DIRECTIONS = 96 };
 /* Rules for recognising ground: it has no sensor, is low for its size, including lamps and kerbs, and covers most of the plant's area. */
 static const double GROUND_HEIGHT = 0.25, GROUND_PART = 0.8; /* height relative to its larger side; area relative to the plant's */
-static const double GROUND_LEAST_M = 5;                      /* its larger side: a smaller plate is part of the equipment */
-static const double LEVEL_ERROR = 0.005; /* relative to an asset's size; with coarser levels the view would crop the asset */
+static const double GROUND_LEAST_M = 5; /* smallest larger side of ground, metres: a smaller plate is part of the equipment */
+/* largest error of the level used, relative to an asset's size: with coarser levels the view would crop the asset */
+static const double LEVEL_ERROR = 0.005;
 
 static double area_of(const double min_m[3], const double max_m[3], int up)
 {
@@ -47,7 +48,7 @@ static void add_asset(const struct scene *scene, const struct scene_asset *asset
     const struct asset_view *view = &asset->file->view;
     const double *m = asset->placement;
     uint32_t count = level_vertices(asset);
-    char *held = NULL; /* for an asset partly outside the main part: per vertex, whether it is inside */
+    char *held = NULL; /* per vertex of an asset partly outside the main part: whether the vertex is inside */
     if (asset->stray) {
         held = mem_array(count, 1);
         for (uint32_t v = 0; v < count; v++) {
@@ -84,12 +85,12 @@ static void add_asset(const struct scene *scene, const struct scene_asset *asset
 void extremes_find(struct scene *scene)
 {
     double directions[DIRECTIONS][3], points[DIRECTIONS][3], most[DIRECTIONS];
-    for (int d = 0; d < DIRECTIONS; d++) { /* a spiral around the sphere, by the golden angle */
+    for (int d = 0; d < DIRECTIONS; d++) { /* directions on a spiral around the sphere, by the golden angle */
         double z = 1 - (2 * d + 1.0) / DIRECTIONS, turn = d * M_PI * (3 - sqrt(5)), flat = sqrt(1 - z * z);
         memcpy(directions[d], (double[]){ flat * cos(turn), flat * sin(turn), z }, sizeof(directions[d]));
         most[d] = -INFINITY;
     }
-    /* first without the ground, then with it, then also with assets hidden at start */
+    /* searches first without the ground, then with it, then also with assets hidden at start */
     for (int round = 0; round < 3 && !isfinite(most[0]); round++)
         for (size_t i = 0; i < scene->asset_count; i++)
             if (!scene->assets[i].missing && (round > 0 || !is_ground(scene, &scene->assets[i])) &&

@@ -7,7 +7,7 @@
 struct far_sensor {
     const struct scene_asset *asset;
     const struct scene_sensor *sensor;
-    double limit_m; /* 0.25 m or 5 % of the asset's size, whichever is less */
+    double limit_m; /* distance from the surface above which a sensor is far: 0.25 m or 5 % of the asset's size, whichever is less */
 };
 
 /* Returns the sensors beyond the limit, farthest first. Free with mem_free. */

@@ -55,7 +55,7 @@ struct raycast_search { /* search in one asset */
 
 struct surface_crossing {
     double t, u, v;
-    bool back; /* the ray leaves the body here */
+    bool back; /* true if the ray leaves the body here */
 };
 
 /* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. The determinant is negative for back faces. */
@@ -192,7 +192,7 @@ static bool hits_cap(const struct scene *scene, const struct visibility *visibil
                      struct raycast_hit *hit)
 {
     int bodies = 0;
-    if (!(low > ray->low)) /* the eye is in the uncut space */
+    if (!(low > ray->low)) /* no cap is met if the eye is in the uncut space */
         return false;
     for (size_t i = 0; i < scene->asset_count; i++) {
         const struct scene_asset *asset = &scene->assets[i];

@@ -14,11 +14,11 @@ struct ray {
 };
 
 struct raycast_hit {
-    int asset; /* -1: nothing hit; the other members are then unset */
+    int asset; /* asset that was hit; -1: none, and the other members are unset */
     double t;
     uint32_t corners[3]; /* vertex numbers in the asset file */
     double weights[3];   /* barycentric weights; sum 1; all 0 for a section plane */
-    bool inside;         /* the inner side of a cut surface, or a section plane */
+    bool inside;         /* true if the inner side of a cut surface, or a section plane, was hit */
     double normal[3];    /* unit vector in the plant frame, towards the ray's origin */
 };
 

@@ -19,15 +19,15 @@ struct scene_sensor {
 
 struct scene_asset {
     const struct plant_asset *plant;
-    struct asset *file;                      /* shared by all instances of the asset */
-    double placement[16];                    /* from file coordinates to the plant frame (includes origin_m), column-major */
+    struct asset *file;                      /* prepared file, shared by all instances of the asset */
+    double placement[16];                    /* matrix from file coordinates to the plant frame (includes origin_m), column-major */
     double bounds_min_m[3], bounds_max_m[3]; /* plant frame, axis-aligned */
-    struct scene_sensor *sensors;            /* of all groups, in the order of the tag list */
+    struct scene_sensor *sensors;            /* sensors of all groups, in the order of the tag list */
     size_t sensor_count;
-    bool stray;    /* some of it is far from the main part (scene/main_part.h) */
+    bool stray;    /* true if a piece of the asset is far from the main part (scene/main_part.h) */
     double stray_at_m[3], stray_away_m; /* farthest corner, and its distance to the main part; 0: none */
     char *missing; /* why it could not be prepared: it then has no sensors and is invisible; NULL: prepared */
-    int front;     /* where faces of two assets coincide, the one with the higher value is visible (scene/coincident.h) */
+    int front;     /* rank where faces of two assets coincide: the asset with the higher value is visible (scene/coincident.h) */
 };
 
 struct scene {
@@ -36,7 +36,7 @@ struct scene {
     struct scene_asset *assets; /* by index in plant->assets */
     size_t asset_count;
     double bounds_min_m[3], bounds_max_m[3]; /* of the main part: scene/main_part.h */
-    double whole_min_m[3], whole_max_m[3];   /* of everything; equal min and max: as the bounds */
+    double whole_min_m[3], whole_max_m[3];   /* box of everything; min equal to max: the same as the bounds */
     struct scene_outside {
         size_t triangles; /* outside the main part */
         int assets;       /* assets with such triangles */

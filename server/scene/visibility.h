@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which assets a view shows, which it ghosts, and what is cut away. Plain data. Thread: any. */
+/* Visibility of a view: which assets it shows or ghosts, and what is cut away. Plain data. Thread: any. */
 #ifndef SCENE_VISIBILITY_H
 #define SCENE_VISIBILITY_H
 #include <stdbool.h>
@@ -7,7 +7,7 @@
 
 enum { ASSET_SET_MAX = 4096, CLIP_MAX_PLANES = 6 };
 
-struct asset_set { /* by index in scene->assets; zero: empty */
+struct asset_set { /* set of assets, by index in scene->assets; zero: empty */
     uint64_t words[ASSET_SET_MAX / 64];
     int count;
 };

@@ -35,9 +35,10 @@ struct relocation {
     pthread_cond_t idle;
     /* --- below: under lock */
     enum relocation_state state;
-    struct surface *surface;            /* once warm, read without the lock */
-    struct vertex_embedding *embedding; /* once warm, read without the lock; NULL: the surface's vertices are the shape's */
-    struct relocation_ask *asks;        /* waiting or running requests, oldest first */
+    struct surface *surface; /* surface of the asset; once warm, read without the lock */
+    /* embedding of the shape's vertices; once warm, read without the lock. NULL: the surface's vertices are the shape's */
+    struct vertex_embedding *embedding;
+    struct relocation_ask *asks; /* waiting or running requests, oldest first */
     uint64_t last_ticket;
     size_t jobs; /* jobs submitted to the workers and not finished */
 };

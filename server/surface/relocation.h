@@ -19,12 +19,12 @@ struct relocation_shape {
     size_t vertex_count;
     const uint32_t *triangles; /* three vertex indices each */
     size_t triangle_count;
-    double tolerance_m; /* the plant file's tolerance, so that the same gaps are bridged; 0: chosen from the model */
+    double tolerance_m; /* tolerance for gaps, as in the plant file, so that the same gaps are bridged; 0: chosen from the model */
     /* The surface that plantcast-prep stored for the asset (surface_store.h). With it, distances equal those that plantcast-prep would
        store (except for a few vertices where coincident faces belong to two parts), and warm-up is faster. Without it the surface is built
        from the triangles: where parts are within the tolerance of each other, these have more vertices than the model, and so more bridges.
        Distances then differ by 0.03 % of the largest on average, by a few percent at single points. */
-    const char *surface_path; /* NULL: none; only read during relocation_create() */
+    const char *surface_path; /* path of the stored surface; NULL: none. Only read during relocation_create() */
     uint64_t surface_key;
 };
 /* Starts to build the asset's surface on a worker (seconds for a large asset, and a few hundred bytes per triangle); requests wait until it
@@ -45,8 +45,8 @@ enum relocation_state relocation_state(struct relocation *relocation);
 /* Position of a sensor on the asset. */
 struct relocation_place {
     double surface_m[3]; /* nearest point on the asset; once warm, only on surfaces not hidden inside another part */
-    double distance_m;   /* from the requested point to surface_m */
-    uint32_t vertex;     /* a near vertex; once warm the nearest one */
+    double distance_m;   /* distance from the requested point to surface_m, metres */
+    uint32_t vertex;     /* vertex near surface_m; once warm, the nearest one */
 };
 
 enum relocation_status {
@@ -59,7 +59,9 @@ struct relocation_result {
     enum relocation_status status;
     uint64_t ticket;
     struct relocation_place place;
-    float *geodesic_m; /* with RELOCATION_DONE: per vertex, INFINITY where no path exists; the receiver owns it (mem_free). Else NULL */
+    /* geodesic distance of each vertex, INFINITY where no path exists; set with RELOCATION_DONE, else NULL. The receiver owns it
+       (mem_free) */
+    float *geodesic_m;
 };
 
 /* Projects a point onto the asset into *place and, unless euclidean_m is NULL, writes the straight-line distance from there to each vertex.

@@ -18,7 +18,7 @@
 #include "surface/surface_impl.h"
 #include "surface/mesh/decimate.h"
 
-#define WELD_OF_SIZE 1e-6 /* relative size of the distance within which vertices are welded: floats are no finer */
+#define WELD_OF_SIZE 1e-6 /* welding distance of vertices relative to the model's size: float positions are no finer */
 #define TOLERANCE_OF_SIZE 5e-4
 #define SAMPLES 15000.0        /* points of an evenly sampled surface, besides the model's own */
 #define SPACING_GROWTH 1.25             /* growth of the spacing while there are too many points */

@@ -31,7 +31,7 @@ struct surface;
 struct surface_params { /* zero: chosen from the model */
     double tolerance_m; /* largest gap that is closed; a tolerance chosen by the program is smaller at thin parts (parts.h) */
     double spacing_m;   /* longest edge of the sampled surface */
-    char *why;          /* NULL, or SURFACE_WHY_BYTES that receive the reason where no surface can be built */
+    char *why;          /* buffer of SURFACE_WHY_BYTES that receives the reason if no surface can be built; NULL: the reason is logged */
 };
 #define SURFACE_WHY_BYTES 160
 
@@ -68,7 +68,7 @@ struct surface_debug_mesh {
     const double (*points_m)[3];
     const uint32_t (*tris)[3]; /* visible triangles first */
     size_t point_count, tri_count, visible_count;
-    const uint32_t *vertex_point; /* per model vertex: its point; all other points are samples */
+    const uint32_t *vertex_point; /* point of each model vertex; all other points are samples */
     size_t vertex_count;
     const struct crack_bridge *bridges; /* repair.h */
     size_t bridge_count;
@@ -80,7 +80,7 @@ void surface_debug_mesh(const struct surface *surface, struct surface_debug_mesh
 struct surface_place {
     double position_m[3]; /* nearest point on the surface */
     double distance_m;    /* from the requested point */
-    uint32_t vertex;      /* the model vertex nearest to position_m, in a straight line */
+    uint32_t vertex;      /* model vertex nearest to position_m, in a straight line */
 };
 /* Projects a point onto the surface, and finds the model vertex nearest to the projection. */
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place);
@@ -93,7 +93,7 @@ struct surface_point {
 /* Finds the surface point nearest to point_m. With `normal`, prefers a triangle that faces along it among those about equally near, so that
    the far side of a thin wall is not taken (NULL: no preference). */
 void surface_find_point(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_point *hit);
-/* Does the same within limit_m only. Returns false if there is no such point. */
+/* Finds the surface point nearest to point_m as surface_find_point() does, but only within limit_m. Returns false if there is none. */
 bool surface_find_point_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
                                struct surface_point *hit);
 /* Finds the nearest surface point within limit_m on either of two model triangles (which may be equal). Returns false if no visible one

@@ -10,7 +10,7 @@
 #include "surface/surface_impl.h"
 
 #define TIME_OF_SPACING 3.0 /* t in squared mean edge lengths */
-#define MAX_DECAY 500.0     /* the farthest point is at most this many sqrt(t) away, so that its heat does not underflow */
+#define MAX_DECAY 500.0     /* largest distance on the surface, in sqrt(t): t is chosen so that heat does not underflow */
 #define MAX_SOURCES 32      /* number of sources checked, spread evenly over all */
 #define BLOCK 8             /* right-hand sides solved together */
 

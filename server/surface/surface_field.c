@@ -15,8 +15,8 @@ struct solve {
     const struct surface_point *hits;
     size_t count;
     float *out;                            /* NULL, or distances [point][vertex] */
-    struct surface_field *field;           /* NULL, or the field to fill */
-    const struct surface_columns *columns; /* NULL, or the cache of columns */
+    struct surface_field *field;           /* field to fill; NULL: distances go to `out` */
+    const struct surface_columns *columns; /* cache of columns; NULL: none */
     atomic_bool failed;
 };
 
@@ -201,9 +201,9 @@ SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db
 {
     const float x = sight->x, y = sight->y;
     float sx = (da - db) * (da + db) * sight->per + sight->half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
-    float dx = x - sx, dy = y + sy, cut = sx * y + x * sy; /* where the source's ray crosses the edge, times dy */
+    float dx = x - sx, dy = y + sy, cut = sx * y + x * sy; /* cut: where the source's ray crosses the edge, times dy */
     float straight2 = dx * dx + dy * dy;
-    straight2 = cut >= 0 ? straight2 : INFINITY; /* false where da or db is INFINITY */
+    straight2 = cut >= 0 ? straight2 : INFINITY; /* the comparison is false where da or db is INFINITY */
     straight2 = cut <= sight->side * dy ? straight2 : INFINITY;
     return straight2 < best2 ? straight2 : best2;
 }

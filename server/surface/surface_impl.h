@@ -18,15 +18,15 @@ struct surface {
     size_t vertex_count;
     uint32_t *vertex_point; /* per model vertex */
     struct trimesh mesh;    /* welded, bridged, sampled; visible triangles first */
-    struct trimesh visible; /* the visible triangles only; its arrays are the mesh's */
-    /* per point, over visible triangles; NULL: the surface was read from a file, and the components were not needed yet */
+    struct trimesh visible; /* mesh of the visible triangles only; its arrays are those of `mesh` */
+    /* component of each point, over visible triangles; NULL: the surface was read from a file, and components were not needed yet */
     uint32_t *component;
     struct stray *strays; /* sorted by vertex */
     size_t stray_count;
     struct intrinsic intrinsic;
     struct propagation propagation;
     struct bvh *bvh;
-    uint32_t *plane;                /* per model triangle: the lowest of the coplanar triangles that it was merged with (decimate.h) */
+    uint32_t *plane; /* plane of each model triangle: the lowest of the coplanar triangles that it was merged with (decimate.h) */
     uint32_t *piece_first, *pieces; /* visible triangles grouped by the plane of their model triangle */
     double edge_m;                  /* mean edge length */
     struct surface_report report;

@@ -11,7 +11,7 @@
 #include "surface/surface_impl.h"
 
 #define GRAIN 512
-#define ON_SURFACE 1e-3 /* mean edges: a vertex nearer than this is on a face */
+#define ON_SURFACE 1e-3 /* distance in mean edges below which a vertex counts as on a face */
 
 struct anchor {
     uint32_t point; /* surface point; TRIMESH_NONE: attached at `hit` */
@@ -65,7 +65,7 @@ struct embedding_job {
     struct point_table table;
     const float (*positions_m)[3];
     double (*normals)[3]; /* not normalised */
-    char *is_off;         /* no triangle of the finest level has the vertex: it may be nearer to another side of a wall than to its own */
+    char *is_off;         /* 1 for vertices of coarser levels only: such a vertex may be nearer to another side of a wall than to its own */
 };
 
 static bool find_normals(struct embedding_job *job, const float (*normals)[3], const uint32_t *triangles, size_t triangle_count)

@@ -20,7 +20,7 @@ struct draw_batch_state {
     const struct gl_model *model;
     const struct pool_page *light, *field; /* GPU memory pages of light and scalars; field NULL: the asset has no data or no field */
     int front;                             /* as scene_asset.front */
-    int material;                          /* -1: the program does not use it */
+    int material;                          /* number of the material; -1: the program uses no material */
     int alone;                             /* index of an asset that must not share its batch; -1: may be shared */
     bool two_sided, mirrored, cut, blend;
 };
@@ -33,8 +33,8 @@ struct draw_command { /* for glMultiDrawElementsIndirect */
 
 struct draw_batch {
     struct draw_batch_state state;
-    size_t first, count; /* range in `sorted`, valid after draw_batches_upload() */
-    size_t older;        /* the batch made before this one for the same model; SIZE_MAX: none */
+    size_t first, count; /* range of the batch's commands in `sorted`, valid after draw_batches_upload() */
+    size_t older;        /* index of the previous batch of the same model; SIZE_MAX: none */
 };
 
 struct draw_batches { /* zero-initialise, then set log */
@@ -43,8 +43,8 @@ struct draw_batches { /* zero-initialise, then set log */
     size_t count, from; /* count: batches; from: draws may only join batches with this index or higher */
     struct draw_instance *instances;
     struct draw_command *commands, *sorted; /* commands: in the order added; sorted: by batch */
-    uint32_t *batch_of, *place_of;          /* per command in the order added: its batch; its index in `sorted` */
-    size_t *newest;                         /* per model: the batch made last */
+    uint32_t *batch_of, *place_of;          /* for each command in the order added: number of its batch, and its index in `sorted` */
+    size_t *newest;                         /* for each model: the batch made last */
     size_t instance_count, command_count;
     size_t capacity, instance_capacity, command_capacity, sorted_capacity, batch_of_capacity, place_capacity, newest_capacity;
     GLuint instance_buffer, command_buffer, place_buffer;

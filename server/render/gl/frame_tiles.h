@@ -12,7 +12,7 @@ struct frame_tiles {
     int *in_tile;                /* indices of the assets that the current tile shows */
 };
 struct tile {
-    int x_px, y_px, width_px, height_px; /* in pixels from the top left of the frame */
+    int x_px, y_px, width_px, height_px; /* rectangle in pixels, from the top left of the frame */
 };
 
 /* whole: one tile covers the frame. */

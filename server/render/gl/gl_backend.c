@@ -32,7 +32,7 @@ static const double INITIAL_PIXEL_NS[GL_PASSES] = { 200, 20 };
 struct gl_job {
     struct target target;
     struct frame_tiles tiles;
-    struct frame_in_flight *in_flight; /* set once the whole frame is submitted to the GPU; NULL: not yet */
+    struct frame_in_flight *in_flight; /* slot of the frame once it is submitted to the GPU as a whole; NULL: not yet */
     size_t drawn;                      /* number of assets of the current tile that are drawn, nearest first */
     bool short_of_memory;              /* the GPU ran out of memory while drawing, so the frame's content is undefined */
 };
@@ -158,7 +158,8 @@ static double draw_surfaces(struct renderer *renderer, struct render_job *job, c
     own->drawn = surface_pass_draw_some(pass, &context, first, triangles);
     *done = own->drawn == context.visible_count;
     if (*done) {
-        sky_draw(&renderer->sky, &context, &renderer->light); /* drawn before blended surfaces, through which it is visible */
+        /* the sky is drawn before blended surfaces, because it is visible through them */
+        sky_draw(&renderer->sky, &context, &renderer->light);
         surface_pass_draw_blended(pass, &context);
         target_resolve(&own->target, tile->x_px, tile->y_px, tile->width_px, tile->height_px);
     }
@@ -218,7 +219,7 @@ static bool step(struct renderer *renderer, struct render_job *job, int64_t budg
     int cells = count_cells(job);
     unsigned shortages = gl_out_of_memory_count();
     if (own->tiles.next < cells && !take_up(renderer, job))
-        own->tiles.next = cells; /* if taking up the job fails, end fails as well */
+        own->tiles.next = cells; /* end() fails as well if taking up the job failed */
     while (own->tiles.next < cells && (spent_ns == 0 || spent_ns + (last_ns > TILE_NS ? last_ns : TILE_NS) <= budget_ns)) {
         int64_t work_ns = clock_work_ns();
         struct drawn_tile drawn = draw_tile(renderer, job);

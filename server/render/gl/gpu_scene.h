@@ -13,8 +13,8 @@ struct gpu_scene {
     const struct scene *scene;
     struct gl_model *models;
     size_t model_count;
-    const struct gl_model **of_asset; /* by index in scene->assets: the asset's model */
-    double middle_m[3], radius_m;  /* a sphere that encloses the scene, in the plant frame */
+    const struct gl_model **of_asset; /* model of each asset, by index in scene->assets */
+    double middle_m[3], radius_m;  /* centre and radius of a sphere that encloses the scene, in the plant frame */
     double up[3];
     GLuint depth_programs[2][2]; /* [clip planes][alpha-masked textures] */
 };

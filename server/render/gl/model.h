@@ -30,8 +30,8 @@ struct model_level {
 };
 
 struct model_material {
-    GLuint maps[MODEL_MAPS]; /* 0: none; owned by the model's textures */
-    int mask;                /* bit per map that uses the second set of texture coordinates */
+    GLuint maps[MODEL_MAPS]; /* texture of each map, owned by the model; 0: none */
+    int mask;                /* bit per map that the material has */
     int second;              /* bit per map that uses the second set of texture coordinates */
     bool masked;             /* alpha of the base colour cuts holes (glTF alphaMode MASK) */
 };
@@ -45,7 +45,7 @@ struct gl_model {
     size_t level_count, material_count, texture_count;
     GLuint material_buffer;
     uint32_t *ramp_texels[MODEL_RAMPS]; /* MODEL_LIGHT_STEPS per material, from ramp_fill() */
-    GLuint ramps[MODEL_RAMPS];          /* the same as textures, one row per material */
+    GLuint ramps[MODEL_RAMPS];          /* textures of the ramps, one row per material */
 };
 
 struct model_draws { /* scratch memory for the draws of one submesh; zero-initialise */

@@ -12,7 +12,7 @@ struct occlusion_box { /* layout that shaders/occlusion.vert reads */
     /* first_place, place_count: range of the asset's draw commands (render/gl/draw_batches.h) */
     uint32_t first_place, place_count, unused[2];
 };
-struct occlusion_asset { /* one per visible asset, and one more as the end of the list */
+struct occlusion_asset { /* culling state of a visible asset; one more element ends the list */
     size_t boxes_before;
     bool tested;
     int triangles;

@@ -7,7 +7,7 @@
 #include "render/matrix.h"
 #include "render/gl/surface_pass.h"
 
-enum { MAX_SUPERSAMPLED_PIXELS = 4 * 1024 * 1024 }; /* above this size one texel per pixel is used */
+enum { MAX_SUPERSAMPLED_PIXELS = 4 * 1024 * 1024 }; /* largest frame that is supersampled; larger frames use one texel per pixel */
 
 bool section_caps_init(struct section_caps *caps, struct log *log)
 {

@@ -17,7 +17,7 @@ enum surface_variant {
     SURFACE_VARIANTS = 32
 };
 
-/* What a program outputs. All kinds but SURFACE_PICTURE are compiled when first needed. */
+/* Output of a program. All kinds but SURFACE_PICTURE are compiled when first needed. */
 enum surface_program_kind { SURFACE_PICTURE, SURFACE_PER_FRAGMENT, SURFACE_MEASURE, SURFACE_MEASURE_PER_FRAGMENT, SURFACE_KINDS };
 
 struct surface_pass {
@@ -35,8 +35,9 @@ bool surface_pass_init(struct surface_pass *pass, struct log *log);
 void surface_pass_finish(struct surface_pass *pass);
 /* Draws all visible assets, opaque ones first. */
 void surface_pass_draw(struct surface_pass *pass, const struct frame_context *context);
-/* Does the same in slices. surface_pass_draw_some() draws opaque submeshes of the visible assets from index `first` on until about
-   `triangles` triangles are drawn, and returns the index to go on with; surface_pass_draw_blended() then draws all transparent ones. */
+/* Draws the assets in slices. surface_pass_draw_some() draws opaque submeshes of the visible assets from index `first` on until about
+   `triangles` triangles are drawn, and returns the index at which to continue. surface_pass_draw_blended() then draws all transparent
+   ones. */
 size_t surface_pass_draw_some(struct surface_pass *pass, const struct frame_context *context, size_t first, int triangles);
 void surface_pass_draw_blended(struct surface_pass *pass, const struct frame_context *context);
 

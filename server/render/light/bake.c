@@ -14,7 +14,7 @@
 
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
 static const uint8_t ROUGH_OPENNESS = 190; /* openness (0..255) of every point in a rough set */
-static const double LARGE_FACE_TEXELS = 8; /* a face is large if an edge is this long, in texels of the sky's depth maps */
+static const double LARGE_FACE_TEXELS = 8; /* large faces have an edge of at least this length, in texels of the sky's depth maps */
 static const double SUN_MARGIN = 0.002;    /* empty border of the sun's map, as a fraction of its width: lookups reach beyond a point */
 /* lower bound of openness where the hidden assets are as large as the plant; less where they are smaller */
 static const double OPEN_AT_LEAST = 0.6;

@@ -19,12 +19,12 @@ struct light_key {
 struct light_set {
     uint64_t id; /* unique, never reused; 0: empty */
     struct light_key key;
-    double texture_from_plant[16]; /* to texture coordinates and depth of sun_map */
-    double texel_m, depth_m;       /* of sun_map: side of a texel, and range of depth */
+    double texture_from_plant[16]; /* matrix from the plant frame to texture coordinates and depth of sun_map */
+    double texel_m, depth_m;       /* side of a texel of sun_map, and range of its depths, metres */
     GLuint sun_map;
     GLuint ground; /* RG8: sun and openness of the ground */
     struct pool *pool;
-    struct pool_slice **baked; /* per asset, 4 bytes per vertex: light, ambient, openness, sun */
+    struct pool_slice **baked; /* baked light per asset, 4 bytes per vertex: light, ambient, openness, sun */
     size_t bytes;
     uint64_t used;
     int holds;

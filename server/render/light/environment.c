@@ -21,7 +21,7 @@ struct environment_source { /* an environment map: first equirectangular like it
     const float (*pixels)[4];
     int width, height;
     bool y_up, even; /* radiance depends on elevation only, as in the built-in sky */
-    double factor[3], most; /* most: limit of the brightest channel, before the factor */
+    double factor[3], most; /* factor: exposure and white balance; most: limit of the brightest channel before the factor */
     float (*pyramid[PYRAMID])[4];
 };
 
@@ -190,7 +190,7 @@ struct environment_job {
     struct environment_source *source;
     float (*out)[4];
     int side_px, layer;
-    const struct lobe *lobe; /* of the layer; NULL for the first layer, a perfect mirror */
+    const struct lobe *lobe; /* sample rays of the layer; NULL for the first layer, a perfect mirror */
 };
 
 /* Returns the one texel that is computed for all texels of equal light. An even sky repeats in the octahedral mapping: in eight equal

@@ -183,7 +183,7 @@ bool environments_wait(struct environments *environments, int number, int64_t ti
     if (!wait_done(slot->task, timeout_ns))
         return false;
     if (slot->task->good) {
-        slot->of = slot->task->environment; /* the worker no longer accesses the task */
+        slot->of = slot->task->environment; /* safe to take: the worker no longer accesses the task */
         slot->task->environment = (struct environment){ 0 };
     }
     if (slot->of.mirrored && !upload(environments, slot)) {

@@ -9,7 +9,7 @@
 #include "base/mem.h"
 
 static const size_t LIGHT_BYTES = 256 << 20;
-static const int64_t LOAD_TIMEOUT_NS = 60 * NS_PER_S; /* an environment map is loaded within this time */
+static const int64_t LOAD_TIMEOUT_NS = 60 * NS_PER_S; /* time limit for loading an environment map */
 
 static void find_ground(struct light *light)
 {
@@ -20,7 +20,7 @@ static void find_ground(struct light *light)
     for (int i = 0; i < 2; i++)
         side_m = fmax(side_m, scene->bounds_max_m[across[i]] - scene->bounds_min_m[across[i]]);
     side_m += 1.2 * gpu_scene->radius_m;
-    /* below the plant, so that no surface lies in the ground's plane */
+    /* the ground is slightly below the plant, so that no surface lies in its plane */
     light->ground_height_m = scene->bounds_min_m[up] - 0.001 * gpu_scene->radius_m;
     memset(light->plant_from_ground, 0, sizeof(light->plant_from_ground));
     for (int i = 0; i < 2; i++) {

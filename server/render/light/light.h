@@ -11,7 +11,7 @@ struct light {
     const struct gpu_scene *gpu_scene;
     struct environments *environments;
     struct bake_programs programs;
-    double plant_from_ground[16]; /* from the ground's texture coordinates and the height above the ground */
+    double plant_from_ground[16]; /* matrix from the ground's texture coordinates and the height above the ground to the plant frame */
     double ground_height_m;       /* along `up` */
     size_t bound_bytes, bytes;    /* limit and sum over all sets; a held set is never dropped */
     struct light_set sets[LIGHT_SETS];

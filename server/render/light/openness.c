@@ -4,7 +4,7 @@
 #include "render/light/openness.h"
 
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* the hash state is on the stack */
+#define XXH_STATIC_LINKING_ONLY /* lets XXH3 keep its hash state on the stack */
 #include <xxhash.h>
 
 #include "base/mem.h"

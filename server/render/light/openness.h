@@ -23,7 +23,7 @@ bool openness_upload(struct openness *openness, const struct gpu_scene *gpu_scen
 /* Uploads the ground's openness into the second byte of each texel. */
 void openness_upload_ground(const struct openness *openness, GLuint ground);
 
-struct openness_writer; /* a file being written by a thread of its own */
+struct openness_writer; /* writes the openness file in a thread of its own */
 /* Starts to write the plant's file. slices: baked vertices, one per asset; ground: its texture; both are read during the call. A failure to
    write is logged later. Returns NULL if the plant has no folder, or no thread could be started. */
 struct openness_writer *openness_write(const struct gpu_scene *gpu_scene, struct pool_slice *const *slices, GLuint ground);

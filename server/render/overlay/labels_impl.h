@@ -6,10 +6,10 @@
 
 #define LABEL_CLEARANCE 3.0 /* free space, in units, around a label that was not in the previous frame */
 
-enum label_over { /* what a label may cover; also the kind of an occupied box */
+enum label_over { /* kinds of boxes that a label may cover; also the kind of an occupied box */
                   OVER_NOTHING,
                   OVER_MARKS, /* markers without an alarm ring */
-                  OVER_RINGS, /* also markers with an alarm ring */
+                  OVER_RINGS, /* markers with and without an alarm ring */
                   OVER_ALL
 };
 

@@ -31,7 +31,7 @@ struct rings {
     struct label_layout *layout;
     const int *order;
     size_t count, group_count;
-    double least; /* one unit, or more where many rings are close together */
+    double least; /* factor on the distances: one unit, or more where many rings are close together */
     struct ring_group *groups;
     int *group_of;          /* by index in `order` */
     int *members;           /* members of all groups, group after group */
@@ -111,7 +111,8 @@ static void measure(struct rings *rings, struct ring_group *group)
         right = fmax(right, item->x);
         top = fmin(top, item->y);
         bottom = fmax(bottom, item->y);
-        if ((item->callout == LABEL_NONE) == (group->count == 1)) /* only a slot of the same kind of label, single or call-out */
+        /* the held slot only counts if the label was of the same kind, single or call-out */
+        if ((item->callout == LABEL_NONE) == (group->count == 1))
             group->item.held = item->held;
     }
     if (group->count > 1)
@@ -188,7 +189,7 @@ static int find_slot(const struct rings *rings, const struct ring_group *group)
     for (int i = 0; i < 2 * LABEL_SLOTS; i++)
         if (is_free(rings, group, i % LABEL_SLOTS, clearance, i < LABEL_SLOTS ? OVER_NOTHING : OVER_MARKS))
             return i % LABEL_SLOTS;
-    for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++) /* as a last resort over the group's own rings */
+    for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++) /* as a last resort the label may cover its own rings */
         for (int i = 0; i < OFFSETS && (alone || rings->offsets[i].squared <= MAX_DISTANCE * MAX_DISTANCE); i++)
             if (is_free(rings, group, LABEL_SLOTS + i, clearance, (enum label_over)over))
                 return LABEL_SLOTS + i;

@@ -115,7 +115,7 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
         legend->rows[legend->row_count++] = ROW_UNPROVEN;
     if (shows_assumed(pen))
         legend->rows[legend->row_count++] = ROW_ASSUMED;
-    if (overlay_has_arrows(pen)) { /* the length of a stroke has no meaning */
+    if (overlay_has_arrows(pen)) { /* strokes are not explained, since their length has no meaning */
         if (view->directions == DIRECTIONS_ARROWS)
             legend->rows[legend->row_count++] = ROW_ARROW;
         if (shows_unknown_direction(pen))

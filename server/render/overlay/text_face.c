@@ -26,7 +26,7 @@ static FcCharSet *letters_beyond(const char *text)
     FcChar32 letter;
     for (int count = (int)strlen(text), n; count > 0 && (n = FcUtf8ToUcs4(at, &letter, count)) > 0; at += n, count -= n) {
         FcCharSetAddChar(letters, letter);
-        beyond |= letter >= FIRST_UNCOVERED && !(letter >= 0x2000 && letter < 0x2c00); /* but not punctuation, arrows and symbols */
+        beyond |= letter >= FIRST_UNCOVERED && !(letter >= 0x2000 && letter < 0x2c00); /* punctuation, arrows and symbols do not count */
     }
     if (beyond)
         return letters;

@@ -6,8 +6,8 @@
 #include "field/directions.h"
 #include "render/plan/fields.h"
 
-struct arrow_set { /* of one asset; zero-initialise, free with arrows_finish() */
-    struct direction_place *places; /* any prefix of the list is evenly spread */
+struct arrow_set { /* arrows of one asset; zero-initialise, free with arrows_finish() */
+    struct direction_place *places; /* positions, ordered so that any prefix of the list is evenly spread */
     struct direction *found;
     size_t count;
     double spacing_m; /* approximate distance between neighbours if all are drawn */
@@ -22,11 +22,11 @@ size_t arrows_vertex_count(const struct scene_asset *asset);
 void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, const struct fields_entry *field);
 /* Returns the field's value at a position, in the field's unit; NaN where there is no data. */
 double arrows_value(const struct arrow_set *set, size_t place, const struct fields_entry *field);
-/* Does the same for any position of the asset's file. */
+/* Returns the field's value at any position of the asset's file; NaN where there is no data. */
 double arrows_value_at(const struct direction_place *at, const struct fields_entry *field);
 /* Writes a position and the arrow's direction there, in the plant frame. */
 void arrows_place(const struct arrow_set *set, size_t place, const struct scene_asset *asset, double place_m[3], double along[3]);
-/* Does the same for any position and direction of the asset's file. */
+/* Transforms any position and direction of the asset's file to the plant frame. */
 void arrows_place_at(const struct direction_place *at, const struct direction *to, const struct scene_asset *asset, double place_m[3],
                      double along[3]);
 void arrows_finish(struct arrow_set *set);

@@ -203,7 +203,8 @@ static void collect_arrows(struct isolines *isolines, const struct frame_context
     const struct scene *scene = context->gpu_scene->scene;
     const size_t most = out->count + 2 * MAX_POINTS;
     size_t longest = 0;
-    if (!isolines_has_arrows(scene, context->view)) /* in a trial, fields that it does not change still have old directions */
+    /* during a trial, fields of assets that the trial does not change still have old directions */
+    if (!isolines_has_arrows(scene, context->view))
         return;
     for (size_t i = 0; i < context->visible_count; i++) {
         int asset = context->visible[i];

@@ -24,12 +24,12 @@ struct isoline_set { /* points of one asset */
 };
 
 struct isolines {
-    struct isoline_set *sets; /* the three arrays are indexed by asset */
+    struct isoline_set *sets; /* isoline points per asset; `arrows` and `strokes` are indexed by asset, too */
     struct arrow_set *arrows;
     struct stroke_set *strokes;
     size_t asset_count;
 };
-struct isoline_points { /* the points of one frame; zero-initialise, free `at` with mem_free() */
+struct isoline_points { /* isoline points of one frame; zero-initialise, free `at` with mem_free() */
     struct isoline_point *at;
     size_t count, capacity;
     uint16_t stroke_count;

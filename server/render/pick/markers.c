@@ -156,7 +156,8 @@ void markers_measure(const struct frame_context *context, struct frame *frame)
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame)
 {
     size_t count = count_shown(context);
-    if (count > 0 && count <= queries->capacity) /* a trial may have ended since the test was started */
+    /* the number of markers may have changed: a trial may have ended since the test was started */
+    if (count > 0 && count <= queries->capacity)
         emit_markers(context, queries->places, count, frame);
 }
 

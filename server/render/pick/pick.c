@@ -11,8 +11,8 @@
 #include "scene/raycast.h"
 #include "value/quality.h"
 
-static const double MARKER_PX = 9;                       /* a marker within this distance is picked */
-static const double MEASURED_PX = 3, MEASURED_M = 0.005; /* within these distances of a sensor, the value counts as measured */
+static const double MARKER_PX = 9;                       /* pixels around a click within which a marker is picked */
+static const double MEASURED_PX = 3, MEASURED_M = 0.005; /* distances from a sensor within which the picked value counts as measured */
 
 struct pick_spot { /* state of one pick */
     const struct scene *scene;
@@ -78,7 +78,7 @@ static void find_sensor(const struct pick_spot *spot, const struct trial *trial,
     struct marker_place place;
     struct lens lens;
     double near_px = MARKER_PX * (spot->view->pixel_ratio > 0 ? spot->view->pixel_ratio : 1);
-    double least[2] = { near_px, near_px }; /* smallest distance to a visible marker, and to a hidden one */
+    double least[2] = { near_px, near_px }; /* smallest distances in pixels so far: to a visible marker, and to a hidden one */
     lens_init(&lens, spot->view);
     while (marker_next(&iterator, &place)) {
         double x, y;

@@ -15,23 +15,23 @@ enum pick_state {
 enum { PICK_NEAREST = 4 };
 
 struct pick {
-    int asset; /* -1: no asset; then only `sensor` and the times are set below */
+    int asset; /* asset at the pixel; -1: none, and only `sensor` and the times are set below */
     double position_m[3], normal[3];
     enum pick_state state;
     bool uncertain, inside;
-    /* set for PICK_BETWEEN and PICK_MEASURED, in the view's unit. SHOW_OPERATOR: the reading, not its position between limits */
+    /* field value for PICK_BETWEEN and PICK_MEASURED, in the view's unit. SHOW_OPERATOR: the reading, not its position between limits */
     double value;
     double drawn_error; /* error bound of frames around this point, in the same unit, where they mark it uncertain; 0: they do not */
     int nearest_count;
     struct pick_sensor {
         int tag;
-        double distance_m; /* in the view's kind of distance */
+        double distance_m; /* metres, in the view's kind of distance (straight or geodesic) */
         double value;
         uint32_t quality;
     } nearest[PICK_NEAREST]; /* sensors that contribute there, nearest first */
     int sensor;              /* tag whose marker is at the pixel, a visible one if there is any; -1: none */
     bool sensor_occluded;
-    bool assumed; /* the sensor's position on its asset is unknown, so its reading is used for the whole asset */
+    bool assumed; /* true if the sensor's position on its asset is unknown, so that its reading is used for the whole asset */
     int64_t data_utc_ns;
 };
 

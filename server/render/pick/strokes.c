@@ -13,7 +13,7 @@
 #define STROKE_NONE UINT32_MAX
 enum { MAX_CROSSINGS = 64 };          /* edges crossed within one step */
 static const double STEP_PART = 0.35; /* step length, relative to the distance between arrows */
-/* a direction that turns by more than 120 degrees in one step belongs to a vortex too small to follow */
+/* smallest cosine between directions of consecutive steps (120 degrees): a faster turn is a vortex too small to follow */
 static const double MIN_DOT = -0.5;
 
 /* --- neighbours ------------------------------------------------------------------------------------------------------------- */
@@ -176,7 +176,7 @@ static struct direction midway(const struct stroke_point *last, const struct dir
         from[c] = (double)half->normal[c];
         to[c] = (double)last->place.normal[c];
     }
-    if (vec_dot(from, to) > 0) /* otherwise the triangles are wound inconsistently */
+    if (vec_dot(from, to) > 0) /* if not, the triangles are wound inconsistently */
         vec_turn(v, from, to);
     for (int c = 0; c < 3; c++)
         out.along[c] = (float)v[c];

@@ -67,7 +67,7 @@ static void add_colors(XXH3_state_t *state, const struct view *view)
 {
     double numbers[] = { view->colormap, view->ramp_interval, view->range_min, view->range_max };
     add(state, numbers, sizeof(numbers));
-    /* the instant: the frame carries its time, so equal pixels of two instants are two frames */
+    /* the instant is hashed because a frame carries its time: equal pixels at two instants are two frames */
     add(state, &view->at_us, sizeof(view->at_us));
     add_field_params(state, &view->field);
     add_color_scale(state, &view->color_scale);

@@ -11,7 +11,7 @@
 #include "gpu/gl.h"
 #include "gpu/pool.h"
 
-struct fields_entry { /* an entry without a slice could not be computed or kept, and is drawn as no data */
+struct fields_entry { /* field of one asset; without a slice it could not be computed or kept, and is drawn as no data */
     int asset;
     struct field_params params;
     double step;            /* smallest value step that can be seen (scale_step) */
@@ -22,7 +22,7 @@ struct fields_entry { /* an entry without a slice could not be computed or kept,
     struct scalar *shown;
     size_t count, ready; /* vertices of the file; ready: how many of them, from the first, are shown */
     struct pool_slice *slice;
-    bool uploaded;  /* true: the slice holds the shown values */
+    bool uploaded;  /* true if the slice on the GPU holds the shown values */
     GLuint sensors; /* buffer of sensors for shaders that compute the field at each fragment (render/reference/reference.h); 0: none */
     int64_t oldest_age_ns;
     double drawn_error; /* error bound of the scalars (field/scalars.h) */
@@ -49,7 +49,7 @@ void fields_init(struct fields *fields, struct log *log, struct field *field);
 void fields_finish(struct fields *fields);
 struct fields_ask {
     const int *assets;    /* indices, without duplicates */
-    const size_t *counts; /* by index in `assets`: the minimum number of vertices, from the first, that must be ready */
+    const size_t *counts; /* minimum number of vertices, from the first, that must be ready, by index in `assets` */
     size_t asset_count;
     const struct field_params *params;
     double step;

@@ -14,7 +14,7 @@ struct reference_model { /* buffers of one asset file */
 struct reference {
     const struct gpu_scene *gpu_scene;
     struct field *field;
-    struct reference_model *models; /* indexed as gpu_scene->models; zero: not made yet */
+    struct reference_model *models; /* buffers per model, indexed as gpu_scene->models; zero: not made yet */
 };
 
 void reference_init(struct reference *reference, const struct gpu_scene *gpu_scene, struct field *field);
@@ -24,6 +24,6 @@ void reference_finish(struct reference *reference); /* a zeroed struct is fine *
 GLuint reference_sensors(const struct reference *reference, int asset, const struct field_params *params);
 /* Binds the buffers for the next draws of that asset. Returns false when out of GPU memory, logged. */
 bool reference_bind(struct reference *reference, int asset, GLuint sensors);
-void reference_draw(const struct draw_command *commands, size_t count); /* the current program must be compiled with PER_FRAGMENT */
+void reference_draw(const struct draw_command *commands, size_t count); /* draws; the current program must be compiled with PER_FRAGMENT */
 
 #endif

@@ -84,7 +84,7 @@ bool soft_parts_close(struct soft_parts *parts, const struct asset_view *file, c
     }
     for (size_t r = 0; r < closed->run_count; r++)
         for (uint32_t i = 0; i < closed->runs[r].index_count; i++)
-            of_file[file->indices[closed->runs[r].first_index + i]] = 1; /* no vertex belongs to two bodies */
+            of_file[file->indices[closed->runs[r].first_index + i]] = 1; /* a plain flag suffices because no vertex belongs to two bodies */
     parts->closed = mem_try_array(parts->vertex_count, 1);
     for (size_t i = 0; i < parts->vertex_count && parts->closed; i++)
         parts->closed[i] = of_file[parts->vertices[i]];

@@ -8,8 +8,8 @@
 #include "render/soft/lanes.h"
 
 struct raster_edge {
-    float x, y, dx, dy; /* from the upper end to the lower one */
-    int32_t negative;   /* -1: negative values of the edge function are inside; 0: the others are */
+    float x, y, dx, dy; /* upper end of the edge, and vector to its lower end */
+    int32_t negative;   /* sign of the inside: -1: negative values of the edge function are inside; 0: non-negative ones */
 };
 
 struct plane { /* a value interpolated linearly over the frame; low, high: the smallest and largest of its corners */

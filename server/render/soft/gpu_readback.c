@@ -65,7 +65,7 @@ static uint32_t fill_sun_tile(const struct sun_band *band, int u, int v, uint16_
                 out[x] = row[u + x < last_u ? u + x : last_u];
     }
     if (memcmp(texels, nothing, sizeof(texels)) == 0)
-        return 0; /* an empty tile: both bounds are 0 */
+        return 0; /* an empty tile stays unwritten, and both of its bounds are 0 */
     memcpy(to, texels, sizeof(texels));
     return soft_sun_bounds(texels);
 }

@@ -29,7 +29,7 @@ struct soft_kernels {
     /* Shades surfaces that show the field, and stores in `out` triangle, weights and colour map row of each. */
     void (*shade_field)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
-    /* Does the same in the glossy look, and fills out->gloss. */
+    /* Shades surfaces of the field in the glossy look: as shade_field, and fills out->gloss. */
     void (*shade_gloss)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
     /* Shades all other surfaces. alphas may be NULL. */

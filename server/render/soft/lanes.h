@@ -23,7 +23,7 @@ typedef uint8_t lanes_bytes __attribute__((vector_size(8)));
 typedef int64_t lanes_pair __attribute__((vector_size(16)));
 
 #ifdef __AVX512VL__
-#define LANES_CHOOSE_AT_ONCE 1 /* the choice takes a single instruction */
+#define LANES_CHOOSE_AT_ONCE 1 /* lanes_choose() compiles to a single instruction */
 #else
 #define LANES_CHOOSE_AT_ONCE 0
 #endif
@@ -42,7 +42,7 @@ SOFT_INLINE lanes lanes_choose(lanes_int mask, lanes a, lanes b)
     return (lanes)lanes_choose_int(mask, (lanes_int)a, (lanes_int)b);
 }
 
-/* a < b ? a : b */
+/* Returns the smaller of a and b in each lane: a < b ? a : b. */
 SOFT_INLINE lanes lanes_least(lanes a, lanes b)
 {
 #ifdef __AVX2__
@@ -52,7 +52,7 @@ SOFT_INLINE lanes lanes_least(lanes a, lanes b)
 #endif
 }
 
-/* a > b ? a : b */
+/* Returns the larger of a and b in each lane: a > b ? a : b. */
 SOFT_INLINE lanes lanes_most(lanes a, lanes b)
 {
 #ifdef __AVX2__

@@ -107,7 +107,7 @@ SOFT_INLINE lanes sun_look(const struct soft_light *light, const struct sun_aim 
     return lanes_choose(aim->open, sun_compare(light, aim, aim->at & aim->open), aim->lit);
 }
 
-/* Does the whole lookup at once without bounds. Refined frames use this: their four neighbouring lookups per point do not gain from
+/* Looks up a shadow at once, without tile bounds. Refined frames use this: their four neighbouring lookups per point do not gain from
    bounds. */
 SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lanes depth)
 {
@@ -119,7 +119,7 @@ SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lane
 /* Elevations over the horizon as columns of the backdrop table, interpolated linearly between the ends of a stretch of raster->stretch_px
    pixels (choose_stretch bounds the error). */
 struct heights {
-    float first, step; /* at the centre of the first pixel; per pixel */
+    float first, step; /* elevation at the centre of the first pixel, and its change per pixel */
 };
 
 static float height_at(const struct raster *raster, float x, float y)

@@ -11,7 +11,7 @@
 struct parts_maker {
     struct soft_parts *parts;
     const struct asset_view *file;
-    uint32_t *seen; /* per vertex of the file: number of the last part that used it, from 1 */
+    uint32_t *seen; /* number (from 1) of the last part that used each vertex of the file */
     uint8_t *number;
     uint8_t corners[3][PART_TRIANGLES];
 };

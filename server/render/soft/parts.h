@@ -16,7 +16,7 @@ struct soft_part {
     uint16_t rounded; /* triangle_count rounded up to whole lanes; the triangles added have no area */
     uint16_t material;
     bool double_sided;
-    bool blended; /* its material is blended, where no field is shown */
+    bool blended; /* the part's material is blended, unless the part shows a field */
 };
 
 struct soft_parts {
@@ -25,7 +25,7 @@ struct soft_parts {
     float *places_m;    /* positions of `vertices`, three floats each; per part all x, then all y, then all z */
     uint8_t *corners;   /* local vertex numbers within the part */
     float *planes;      /* planes of triangles, four floats each; per part all normals' x, y, z, then all distances */
-    uint8_t *closed;    /* by index in `vertices`: 1 if the vertex belongs to a closed body. NULL: not computed yet */
+    uint8_t *closed;    /* 1 for vertices of a closed body, by index in `vertices`. NULL: not computed yet */
     bool blended;       /* at least one part is blended */
     size_t part_count, vertex_count, corner_count;
     size_t part_capacity, vertex_capacity, place_capacity, corner_capacity, plane_capacity;

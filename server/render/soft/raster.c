@@ -19,13 +19,13 @@ SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_sample 
 /* --- any face --------------------------------------------------------------------------------------------------------------- */
 
 struct setup {
-    float x, y; /* the first corner, origin of the planes */
+    float x, y; /* position of the first corner, the origin of all planes below */
     struct raster_edge edges[3];
     struct plane depth, a, b, inverse_w;
-    struct plane no_data, uncertain, no_limits; /* set where flags are; as struct near_patterns */
+    struct plane no_data, uncertain, no_limits; /* planes of the pattern flags as in struct near_patterns, set if the face has flags */
     uint32_t mark, flags;
     bool flat; /* perspective is negligible */
-    bool thin; /* so thin that rounding may leave the range of the corners' values */
+    bool thin; /* the face is so thin that rounding may leave the range of its corners' values */
 };
 
 SOFT_INLINE struct soft_vertex vertex_of(const struct soft_corners *corners, int i)
@@ -34,7 +34,7 @@ SOFT_INLINE struct soft_vertex vertex_of(const struct soft_corners *corners, int
                                  corners->a[i], corners->b[i], corners->flags[i] };
 }
 
-/* part: value at each corner, 0..1. */
+/* Makes the plane of a pattern's value over the face. part: value at each corner, 0..1. */
 SOFT_INLINE struct plane part_plane(const struct slopes *slopes, const struct soft_vertex v[3], const float part[3], bool flat)
 {
     float at[3];
@@ -157,7 +157,7 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sampl
                            const struct setup *setup, const struct soft_cutout *cutout, const struct mark_ink *ink)
 {
     bool wide = face->right - face->left >= 2 * LANES;
-    int last = tile->rect.right + 1 - LANES; /* outside the tile another thread draws */
+    int last = tile->rect.right + 1 - LANES; /* last column of a stamp: outside the tile another thread draws */
     for (int row = face->top; row <= face->bottom; row++) {
         size_t start = place_in(tile, tile->rect.left, row);
         float y = (float)row + 0.5f + sample->y, from_y = y - setup->y, sides[3];

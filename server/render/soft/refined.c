@@ -109,7 +109,8 @@ static bool take_up(struct refined *refined, const struct frame_context *context
     raster_aim_cuts(raster);
     raster->out = frame->bgrx;
     raster->out_stride_bytes = (size_t)frame->stride_bytes;
-    if (refined->step > REFINED_FIND && refined->step < REFINED_INK) /* the meshes of the section caps are gone by then */
+    /* sets the light of meshes again: later steps have other meshes, those of the section caps are gone */
+    if (refined->step > REFINED_FIND && refined->step < REFINED_INK)
         for (size_t m = 0; m < raster->mesh_count; m++)
             raster->meshes[m].baked = (const uint8_t(*)[4])raster->light->baked[raster->meshes[m].asset];
     return true;

@@ -35,9 +35,9 @@ struct refined {
     } step;
     size_t at; /* work done within the step */
     bool failed;
-    float (*normals)[9]; /* per mesh: matrix that turns normals from file to plant, columns */
+    float (*normals)[9]; /* matrix per mesh that turns normals from file to plant, columns */
     size_t mesh_capacity;
-    uint8_t *caps; /* one bit per sample, rows of pitch_px: the sample shows a section cap. NULL: nothing is cut */
+    uint8_t *caps; /* section caps: one bit per sample, rows of pitch_px. NULL: nothing is cut */
     struct visibility_buffer *buffer;
     /* --- of the picture, worked out anew at each step */
     const struct frame_context *context;
@@ -49,8 +49,8 @@ struct refined {
 
 struct refined_item { /* one surface within a pixel */
     struct soft_triangle triangle;
-    float x, y;     /* where it is shaded, in pixels of the frame */
-    uint16_t share; /* its part of the pixel, of VISIBILITY_SHARES */
+    float x, y;     /* point of the frame, in pixels, where the surface is shaded */
+    uint16_t share; /* the surface's part of the pixel, of VISIBILITY_SHARES */
 };
 
 struct shaded_items { /* results per item that shows the field */

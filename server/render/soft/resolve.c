@@ -29,7 +29,7 @@ static uint32_t mix(uint32_t a, uint32_t b, float part)
     return out;
 }
 
-/* As hatch() and stipple() in shaders/field.glsl; the result exceeds 0.5 in dark stripes and dots. */
+/* Coverage by the dark stripes (hatch) and dots (stipple) of shaders/field.glsl; exceeds 0.5 inside. */
 static float hatch(float x, float y, float pattern_px)
 {
     float phase = (x + y) / (pattern_px * (float)HATCH_SLANT);
@@ -169,7 +169,7 @@ SOFT_INLINE lanes carried_by(const struct visibility_band *band, lanes_int trian
     return of[0] + w1 * of[1] + w2 * of[2];
 }
 
-/* Does what column_of() does, for eight values on a logarithmic scale. */
+/* Converts eight values on a logarithmic scale to colour map columns, as column_of() does for one. */
 SOFT_INLINE lanes columns_of_logs(lanes values, const float *scale)
 {
     return (lanes_log2(values) - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE);

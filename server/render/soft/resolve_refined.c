@@ -30,8 +30,8 @@ struct refined_row { /* a row of pixels; item arrays hold SAMPLES per pixel */
     struct refined_item *field, *surfaces;
     int *field_columns, *surface_columns; /* column of the item's pixel, if the pixel shows nothing else; -1: a mixed pixel */
     struct mixed *mixed;
-    uint8_t *sky;  /* per pixel: 1 if some of the sky is visible */
-    uint8_t *caps; /* per pixel: 1 if all samples show a section cap */
+    uint8_t *sky;  /* 1 for pixels that show some of the sky */
+    uint8_t *caps; /* 1 for pixels whose samples all show a section cap */
     size_t field_count, surface_count, mixed_count;
     bool any_sky, any_cap;
     uint32_t *triangles, *weights, *colors, *sky_colors;
@@ -127,7 +127,7 @@ static int group_samples(struct recent *recent, const struct soft_sample samples
 
 struct layers {                      /* blended triangles of a band */
     struct soft_fragments fragments; /* sorted by pixel, nearest first */
-    struct refined_item *items;      /* per layer: one triangle in one pixel */
+    struct refined_item *items;      /* items of blended triangles, one per triangle and pixel */
     uint32_t *colors;
     float *alphas;
     size_t count, item_capacity, color_capacity, alpha_capacity;
@@ -219,7 +219,7 @@ static void add_item(const struct refined *refined, struct refined_row *row, con
     }
 }
 
-/* first, end: range of the blended fragments over this pixel. */
+/* Adds a pixel with several surfaces to the row. first, end: range of the blended fragments over this pixel. */
 static void add_mixed(struct recent *recent, struct refined_row *row, const struct soft_sample samples[SAMPLES], size_t at, int column,
                       int y, const struct layers *layers, size_t first, size_t end)
 {

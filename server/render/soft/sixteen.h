@@ -94,7 +94,7 @@ SOFT_INLINE sixteen_int many_within(sixteen x, int32_t high)
     return (sixteen_int)_mm512_min_epi32(whole, _mm512_set1_epi32(high));
 }
 
-/* Does for 16 pixels what draw_stamp() does for eight. */
+/* Draws a stamp of 16 pixels, as draw_stamp() draws one of eight. */
 SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                            const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, int width,
                            bool thin)

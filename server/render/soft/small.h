@@ -28,7 +28,7 @@ SOFT_INLINE bool is_plain(const struct soft_corners *corners, const struct soft_
 
 struct small { /* eight faces; each row of lanes is one number of each */
     lanes x, y;
-    lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3]; /* as struct raster_edge; edge_row: dy times x */
+    lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3]; /* edge functions as in struct raster_edge; edge_row: dy times x */
     lanes_int negative[3];
     lanes at[3], dx[3], dy[3], low[3], high[3]; /* depth, a and b as planes */
     lanes_int thin;
@@ -147,7 +147,7 @@ SOFT_INLINE size_t place_in(const struct soft_tile *tile, int column, int row)
     return (size_t)(row - tile->rect.top) * (size_t)tile->pitch_px + (size_t)(column - tile->rect.left);
 }
 
-/* left, top: of the stamp, in the frame. two, thin: compile-time constants. */
+/* Draws one stamp of eight pixels. left, top: of the stamp, in the frame. two, thin: compile-time constants. */
 SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                             const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, bool two,
                             bool thin)
@@ -200,8 +200,8 @@ SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_samp
 }
 
 struct kinds {          /* sizes of eight faces, one bit each */
-    uint32_t one, four; /* one: at most 4 wide and 2 high; four: else, at most 4 wide and 4 high */
-    uint32_t two, low;  /* two: else, fewer stamps of two rows than of one cover the face; low: else, one pixel high */
+    uint32_t one, four; /* bits of faces: one: at most 4 wide and 2 high; four: else, at most 4 wide and 4 high */
+    uint32_t two, low;  /* bits of faces: two: else, fewer stamps of two rows than of one cover the face; low: else, one pixel high */
 };
 
 SOFT_INLINE struct kinds kinds_of(const struct soft_tile *tile, const struct eight_faces *eight, int count)

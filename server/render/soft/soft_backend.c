@@ -8,7 +8,7 @@
 #include "render/soft/soft.h"
 
 struct soft_job {
-    struct refined *refined; /* NULL: a preview, or a recoloured frame */
+    struct refined *refined; /* state of a refined frame; NULL: a preview, or a recoloured frame */
 };
 
 static bool init(struct renderer *renderer)
@@ -68,7 +68,7 @@ static bool step(struct renderer *renderer, struct render_job *job, int64_t budg
 {
     struct refined *refined = job->of.soft->refined;
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
-    bool done = !refined || !take_up(renderer, job); /* if take_up fails, end fails as well */
+    bool done = !refined || !take_up(renderer, job); /* end() fails as well if take_up() failed */
     while (!done && spent_ns + 2 * last_ns <= budget_ns) {
         done = refined_step(refined, &job->context, &renderer->light, job->frame);
         last_ns = clock_mono_ns() - start_ns - spent_ns;

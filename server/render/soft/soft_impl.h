@@ -27,7 +27,7 @@ enum { MOST_RAMPS = 1 << 14 };
 
 struct soft_vertex {
     float x, y, depth; /* pixels from the top left; depth 1 near, 0 far */
-    float inverse_w;   /* 0: in front of the near plane or beyond the guard band (clip.h) */
+    float inverse_w;   /* 1/w; 0: the vertex is in front of the near plane or beyond the guard band (clip.h) */
     float a, b;        /* field: column and row of the colour map (logarithmic scale: value and row); context: ambient light, sunlight */
     uint32_t flags;    /* from soft_flags() */
 };
@@ -36,16 +36,17 @@ struct soft_mesh { /* one asset in this frame */
     int asset;
     const struct asset_view *file;
     bool has_field;
-    const struct scalar *scalars; /* NULL: an asset without a field, or a field that could not be computed (no data) */
+    /* field at the vertices; NULL: an asset without a field, or a field that could not be computed (no data) */
+    const struct scalar *scalars;
     const uint8_t (*baked)[4];
     float place[4][4]; /* columns; gives x w and y w in pixels, z and w of clip space */
     uint32_t first_vertex, vertex_count;
     bool mirrored;
     bool cut;      /* section planes cut something off: the rest shows its inner side */
-    float turn[9]; /* for cut meshes: rotates normals from file to plant, columns */
+    float turn[9]; /* rotation of normals from file to plant, columns; for cut meshes only */
 };
 
-struct soft_rect { /* in pixels; right and bottom are included */
+struct soft_rect { /* rectangle in pixels; right and bottom are included */
     int left, top, right, bottom;
 };
 
@@ -53,8 +54,8 @@ struct soft_item { /* a part that may be visible */
     float near;    /* depth of its nearest point; over 1: it reaches in front of the near plane */
     struct soft_rect rect;
     uint32_t part;
-    bool cut;    /* a section plane cuts through the part */
-    bool beyond; /* the part is cut away entirely, but may bound a body that is cut open */
+    bool cut;    /* true if a section plane cuts through the part */
+    bool beyond; /* true if the part is cut away entirely; it may still bound a body that is cut open */
 };
 
 struct soft_found { /* parts of one mesh that may be visible; its memory is reused from frame to frame */
@@ -69,13 +70,13 @@ struct soft_found { /* parts of one mesh that may be visible; its memory is reus
 };
 
 struct soft_light {       /* copy of a light_set, read back from the GPU */
-    uint64_t id;          /* of the light set; 0: empty entry */
+    uint64_t id;          /* id of the light set; 0: an empty entry */
     uint8_t (**baked)[4]; /* per asset, then per vertex */
     uint16_t *sun_map;    /* shadow map in square tiles of two cache lines, each tile row by row, so that neighbours share cache lines */
-    uint32_t *sun_bounds; /* per tile: smallest texel | largest << 16 */
+    uint32_t *sun_bounds; /* bounds of each tile: smallest texel | largest << 16 */
     int sun_map_px;       /* width and height of the map on the GPU */
     int sun_tiles;        /* number of tiles in a row */
-    uint32_t *ground; /* four bytes: this texel and its right, lower and lower right neighbours; 255: no shadow */
+    uint32_t *ground; /* brightness of the ground, four bytes: this texel and its right, lower and lower right neighbours; 255: no shadow */
     uint8_t *open;    /* openness of the ground to the sky, for refined frames; rows from the top */
     int ground_px;    /* width and height of `ground` and `open` */
     uint64_t used;
@@ -119,7 +120,7 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     float reach_px;                    /* distance of samples from the pixel's centre, for finding parts; previews: 0 */
     float *depth;
     uint32_t *marks;
-    uint32_t *ids; /* per pixel with a mark: first_id of the part + number of the triangle; NULL: not needed */
+    uint32_t *ids; /* triangle of each pixel with a mark: first_id of its part + its number; NULL: not needed */
     size_t pixel_capacity;
     uint8_t *out;
     size_t out_stride_bytes;
@@ -128,7 +129,7 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     int cut_count, entry_count;
     float shift_px[2];  /* offset of the samples from pixel centres */
     bool counts_bodies; /* section planes show which bodies are solid (caps.c) */
-    bool blends;        /* some of the found parts are blended */
+    bool blends;        /* true if some of the found parts are blended */
     bool has_ground;
     bool greys;                                                                /* context is drawn grey */
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* matrices, as columns */
@@ -144,23 +145,23 @@ struct soft { /* shared by all frames */
     const struct gpu_scene *gpu_scene;
     const struct environments *environments;
     size_t material_count;                                /* number of materials of all models */
-    uint32_t *material_of_model;                          /* per model: number of its first material */
+    uint32_t *material_of_model;                          /* number of the first material of each model */
     /* ramps: RAMP_STEPS colours per row; ramp_of_material: row by number of the material */
     uint32_t *muted_ramps, *own_ramps, *ramp_of_material;
     struct soft_materials materials;
-    lanes *shading;            /* per material: attributes BASE, ... of refined_impl.h */
+    lanes *shading;            /* attributes of each material: BASE, ... of refined_impl.h */
     const uint32_t *backdrops; /* from struct sky */
     struct soft_tones *tones;
     uint32_t *glossy; /* glossy colour map; its rows are brightness steps. glossy_version: of the colour map that it is made from */
     uint64_t glossy_version;
     struct soft_light lights[SOFT_LIGHTS];
     uint64_t uses;
-    struct soft_parts **parts;                      /* by model, then level; made when first needed */
+    struct soft_parts **parts;                      /* parts by model, then by level; made when first needed */
     struct visibility_store kept[TIER_REFINED + 1]; /* struct visibility_buffer of views with still cameras, per tier */
     uint64_t shapes[SOFT_SHAPES];                   /* content_hash_shape() of the last previews drawn */
     size_t shape_count;
     struct raster preview;
-    struct refined *spare; /* left for reuse by a finished refined frame; refined frames under way own theirs */
+    struct refined *spare; /* memory that a finished refined frame left for reuse; refined frames under way own theirs */
 };
 
 /* Returns the copy of a light set, read from the GPU if needed. NULL: out of memory, logged. */
@@ -175,7 +176,7 @@ size_t refined_bytes(const struct refined *refined);
 /* The functions below are the steps of a frame, in order. */
 void raster_aim(struct raster *raster, const struct light *light);                  /* computes the matrices from pixels */
 void raster_aim_cuts(struct raster *raster);                                        /* computes the section planes; call first */
-/* at: x w and y w in pixels, z, w. planes: tests this many section planes */
+/* returns whether a point is cut off; at: x w and y w in pixels, z, w; planes: number of section planes to test */
 bool raster_is_cut_off(const struct raster *raster, const float at[4], int planes);
 /* Tests a box of the mesh against one section plane. Returns true if the box is cut away entirely; sets *cut to true if the plane cuts
    through the box. */
@@ -195,7 +196,7 @@ enum soft_output { SOFT_CAPS, SOFT_DEPTH, SOFT_COLORS };                 /* mark
 void raster_tiles(struct raster *raster, enum soft_output output);       /* rasterizes the found parts */
 bool raster_make_room(struct raster *raster, const struct frame *frame); /* false: out of memory */
 enum soft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
-const uint8_t *raster_rim(const struct raster *raster); /* returns the rim's state per pixel, rows of pitch_px; overwrites depth */
+const uint8_t *raster_rim(const struct raster *raster); /* returns the state of the rim in each pixel, rows of pitch_px; overwrites depth */
 /* Returns a visibility buffer for recolouring the frame. Call while raster->ids is valid and the frame has everything but rims: neither ink
    nor markers. NULL: out of memory. */
 struct visibility_buffer *raster_keep(struct raster *raster);
@@ -203,7 +204,7 @@ void raster_keep_rim(const struct raster *raster, struct visibility_buffer *buff
 /* Puts the buffer, with the frame's markers, into the store of kept buffers. */
 void soft_keep(struct soft *soft, const struct frame_context *context, struct visibility_buffer *buffer, const struct frame *frame);
 struct soft_triangle {
-    uint32_t id; /* as in struct soft_sample, or in raster->ids */
+    uint32_t id; /* id of the triangle, as in struct soft_sample or raster->ids */
     uint32_t mesh, material;
     uint32_t vertices[3]; /* vertex numbers in the file */
 };

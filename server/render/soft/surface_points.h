@@ -15,8 +15,8 @@ struct eight_points {    /* eight surface points */
     lanes x, y, depth; /* position in the frame */
     lanes weights[3];
     lanes_int back;     /* -1: the surface looks away */
-    lanes_int mirrored; /* -1: of a mesh that is mirrored */
-    lanes_int cut;      /* set with the material; -1: the mesh is cut, so back faces show the inner side */
+    lanes_int mirrored; /* -1: the surface belongs to a mirrored mesh */
+    lanes_int cut;      /* -1: the mesh is cut, so back faces show the inner side; set with the material */
     vec normal;
 };
 

@@ -32,11 +32,11 @@ enum { FACE_BACK = 0x8000, FACE_TRIANGLE = PART_TRIANGLES - 1 }; /* FACE_BACK: t
 enum { MOST_SAMPLES = 4 };
 struct soft_sample { /* one sample of every pixel of a tile, row by row from the tile's upper left */
     float *depth;
-    uint32_t *marks; /* NULL: not needed; the same holds for ids */
+    uint32_t *marks; /* mark of each sample; NULL: not needed; the same holds for ids */
     uint32_t *ids;   /* first_id of the part + number of the triangle | ID_BACK */
     float x, y;      /* offset from the pixel's centre */
 };
-#define ID_BACK 0x80000000u /* for cut meshes: the triangle looks away */
+#define ID_BACK 0x80000000u /* flag of an id, for cut meshes: the triangle looks away */
 
 struct soft_fragment { /* a blended triangle at one sample */
     uint32_t pixel;    /* index in the samples' rows */
@@ -52,7 +52,7 @@ struct soft_fragments { /* zero-initialise; free with mem_free(at) */
 
 struct soft_tile {
     const struct raster *raster;
-    struct soft_rect rect; /* its width is a multiple of LANES */
+    struct soft_rect rect; /* rectangle of the tile; its width is a multiple of LANES */
     struct soft_sample samples[MOST_SAMPLES];
     int sample_count, pitch_px;                /* pitch_px: length of the samples' rows */
     float reach_px;                            /* largest distance of a sample from the pixel's centre along either axis */
@@ -60,7 +60,7 @@ struct soft_tile {
     struct soft_corners corners;
     struct soft_face faces[MOST_FACES];
     int face_count;
-    uint32_t first_id; /* in raster->ids, of the part's triangles */
+    uint32_t first_id; /* id of the part's first triangle, in raster->ids */
     int cuts;          /* number of section planes, from the first in raster->cuts, that clip the part */
     enum { DRAW_ALL, DRAW_OPAQUE, DRAW_BLENDED } draws;
     struct soft_fragments *fragments; /* DRAW_BLENDED: receives the fragments; depth and ids are not written */

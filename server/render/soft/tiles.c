@@ -201,7 +201,7 @@ static int columns_of(const struct raster *raster)
 
 static void draw_tile(const struct raster *raster, int number, enum soft_output output, struct tile_list *list)
 {
-    struct soft_tile tile; /* left uninitialised: corners and faces are large, and only few are used */
+    struct soft_tile tile; /* the tile stays uninitialised: corners and faces are large, and only few are used */
     int left = number % columns_of(raster) * TILE_WIDTH_PX, top = number / columns_of(raster) * TILE_HEIGHT_PX;
     tile.raster = raster;
     tile.rect = (struct soft_rect){ left, top, left + TILE_WIDTH_PX - 1, top + TILE_HEIGHT_PX - 1 };

@@ -116,7 +116,7 @@ void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct v
 
 struct band_settling {
     struct visibility_buffer *buffer;
-    uint32_t *numbers; /* per vertex of the frame: 0: not visible; else one more than its number among the kept vertices */
+    uint32_t *numbers; /* number of each vertex of the frame: 0: not visible; else one more than its number among the kept vertices */
 };
 
 static void settle_inks(struct visibility_buffer *buffer, size_t begin, size_t end)
@@ -213,7 +213,7 @@ static float carried_of(const struct scalar *scalar, const float *scale)
 
 struct reading_job {
     struct visibility_buffer *buffer;
-    const struct scalar *scalars; /* NULL: the whole asset has no data */
+    const struct scalar *scalars; /* scalars at the asset's vertices; NULL: the whole asset has no data */
     const float *scale;
     uint32_t first_vertex;
 };

@@ -26,7 +26,7 @@ struct visibility_gloss {
 struct visibility_part { /* one surface of the field in a pixel with several surfaces */
     uint32_t triangle, weights;
     uint8_t row;
-    uint16_t share; /* its part of the pixel, of VISIBILITY_SHARES */
+    uint16_t share; /* the surface's part of the pixel, of VISIBILITY_SHARES */
 };
 enum { VISIBILITY_SHARES = 256, VISIBILITY_MOST_PARTS = 4 };
 
@@ -42,10 +42,10 @@ struct visibility_slopes {
     float w1_x, w1_y, w2_x, w2_y, sum_x, sum_y, sum;
 };
 
-struct visibility_band {              /* some rows; written by one worker */
+struct visibility_band {              /* a band of rows; written by one worker */
     uint32_t (*triangles)[3];         /* vertex numbers: of the frame, and after visibility_buffer_settle() of the kept vertices */
-    float (*corners)[4]; /* per triangle, values carried now: the first corner's, and the second's and third's minus the first's */
-    struct visibility_slopes *slopes; /* per triangle; only filled in where there are isolines */
+    float (*corners)[4]; /* values carried by each triangle now: the first corner's, and the second's and third's minus the first's */
+    struct visibility_slopes *slopes; /* slopes of each triangle; only filled in where there are isolines */
     struct visibility_part *parts;
     struct visibility_gloss *gloss; /* per part, for glossy frames */
     struct visibility_mixed *mixed;
@@ -56,28 +56,29 @@ struct visibility_band {              /* some rows; written by one worker */
 struct visibility_mesh { /* an asset with a field */
     int asset;
     uint32_t first_vertex, vertex_count; /* range of vertices: of the frame, and after visibility_buffer_settle() of the kept vertices */
-    bool read;                           /* true: the kept vertices hold the field version `content` */
+    bool read;                           /* true if the kept vertices hold the field version `content` */
     uint64_t content;                    /* hash from struct fields_entry */
 };
 
 struct visibility_buffer {
     int width_px, height_px, band_rows, band_count;
     uint32_t *surfaces;             /* per pixel, as described above */
-    uint32_t *weights;              /* per pixel: weights of the triangle's second and third corner, 16 bits each */
-    uint8_t *rows;                  /* per pixel: row of the colour map, that is brightness */
-    struct visibility_gloss *gloss; /* per pixel; NULL: not glossy, brightness is in `rows` */
+    uint32_t *weights;              /* weights of the triangle's second and third corner, 16 bits each, for each pixel */
+    uint8_t *rows;                  /* row of the colour map (brightness) for each pixel */
+    struct visibility_gloss *gloss; /* light of glossy surfaces for each pixel; NULL: not glossy, brightness is in `rows` */
     const struct soft_tones *tones; /* set with gloss; not owned */
-    uint8_t *ink;                   /* per pixel; visibility_buffer_settle() applies ink and veil to fixed colours and clears both there */
+    uint8_t *ink; /* ink of each pixel; visibility_buffer_settle() applies ink and veil to fixed colours and clears both there */
     uint8_t *veil;                  /* coverage by ghost lines, 0..255. NULL: there are no ghosts */
     uint8_t veil_bgr[3];
     bool lined;   /* slopes are stored, so isolines can be drawn */
-    float *depth; /* for isoline labels, rows of width_px. NULL: there are none */
+    float *depth; /* depth for placing isoline labels, rows of width_px. NULL: there are none */
     struct visibility_band *bands;
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
     float scale[4];               /* scale in struct frame_uniforms when the vertices were read */
     uint32_t *vertices;           /* kept vertices, mesh by mesh: number in the asset's file */
-    float *carried;               /* per kept vertex: column of the colour map (logarithmic scale: the value); NAN: has a pattern's flag */
+    /* carried value of each kept vertex: column of the colour map (logarithmic scale: the value); NAN: it has a pattern's flag */
+    float *carried;
     float *plain;                 /* the same without NAN */
     uint32_t *flags;              /* from soft_flags() */
     struct frame_marker *markers; /* positions, and whether they are occluded */

@@ -18,7 +18,7 @@ struct visibility_slot {
 };
 struct visibility_store { /* zero-initialise, then set bound_bytes */
     size_t bound_bytes, bytes;
-    bool keeps_newest; /* the newest buffer is kept alone even if it exceeds the bound, until visibility_store_bound() is called */
+    bool keeps_newest; /* keeps the newest buffer alone even if it exceeds the bound, until visibility_store_bound() is called */
     struct visibility_slot buffers[VISIBILITY_SLOTS];
     uint64_t uses;
 };

@@ -10,7 +10,7 @@
 #include "surface/mesh/tri_edges.h"
 
 #define MOLLIFY 1e-4
-#define FLIPS_PER_EDGE 50u /* never reached; ends flips that rounding might repeat forever */
+#define FLIPS_PER_EDGE 50u /* limit of flips, never reached: ends flips that rounding might repeat forever */
 
 void intrinsic_finish(struct intrinsic *in)
 {
@@ -76,7 +76,8 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     double pq = lt[i], qr = lt[(i + 1) % 3], rp = lt[(i + 2) % 3], ps = lu[(j + 1) % 3], sq = lu[(j + 2) % 3];
     double rx = (pq * pq + rp * rp - qr * qr) / (2 * pq), ry = sqrt(max_of(rp * rp - rx * rx, 0));
     double sx = (pq * pq + ps * ps - sq * sq) / (2 * pq), sy = -sqrt(max_of(ps * ps - sx * sx, 0));
-    double cut = ry - sy > 0 ? rx + (sx - rx) * ry / (ry - sy) : -1; /* where the new edge crosses the old one, from p */
+    /* position along the old edge, from p, where the new edge crosses it */
+    double cut = ry - sy > 0 ? rx + (sx - rx) * ry / (ry - sy) : -1;
     if (cut <= 0 || cut >= pq)
         return false;
     double rs = hypot(rx - sx, ry - sy);

@@ -8,15 +8,15 @@
 #include "surface/geodesic/intrinsic.h"
 
 struct laplacian_slope {     /* gradients of the three hat functions in the triangle's plane, and its area */
-    double x1, y1, y2, area; /* of corner 1: (x1, y1), of corner 2: (0, y2), of corner 0: minus both */
+    double x1, y1, y2, area; /* gradients: corner 1 (x1, y1), corner 2 (0, y2), corner 0 minus both; area of the triangle */
 };
 
 struct laplacian {
     const struct intrinsic *in;
-    uint32_t *row_of; /* by point: its row in the matrices; TRIMESH_NONE: the point has no triangle */
+    uint32_t *row_of; /* row of each point in the matrices; TRIMESH_NONE: the point has no triangle */
     size_t row_count;
     struct laplacian_slope *slopes; /* by triangle */
-    double *mass_m2;                /* per row: a third of the area of all triangles at the point */
+    double *mass_m2;                /* mass of each row: a third of the area of all triangles at the point */
 };
 
 /* Numbers the rows and measures the triangles of `in`, which must outlive it. Returns false if out of memory; call laplacian_finish() in

@@ -11,14 +11,15 @@
 struct propagation {
     const struct trimesh *mesh;
     const struct intrinsic *in;
-    uint32_t *first;                     /* per point: index of its first fan; one more at the end */
+    uint32_t *first;                     /* index of each point's first fan; one more at the end */
     struct propagation_fan {             /* neighbours of a point in angular order, and the triangle between each and the next */
         uint32_t to[PROPAGATION_FAN];    /* neighbour; the point itself in unused lanes */
         float length_m[PROPAGATION_FAN]; /* < 0: the neighbour cannot be reached through these triangles; INFINITY: unused lane */
-        float cosine[PROPAGATION_FAN], sine[PROPAGATION_FAN]; /* of the angle to the next neighbour; sine 0: no triangle in between */
+        /* cosine and sine of the angle to the next neighbour; sine 0: no triangle in between */
+        float cosine[PROPAGATION_FAN], sine[PROPAGATION_FAN];
     } * fans;
     size_t fan_count, fan_capacity;
-    char *hidden;      /* per point: 1 if it has no visible triangle */
+    char *hidden;      /* 1 for points without a visible triangle */
     float steps_per_m; /* buckets per metre of distance */
     double near_m;     /* radius around the source within which points are tested for a straight line to it */
     uint32_t bucket_count;
@@ -33,7 +34,7 @@ void propagation_finish(struct propagation *propagation);
 /* State of one propagation, used by one thread; zero-initialise; may be reused. */
 struct propagation_front {
     float *distance_m;     /* per point; INFINITY: not reached */
-    float *straight_m;     /* per point: straight-line distance from the source */
+    float *straight_m;     /* straight-line distance of each point from the source */
     char *settled;
     uint32_t *buckets;
     struct propagation_item {

@@ -15,7 +15,7 @@
 #define NO_LENGTH 1e-300   /* avoids division by 0 */
 
 typedef float lanes __attribute__((vector_size(4 * PROPAGATION_FAN)));
-typedef int32_t mask __attribute__((vector_size(4 * PROPAGATION_FAN))); /* all bits of a lane set, or none */
+typedef int32_t mask __attribute__((vector_size(4 * PROPAGATION_FAN))); /* lane mask: each lane has all bits set, or none */
 
 void propagation_front_finish(struct propagation_front *front)
 {
@@ -66,7 +66,7 @@ static inline void offer(const struct propagation *propagation, struct propagati
         fetch_fans(propagation, point);
     front->distance_m[point] = distance_m;
     if (front->settled[point])
-        return; /* a point never propagates twice, since small corrections would run over the whole surface again and again */
+        return; /* a settled point is not propagated again, since small corrections would run over the whole surface again and again */
     if (front->item_count == front->item_capacity)
         mem_grow(&front->items, &front->item_capacity, front->item_count + 1, sizeof(*front->items));
     /* the value is not negative; the conversion via int64_t is a single instruction */
@@ -108,7 +108,7 @@ SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lan
     mask seen = (sy2 >= zero) & (db <= *reached);
     lanes sy = (lanes)(seen & (mask)sy2), cx = pc * *cosine, cy = pc * *sine;
     root(&sy);
-    lanes x = cx - sx, height = cy + sy, cut = sx * cy + cx * sy; /* where the ray crosses the edge, times the height */
+    lanes x = cx - sx, height = cy + sy, cut = sx * cy + cx * sy; /* cut: where the ray crosses the edge, times the height */
     seen &= (cy > zero) & (cut >= zero) & (cut <= pb * height);
     lanes straight = x * x + height * height;
     root(&straight);
@@ -146,7 +146,7 @@ struct front_turn {
     lanes d, reached;                        /* distance of the current point; `reached`: distance up to which points are final */
     uint32_t empty;                          /* number of consecutive empty buckets */
     float offered_m[PROPAGATION_FAN];        /* offers to the fan's points */
-    uint32_t takes;                          /* one bit per neighbour that may take its offer */
+    uint32_t takes;                          /* bits of the neighbours that may take their offers */
 };
 
 /* Takes the next point to process. Returns false if there is none. */
@@ -159,7 +159,7 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
         while (*bucket != TRIMESH_NONE) {
             struct propagation_item item = front->items[*bucket];
             *bucket = item.next;
-            if (front->settled[item.point]) /* it was reached by a shorter path */
+            if (front->settled[item.point]) /* skip a point that was reached by a shorter path meanwhile */
                 continue;
             front->settled[item.point] = 1;
             turn->d = front->distance_m[item.point] - (lanes){ 0 };
@@ -203,8 +203,8 @@ SIMD_BODY void hand_out(const struct propagation *propagation, struct front_turn
 
 /* --- near the source ------------------------------------------------------------------------------------------------------------ */
 
-/* What the source, at (0, 0), sees through an edge in the plane: the edge runs from l to r, turning left; visible directions are from low
-   to high. */
+/* View of the source, at (0, 0), through an edge in the plane: the edge runs from l to r, turning left; visible directions are from low to
+   high. */
 struct window {
     double l[2], r[2], low[2], high[2];
     uint32_t entered; /* 3 * triangle + side of the triangle beyond the edge, in which that side runs from r to l */

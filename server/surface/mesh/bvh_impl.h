@@ -19,7 +19,7 @@ struct bvh {
     uint32_t *order;
     double (*centres)[3];
     size_t node_count, node_capacity;
-    struct bvh_wide { /* the same boxes as nodes with eight children, down to single triangles; used by queries */
+    struct bvh_wide { /* node with eight children, down to single triangles, with the same boxes as the binary tree; used by queries */
         float low[3][BVH_WIDE], high[3][BVH_WIDE];
         uint32_t child[BVH_WIDE]; /* index of a node, or a triangle; unused children have an inverted box */
     } * wide;                     /* children precede parents, so the root is last */

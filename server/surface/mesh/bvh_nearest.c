@@ -11,11 +11,12 @@
 #include "base/mem.h"
 #include "surface/mesh/bvh_impl.h"
 
-/* relative to a box's largest coordinate: four roundings, so that a point in the box is also in its float version */
+/* margin of float boxes, relative to the largest coordinate: four roundings, so that a point in a box is in its float version */
 #define BOX_MARGIN 2.4e-7
-#define MARGIN 1e-5          /* relative to a squared distance in floats, much more than its rounding error */
-#define EXACT_AREA 1e-8      /* relative to the sides' squares: above this squared area, weights are exact to eight digits */
-#define SURELY_POSITIVE 1e-6 /* such a weight is certainly positive if it exceeds this */
+#define MARGIN 1e-5 /* margin of squared distances in floats, relative: much more than the rounding error */
+/* smallest squared area of a triangle, relative to its sides' squares, at which weights are exact to eight digits */
+#define EXACT_AREA 1e-8
+#define SURELY_POSITIVE 1e-6 /* weights above this are positive despite rounding, if the triangle's area exceeds EXACT_AREA */
 
 static void weights_on_edge(const double p[3], const double a[3], const double b[3], double *wa, double *wb)
 {
@@ -174,7 +175,7 @@ struct nearest_search {
     const double *point;
     bool (*allowed)(const void *arg, uint32_t tri);
     const void *arg;
-    bool any; /* any point within the limit suffices */
+    bool any; /* the search ends at the first point within the limit */
     double best2;
     struct bvh_place *place;
 };

@@ -4,10 +4,10 @@
 #define SURFACE_MESH_DECIMATE_H
 #include "surface/mesh/trimesh.h"
 
-/* Which points may be removed, and the conditions to keep. */
+/* Input of decimate_mesh(): which points may be removed, and the conditions to keep. */
 struct decimate_params {
     const uint32_t *part; /* per triangle */
-    const char *keep;     /* per point: 1 if it must stay */
+    const char *keep;     /* 1 for points that must stay */
     double within_m;      /* largest displacement of the surface */
     double longest_m;     /* longest edge that may be created */
 };

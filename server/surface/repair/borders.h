@@ -9,10 +9,10 @@ struct borders {
     size_t edge_count;
     uint32_t *points; /* points on border edges */
     size_t point_count;
-    uint32_t *slot;       /* by point: index in `points`, or TRIMESH_NONE */
-    double *shortest_m;   /* per border point: shortest edge of any triangle at the point */
-    uint32_t *first, *at; /* per border point: range of its border edges in `at` */
-    double *reach_m;      /* per border point: smallest reach of its parts; NULL: not computed */
+    uint32_t *slot;       /* index of each point in `points`, or TRIMESH_NONE */
+    double *shortest_m;   /* shortest edge of any triangle at each border point */
+    uint32_t *first, *at; /* range of each border point's edges: from at[first[i]] to before at[first[i + 1]] */
+    double *reach_m;      /* smallest reach of the parts at each border point; NULL: not computed */
 };
 
 /* Collects all border edges of a mesh, and the points on them. Keeps no pointer to the mesh. Free with borders_finish(). */

@@ -6,9 +6,9 @@
 #include "base/mem.h"
 #include "surface/mesh/bvh.h"
 
-#define ROUNDING 1e-10 /* relative to the largest coordinate: much more than sampling moves a point */
+#define ROUNDING 1e-10 /* rounding allowance relative to the largest coordinate: much more than sampling moves a point */
 #define SLIVER 1e-5    /* height relative to the model's size: the plane of a flatter face is not reliable */
-#define BESIDE 1e-4    /* relative to a face's longest side: accuracy of its intersection with a plane */
+#define BESIDE 1e-4    /* accuracy of a face's intersection with a plane, relative to the face's longest side */
 
 struct crossing_face {
     const double *at[3];
@@ -100,7 +100,7 @@ static bool cuts_beside(const struct crossing_face *face, const double heights_m
         vec_mix(face->at[i], face->at[j], heights_m[i] / (heights_m[i] - heights_m[j]), ends[count++]);
     }
     for (int i = 0; i < 3; i++) {
-        /* with a shared corner only the sides at that corner decide */
+        /* if the faces share a corner, only the sides at that corner decide */
         bool beyond = count > 0 && (from < 0 || i == from || (i + 1) % 3 == from);
         for (int end = 0; end < count; end++)
             beyond = beyond && beyond_side(other, i, ends[end]) > margin_m;

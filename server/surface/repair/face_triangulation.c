@@ -9,8 +9,8 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define ON_EDGE 1e-9 /* a point with a smaller weight is on the edge */
-#define ON_WAY 1e-6  /* a straight line passes over a point if it is nearer than this, relative to the line's length */
+#define ON_EDGE 1e-9 /* largest weight of a corner at which a point counts as on the opposite edge */
+#define ON_WAY 1e-6  /* largest distance at which a straight line passes over a point, relative to the line's length */
 
 void face_triangulation_finish(struct face_triangulation *face)
 {

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 struct face_triangulation {
-    uint32_t *ids; /* per point: its number in the mesh */
+    uint32_t *ids; /* number of each point in the mesh */
     double (*at)[2];
     uint32_t (*tris)[3]; /* indices of points of this triangulation */
     size_t count, capacity, at_capacity, tri_count, tri_capacity;

@@ -11,28 +11,28 @@
 
 #define RAYS 5
 #define RAYS_INSIDE 4 /* number of rays that must agree */
-#define VOTE_EVERY 16 /* one of this many triangles of a region is tested */
-#define BESIDE 1.5    /* reaches: distance of test points on either side of a triangle that lies on another part's surface */
-#define BARELY 0.05   /* reaches: distance of test points from a triangle that may be inside its own part */
+#define VOTE_EVERY 16 /* sampling rate: one of this many triangles of a region is tested */
+#define BESIDE 1.5    /* distance, in reaches, of test points on either side of a triangle that lies on another part's surface */
+#define BARELY 0.05   /* distance, in reaches, of test points from a triangle that may be inside its own part */
 #define FLUSH 0.9     /* smallest cosine between faces that lie on each other */
-#define SLIVER 2.0    /* reaches: height of a triangle whose normal is not reliable */
+#define SLIVER 2.0    /* height, in reaches, of a triangle whose normal is not reliable */
 
 struct solid { /* a closed part, as it was before it was cut up */
     uint32_t part;
-    bool is_thin; /* a plate: a triangle that ends inside is near both of its sides */
+    bool is_thin; /* the part is a plate: a triangle that ends inside is near both of its sides */
     bool winds;   /* self-intersecting body: the winding number decides what is inside */
     double low[3], high[3];
-    struct trimesh mesh;     /* its triangles; the arrays are not owned */
-    const signed char *side; /* per triangle, as in struct body_parts */
+    struct trimesh mesh;     /* triangles of the part; the arrays are not owned */
+    const signed char *side; /* side of each triangle, as in struct body_parts */
     struct bvh *bvh;
 };
 
 struct solids {
     struct solid *at;
     size_t count;
-    uint32_t (*tris)[3];    /* of all parts, part by part */
+    uint32_t (*tris)[3];    /* triangles of all parts, part by part */
     signed char *sides;     /* the same for sides */
-    struct solid **of_part; /* by part; NULL: the part is not closed */
+    struct solid **of_part; /* solid of each part; NULL: the part is not closed */
 };
 
 static void solids_finish(struct solids *solids)
@@ -395,7 +395,7 @@ bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struc
     size_t *asked = mem_array(mesh->tri_count, sizeof(*asked)), asked_count = 0;
     struct region_vote *votes = mem_array(mesh->point_count, sizeof(*votes));
     struct interior_search search = { .mesh = mesh, .part = part, .parts = parts, .solids = &solids, .hidden = hidden };
-    for (size_t t = 0; t < mesh->tri_count; t++) { /* all triangles where parts meet, and a sample of each region */
+    for (size_t t = 0; t < mesh->tri_count; t++) { /* tests all triangles where parts meet, and a sample of each region */
         uint32_t r = region_of(mesh, t, mixed, region);
         if (!untouched(mesh, t, mixed) || votes[r].seen++ % VOTE_EVERY == 0)
             asked[asked_count++] = t;

@@ -8,7 +8,7 @@
 
 struct island {                /* group of visible triangles, indexed by its lowest point */
     double seen_m2, hidden_m2; /* seen_m2: its area; hidden_m2: of hidden triangles that touch it */
-    bool free;                 /* a point of the group touches no hidden triangle */
+    bool free;                 /* true if a point of the group touches no hidden triangle */
 };
 
 void interior_islands(const struct trimesh *mesh, char *hidden)
@@ -44,7 +44,7 @@ void interior_islands(const struct trimesh *mesh, char *hidden)
 void interior_resolve_across(const struct trimesh *mesh, char *hidden)
 {
     uint32_t *seen = mem_array(mesh->point_count, sizeof(*seen)), *group = mem_array(mesh->point_count, sizeof(*group));
-    /* per group, by its lowest point: the first visible piece that it touches */
+    /* first visible piece that each group touches, indexed by the group's lowest point */
     uint32_t *first = mem_array(mesh->point_count, sizeof(*first));
     char *is_seen = mem_array(mesh->point_count, 1), *joins = mem_array(mesh->point_count, 1);
     for (uint32_t i = 0; i < mesh->point_count; i++) {

@@ -73,12 +73,12 @@ static void find_targets(const struct mesh_edit *edit, size_t point_count, uint3
 
 struct crossing_lists { /* insertions by edge (from the lower point, by t) and by triangle */
     struct edge_table edges;
-    uint32_t *edge_first, *tri_first; /* by edge number and by triangle: first item; one more at the end */
+    uint32_t *edge_first, *tri_first; /* first item of each edge number, and of each triangle; one more at the end */
     struct mesh_edit_insertion *by_edge;
     uint32_t *by_tri;
-    uint32_t *target;                   /* per point: the point that replaces it */
-    uint32_t *partner_first, *partners; /* per replaced point: the points to connect it with; NULL: there are none */
-    uint32_t *slot;                     /* per replaced point: one more than its index in the current face, 0: not in it */
+    uint32_t *target;                   /* point that replaces each point */
+    uint32_t *partner_first, *partners; /* points to connect with each replaced point; NULL: there are none */
+    uint32_t *slot;                     /* for each replaced point: one more than its index in the current face; 0: not in the face */
 };
 
 static int by_t(const void *a, const void *b)
@@ -267,7 +267,7 @@ static void set_point(struct face_triangulation *face, const struct trimesh *mes
     }
     for (size_t i = 0; i < face->count; i++)
         if (face->ids[i] == id)
-            return; /* the point is there already, as a corner or on a side */
+            return; /* the point is in the triangulation already, as a corner or on a side */
     face_triangulation_insert(face, face_triangulation_add_point(face, id, x, y));
 }
 

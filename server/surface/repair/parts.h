@@ -9,16 +9,16 @@
    bodies one part. */
 struct body_parts {
     struct trimesh solid;
-    uint32_t *of_tri;                     /* per triangle of `solid`: number of its part */
-    /* per triangle of `solid`: +1 or -1, the orientation that makes each patch face outwards; 0: the triangle bounds nothing */
+    uint32_t *of_tri;                     /* part of each triangle of `solid` */
+    /* orientation of each triangle of `solid`: +1 or -1 makes each patch face outwards; 0: the triangle bounds nothing */
     signed char *side;
-    uint32_t *of_source, *body_of_source; /* per model triangle: part; body, usually the part */
+    uint32_t *of_source, *body_of_source; /* part and body of each model triangle; usually equal */
     signed char *side_of_source;          /* per model triangle: side */
-    char *closed;                         /* per part: 1 if its open edges are short compared with its size */
-    char *tangled;                        /* per part: 1 if it has edges with three faces or more, or intersects itself */
-    char *crossed;                        /* per part: 1 if it intersects itself; set by repair_contacts() */
-    char *thin;                           /* per part: 1 if it is closed and its reach is less than the tolerance */
-    double *reach_m;                      /* per part: surfaces nearer than this touch it */
+    char *closed;                         /* 1 for parts that are closed: their open edges are short compared with their size */
+    char *tangled;                        /* 1 for parts that have edges with three faces or more, or intersect themselves */
+    char *crossed;                        /* 1 for parts that intersect themselves; set by repair_contacts() */
+    char *thin;                           /* 1 for parts that are closed and have a reach below the tolerance */
+    double *reach_m;                      /* reach of each part: surfaces nearer than this touch it */
     double tolerance_m;                   /* largest reach of a part */
     double size_m;              /* diagonal of the main part; 0: of `solid`. May be set after parts_init() */
     size_t count, source_count; /* count: parts; source_count: model triangles */

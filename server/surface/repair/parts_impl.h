@@ -8,12 +8,12 @@
 struct parts_finding {
     struct body_parts *parts;
     struct tri_edges edges;
-    uint32_t *patch;       /* per triangle: lowest triangle of its patch */
-    struct surface_patch { /* indexed by the patch's lowest triangle */
+    uint32_t *patch;       /* patch of each triangle, named by its lowest triangle */
+    struct surface_patch { /* measures of a patch, indexed by the patch's lowest triangle */
         /* open_m: length of edges with one face; branching_m: of edges with three or more faces, one of them the patch's */
         double open_m, branching_m, area_m2;
         double doubles_m2; /* area of triangles with at least twice the multiplicity of the part's others */
-        bool loose;        /* the patch stands on others, and is open */
+        bool loose;        /* true if the patch stands on others, and is open */
     } * patches;
 };
 

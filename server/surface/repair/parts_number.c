@@ -10,7 +10,7 @@
 
 /* total length of open edges, relative to the root of the area: leftovers of a hair gap rather than the end of a pipe */
 #define MAX_OPEN_OF_SIZE 0.05
-#define MAX_BODY_OPEN_OF_SIZE 0.5 /* the same for a patch, counting all edges at which it ends */
+#define MAX_BODY_OPEN_OF_SIZE 0.5 /* the same limit for a patch to be a body of its own, counting all edges at which the patch ends */
 
 static double edge_length(const struct trimesh *mesh, size_t t, int i)
 {
@@ -37,7 +37,7 @@ static void find_patches(struct parts_finding *f)
 struct branches {
     struct open_branch {
         uint32_t edge, patch, faces;
-        bool runs_through; /* a patch continues through this edge */
+        bool runs_through; /* true if a patch continues through this edge */
         double length_m;
     } * at;
     size_t count;
@@ -118,7 +118,7 @@ static void join_patches(struct parts_finding *f, const struct branches *b, uint
 {
     size_t tri_count = f->parts->solid.tri_count;
     struct core *cores = mem_array(tri_count, sizeof(*cores));
-    char *holds = mem_array(tri_count, 1); /* per part, by its root: it contains a closed core */
+    char *holds = mem_array(tri_count, 1); /* 1 for parts that contain a closed core, by the part's root */
     for (size_t i = 1; i < b->count; i++)
         if (b->at[i].edge == b->at[i - 1].edge && !b->at[i].runs_through)
             trimesh_join(of, b->at[i - 1].patch, b->at[i].patch);
@@ -153,7 +153,7 @@ static void number_parts(struct parts_finding *f, const struct branches *b)
     uint32_t *number = mem_array(tri_count, sizeof(*number)), *part = parts->of_tri;
     memcpy(part, f->patch, tri_count * sizeof(*part));
     join_patches(f, b, part);
-    for (uint32_t t = 0; t < tri_count; t++) /* the root is the lowest triangle, so it is numbered first */
+    for (uint32_t t = 0; t < tri_count; t++) /* the root is the lowest triangle of a part, so it is numbered before the others */
         number[t] = trimesh_root(part, t) == t ? (uint32_t)parts->count++ : number[trimesh_root(part, t)];
     memcpy(part, number, tri_count * sizeof(*part));
     mem_free(number);
@@ -166,7 +166,8 @@ static void find_closed(struct parts_finding *f)
     double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *open_m = mem_array(parts->count, sizeof(*open_m));
     for (size_t t = 0; t < mesh->tri_count; t++) {
         double n[3], open = 0;
-        bool fin = f->patches[f->patch[t]].loose; /* a fin, or a triangle on an edge that is closed without it */
+        /* open edges of a fin, or next to an edge that is closed without the triangle, do not count */
+        bool fin = f->patches[f->patch[t]].loose;
         trimesh_normal(mesh, t, n);
         area_m2[parts->of_tri[t]] += vec_length(n) / 2;
         for (int i = 0; i < 3; i++) {

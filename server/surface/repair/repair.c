@@ -26,7 +26,7 @@ struct seams {
     struct mesh_edit *edit;
     double tolerance_m, end_m; /* end_m: insertions nearer than this to an edge's end are left to the merging of points */
     bool fits;                 /* only exact fits */
-    struct nearest_edge {      /* per border point: the best position found on a border edge that is not its own */
+    struct nearest_edge {      /* best position of each border point on a border edge that is not its own */
         double distance_m, t;
         uint32_t edge;
     } * nearest;

@@ -18,13 +18,13 @@
 struct contacts {
     struct trimesh *mesh;
     struct body_parts *parts;
-    const uint32_t *part, *body; /* per triangle of the present mesh */
+    const uint32_t *part, *body; /* part and body of each triangle of the present mesh */
     const struct bvh *bvh;
     struct mesh_edit *edit;
-    uint32_t own;   /* part of the current edge's triangle, or body of the current point's */
-    double reach_m; /* of the current point's part, or of the rim's */
+    uint32_t own;   /* own part of the current edge's triangle, or own body of the current point */
+    double reach_m; /* reach of the current point's part, or of the rim's */
     uint32_t edge[2];
-    uint32_t *touched; /* per point: the body that it touches, or TRIMESH_NONE */
+    uint32_t *touched; /* body that each point touches, or TRIMESH_NONE */
     struct contact_crossing {
         uint32_t tri, a, b, c, d; /* edge a-b passes through tri or, if that is TRIMESH_NONE, over the edge c-d */
         uint32_t point;           /* the inserted point */
@@ -71,7 +71,7 @@ static void visit_crossed(void *arg, uint32_t tri)
         return;
     double length = vec_distance(p, q), reach_m = min_of(c->parts->reach_m[c->own], reach_of(c, tri));
     if (t * length < reach_m || (1 - t) * length < reach_m || (own && !stands_clear(c, v)))
-        return; /* only the end of the edge touches; find_touches() handles that */
+        return; /* ignored: only the end of the edge touches, which find_touches() handles */
     struct contact_crossing *found = add_crossing(c);
     *found = (struct contact_crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t, .own = own };
     memcpy(found->weights, w, sizeof(w));

@@ -11,14 +11,14 @@
 #include "surface/repair/borders.h"
 #include "surface/repair/repair_impl.h"
 
-#define MAX_ROUNDS 4 /* an edge whose faces are all cut at different points takes one round fewer than it has faces */
+#define MAX_ROUNDS 4 /* limit of rounds: an edge whose faces are all cut at different points takes one round fewer than it has faces */
 
 struct hanging {
     const struct trimesh *mesh;
     const struct borders *borders;
     struct mesh_edit *edit;
     double within_m;
-    uint32_t *last; /* per border point: the last edge that it was inserted into */
+    uint32_t *last; /* last edge that each border point was inserted into */
 };
 
 /* Returns the position of p along a-b as a fraction; negative: p is not on the edge, or at an end. */
