@@ -13,8 +13,20 @@ struct content_of {
 static bool has_it(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
+    struct render_client *client = render_service_find(now->service, ticket->client);
+    bool has = !ticket->request.always && client && client->has_content && client->content == now->content;
+    if (has && ticket->number > client->content_number)
+        client->content_number = ticket->number;
+    return has;
+}
+
+/* Returns whether a frame for a later request of the client was handed to the encoders already: a deferred request or a long job may be
+   drawn after it. The client would not show the older frame, so its encode stream must not count it as shown. The caller holds the lock. */
+static bool is_overtaken(const struct request_ticket *ticket, void *arg)
+{
+    const struct content_of *now = arg;
     const struct render_client *client = render_service_find(now->service, ticket->client);
-    return !ticket->request.always && client && client->has_content && client->content == now->content;
+    return client && client->has_content && ticket->number < client->content_number;
 }
 
 /* Notes the frame's content for a client that is still connected, and charges the client. Returns false if the client has gone. The
@@ -25,11 +37,9 @@ static bool remember(const struct request_ticket *ticket, void *arg)
     struct render_client *client = render_service_find(now->service, ticket->client);
     if (!client)
         return false;
-    if (!client->has_content || ticket->number >= client->content_number) { /* a frame that arrives after a newer one is not shown */
-        client->has_content = true;
-        client->content = now->content;
-        client->content_number = ticket->number;
-    }
+    client->has_content = true;
+    client->content = now->content;
+    client->content_number = ticket->number;
     client->spent_ns[scheduler_share(ticket->request.urgency)] += now->cost_ns;
     client->account->spent_ns[scheduler_share(ticket->request.urgency)] += now->cost_ns;
     return true;
@@ -40,13 +50,17 @@ static bool remember(const struct request_ticket *ticket, void *arg)
 void frame_sharing_submit(struct render_service *service, struct frame *frame, struct request_group *group, int64_t cost_ns)
 {
     struct content_of now = { .service = service, .content = frame->content, .cost_ns = cost_ns / (int64_t)group->count };
-    struct request_group here = { 0 };
+    struct request_group here = { 0 }, overtaken = { 0 };
     pthread_mutex_lock(&service->lock);
+    request_group_split(group, is_overtaken, &now, &overtaken);
     request_group_split(group, remember, &now, &here);
     encode_queue_submit(service->queue, frame, &here);
     pthread_mutex_unlock(&service->lock);
     request_group_finish(&here);
     group->count = 0;
+    if (overtaken.count > 0)
+        render_service_answer_without_frame(service, &overtaken, false);
+    request_group_finish(&overtaken);
 }
 
 /* Answers "nothing new" to the clients that already have this content. */

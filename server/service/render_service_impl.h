@@ -15,7 +15,7 @@ struct render_client {
     bool left; /* the client no longer wants the frame of the long job that is drawn for it */
     int64_t patience_ns; /* how long changed readings wait for the client's long job; 0: the initial delay */
     struct frame_request request;
-    uint64_t content, content_number;   /* content hash of the newest frame drawn for it, and that frame's number */
+    uint64_t content, content_number;   /* content hash of the newest frame drawn for it; number of the request that it answered last */
     int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time charged to the client, by scheduler_share() */
     struct time_account *account;       /* account of the client's address */
 };

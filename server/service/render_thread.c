@@ -316,14 +316,16 @@ static void long_job_leave(struct render_thread *thread)
 /* Turns requests that preferred a refined frame if it were quick (or_moving) into previews, and other refined requests into long jobs. */
 static void choose_other(struct request_group *group)
 {
+    bool moving = group->tickets[0].request.or_moving; /* one frame answers all tickets: none may claim another tier */
     for (size_t i = 0; i < group->count; i++) {
         struct frame_request *request = &group->tickets[i].request;
-        if (!request->or_moving) {
+        if (!moving) {
             request->urgency = URGENCY_REFINE;
             continue;
         }
         request->view.tier = TIER_PREVIEW;
-        request->quality = request->moving_quality;
+        if (request->or_moving)
+            request->quality = request->moving_quality;
         if (request->moving_codec) {
             request->codec = request->moving_codec;
             request->record = false;

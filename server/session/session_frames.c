@@ -49,6 +49,15 @@ static void note_refined(struct session *session, const struct frame_request *re
         session->demand.refined = REFINED_FULL;
 }
 
+/* Returns whether an answer "nothing new" cannot be right: the client wants the refined frame, and the newest frame that came is a preview.
+   Without this check that preview would stay until the view or a reading changes. */
+static bool is_lost(const struct session *session, const struct encoded_frame *encoded, bool late)
+{
+    const struct frame_demand *demand = &session->demand;
+    return !encoded->packet && !encoded->failed && !late && encoded->request.view.tier == TIER_REFINED && demand->refined == REFINED_FULL &&
+           !demand->input && session->delivery.pacer.asked == 1 && session->delivery.newest_number > 0 && !session->delivery.newest_refined;
+}
+
 void session_on_frame(struct session *session, struct encoded_frame *encoded)
 {
     session->demand.refining &= encoded->request.urgency != URGENCY_REFINE && session->delivery.pacer.asked > 1;
@@ -59,6 +68,11 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
        equals the frame already shown and therefore has no packet. */
     if (encoded->request.view.tier == TIER_PREVIEW && !late)
         session->demand.refined = REFINED_NOT;
+    if (is_lost(session, encoded, late)) {
+        session->demand.refined = REFINED_NOT;
+        session->demand.lost = true;
+        session->demand.failed_ns = encoded->request.asked_ns;
+    }
     if (!encoded->packet || late) {
         session->stats.dropped += late;
         if (session_is_tile(session) && !encoded->failed && !late)
@@ -68,6 +82,7 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
         return;
     }
     session->delivery.newest_number = encoded->number;
+    session->delivery.newest_refined = encoded->packet->frame->view.tier == TIER_REFINED;
     if (encoded->request.view.tier == TIER_PREVIEW)
         session->demand.preview_ns = encoded->request.asked_ns;
     note_refined(session, &encoded->request);
@@ -187,7 +202,8 @@ static bool wants(const struct session *session, int64_t now_ns, struct frame_re
     } else if (refine_due(session, now_ns)) {
         request->view.input_ns = now_ns;
         /* send the frame even if it shows the same content: its quality is better */
-        request->always = session->demand.refined == REFINED_DRAFT;
+        request->always = session->demand.refined == REFINED_DRAFT || session->demand.lost;
+        request->alone = session->demand.lost;
         make_still(session, request);
     } else if (session->demand.data && !next_camera_brings(session, now_ns)) {
         request->view.input_ns = session->demand.data_ns;
@@ -334,6 +350,7 @@ void session_requested(struct session *session, const struct frame_request *requ
     session->demand.refined = request->view.tier != TIER_REFINED ? REFINED_NOT : request->draft ? REFINED_DRAFT : REFINED_FULL;
     if (session->demand.refined)
         session->demand.refined_ns = request->asked_ns;
+    session->demand.lost &= session->demand.refined != REFINED_FULL;
 }
 
 /* --- frames in flight --------------------------------------------------------------------------------------------------- */

@@ -82,13 +82,15 @@ struct frame_demand {
     bool starting; /* the first frame waits for the bandwidth from session_begin(), for a second at most */
     int64_t starting_ns;
     bool failure_said; /* the client was told that the present view cannot be drawn */
-    int64_t failed_ns; /* monotonic: when the newest frame that failed for lack of memory was requested; 0: none */
+    int64_t failed_ns; /* monotonic: when the newest frame that failed for lack of memory, or was lost, was requested; 0: none */
+    bool lost;         /* the client never got the refined frame that the render service counts as shown: it is to be sent once more */
 };
 
 /* Frames between the render service and the client (session_frames.c). */
 struct frame_delivery {
     struct pacer pacer;
     uint64_t newest_number;          /* number of the newest frame received from the render service */
+    bool newest_refined;             /* that frame is refined */
     struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all before it */
     bool measured;                   /* pacer.acked is new (session_take_shown) */
     int steps[QUALITY_LADDER_STEPS]; /* number of viewers of this view, this session included, at each step of the quality ladder */

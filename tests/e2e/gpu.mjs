@@ -89,7 +89,7 @@ function move(client) {
 const strange = (seen, known) =>
     seen.filter(([eye, bytes]) => !known.some(([other, usual]) => other === eye && Math.abs(bytes / usual - 1) < 0.04)).length;
 
-// Once a view kept its preview before the first loss, when other programs ran: make test-long runs the first case.
+// The first takes most of a minute: make test-long runs it.
 for (const hardware of [true, false]) {
     const where = hardware ? 'as on a GPU' : 'without a GPU', options = { skip: skip || (hardware && long) };
     test(`a context that is lost ${LOSSES} times under load is made again each time, ${where}`, options, async () => {

@@ -669,6 +669,53 @@ TEST(test_what_takes_long_by_gl_comes_in_the_end)
     remake(false, 0);
 }
 
+static void ask_view(uint64_t client, enum urgency urgency, enum tier tier, double turn)
+{
+    struct frame_request request = { .codec = WIRE_CODEC_JPEG, .quality = { .quality = 90 }, .urgency = urgency };
+    request.asked_ns = clock_mono_ns();
+    view_default(&toy->scene, 640, 360, &request.view);
+    request.view.tier = tier;
+    request.view.camera.eye_m[0] += turn;
+    assert_int_equal(render_service_request(service, client, &request), REQUEST_ADDED);
+    render_service_wake(service);
+}
+
+/* A refined frame waits for another client's, and a preview of the same view overtakes it. The client never shows the late frame, so it
+   has to get that picture when it asks again. */
+TEST(test_an_overtaken_refinement_comes_when_it_is_asked_for_again)
+{
+    enum { OVERTAKEN = 201, LATER = 202 };
+    uint64_t preview_number = 0, refined_number = 0;
+    if (hardware)
+        skip();
+    remake(true, 0); /* in software a refined frame takes newer readings, and so the newest number */
+    int64_t steps = count_of("plantcast_render_steps_total");
+    ask(REFINER, URGENCY_REFINE, 31);
+    await_step(steps + 1);
+    ask_view(OVERTAKEN, URGENCY_DATA, TIER_REFINED, 33);
+    ask_view(LATER, URGENCY_DATA, TIER_PREVIEW, 35); /* its answer says that the request before it was begun, and deferred */
+    for (int left = 4; left > 0; left--) {
+        struct encoded_frame *encoded = next();
+        if (encoded->client == LATER)
+            ask_view(OVERTAKEN, URGENCY_INPUT, TIER_PREVIEW, 33);
+        if (encoded->client == OVERTAKEN && encoded->request.urgency == URGENCY_INPUT) {
+            assert_int_equal(refined_number, 0);
+            assert_non_null(encoded->packet);
+            preview_number = encoded->number;
+        } else if (encoded->client == OVERTAKEN) {
+            assert_null(encoded->packet);
+            refined_number = encoded->number;
+        }
+        encoded_frame_destroy(&encoded);
+    }
+    assert_true(refined_number > 0 && refined_number < preview_number);
+    ask_view(OVERTAKEN, URGENCY_REFINE, TIER_REFINED, 33);
+    struct encoded_frame *again = next();
+    assert_true(again->client == OVERTAKEN && again->packet && again->packet->frame->view.tier == TIER_REFINED);
+    encoded_frame_destroy(&again);
+    remake(false, 0);
+}
+
 /* Bands, which are not quick to colour again: the refined picture is drawn anew, and comes. */
 TEST(test_readings_change_pictures_that_are_not_quick)
 {

@@ -557,6 +557,26 @@ CASE(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook)
     assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
 }
 
+/* The render service says that the client has the refined frame already, and the client was never sent one: the session asks for it once
+   more, to be sent whole, after a pause. */
+CASE(a_refined_picture_that_is_lost_is_asked_for_again)
+{
+    struct frame_request refined;
+    greet(f);
+    show(f);
+    f->now_ns += NS_PER_S;
+    assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED && !refined.always);
+    paint(f, &refined, true);
+    f->now_ns += NS_PER_S;
+    assert_false(ask(f, &refined));
+    f->now_ns += 2 * NS_PER_S;
+    assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED && refined.always && refined.alone);
+    paint(f, &refined, false);
+    ack(f, send_picture(f));
+    f->now_ns += 10 * NS_PER_S;
+    assert_false(ask(f, &refined));
+}
+
 /* Nothing says yet that the server is loaded: readings do not wait until what takes a minute is refined. */
 CASE(data_does_not_wait_for_the_first_refined_picture)
 {
