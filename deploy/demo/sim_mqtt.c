@@ -14,7 +14,7 @@
 #include "sim_encode.h"
 #include "value/mqtt/mqtt_topics.h"
 
-enum { KEEPALIVE_S = 10, MOST_ITEMS = 1000 };
+enum { KEEPALIVE_S = 10, MAX_ITEMS = 1000 };
 
 struct sim_mqtt {
     const struct plant *plant;
@@ -132,7 +132,7 @@ static long selected_index(json_t *array, const struct json_path_step *filter)
             found = i;
         json_decref(both);
     }
-    if (found == SIZE_MAX && wanted && json_array_size(array) < MOST_ITEMS) {
+    if (found == SIZE_MAX && wanted && json_array_size(array) < MAX_ITEMS) {
         found = json_array_size(array);
         json_array_append(array, wanted);
     }
@@ -153,7 +153,7 @@ static json_t *slot_of(json_t **root, const struct json_path_step *step, long *a
     }
     if (step->kind == JSON_PATH_FILTER && json_is_array(*root))
         *at = selected_index(*root, step);
-    if (step->kind == JSON_PATH_NAME || !json_is_array(*root) || *at < 0 || *at >= MOST_ITEMS)
+    if (step->kind == JSON_PATH_NAME || !json_is_array(*root) || *at < 0 || *at >= MAX_ITEMS)
         return NULL;
     while (json_array_size(*root) <= (size_t)*at)
         json_array_append_new(*root, json_null());

@@ -10,7 +10,7 @@
 #include "base/system/http_request.h"
 #include "corelink/core_instant.h"
 
-enum { MOST_BYTES = 64 << 20, CONNECT_S = 4, SLOW_S = 10 /* SLOW_S: without a byte */, STATUS_GOOD = 200 };
+enum { MAX_ANSWER_BYTES = 64 << 20, CONNECT_S = 4, SLOW_S = 10 /* SLOW_S: without a byte */, STATUS_GOOD = 200 };
 
 struct core_history {
     struct log *log;
@@ -85,7 +85,7 @@ bool core_history_get(struct core_history *history, const char *path, struct tex
         curl_easy_setopt(request->handle, CURLOPT_CAINFO, peer.ca_path);
     size_t begin = out->length; /* the answer is appended to the text */
     request->answer = *out;
-    request->most_bytes = begin + MOST_BYTES;
+    request->most_bytes = begin + MAX_ANSWER_BYTES;
     request->error[0] = 0;
     CURLcode code = curl_easy_perform(request->handle);
     curl_easy_getinfo(request->handle, CURLINFO_RESPONSE_CODE, &status);

@@ -26,7 +26,7 @@
 #include "value/lookup.h"
 
 enum { CORE_ACT_BYTES = 200 * 1024 /* maximum length of an act; less than a core accepts */ };
-enum { MOST_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
+enum { MAX_MESSAGE_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
 static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* clock difference above which a warning is logged */;
 /* smaller clock differences are not corrected, so that the clock which pages use does not step */
 static const int64_t STEP_NS = 500 * NS_PER_MS;
@@ -382,7 +382,7 @@ static void on_bytes(struct core_link *link)
 static void on_receive(struct core_link *link, const void *bytes, size_t count)
 {
     link->heard_ns = clock_mono_ns();
-    if (link->in.length + count > MOST_BYTES) {
+    if (link->in.length + count > MAX_MESSAGE_BYTES) {
         refuse(link, "a message of more than 64 MiB");
         return;
     }

@@ -17,10 +17,10 @@
 #include "history/postgres/postgres_link.h"
 
 enum { ASKED = 32, NUMBER_BYTES = 24 };
-static const int64_t PATIENCE_NS = NS_PER_S, LEAST_PATIENCE_NS = 50 * NS_PER_MS;
+static const int64_t MAX_TIMEOUT_NS = NS_PER_S, MIN_TIMEOUT_NS = 50 * NS_PER_MS;
 /* a standby whose connection has ended still counts for this long, for example during a reload */
-static const int64_t GONE_NS = 10 * NS_PER_S;
-static const int64_t GOODBYE_NS = 300 * NS_PER_MS; /* time to log the reason and shut down in order before the kernel ends the process */
+static const int64_t STANDBY_GRACE_NS = 10 * NS_PER_S;
+static const int64_t SHUTDOWN_NS = 300 * NS_PER_MS; /* time to log the reason and shut down in order before the kernel ends the process */
 
 struct lease_keeper {
     struct lease_keeper_params params;
@@ -65,7 +65,7 @@ static int64_t now_of_lease(void)
 static void set_timer(struct lease_keeper *keeper)
 {
     const struct lease *lease = &keeper->lease;
-    int64_t until_ns = lease->until_ns, soon_ns = now_of_lease() + GOODBYE_NS;
+    int64_t until_ns = lease->until_ns, soon_ns = now_of_lease() + SHUTDOWN_NS;
     if (lease->lost && soon_ns < until_ns)
         until_ns = soon_ns;
     if (!lease->leads || !until_ns)
@@ -98,13 +98,13 @@ static bool is_well(struct lease_keeper *keeper)
 }
 
 /* Returns the time limit of database requests: for a leader the rest of its lease, within bounds. */
-static int64_t patience(struct lease_keeper *keeper)
+static int64_t request_timeout_ns(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);
     bool leads = keeper->lease.leads && keeper->lease.until_ns;
-    int64_t left_ns = keeper->lease.until_ns - GOODBYE_NS - now_of_lease();
+    int64_t left_ns = keeper->lease.until_ns - SHUTDOWN_NS - now_of_lease();
     pthread_mutex_unlock(&keeper->thread.lock);
-    return !leads || left_ns > PATIENCE_NS ? PATIENCE_NS : left_ns > LEAST_PATIENCE_NS ? left_ns : LEAST_PATIENCE_NS;
+    return !leads || left_ns > MAX_TIMEOUT_NS ? MAX_TIMEOUT_NS : left_ns > MIN_TIMEOUT_NS ? left_ns : MIN_TIMEOUT_NS;
 }
 
 static bool make_table(struct lease_keeper *keeper)
@@ -129,7 +129,7 @@ static bool connect_now(struct lease_keeper *keeper)
     char why[POSTGRES_WHY_BYTES];
     if (keeper->link)
         return true;
-    if (!(keeper->link = postgres_link_open_within(&keeper->postgres, keeper->stop_fd, patience(keeper), why))) {
+    if (!(keeper->link = postgres_link_open_within(&keeper->postgres, keeper->stop_fd, request_timeout_ns(keeper), why))) {
         give_up(keeper, why);
         return false;
     }
@@ -169,7 +169,7 @@ static int change_row(struct lease_keeper *keeper, const char *sql, const struct
     snprintf(epoch, sizeof(epoch), "%lld", (long long)seen->epoch);
     snprintf(beat, sizeof(beat), "%lld", (long long)seen->beat);
     snprintf(own, sizeof(own), "%lld", (long long)instance);
-    postgres_link_set_patience(keeper->link, patience(keeper));
+    postgres_link_set_patience(keeper->link, request_timeout_ns(keeper));
     PGresult *rows = postgres_link_ask(keeper->link, sql, 5, (const char *[]){ keeper->plant, epoch, beat, own, name });
     int changed = rows ? PQntuples(rows) : -1;
     PQclear(rows);
@@ -221,7 +221,7 @@ static void look_for_namesake(struct lease_keeper *keeper, const struct lease_ro
 static void look(struct lease_keeper *keeper)
 {
     struct lease_row row;
-    postgres_link_set_patience(keeper->link, patience(keeper));
+    postgres_link_set_patience(keeper->link, request_timeout_ns(keeper));
     if (!read_row(keeper, &row))
         return;
     pthread_mutex_lock(&keeper->thread.lock);
@@ -265,7 +265,7 @@ static void renew(struct lease_keeper *keeper)
 {
     char standby[LEASE_NODE_BYTES];
     pthread_mutex_lock(&keeper->thread.lock);
-    if (keeper->gone_ns && now_of_lease() - keeper->gone_ns >= GONE_NS)
+    if (keeper->gone_ns && now_of_lease() - keeper->gone_ns >= STANDBY_GRACE_NS)
         keeper->standby[0] = 0;
     memcpy(standby, keeper->standby, sizeof(standby));
     bool is_there = standby[0] && !keeper->gone_ns, follows = is_there && keeper->follows;
@@ -293,7 +293,7 @@ static void tell(struct lease_keeper *keeper)
     pthread_mutex_lock(&keeper->thread.lock);
     const struct lease *lease = &keeper->lease;
     bool acts = lease_acts(lease, now_ns), lost = lease->lost, leads = lease->leads && lease->until_ns;
-    bool ends = lost || (leads && now_ns > lease->until_ns - GOODBYE_NS);
+    bool ends = lost || (leads && now_ns > lease->until_ns - SHUTDOWN_NS);
     int64_t until_ns = lease->until_ns;
     if (lost)
         set_timer(keeper);
@@ -330,7 +330,7 @@ static int64_t take_turn(struct lease_keeper *keeper)
     }
     tell(keeper);
     pthread_mutex_lock(&keeper->thread.lock);
-    int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - GOODBYE_NS + 1;
+    int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - SHUTDOWN_NS + 1;
     pthread_mutex_unlock(&keeper->thread.lock);
     /* wake in time to report the end of the lease */
     return leads && !keeper->told_lost && last_ns > began_ns && last_ns < next_ns ? last_ns : next_ns;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores at most MOST_SPACINGS spacings: of a longer series every second one, then every fourth, and so on. */
+/* Stores at most MAX_SPACINGS spacings: of a longer series every second one, then every fourth, and so on. */
 #include "history/spacing.h"
 
 #include <stdlib.h>
 
 #include "base/mem.h"
 
-enum { MOST_SPACINGS = 4096 };
+enum { MAX_SPACINGS = 4096 };
 
 static void halve(struct spacing *spacing)
 {
@@ -29,7 +29,7 @@ void spacing_put(struct spacing *spacing, const struct history_point *sample)
     spacing->stride = spacing->stride ? spacing->stride : 1;
     if (spacing->passed++ % spacing->stride)
         return;
-    if (spacing->count == MOST_SPACINGS)
+    if (spacing->count == MAX_SPACINGS)
         halve(spacing);
     mem_grow(&spacing->at, &spacing->capacity, spacing->count + 1, sizeof(*spacing->at));
     spacing->at[spacing->count++] = spacing_us;

@@ -15,7 +15,7 @@
 #include "base/mem.h"
 #include "base/text/utf8.h"
 
-enum { MOST_NAME_BYTES = 200 };
+enum { MAX_NAME_BYTES = 200 };
 
 struct export_upload {
     char *path, *hidden;
@@ -30,7 +30,7 @@ char *export_folder_of(const char *plant_folder)
 bool export_name_good(const char *name)
 {
     size_t length = strlen(name);
-    bool good = length > 0 && length <= MOST_NAME_BYTES && name[0] != '.';
+    bool good = length > 0 && length <= MAX_NAME_BYTES && name[0] != '.';
     for (size_t i = 0, bytes; i < length && good; i += bytes) {
         bytes = utf8_length(name + i, length - i);
         good = bytes > 0 && (unsigned char)name[i] >= ' ' && name[i] != 0x7f && name[i] != '/' && name[i] != '\\';

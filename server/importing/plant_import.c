@@ -16,7 +16,7 @@
 #include "importing/export_folder.h"
 #include "plant/plant_folder.h"
 
-enum { MOST_SAID_BYTES = 64 * 1024 };
+enum { MAX_OUTPUT_BYTES = 64 * 1024 };
 
 struct plant_import {
     char *exports, *matches, *report, *choice; /* choice: path of the file that stores units and axis for the next start */
@@ -222,7 +222,7 @@ void plant_import_set_phase(struct plant_import *import, enum import_phase phase
 void plant_import_say(struct plant_import *import, const char *text)
 {
     pthread_mutex_lock(&import->lock);
-    if (import->said.length < MOST_SAID_BYTES)
+    if (import->said.length < MAX_OUTPUT_BYTES)
         add_printable(&import->said, text);
     pthread_mutex_unlock(&import->lock);
 }

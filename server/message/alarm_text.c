@@ -13,7 +13,7 @@
 #include "base/text/timestamp.h"
 #include "message/json_values.h"
 
-enum { ROWS_DEFAULT = 1000, ROWS_MOST = 10000, DIGITS = 7 };
+enum { ROWS_DEFAULT = 1000, MAX_ROWS = 10000, DIGITS = 7 };
 
 static const char *mode_name(enum alarm_mode mode)
 {
@@ -113,7 +113,7 @@ static bool take(const struct plant *plant, bool journal, const char *arg, int64
     int64_t count;
 #define IS(name) (n == strlen(name) && !memcmp(arg, name, n))
     if (IS("limit")) {
-        bool good = take_count("limit", value, 1, ROWS_MOST, &count, error);
+        bool good = take_count("limit", value, 1, MAX_ROWS, &count, error);
         query->limit = good ? (int)count : query->limit;
         return good;
     }

@@ -74,10 +74,10 @@ struct strip_row {
 /* Finds two finder patterns whose distance agrees with their own cell sizes. */
 static struct strip_row strip_in_row(const struct strip_picture *picture, int y)
 {
-    enum { MOST = 64 };
+    enum { MAX_FINDERS = 64 };
     static const double APART = STRIP_COLUMNS - STRIP_FINDER; /* cells between their middles */
-    struct finder finders[MOST];
-    int count = find_in_row(picture, y, finders, MOST);
+    struct finder finders[MAX_FINDERS];
+    int count = find_in_row(picture, y, finders, MAX_FINDERS);
     for (int i = 0; i < count; i++)
         for (int j = count - 1; j > i; j--) {
             double cell_px = (finders[j].middle_px - finders[i].middle_px) / APART;

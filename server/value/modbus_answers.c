@@ -7,10 +7,10 @@
 #include "value/modbus_impl.h"
 #include "value/quality.h"
 
-/* Delay before a refused register is read again, doubled after each refusal up to REFUSED_MOST_NS: a device may refuse while it starts
+/* Delay before a refused register is read again, doubled after each refusal up to MAX_REFUSED_DELAY_NS: a device may refuse while it starts
    up. */
-static const int64_t REFUSED_NS = 2 * NS_PER_S, REFUSED_MOST_NS = 60 * NS_PER_S;
-static const int64_t BUSY_NS = 50 * NS_PER_MS;
+static const int64_t REFUSED_DELAY_NS = 2 * NS_PER_S, MAX_REFUSED_DELAY_NS = 60 * NS_PER_S;
+static const int64_t BUSY_DELAY_NS = 50 * NS_PER_MS;
 enum { BUSY_TRIES = 4 };
 
 bool modbus_note_refused(struct modbus_source *modbus, const struct read_plan_block *block, bool refused, const char *why)
@@ -78,7 +78,7 @@ static void note_busy(struct modbus_source *modbus, const struct read_plan_block
 
 int64_t modbus_refused_pause_ns(int before)
 {
-    return before < 5 ? REFUSED_NS << before : REFUSED_MOST_NS;
+    return before < 5 ? REFUSED_DELAY_NS << before : MAX_REFUSED_DELAY_NS;
 }
 
 void modbus_take_exception(struct modbus_source *modbus, size_t index, int code, int64_t now_ns)
@@ -93,7 +93,7 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
     modbus_unit_of(modbus, block)->backoff = (struct backoff){ 0 };
     if (quality_is_good(quality)) {
         if (++block->busy_count < BUSY_TRIES) {
-            block->due_ns = now_ns + (BUSY_NS << block->busy_count);
+            block->due_ns = now_ns + (BUSY_DELAY_NS << block->busy_count);
             return;
         }
         block->busy_count = 0;

@@ -342,7 +342,7 @@ static bool clear_line(struct modbus_link *link, const struct modbus_question *q
 
 /* Called after an answer with the transaction number of another request, which came twice or late. Waits SETTLE_NS for more stray
    answers, then repeats the request. A second wrong answer makes the caller disconnect. */
-static int ask_anew(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
+static int ask_again(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     wait_for(-1, 0, link->stop_fd, clock_mono_ns() + SETTLE_NS);
     return ask(link, question, words);
@@ -363,7 +363,7 @@ int modbus_link_read(struct modbus_link *link, int unit, enum register_table tab
     if (!link->suspect || clear_line(link, &question, words))
         status = ask(link, &question, words);
     if (status == -EBADMSG)
-        status = ask_anew(link, &question, words);
+        status = ask_again(link, &question, words);
     if (status >= 0 && link->answers++ == 0)
         link->first_answered_ns = clock_mono_ns();
     if (status < 0)

@@ -8,12 +8,14 @@
 #include "value/modbus_impl.h"
 
 enum { SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
-static const int64_t PAUSE_NS = 50 * NS_PER_MS; /* delay before connecting again, doubled each time: some devices free a connection late */
-static const int64_t TOLERANCE_NS = 2 * NS_PER_S;    /* time since the last answer after which the device counts as lost */
-static const int64_t PATIENCE_NS = 3 * NS_PER_S;     /* wait for the first answer on the second silent connection; twice as long later */
+static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS; /* doubled after each attempt: some devices free a connection late */
+static const int64_t TOLERANCE_NS = 2 * NS_PER_S; /* time since the last answer after which the device counts as lost */
+/* wait for the first answer on the second silent connection; twice as long on later ones */
+static const int64_t FIRST_ANSWER_TIMEOUT_NS = 3 * NS_PER_S;
 static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS; /* first delay to try for RTU over TCP, whose requests have no numbers */
-static const int64_t GATEWAY_NS = 5 * NS_PER_S;      /* wait for a unit that is up, after another unit behind the same gateway timed out */
-static const int64_t MOST_DELAY_NS = 8 * NS_PER_S;
+/* wait for a unit that is up, after another unit behind the same gateway timed out */
+static const int64_t GATEWAY_TIMEOUT_NS = 5 * NS_PER_S;
+static const int64_t MAX_CONNECT_DELAY_NS = 8 * NS_PER_S;
 
 void modbus_manners_init(struct modbus_source *modbus)
 {
@@ -36,11 +38,11 @@ void modbus_manners_before(struct modbus_source *modbus, const struct modbus_uni
 {
     struct modbus_manners *manners = &modbus->manners;
     int64_t patience_ns = manners->first_wait_ns;
-    if (!modbus->link_up && manners->silent_connections > 0 && patience_ns < PATIENCE_NS)
-        patience_ns = manners->silent_connections == 1 ? PATIENCE_NS : 2 * PATIENCE_NS;
-    manners->first_excused = manners->timed_out && manners->timed_out != unit && unit->state == UNIT_UP && patience_ns < GATEWAY_NS;
+    if (!modbus->link_up && manners->silent_connections > 0 && patience_ns < FIRST_ANSWER_TIMEOUT_NS)
+        patience_ns = manners->silent_connections == 1 ? FIRST_ANSWER_TIMEOUT_NS : 2 * FIRST_ANSWER_TIMEOUT_NS;
+    manners->first_excused = manners->timed_out && manners->timed_out != unit && unit->state == UNIT_UP && patience_ns < GATEWAY_TIMEOUT_NS;
     if (manners->first_excused)
-        patience_ns = GATEWAY_NS;
+        patience_ns = GATEWAY_TIMEOUT_NS;
     manners->timed_out = NULL;
     modbus_link_set_patience(modbus->link, patience_ns);
 }
@@ -153,7 +155,7 @@ static bool may_be_early(struct modbus_source *modbus, int status, int most)
     if (!modbus->link_up || !ends || !is_closed(status) || now_ns - modbus->answered_ns > TOLERANCE_NS ||
         manners->failed_connections >= most || modbus->base.config->host_count > 1)
         return false;
-    modbus->connect_ns = now_ns + (PAUSE_NS << manners->failed_connections++);
+    modbus->connect_ns = now_ns + (RECONNECT_DELAY_NS << manners->failed_connections++);
     return true;
 }
 
@@ -170,7 +172,7 @@ static void try_longer_start(struct modbus_source *modbus)
     if (config->transport != TRANSPORT_RTU_TCP)
         return;
     manners->connect_delay_ns = 2 * manners->connect_delay_ns + RTU_DELAY_NS;
-    if (manners->connect_delay_ns > MOST_DELAY_NS)
+    if (manners->connect_delay_ns > MAX_CONNECT_DELAY_NS)
         manners->connect_delay_ns = config->connect_delay_ms * NS_PER_MS;
 }
 

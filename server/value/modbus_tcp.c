@@ -13,7 +13,7 @@ enum {
     HEADER_BYTES = 7, /* transaction identifier, protocol, length of the rest, unit */
     REFUSED = 0x80,   /* flag in the function code of an exception response */
     LAST_EXCEPTION = 11,
-    MOST_VALUE_BYTES = 2 * READ_PLAN_MAX_REGISTERS, /* READ_PLAN_MAX_BITS take as many bytes */
+    MAX_VALUE_BYTES = 2 * READ_PLAN_MAX_REGISTERS, /* READ_PLAN_MAX_BITS take as many bytes */
 };
 
 static uint8_t function_of(enum register_table table)
@@ -90,7 +90,7 @@ static bool fits_unit(const struct modbus_question *question, uint8_t unit)
 static int check_header(const struct modbus_question *question, const uint8_t *header)
 {
     int length = get_word(header + 4);
-    if (get_word(header + 2) != 0 || length < 3 || length > 3 + MOST_VALUE_BYTES)
+    if (get_word(header + 2) != 0 || length < 3 || length > 3 + MAX_VALUE_BYTES)
         return -EPROTO;
     if ((uint16_t)(question->number - get_word(header)) > (uint16_t)(question->number - question->oldest))
         return -EBADMSG;
@@ -114,7 +114,7 @@ static int take_answer(const struct modbus_question *question, const uint8_t *an
 int modbus_tcp_ask(int fd, int stop_fd, int64_t deadline_mono_ns, const struct modbus_question *question, uint16_t *words,
                    struct modbus_answered *answered)
 {
-    uint8_t asked[HEADER_BYTES + 5] = { 0 }, header[HEADER_BYTES], answer[2 + MOST_VALUE_BYTES];
+    uint8_t asked[HEADER_BYTES + 5] = { 0 }, header[HEADER_BYTES], answer[2 + MAX_VALUE_BYTES];
     *answered = (struct modbus_answered){ 0 };
     put_word(asked, question->number);
     put_word(asked + 4, 6);

@@ -18,7 +18,7 @@
 #include "base/text/text.h"
 #include "views/other_picture.h"
 
-enum { CONNECT_S = 5, TIMEOUT_S = 10, PICTURE_BYTES = 8 << 20, HEADER_BYTES = 1024, LEAST_PAUSE_S = 5, MOST_PAUSE_S = 60, REST_MS = 60000 };
+enum { CONNECT_S = 5, TIMEOUT_S = 10, PICTURE_BYTES = 8 << 20, HEADER_BYTES = 1024, MIN_RETRY_S = 5, MAX_RETRY_S = 60, REST_MS = 60000 };
 static const int64_t WANTED_NS = 30 * NS_PER_S;
 
 /* reasons for a missing picture, as sent to clients; the log has details */
@@ -178,7 +178,7 @@ static void rest(struct other *other, bool good)
     int64_t next_ns = other->begun_ns + (int64_t)(other->plant->every_s * 1e9);
     if (!good) {
         curl_easy_getinfo(other->request.handle, CURLINFO_RETRY_AFTER, &pause_s);
-        pause_s = pause_s < LEAST_PAUSE_S ? LEAST_PAUSE_S : pause_s > MOST_PAUSE_S ? MOST_PAUSE_S : pause_s;
+        pause_s = pause_s < MIN_RETRY_S ? MIN_RETRY_S : pause_s > MAX_RETRY_S ? MAX_RETRY_S : pause_s;
     }
     int64_t least_ns = clock_mono_ns() + pause_s * NS_PER_S;
     other->due_ns = next_ns > least_ns ? next_ns : least_ns;

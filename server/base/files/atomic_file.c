@@ -10,13 +10,13 @@
 
 #include "base/mem.h"
 
-enum { MOST_TRIES = 1000 }; /* attempts to find a free name: killed programs with the same process id may have left files */
+enum { MAX_TRIES = 1000 }; /* attempts to find a free name: killed programs with the same process id may have left files */
 
 int atomic_file_begin(struct atomic_file *file, const char *path, mode_t mode)
 {
     long pid = (long)getpid();
     *file = (struct atomic_file){ .fd = -1 };
-    for (int i = 0; i < MOST_TRIES && file->fd < 0; i++) {
+    for (int i = 0; i < MAX_TRIES && file->fd < 0; i++) {
         mem_free(file->beside);
         file->beside = i ? mem_printf("%s.%ld.%d.new", path, pid, i) : mem_printf("%s.%ld.new", path, pid);
         file->fd = open(file->beside, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, mode);

@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "base/math/vec.h"
 
-enum { BINS = 256, SPLITS_MOST = 64 };
+enum { BINS = 256, MAX_SPLITS = 64 };
 static const double SMALL_SHARE = 0.02; /* maximum fraction of the area that all small stray pieces have together */
 /* stray: small pieces beyond a gap of SMALL_GAP main-part sizes, all pieces beyond a gap of LARGE_GAP */
 static const double SMALL_GAP = 1, LARGE_GAP = 100;
@@ -147,7 +147,7 @@ size_t gap_split(struct gap_tri *tris, size_t count, struct extent *main)
     int splits = 0;
     for (size_t t = 0; t < count; t++)
         all_m2 += tris[t].area_m2;
-    while (splits < SPLITS_MOST && part.count > 0 && split(&part, all_m2))
+    while (splits < MAX_SPLITS && part.count > 0 && split(&part, all_m2))
         splits++;
     box_of(tris, part.count, main->low, main->high);
     return part.count;

@@ -8,7 +8,7 @@
 
 #include "base/system/cgroup.h"
 
-static const size_t MOST_BYTES = (size_t)2 << 30;
+static const size_t MAX_DEFAULT_BYTES = (size_t)2 << 30;
 
 size_t memory_machine_bytes(void)
 {
@@ -19,7 +19,7 @@ size_t memory_machine_bytes(void)
 size_t memory_default_bytes(void)
 {
     size_t quarter = memory_machine_bytes() / 4;
-    return quarter < MOST_BYTES ? quarter : MOST_BYTES;
+    return quarter < MAX_DEFAULT_BYTES ? quarter : MAX_DEFAULT_BYTES;
 }
 
 void memory_measure(struct memory_use *use)

@@ -22,9 +22,9 @@
 
 enum {
     FIRST_SOCKET = 3 /* first descriptor passed by systemd: sd_listen_fds(3) */,
-    PATIENCE_S = 60,
-    PATIENCE_EVERY_S = 10,
-    PATIENCE_ASKS = 60 /* minimum number of requests within the time limit */
+    EXTENSION_S = 60,
+    EXTENSION_INTERVAL_S = 10,
+    MIN_EXTENSIONS = 60 /* minimum number of requests within the time limit */
 };
 static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* CPU time since the last check; less counts as idle */
 
@@ -135,14 +135,14 @@ static bool is_at_work(struct service_patience *patience)
 
 /* Thread: asks for more time at each interval. Stops while the processes use no CPU time, or once the status is too old, so that a
    hanging start is ended. */
-static void *ask_again_and_again(void *arg)
+static void *extend_start(void *arg)
 {
     struct service_patience *patience = arg;
     bool works = true; /* ask at least once, so that a quick start shows its status too */
     pthread_mutex_lock(&patience->lock);
     do {
         if (works && clock_mono_ns() - patience->since_ns < patience->limit_ns)
-            service_notify("EXTEND_TIMEOUT_USEC=%lld\nSTATUS=%s", PATIENCE_S * 1000000ll, patience->status);
+            service_notify("EXTEND_TIMEOUT_USEC=%lld\nSTATUS=%s", EXTENSION_S * 1000000ll, patience->status);
         int64_t until_ns = clock_mono_ns() + patience->every_ns;
         struct timespec until = { until_ns / NS_PER_S, until_ns % NS_PER_S };
         works = patience->ending || pthread_cond_timedwait(&patience->wake, &patience->lock, &until) != ETIMEDOUT;
@@ -160,11 +160,12 @@ struct service_patience *service_patience_begin(const char *status, int limit_s)
     struct service_patience *patience = mem_new(sizeof(*patience));
     patience->status = mem_strdup(status);
     patience->limit_ns = limit_s * NS_PER_S;
-    patience->every_ns = limit_s < PATIENCE_EVERY_S * PATIENCE_ASKS ? patience->limit_ns / PATIENCE_ASKS : PATIENCE_EVERY_S * NS_PER_S;
+    patience->every_ns =
+        limit_s < EXTENSION_INTERVAL_S * MIN_EXTENSIONS ? patience->limit_ns / MIN_EXTENSIONS : EXTENSION_INTERVAL_S * NS_PER_S;
     patience->since_ns = clock_mono_ns();
     pthread_mutex_init(&patience->lock, NULL);
     clock_cond_init(&patience->wake);
-    if (pthread_create(&patience->thread, NULL, ask_again_and_again, patience) == 0)
+    if (pthread_create(&patience->thread, NULL, extend_start, patience) == 0)
         return patience;
     pthread_cond_destroy(&patience->wake);
     pthread_mutex_destroy(&patience->lock);

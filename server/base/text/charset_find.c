@@ -12,7 +12,7 @@
 #include "base/mem.h"
 #include "base/text/charset.h"
 
-enum { SAMPLE_BYTES = 1 << 16, MOST_LINE = 512 };
+enum { SAMPLE_BYTES = 1 << 16, MAX_LINE = 512 };
 
 /* --- models of two-byte encodings ------------------------------------------------------------------------------------------- */
 
@@ -341,7 +341,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
 static size_t take_sample(const char *bytes, size_t count, char sample[SAMPLE_BYTES])
 {
     size_t taken = 0;
-    for (size_t at = 0, end; at < count && taken + MOST_LINE < SAMPLE_BYTES; at = end + 1) {
+    for (size_t at = 0, end; at < count && taken + MAX_LINE < SAMPLE_BYTES; at = end + 1) {
         const char *found = memchr(bytes + at, '\n', count - at);
         end = found ? (size_t)(found - bytes) : count;
         size_t first = at, length;
@@ -349,7 +349,7 @@ static size_t take_sample(const char *bytes, size_t count, char sample[SAMPLE_BY
             first++;
         if (first == end)
             continue;
-        length = end - first < MOST_LINE - 2 ? end - first : MOST_LINE - 2;
+        length = end - first < MAX_LINE - 2 ? end - first : MAX_LINE - 2;
         if (first > at) {
             first--; /* include the letter before */
             length++;

@@ -21,9 +21,9 @@
 enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
 enum { NOTES = 128, SPANS = POSTGRES_SPANS };
 /* tolerated difference between the ends of the tags' lines and the end of the newest one */
-static const int64_t SLOW_US = 60 * INT64_C(1000000);
+static const int64_t LINE_END_SPREAD_US = 60 * INT64_C(1000000);
 /* longer than a point takes from sample to file; leader and standby both keep points for this long */
-static const int64_t TWICE_NS = 10 * NS_PER_S;
+static const int64_t OVERLAP_NS = 10 * NS_PER_S;
 static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
 
 struct waiting_month {
@@ -167,7 +167,7 @@ static void take_lead(struct postgres *postgres)
 /* Call with the lock held. */
 static bool is_due(const struct postgres *postgres, const struct postgres_span *span)
 {
-    return clock_mono_ns() >= span->at_ns + TWICE_NS && postgres->sent_ns >= span->at_ns;
+    return clock_mono_ns() >= span->at_ns + OVERLAP_NS && postgres->sent_ns >= span->at_ns;
 }
 
 /* Reads a span that another daemon recorded. A former leader may have continued after the connection was lost and sent later points:
@@ -310,14 +310,14 @@ static bool send_month(struct postgres *postgres, struct waiting_month *month, b
     return good;
 }
 
-/* Deletes points that the leader has sent. Both daemons keep points for TWICE_NS first. */
+/* Deletes points that the leader has sent. Both daemons keep points for OVERLAP_NS first. */
 static void forget_sent(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
     int64_t until_ns = postgres->sent_ns;
     pthread_mutex_unlock(&postgres->lock);
     size_t done = 0;
-    while (done < postgres->note_count && until_ns != INT64_MIN && postgres->notes[done].at_ns <= until_ns - TWICE_NS)
+    while (done < postgres->note_count && until_ns != INT64_MIN && postgres->notes[done].at_ns <= until_ns - OVERLAP_NS)
         done++;
     if (done) {
         const struct outbox_note *note = &postgres->notes[done - 1];
@@ -453,7 +453,7 @@ static void add_span(struct postgres *postgres, const struct postgres_span *span
 
 static struct postgres_span span_of(const struct postgres *postgres, int64_t from_us, int64_t to_us)
 {
-    return (struct postgres_span){ from_us ? from_us : postgres->ended_us - SLOW_US, to_us, clock_mono_ns() };
+    return (struct postgres_span){ from_us ? from_us : postgres->ended_us - LINE_END_SPREAD_US, to_us, clock_mono_ns() };
 }
 
 void postgres_fill(struct postgres *postgres, int64_t from_us, int64_t to_us)

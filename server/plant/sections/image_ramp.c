@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 
-enum { MOST_PX = 4096 };
+enum { MAX_PX = 4096 };
 
 /* Returns a pixel of the middle row or column; place 0 is its beginning. */
 static const uint8_t *pixel_at(const struct image *image, bool lying, uint32_t place)
@@ -27,7 +27,7 @@ bool image_ramp(const char *path, uint8_t rgb[256][3], char why[IMAGE_WHY_BYTES]
         snprintf(why, IMAGE_WHY_BYTES, "%s", stat(path, &st) != 0 ? strerror(errno) : "not a file");
         return false;
     }
-    if (!image_load(&image, path, MOST_PX, why))
+    if (!image_load(&image, path, MAX_PX, why))
         return false;
     bool lying = image.width_px >= image.height_px;
     uint32_t length = lying ? image.width_px : image.height_px;

@@ -12,7 +12,7 @@ const char *const pane_kind_names[] = { [PANE_VIEWS] = "views",   [PANE_TREND] =
                                         [PANE_TILES] = "tiles", [PANE_CLOCK] = "clock", [PANE_TEXT] = "text",
                                         [PANE_TOUR] = "tour",   [PANE_SNAPSHOT] = "snapshot" };
 
-static const double BEZEL_MOST_MM = 200;
+static const double MAX_BEZEL_MM = 200;
 
 static void add_item(struct wall_pane *pane, const yaml_node_t *node)
 {
@@ -221,7 +221,7 @@ static void read_bezel(struct yaml_reader *reader, yaml_node_t *node, void *reco
 {
     double *bezel_mm = ((struct wall_tile *)record)->bezel_mm;
     if (node->type == YAML_SCALAR_NODE) {
-        yaml_number(reader, node, "bezel_mm", 0, BEZEL_MOST_MM, &bezel_mm[0]);
+        yaml_number(reader, node, "bezel_mm", 0, MAX_BEZEL_MM, &bezel_mm[0]);
         bezel_mm[1] = bezel_mm[0];
         return;
     }
@@ -229,7 +229,7 @@ static void read_bezel(struct yaml_reader *reader, yaml_node_t *node, void *reco
     if (count != 2)
         yaml_error(reader, yaml_place(node), "bezel_mm: expected one number, or two: across and down; found %d", count);
     for (int i = 0; i < count && i < 2; i++)
-        yaml_number(reader, yaml_list_item(reader, node, i), "bezel_mm", 0, BEZEL_MOST_MM, &bezel_mm[i]);
+        yaml_number(reader, yaml_list_item(reader, node, i), "bezel_mm", 0, MAX_BEZEL_MM, &bezel_mm[i]);
 }
 
 #define READ_TILE_AS(name, read)                                                          \

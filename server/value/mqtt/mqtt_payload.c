@@ -116,7 +116,7 @@ static struct json_selected value_of(const json_t *root, const struct mqtt_reade
 
 /* Returns the value that a path selects, or NULL if it does not select exactly one. A path that begins with `@` starts in the object
    that contains the tag's value. */
-static const json_t *beside(const json_t *root, const struct json_selected *value, const char *path, const char *tag)
+static const json_t *select_stated(const json_t *root, const struct json_selected *value, const char *path, const char *tag)
 {
     struct json_selected found = json_select(*path == '@' ? value->holder : root, path, tag);
     return found.count == 1 ? found.value : NULL;
@@ -153,8 +153,8 @@ enum mqtt_found mqtt_json_read(const json_t *root, const struct mqtt_reader *rea
     *out = (struct stamped_value){ .quality = QUALITY_GOOD };
     if (found.count != 1)
         return refuse_selection(&found, reader, out, why);
-    const json_t *time = mqtt->time ? beside(root, &found, mqtt->time, reader->tag) : NULL;
-    const json_t *quality = mqtt->quality ? beside(root, &found, mqtt->quality, reader->tag) : NULL;
+    const json_t *time = mqtt->time ? select_stated(root, &found, mqtt->time, reader->tag) : NULL;
+    const json_t *quality = mqtt->quality ? select_stated(root, &found, mqtt->quality, reader->tag) : NULL;
     if (mqtt->time && (!time || !read_time(time, &out->utc_ns))) {
         snprintf(why, 200, "%.60s holds no time", mqtt->time);
         return refuse(out, QUALITY_BAD_CONFIGURATION);

@@ -10,7 +10,7 @@
 #include "sparkplug_b.pb-c.h"
 #include "value/quality.h"
 
-enum { MOST_BYTES = 64 << 20 }; /* memory limit of one unpacked payload */
+enum { MAX_UNPACKED_BYTES = 64 << 20 }; /* memory limit of one unpacked payload */
 enum { TYPE_INT8 = 1, TYPE_INT16, TYPE_INT32, TYPE_INT64, TYPE_UINT8, TYPE_UINT16, TYPE_UINT32, TYPE_UINT64, TYPE_FLOAT, TYPE_DOUBLE,
        TYPE_BOOLEAN };
 
@@ -115,13 +115,13 @@ static void read_metric(const Sparkplug__Payload *payload, const Sparkplug__Payl
 
 bool sparkplug_payload_read(const void *bytes, size_t count, struct sparkplug_payload *out, char why[200])
 {
-    size_t left = MOST_BYTES;
+    size_t left = MAX_UNPACKED_BYTES;
     ProtobufCAllocator allocator = { .alloc = take, .free = give_back, .allocator_data = &left };
     Sparkplug__Payload *payload = sparkplug__payload__unpack(&allocator, count, bytes);
     struct sparkplug_metric *metrics = payload ? mem_try_array(payload->n_metrics + 1, sizeof(*metrics)) : NULL;
     *out = (struct sparkplug_payload){ .seq = -1 };
     if (!metrics) {
-        snprintf(why, 200, payload || left < MOST_BYTES / 2 ? "too many metrics" : "no Sparkplug B payload");
+        snprintf(why, 200, payload || left < MAX_UNPACKED_BYTES / 2 ? "too many metrics" : "no Sparkplug B payload");
         if (payload)
             sparkplug__payload__free_unpacked(payload, &allocator);
         return false;

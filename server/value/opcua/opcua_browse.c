@@ -10,7 +10,7 @@
 #include "value/opcua/opcua_impl.h"
 
 enum { OBJECTS_FOLDER = 85, HIERARCHICAL = 33, HAS_PROPERTY = 46 }; /* standard node ids of every server */
-enum { MOST_NODES = 200000, MOST_DEEP = 24, REFERENCES_AT_ONCE = 500 };
+enum { MAX_NODES = 200000, MAX_DEPTH = 24, REFERENCES_AT_ONCE = 500 };
 
 struct browse_step {
     UA_NodeId id;
@@ -32,16 +32,16 @@ struct browse {
 
 static size_t slot_of(const struct browse *browse, const UA_NodeId *id)
 {
-    size_t slot = UA_NodeId_hash(id) % (2 * MOST_NODES);
+    size_t slot = UA_NodeId_hash(id) % (2 * MAX_NODES);
     while (browse->table[slot] && !UA_NodeId_equal(&browse->steps[browse->table[slot] - 1].id, id))
-        slot = (slot + 1) % (2 * MOST_NODES);
+        slot = (slot + 1) % (2 * MAX_NODES);
     return slot;
 }
 
 static void see(struct browse *browse, const UA_NodeId *id, const char *path, int depth, bool is_variable)
 {
     size_t slot = slot_of(browse, id);
-    if (browse->table[slot] || browse->count == MOST_NODES || depth > MOST_DEEP)
+    if (browse->table[slot] || browse->count == MAX_NODES || depth > MAX_DEPTH)
         return;
     mem_grow(&browse->steps, &browse->capacity, browse->count + 1, sizeof(*browse->steps));
     struct browse_step *step = &browse->steps[browse->count++];
@@ -166,7 +166,7 @@ int opcua_browse(struct opcua_client *client, void (*found)(void *arg, const str
 {
     struct browse browse = { .client = client, .found = found, .arg = arg, .stop_fd = stop_fd, .deadline_mono_ns = deadline_mono_ns };
     const UA_NodeId objects = UA_NODEID_NUMERIC(0, OBJECTS_FOLDER);
-    browse.table = mem_array(2 * MOST_NODES, sizeof(*browse.table));
+    browse.table = mem_array(2 * MAX_NODES, sizeof(*browse.table));
     see(&browse, &objects, "", 0, false);
     int status = opcua_read_namespaces(client, stop_fd, deadline_mono_ns, why);
     for (size_t i = 0; status == 0 && i < browse.count; i++) {
@@ -174,8 +174,8 @@ int opcua_browse(struct opcua_client *client, void (*found)(void *arg, const str
         if (status == 0 && browse.steps[i].is_variable)
             status = read_variable(&browse, i, why);
     }
-    if (status == 0 && browse.count == MOST_NODES) {
-        snprintf(why, 200, "the server has more than %d nodes; the list ends there", MOST_NODES);
+    if (status == 0 && browse.count == MAX_NODES) {
+        snprintf(why, 200, "the server has more than %d nodes; the list ends there", MAX_NODES);
         status = -E2BIG;
     }
     for (size_t i = 0; i < browse.count; i++) {
