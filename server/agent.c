@@ -41,7 +41,7 @@ static void answer(struct agent *agent)
 {
     char line[64];
     int fd = accept4(agent->fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (fd < 0) { /* for example out of descriptors: the client waits, and so does this thread */
+    if (fd < 0) { /* for example out of descriptors: waits a little, so that the loop does not spin */
         poll(&(struct pollfd){ .fd = agent->stop_fd, .events = POLLIN }, 1, PAUSE_MS);
         return;
     }

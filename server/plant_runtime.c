@@ -169,7 +169,7 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
 {
     if (before)
         store_adopt(runtime->store, before->store);
-    if (!before) /* after a reload the event loop opens the lists when it switches, because sessions change these files until then */
+    if (!before) /* after a reload the event loop opens these lists at the switch, because sessions change the files until then */
         plant_runtime_open_lists(runtime);
     if (runtime->history)
         runtime->loop_checks = loop_checks_open(runtime->context->log, runtime->plant, runtime->history);

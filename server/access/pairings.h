@@ -66,8 +66,8 @@ bool pairings_mirror(struct pairings *pairings, const json_t *told, int64_t now_
 /* Like pairings_ask(), with the devices that the core sent; digits "" until the core has sent some. */
 enum pairing pairings_look(const struct pairings *pairings, const struct pairing_request *request, int64_t now_ns,
                            char digits[PAIRING_DIGITS + 1], int *left_s);
-/* pairings_request_text() returns the request that a renderer sends its core for a device: JSON without the secret; mem_free.
-   pairings_ask_for() carries it out on the core. */
+/* pairings_request_text() returns the request that a renderer sends its core for a device: JSON without the secret; the caller frees it
+   with mem_free. pairings_ask_for() carries out such a request on the core. */
 char *pairings_request_text(const struct pairing_request *request);
 void pairings_ask_for(struct pairings *pairings, const json_t *request, int64_t now_ns);
 

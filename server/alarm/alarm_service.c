@@ -357,7 +357,8 @@ void alarm_service_end(struct alarm_service *service, struct settling_ticket *ti
     pthread_mutex_lock(&service->thread.lock);
     if (service->journal)
         journal_end(service->journal, ticket);
-    else if (service->ending || service->lost) /* halted since alarm_service_begin: whether rows were lost is not known yet, or they were */
+    /* the service was halted after alarm_service_begin(): rows were lost, or it is not known yet whether they were */
+    else if (service->ending || service->lost)
         ticket->last = UINT64_MAX;
     pthread_mutex_unlock(&service->thread.lock);
 }
@@ -409,7 +410,7 @@ void alarm_service_mirror_row(struct alarm_service *service, const struct journa
         return;
     journal_add_entry(service->journal, row);
     pthread_mutex_lock(&service->thread.lock);
-    service->rows[++service->row_count % ROWS] = *row; /* the previous leader may lack this row when it returns */
+    service->rows[++service->row_count % ROWS] = *row; /* the previous leader may lack this row in its journal when it returns */
     pthread_mutex_unlock(&service->thread.lock);
 }
 

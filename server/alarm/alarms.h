@@ -20,7 +20,7 @@ struct instant {
 };
 
 struct alarm {
-    const char *name;          /* name of its tag, or of its device (alarm/devices.h) */
+    const char *name;          /* name of the alarm's tag, or of its device (alarm/devices.h) */
     int tag;                   /* index of the tag; -1: the alarm belongs to a device, and kind is ALARM_LINK */
     enum alarm_kind kind;
     int priority;              /* 1 is the most urgent */
@@ -32,13 +32,13 @@ struct alarm {
     double value;              /* value when the alarm was raised; NaN: none */
     int64_t raised_utc_ns;     /* UTC: when it was last raised; 0: never */
     int64_t changed_utc_ns;    /* UTC: when it last changed */
-    struct instant until;      /* when shelving ends; 0: not shelved */
+    struct instant until;      /* when shelving of the alarm ends; 0: the alarm is not shelved */
     char who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES]; /* operator and reason of the last action; "": none */
-    uint64_t number;           /* number of its last change, counted over all alarms; 0: it never changed */
+    uint64_t number;           /* number of the alarm's last change, counted over all alarms; 0: the alarm never changed */
     /* --- below: private to alarms*.c */
     struct condition condition;
     struct condition_delays delays;
-    /* raised_mono_ns: when it was last raised; recent_ns: ring buffer of the last such times */
+    /* raised_mono_ns: when the alarm was last raised; recent_ns: ring buffer of the last times when it was raised */
     int64_t raised_mono_ns, recent_ns[ALARM_RECENT];
     unsigned raised_count;
     int older, newer;          /* doubly linked list of alarms by change number; -1: none */
@@ -93,9 +93,9 @@ int alarms_newest(const struct alarms *alarms);
 
 struct alarm_counts {
     int statuses[ALARM_STATUSES];
-    int active;      /* alarms that are annunciated while their cause is present */
-    int standing;    /* the part of `active` that has lasted for longer than a day */
-    int chattering;  /* alarms raised three times or more within the last minute */
+    int active;      /* number of alarms that are annunciated while their cause is present */
+    int standing;    /* number of alarms in `active` that have been active for longer than a day */
+    int chattering;  /* number of alarms raised three times or more within the last minute */
     int held;
     int priorities[ALARM_PRIORITIES]; /* annunciated alarms by priority; index 0 is priority 1 */
 };

@@ -28,7 +28,7 @@ struct alarms {
     struct feed *feeds; /* sorted by tag */
     size_t feed_count, feed_capacity;
     int *by_tag;        /* indices of alarms, sorted by tag */
-    int *first_feed, *first_alarm; /* for each tag, and one entry more: index of its first entry in feeds, in by_tag */
+    int *first_feed, *first_alarm; /* index by tag, with one entry more than tags: a tag's first entry in feeds, and in by_tag */
     struct last_sample *seen;
     struct devices *devices;
     struct sample_event *noticed; /* scratch memory of alarms_tick(): events found, one per tag */
@@ -41,7 +41,7 @@ struct alarms {
     int64_t begun_ns;   /* monotonic time of the first tick */
 };
 
-void alarms_touch(struct alarms *alarms, int index); /* gives the alarm the number of a new change */
-void alarms_watch(struct alarms *alarms, int index); /* adds the alarm to `timed` if time can change it */
+void alarms_touch(struct alarms *alarms, int index); /* gives the alarm a new change number */
+void alarms_watch(struct alarms *alarms, int index); /* adds the alarm to `timed` if the passing of time can change it */
 
 #endif

@@ -43,9 +43,9 @@ static void take(struct alarms *alarms, int index, const struct alarm *from)
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now)
 {
     struct alarm from = *saved;
-    if (from.until.utc_ns) /* 1 ns if the shelving time is over, so that it ends at once */
+    if (from.until.utc_ns) /* if the shelving time is over, shelving ends in 1 ns, that is, at once */
         from.until.mono_ns = now.mono_ns + (from.until.utc_ns > now.utc_ns ? from.until.utc_ns - now.utc_ns : 1);
-    /* held until its next sample */
+    /* the alarm is held until the next sample of its tag */
     alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK;
     alarms->list[index].raised_mono_ns = now.mono_ns - (from.raised_utc_ns ? now.utc_ns - from.raised_utc_ns : 0);
     take(alarms, index, &from);

@@ -10,9 +10,9 @@ enum device_status { DEVICE_UNKNOWN, DEVICE_USABLE, DEVICE_GONE /* no data, or t
 struct alarm_device {
     char *name;          /* name of the source, with the unit if the source has several: "plc1", "gateway/7" */
     int source, unit;
-    int usable, gone;    /* number of its tags that are DEVICE_USABLE, and DEVICE_GONE */
+    int usable, gone;    /* number of the device's tags that are DEVICE_USABLE, and DEVICE_GONE */
     int64_t back_ns;     /* monotonic: since when a tag of the device is usable; 0: none is */
-    int alarm;           /* index of its LINK alarm; -1: none */
+    int alarm;           /* index of the device's LINK alarm; -1: none */
     bool changed;        /* changed since alarms.c last evaluated the device */
 };
 

@@ -17,9 +17,9 @@ enum { MOST_WAITING = 10000, FILE_BYTES = 64 << 20 };
 static const int64_t RETRY_NS = NS_PER_S;
 
 struct queued_entry {
-    struct audit_entry entry; /* its texts are stored behind the struct */
+    struct audit_entry entry; /* its texts are stored in the same allocation, directly after the struct */
     int64_t utc_us;
-    bool said; /* logged already, because the file could not be written */
+    bool said; /* the entry was logged already, because the file could not be written */
     struct queued_entry *next;
 };
 

@@ -29,7 +29,7 @@ struct audit_report {
     uint64_t first_seq;
     struct audit_chain end;
     bool good;
-    char *text; /* what is wrong, and where; NULL: nothing. Free it with mem_free */
+    char *text; /* description of the fault and of its place; NULL: no fault. Free it with mem_free */
 };
 /* Verifies the trail: full files, PATH, and PATH.head. known: number and hash of a line, kept elsewhere (seq 0: none); reports a trail
    that ends before that line or has another one there. */

@@ -33,7 +33,7 @@ struct loop_checks {
     uint64_t *numbers;     /* number of the latest check by tag */
     uint64_t number;
     bool begun;
-    atomic_bool *unproven; /* by tag: not checked, for threads that draw */
+    atomic_bool *unproven; /* atomic flags by tag, for threads that draw: the tag must be marked as unproven */
 };
 
 /* --- fingerprint of a tag's configuration

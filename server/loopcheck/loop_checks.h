@@ -41,7 +41,7 @@ const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, i
 bool loop_checks_begun(
     const struct loop_checks *loop_checks);
 uint64_t loop_checks_number(const struct loop_checks *loop_checks); /* returns a number that increases with each record */
-/* Returns that number when the last record of this tag was added; 0: before the daemon started. */
+/* Returns the value that loop_checks_number() had when the last record of this tag was added; 0: before the daemon started. */
 uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag);
 /* appends the check of every tag that has a source, as CSV */
 void loop_checks_print(const struct loop_checks *loop_checks, struct text *out);

@@ -9,7 +9,7 @@ struct connection {               /* lives as long as the connection */
     struct address_usage *usage;  /* usage of the address that opened the connection; a reference */
     struct address_usage *client; /* usage of the client's address: behind a proxy, the address that the last request names; a reference */
     char address[64];             /* the client's address as text, for the log */
-    enum role role;               /* role according to the last request's headers */
+    enum role role;               /* role of the user, according to the last request's headers */
     struct token_holder holder;
     char token[TOKEN_MAX_CHARS + 1]; /* token of the last request; "": none */
     bool answered; /* no request of this connection waits for its answer */

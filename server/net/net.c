@@ -399,7 +399,7 @@ static bool open_context(struct net *net)
         info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
         info.ssl_cert_filepath = server->params.access.tls_cert_path;
         info.ssl_private_key_filepath = server->params.access.tls_key_path;
-        info.alpn = "http/1.1"; /* no HTTP/2: there a request is not a connection, and could carry a WebSocket */
+        info.alpn = "http/1.1"; /* HTTP/2 is off: there a request is not a connection, and could carry a WebSocket */
     }
     lws_set_log_level(LLL_ERR | LLL_WARN, lws_log_line);
     atomic_store(&lws_log_to, server->params.log);
@@ -513,7 +513,7 @@ void net_destroy(struct net **net_ptr)
     if (!net)
         return;
     lws_sul_cancel(&net->timer);
-    history_queries_destroy(&net->server.history_queries); /* its threads wake the event loop, so they end first */
+    history_queries_destroy(&net->server.history_queries); /* first, because its threads wake the event loop */
     picture_signer_destroy(&net->server.picture_signer);
     history_loader_destroy(&net->server.history_loader);
     openid_stop(&net->server.openid);

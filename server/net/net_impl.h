@@ -30,7 +30,7 @@ struct net {
     } call;
 };
 
-/* --- net.c; thread: the loop --- */
+/* --- net.c; thread: the event loop --- */
 
 /* Answers actions that are on disk by now, or cannot be kept. Returns whether others still wait for the disk. */
 bool net_settle_answers(struct net *net);

@@ -8,7 +8,7 @@
 
 struct signing {
     struct encoded_frame *encoded; /* NULL: the receiver took the frame */
-    struct picture_origin origin; /* where the picture comes from; its args belong to this struct */
+    struct picture_origin origin; /* the picture's plant, arguments and overlay for the statement; its args belong to this struct */
     bool good;                    /* true: the frame's packet is now the signed file; false: it could not be signed */
     struct signing *next;
 };

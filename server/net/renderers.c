@@ -36,13 +36,13 @@ struct deed {
 struct renderer_peer {
     struct lws *wsi;
     struct renderer_peer *next;
-    char name[64];           /* name of the renderer's node, as it reports it */
-    char lease[LEASE_NODE_BYTES]; /* on a standby's connection: identifies it among nodes with the same name */
+    char name[64];           /* name of the renderer's node, as the renderer reports it */
+    char lease[LEASE_NODE_BYTES]; /* on a standby's connection: lease id that distinguishes nodes with the same name */
     struct text in, out;     /* in: message being received; out: message being built, after LWS_PRE spare bytes */
     /* RENDERER_VOTES: a core that may not follow, but whose lease promises count */
     enum { RENDERER_NEW, RENDERER_TAKEN, RENDERER_VOTES, RENDERER_REFUSED } state;
-    char *refusal;           /* why the peer is refused; NULL: it is not */
-    bool refusal_sent;       /* for a voting core: it has been told why it is refused */
+    char *refusal;           /* why the peer is refused; NULL: the peer is not refused */
+    bool refusal_sent;       /* the refusal was sent to a voting core */
     struct core_sent sent;
     bool alarms_sent, lists_sent, links_sent;
     bool stands_by;          /* a standby: a core that follows this one and can take over */
@@ -55,12 +55,12 @@ struct renderer_peer {
     uint64_t alarms;         /* number of the last change of alarms that was sent */
     struct lists_seen lists;
     bool *links;             /* connection state of each source, as last sent; by source index */
-    json_t *hello;           /* this core's introduction, to be sent first; NULL: it was sent */
+    json_t *hello;           /* this core's introduction, to be sent first; NULL: already sent */
     json_t *answers;         /* answers to be sent */
     struct deed *deeds;      /* forwarded actions that are not on disk yet */
     int64_t told_ns;         /* monotonic: when readings were last sent */
     int64_t since_ns;        /* monotonic: since when something waits to be sent; 0: nothing waits */
-    const char *close_text;  /* reason to close the connection; NULL: it stays open */
+    const char *close_text;  /* reason to close the connection; NULL: the connection stays open */
 };
 
 /* Returns whether the peer is on this machine and needs no token, which gives it the role engineer. */

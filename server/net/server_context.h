@@ -88,14 +88,15 @@ struct server_context {
     struct admission admission;
     bool local_only;   /* bound to a loopback address, without a proxy in front */
     char machine[256]; /* the machine's host name; "": none */
-    /* logins_held: tokens not checked because of throttling and not recorded yet; held_ns: monotonic, when they were last recorded */
+    /* logins_held: number of tokens not checked because of throttling and not recorded yet; held_ns: monotonic time of the last record
+       about them */
     int64_t logins_held, held_ns;
     int64_t unasked; /* identity provider's answers that no log-in awaited, or that failed, not recorded yet */
-    int64_t drain_ns;  /* monotonic: since when sessions are sent to other daemons; 0: they are not */
+    int64_t drain_ns;  /* monotonic time since when sessions are sent to other daemons; 0: sessions stay */
     int64_t looked_ns; /* monotonic: when the files of tokens and certificate were last checked */
     uint64_t next_client;
     char goodbye[64];                   /* close reason that streams get at shutdown */
-    int start_s;                        /* seconds that the daemon took to start, rounded up; 0: it is not ready */
+    int start_s;                        /* seconds that the daemon took to start, rounded up; 0: the daemon is not ready */
     struct kept_answers kept_answers;
     bool restless;                      /* a session has work that depends on time: a tick is due soon */
     int64_t still_ns;                   /* render time of the last refined frame that was drawn and not shared */

@@ -47,7 +47,7 @@ static uint64_t new_number(const struct server_context *server)
     uint64_t number = 0;
     while (number == 0 || stream_called(server, number)) {
         if (RAND_bytes((unsigned char *)&number, sizeof(number)) != 1)
-            return 0; /* no randomness available: this session cannot be followed */
+            return 0; /* no random numbers available: this session cannot be followed */
         number >>= 16;
     }
     return number;

@@ -31,7 +31,9 @@ struct stream {
     struct known_markers known;
     char *carried;  /* during a plant reload: parameters of the view, as text */
     bool throttled; /* the client sent too much: nothing is read for now */
-    int64_t silent_ns;  /* monotonic: since when the client acknowledges no picture, 0: it does; INT64_MAX once that was logged */
+    /* monotonic time since when the client has acknowledged no picture, 0: it acknowledges pictures; INT64_MAX once the silence was
+       logged */
+    int64_t silent_ns;
     int close_code; /* WebSocket close code; 0: the connection stays open */
     const char *close_text;
     int64_t messages, errors, dropped; /* the session's counts as already added to the metrics */

@@ -46,7 +46,7 @@ struct encode_job {
 
 struct stream_work {                  /* state of the encoding of one stream */
     struct encode_job *first, **last; /* queue of jobs, protected by the lock; the first job is running */
-    struct encoder *encoder;   /* for codecs with state between frames; this and the members below belong to the running job */
+    struct encoder *encoder; /* encoder of a codec that keeps state between frames; this and the members below belong to the running job */
     struct frame *before;      /* the frame that the stream's clients show, in this quality */
     struct encoder_params quality;
 };
@@ -233,7 +233,7 @@ static uint64_t still_needed(const struct encode_job *job)
 
 struct packet_run {
     struct packet *packets[ENCODE_STREAM_KEPT];
-    int count; /* negative: the packets are no longer kept */
+    int count; /* number of packets; negative: the packets are no longer kept */
 };
 
 static void take_run(struct encode_job *job, size_t ticket, struct packet_run *run)

@@ -19,14 +19,16 @@ struct encode_stream {
     struct packet *kept[ENCODE_STREAM_KEPT]; /* packets number `oldest` to oldest + kept_count - 1; NULL where nothing had changed */
     int kept_count;
     size_t kept_bytes, key_bytes;
-    size_t members, present; /* members: clients in the stream; present: those of them with a ticket being planned */
+    /* members: number of clients in the stream; present: number of those that have a ticket in the group being planned */
+    size_t members, present;
 };
 
 struct encode_stream_member {
     uint64_t client;
     struct encode_stream *stream;
     uint64_t position; /* number of the newest packet that the client was given */
-    /* patience_ns: delay before the client may join again; longer if it often falls behind. join_after_ns: when that ends */
+    /* joined_ns: when the client joined; patience_ns: delay before it may join again, longer if it often falls behind; join_after_ns:
+       end of that delay */
     int64_t joined_ns, join_after_ns, patience_ns;
 };
 
@@ -38,11 +40,12 @@ struct encode_streams { /* zero-initialise */
 
 struct encode_plan { /* zero-initialise */
     struct encode_stream *stream;
-    bool encode;     /* true: encode the frame; false: the stream's newest packet already shows it */
-    bool key;        /* encode it as a key frame */
-    bool again;      /* send the frame even if nothing changed */
+    bool encode;     /* true: encode the frame; false: the stream's newest packet already shows this content */
+    bool key;        /* encode the frame as a key frame */
+    bool again;      /* send the frame even if nothing changed in it */
     uint64_t number; /* number of the frame in the stream */
-    uint64_t *from;  /* for each ticket, number of the first packet to give to its client; above `number`: nothing new for it */
+    /* for each ticket, number of the first packet to give to its client; a number above `number`: nothing new for that client */
+    uint64_t *from;
     size_t from_capacity;
 };
 

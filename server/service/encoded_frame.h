@@ -12,7 +12,7 @@ struct encoded_frame { /* owned by the code that collected it; free with encoded
     int earlier_count;
     bool failed; /* the frame could not be made */
     struct frame_request request;
-    int64_t wait_ns; /* from the input to the start of drawing */
+    int64_t wait_ns; /* nanoseconds from the input to the start of drawing */
     int64_t made_ns; /* monotonic: when encoding ended */
     struct encoded_frame *next;
 };

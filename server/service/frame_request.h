@@ -15,13 +15,14 @@ struct frame_request {
     /* time account that the frame is charged to: the client's address; 0: one account for all requests without an address */
     uint64_t account;
     int64_t asked_ns; /* monotonic: when the request was made */
-    int64_t read_ns;  /* monotonic: the client knows of readings up to then; later changes bring another request */
+    int64_t read_ns;  /* monotonic: the client knows the readings up to this time; readings changed later bring another request */
     int step;         /* step of the quality ladder, for previews */
     bool draft;       /* refined, but of lower quality than the final frame */
     bool of_data;     /* made because a reading changed, at view.input_ns */
     bool or_moving;   /* draw refined only if that is as quick as a preview; otherwise draw a preview with moving_quality */
     struct encoder_params moving_quality;
-    enum wire_codec moving_codec; /* codec of that preview, which then has no record; 0: the codec and record of this request */
+    /* codec of the preview that is drawn instead, which then has no record; 0: codec and record as requested */
+    enum wire_codec moving_codec;
     struct frame_part part; /* rectangle of the picture that the client gets; the picture is drawn once for all its parts */
     uint64_t picture;       /* number of the tiles' common picture (session/tiles/tile_sync.h), from 1; 0: no tile */
     /* only valid as a replacement of a request that was not begun, because the client may have no more frames in flight */

@@ -17,8 +17,8 @@
 #include "service/remote_history.h"
 
 enum { THREADS = 2 }; /* each address uses one thread at a time, so that its queries do not block another address */
-static const size_t PIECE_BYTES = 256 * 1024;    /* a piece ends with the tag that makes it this long, */
-static const int64_t PIECE_NS = 100 * NS_PER_MS; /* or that took this long */
+static const size_t PIECE_BYTES = 256 * 1024;    /* bytes after which a piece of an answer ends, with the tag that is being read, */
+static const int64_t PIECE_NS = 100 * NS_PER_MS; /* and time after which it ends */
 
 struct pending_query {
     struct history_query query;
@@ -27,7 +27,7 @@ struct pending_query {
     bool listed;  /* a drifting sensor was listed already */
     bool wanted;  /* the client wants the next piece */
     bool forgotten;
-    uint64_t served; /* turn number at which its newest piece was begun; 0: none yet */
+    uint64_t served; /* turn number at which the query's newest piece was begun; 0: none yet */
     struct pending_query *next;
 };
 

@@ -19,10 +19,10 @@ struct history_query {
     int tag_count, max_points;
     int64_t from_us, to_us;
     bool csv;
-    bool drift;   /* instead of series: which sensors drifted in the week before to_us (service/drift_report.h) */
-    int group, tag; /* for drift: index of the group, or of a single tag; otherwise -1 */
-    bool gaps;    /* instead of series: times when nothing was recorded */
-    bool journal; /* instead of series: the alarm journal, filtered by `alarms` */
+    bool drift;   /* instead of series, the query asks which sensors drifted in the week before to_us (service/drift_report.h) */
+    int group, tag; /* of a drift query: index of the group, or of a single tag; otherwise -1 */
+    bool gaps;    /* instead of series, the query asks when nothing was recorded */
+    bool journal; /* instead of series, the query asks for the alarm journal, filtered by `alarms` */
     struct alarm_query alarms;
 };
 

@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 
-static const int64_t KEPT_NS = 500 * NS_PER_MS; /* maximum age of a kept frame: the ages and times that it shows are late by as much */
+static const int64_t KEPT_NS = 500 * NS_PER_MS; /* maximum age of a cached frame: ages and times drawn into the frame are late by as much */
 #define KEPT_BYTES ((size_t)32 * 1024 * 1024)   /* maximum bytes of all kept frames; a single frame may be larger */
 
 static size_t bytes_of(const struct frame *frame)

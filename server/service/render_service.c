@@ -93,7 +93,7 @@ void render_service_forget(struct render_service *service, uint64_t id)
     render_service_remove_client(service, id);
     encode_queue_forget(service->queue, id);
     if (service->client_count == 0)
-        pthread_cond_broadcast(&service->wake); /* without clients the render thread may release its caches soon */
+        pthread_cond_broadcast(&service->wake); /* wakes the render thread, which may release its caches soon if there are no clients */
     pthread_mutex_unlock(&service->lock);
     encode_queue_sweep(service->queue);
 }

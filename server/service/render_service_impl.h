@@ -12,10 +12,11 @@ struct render_client {
     uint64_t id, number; /* number: counts the client's requests, incremented when drawing begins */
     bool pending;        /* `request` is waiting to be begun */
     bool has_content;
-    bool left; /* the client no longer wants the frame of the long job that is drawn for it */
+    bool left; /* the client no longer wants the frame that the long job draws for it */
     int64_t patience_ns; /* how long changed readings wait for the client's long job; 0: the initial delay */
     struct frame_request request;
-    uint64_t content, content_number;   /* content hash of the newest frame drawn for it; number of the request that it answered last */
+    /* content hash of the newest frame drawn for the client; number of the client's request that was answered last */
+    uint64_t content, content_number;
     int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time charged to the client, by scheduler_share() */
     struct time_account *account;       /* account of the client's address */
 };

@@ -13,7 +13,7 @@ struct thread_memory { /* memory of the caches (render_thread_memory.c) */
     size_t other;           /* recent peak of the process memory besides models and caches, in bytes; decays slowly */
     int64_t looked_ns;      /* monotonic: when memory was last counted */
     int64_t trimmed_ns;     /* monotonic: when free heap memory was last returned to the system */
-    int64_t alone_since_ns; /* monotonic: since when there has been no client; 0: there is one */
+    int64_t alone_since_ns; /* monotonic time since when there has been no client; 0: there are clients */
     bool released;          /* the caches were released and nothing was drawn since */
 };
 
@@ -26,8 +26,8 @@ struct long_job {                                 /* a frame that is drawn in st
     int64_t asked_ns;
     int64_t px, spent_ns;     /* px: pixels of the frame; spent_ns: drawing time so far */
     uint64_t account;         /* time account that is charged */
-    int64_t account_spent_ns; /* time charged to that account before the job */
-    bool keeps;               /* once the frame is done, new readings are quick to show, so it is not abandoned for them */
+    int64_t account_spent_ns; /* drawing time that was charged to that account before the job began */
+    bool keeps;               /* once the frame is done, frames with new readings are quick, so the job is not abandoned for them */
 };
 
 struct render_thread {
@@ -42,9 +42,10 @@ struct render_thread {
     struct long_job long_job;
     struct long_job parked; /* a large long job that waits for a smaller one of another address */
     bool warm;              /* the warm-up is complete */
-    int64_t turn_began_ns;  /* monotonic: when the present work began, after waiting or other work */
+    int64_t turn_began_ns;  /* monotonic time at which the thread's present work began, after waiting or other work */
     struct awaited_frames in_flight;
-    struct deferred_requests deferred; /* groups whose field is not computed yet; each gets turns for that */
+    /* groups whose field is not computed yet; the thread computes a part of a field in each of their turns */
+    struct deferred_requests deferred;
     struct thread_memory memory;
 };
 

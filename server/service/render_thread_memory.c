@@ -50,7 +50,7 @@ static size_t other_bytes(struct thread_memory *memory, size_t all, size_t count
     size_t other = use.anonymous > counted ? use.anonymous - counted : 0;
     if (other < memory->other)
         memory->other -= (memory->other - other) / FADES;
-    else if (!loose) /* otherwise a cache may just have freed some of it, and the heap has not returned it yet */
+    else if (!loose) /* otherwise a cache may just have freed memory that the heap has not returned to the system yet */
         memory->other = other;
     return memory->other > OTHER_BYTES ? memory->other : OTHER_BYTES;
 }

@@ -16,7 +16,7 @@ struct time_account {
 struct time_accounts { /* zero-initialise; free with time_accounts_finish() */
     struct time_account **all;
     size_t count, capacity;
-    int64_t served_ns[SCHEDULER_SHARES]; /* time that the account served last had been charged before */
+    int64_t served_ns[SCHEDULER_SHARES]; /* drawing time by share that had been charged to the account served last, before its turn */
 };
 
 /* Adds a client to the account with that id; creates the account if needed. Returns it; time_accounts_leave() releases it. */

@@ -16,7 +16,8 @@ void session_close(struct session *session, int code, const char *text)
 
 void session_reply(struct session *session, char *text)
 {
-    if (session->owed.reply_count == SESSION_MAX_REPLIES) { /* the client reads nothing: the oldest answer is the least useful */
+    /* the queue is full because the client reads nothing: drops the oldest answer */
+    if (session->owed.reply_count == SESSION_MAX_REPLIES) {
         mem_free(session->owed.replies[0]);
         memmove(session->owed.replies, session->owed.replies + 1, sizeof(session->owed.replies) - sizeof(session->owed.replies[0]));
         session->owed.reply_count--;

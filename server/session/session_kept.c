@@ -12,7 +12,8 @@
 
 struct kept_answer {
     char *text, *what; /* what: description of an action on alarms for the audit trail; NULL: no alarm action */
-    const struct alarm_service *alarms; /* alarm service whose journal has yet to decide; NULL: it has, or no alarm action */
+    /* alarm service that carried out the action; NULL: its journal has decided, or there was no alarm action */
+    const struct alarm_service *alarms;
     int journal_error;                  /* the journal's decision: 0 or -errno */
     struct settling_ticket journal, audit;
     struct kept_answer *next;

@@ -33,7 +33,7 @@ struct session_identity {
     struct view token_view;               /* the view in the last view token that was sent */
     int64_t token_ns;                     /* monotonic: when the last view token was sent */
     bool resumed;                         /* this session resumed another session's view, as `welcome` says */
-    bool returned;                        /* as `resumed`, and the followers have yet to be moved to this session */
+    bool returned;                        /* as `resumed`, and the followers of the resumed session have yet to be moved to this one */
 };
 
 /* The client at the other end of a new connection, for session_introduce(). */
@@ -57,27 +57,29 @@ struct session_close {
 struct session_room {
     struct address_share *share; /* share of the client's address; NULL: none */
     int64_t pixels;              /* pixels counted in the admission totals; 0: returned while the page was hidden */
-    int64_t hidden_ns, shown_ns; /* monotonic: when the page was last hidden; when it was last shown again, 0: never */
+    int64_t hidden_ns, shown_ns; /* monotonic: when the page was last hidden; when the page was last shown again, 0: never */
 };
 
 /* The codec that encodes the session's frames. */
 struct session_codec {
     struct codec_list list; /* codecs that the client decodes */
     enum wire_codec current;
-    struct codec_choice choice; /* the server's choice, where the client leaves it to the server */
+    struct codec_choice choice; /* state of the server's choice of the codec, if the client leaves the choice to the server */
     enum signed_frames signed_frames;
     bool unsigned_said; /* the client was told why its frames are unsigned; reset by the next signed frame */
 };
 
 /* Why the next frame is wanted, and how refined the shown picture is (session_frames.c). */
 struct frame_demand {
-    /* input: the view changed; data: a reading changed; any: a frame is due even if it shows the same, and must decode on its own */
+    /* input: the view changed; data: a reading changed; any: a frame is due even if its content is the same, and it must decode on its
+       own */
     bool input, data, any;
     int64_t input_ns;               /* monotonic time of the newest change of the view */
     int64_t data_ns;                /* monotonic time of the oldest changed reading for which no frame was requested */
     int64_t preview_ns, refined_ns; /* monotonic: when the newest frame of each tier was requested */
     enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* best refined frame requested for the present view */
-    bool refining; /* a requested refined frame is outstanding; it is drawn between other sessions' frames and may take a minute */
+    /* a requested refined frame is outstanding; the render thread draws it between other sessions' frames, which may take a minute */
+    bool refining;
     double refined_bytes; /* size in bytes of the last frame of full quality; 0: none was acknowledged */
     bool starting; /* the first frame waits for the bandwidth from session_begin(), for a second at most */
     int64_t starting_ns;
@@ -123,7 +125,7 @@ struct session_following {
 /* The instant that the session shows (session_time.c). The shown instant itself is view.at_us with the readings in `historical`. */
 struct travel {
     const struct historical_snapshot *historical; /* a reference to the readings of that instant; NULL: current readings are shown */
-    int64_t wanted_us;                            /* instant to which the session is moving, UTC microseconds; 0: it has arrived */
+    int64_t wanted_us;                            /* instant to which the session is moving, UTC microseconds; 0: the session has arrived */
     bool asked;                                   /* the readings of wanted_us are being loaded */
     bool first;                                   /* the session began at an instant: nothing is drawn until its readings are loaded */
     double speed;                                 /* playback speed, recorded seconds per second; 0: paused */
@@ -133,7 +135,8 @@ struct travel {
 
 /* Texts that are still to be sent to the client (session_texts.c). */
 struct owed_texts {
-    bool welcome, params, following, tags_all, tags, status, time, loop_checks; /* loop_checks: the complete list of them */
+    /* loop_checks: the complete list of loop checks is to be sent */
+    bool welcome, params, following, tags_all, tags, status, time, loop_checks;
     uint32_t params_seq;                                                        /* sequence number that the next `params` answers */
     int64_t tags_ns;                                                            /* monotonic: when tags were last sent */
     uint32_t *tag_changes;                                                      /* reading.changes as last sent, by tag */
@@ -171,12 +174,12 @@ struct session_tile {
         uint32_t seq;     /* sequence number of this session's frame that shows the picture */
     } held[TILE_HELD];    /* frames sent and not presented yet, oldest first */
     int held_count;
-    bool moved;         /* the burn-in shift changed since a picture was requested: the picture is sent even if its content is the same */
+    bool moved; /* the burn-in shift changed since a picture was requested: the next picture is sent even if its content is the same */
     uint64_t unchanged; /* number of a picture that equals the frame still on its way; 0: none */
     uint32_t presented_seq;
     int64_t made_ns;       /* time from request to encoded preview, smoothed; 0: not known */
     int64_t late_us;       /* UTC microseconds since when the tile is dropped from the wall; 0: it takes part */
-    int64_t out_ns, in_ns; /* out_ns: how long the tile is dropped; in_ns: monotonic, when it may be readmitted, or was */
+    int64_t out_ns, in_ns; /* out_ns: how long the tile is dropped; in_ns: monotonic, when the tile may be readmitted, or when it was */
     char *told;            /* the last `tiles` message sent; NULL: none */
 };
 
@@ -193,7 +196,7 @@ struct session_stats { /* counts for the log and the metrics */
 /* Restrictions of a narrowed token (session_scope.c). */
 struct session_scope {
     char named[NAMED_VIEW_ID_BYTES]; /* id of the plant file's view that is shown; "": none */
-    bool *tags;                      /* for a paired display without pictures: which tags it shows, by tag; NULL: all */
+    bool *tags; /* for a paired display without pictures: flags by tag, whether the display shows the tag; NULL: no restriction */
 };
 
 struct session {

@@ -472,7 +472,8 @@ test('through nginx, as deploy/proxy has it', { skip: skip || (existsSync(NGINX)
         assert.equal(await throughNginx(port, '/stream', null, { ...upgrade, Origin: 'https://plant.example' }), 101);
         assert.equal(await throughNginx(port, '/stream', null, { ...upgrade, Origin: 'https://evil.example' }), 403);
         await plant.daemon.stop();
-        await plant.startDaemon('--port', String(plant.port)); // a daemon that was not told of the proxy, addressed by an unknown host name
+        // starts a daemon that was not told of the proxy; requests use an unknown host name
+        await plant.startDaemon('--port', String(plant.port));
         assert.equal(await throughNginx(port, '/healthz'), 403);
         assert.equal(await throughNginx(port, '/api/v1/tags', null, { Host: 'localhost' }), 403);
     } finally {
@@ -489,7 +490,7 @@ test('a person is asked for a token, and sees the plant', {
     try {
         await page.waitForSelector('#token[open]');
         for (let i = 0; i < 3; i++)
-            await page.keyboard.press('Escape'); // without a token there is nothing to see
+            await page.keyboard.press('Escape'); // without a token the page shows nothing, so the keys have no effect
         await page.waitForSelector('#token[open]');
         await page.fill('#token-text', 'pc_wrong');
         await page.click('#token-form button');

@@ -8,7 +8,7 @@ import { PlainClient } from './support/plain_client.mjs';
 import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
-const BEGIN_S = Math.floor(Date.now() / 1000) - 40 * 86400; // includes the beginning of a month
+const BEGIN_S = Math.floor(Date.now() / 1000) - 40 * 86400; // 40 days back, so that the recorded time includes the beginning of a month
 let plant;
 
 before(async () => {
@@ -53,7 +53,7 @@ test('what was recorded comes back elsewhere, point by point', { skip }, async (
     assert.ok(names.filter((name) => /^history-\d{4}-\d\d\.sqlite$/.test(name)).length >= 2, names.join(' '));
     assert.ok(names.includes('backup.json') && names.includes('plant.yaml') && names.includes('tags.csv'));
     assert.ok(!names.some((name) => /-wal|-shm|part/.test(name)), names.join(' '));
-    // the daemon reports this time in its metrics
+    // the daemon's metrics report the time of this file as the last backup
     const stamp = statSync(join(plant.file.replace(/yaml$/, 'history'), 'last-backup')).mtimeMs;
     assert.ok(Math.abs(Date.now() - stamp) < 60000);
     const drill = runProgram('plantcast', ['backup', '--verify', folder('one')]);

@@ -71,7 +71,8 @@ for (const off_s of [HOUR_S, -HOUR_S])
         const shelving = performance.now();
         client.say({ type: 'alarm', seq: 2, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 4, reason: 'is looked at' });
         await client.text('alarmed');
-        await until('its shelf', async () => !(await alarmOf(renderer)), 60); // the shelving arrives from the core after the answer
+        // the shelved state arrives from the core after the answer to the client
+        await until('its shelf', async () => !(await alarmOf(renderer)), 60);
         await until('its return', () => alarmOf(renderer), 60);
         assert.ok(performance.now() - shelving > 3900, 'it was away for 4 s, not for an hour less');
         client.close();

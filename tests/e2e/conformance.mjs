@@ -186,7 +186,7 @@ test('who comes back has the view that it left', { skip }, async () => {
     const picture = await again.picture('the first');
     assert.deepEqual([picture.full_width, picture.full_height, picture.eye, picture.camera_seq], [256, 144, CAMERA.eye, 0]);
     const third = await Client.open(plant.port);
-    third.say('hello', { resume: welcome.resume }); // while the second connection is still open
+    third.say('hello', { resume: welcome.resume }); // resumes while the second connection is still open
     assert.equal((await third.text('welcome')).resumed, true);
     assert.equal((await again.wait('a close', (c) => c.closed)).code, 1000);
     const late = await Client.open(plant.port);

@@ -43,7 +43,7 @@ test('values, qualities and source times are the core\'s; the device sees one po
     await all(async (node) => (await node.tags())['PI-1'].quality_name === bad);
     await nodes.plant.tell('release PI-1');
     await all(async (node) => (await node.tags())['PI-1'].quality_name === 'Good');
-    await sleep(2000); // longer than a reading may be old
+    await sleep(2000); // waits longer than a reading may be old
     assert.equal((await a.tags())['TI-2'].quality_name, 'Good', 'a steady value does not get stale');
     await nodes.onePoller();
     assert.equal(await core.metric('plantcast_renderers'), 2);
@@ -71,7 +71,7 @@ test('an acknowledgement at one renderer is done by the core, with the name, and
     anna.say({ type: 'alarm', seq: 3, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 3, reason: 'is looked at' });
     await anna.text('alarmed');
     await all(async (node) => (await alarm(node, 'shelved'))?.reason === 'is looked at');
-    await all(async (node) => !await alarm(node, 'shelved')); // the core reports that the shelving time is over
+    await all(async (node) => !await alarm(node, 'shelved')); // when the shelving time is over, the core tells the renderers
     const { rows } = await (await core.fetch('/api/v1/alarms/journal')).json();
     assert.deepEqual(rows.filter(({ who }) => who === 'anna').map(({ event }) => event).sort(), ['acknowledge', 'shelve']);
     anna.close();

@@ -114,7 +114,8 @@ test('the page of a renderer has trends and the past', options, async () => {
     await travel(page, at(900));
     await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, at(900));
     await settle(page);
-    await page.waitForFunction(() => globalThis.plantcast.trends.chart.data[0].length > 100); // of an hour with a reading each second
+    // the chart shows an hour with a reading each second
+    await page.waitForFunction(() => globalThis.plantcast.trends.chart.data[0].length > 100);
     assert.match(await page.locator('#clock-name').textContent(), /^Then/);
     await shoot(page, 'core-history');
     assert.deepEqual(errors, []);

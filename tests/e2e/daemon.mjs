@@ -130,7 +130,7 @@ test('snapshots: a picture, or what is wrong with the question', { skip }, async
     const file = join(plant.folder, 'mapped.yaml'), mapped = 'colormaps: [{ name: Mine, image: map.png }]\n';
     writeFileSync(join(plant.folder, 'map.png'), good.body);
     writeFileSync(file, readFileSync(plant.file, 'utf8') + mapped);
-    for (const program of [['plantcastd', '--check'], ['plantcast-prep']]) // loads the code that reads images
+    for (const program of [['plantcastd', '--check'], ['plantcast-prep']]) // both programs must load the code that reads images
         assert.equal(runProgram(program[0], [...program.slice(1), file]).code, 0, program[0]);
     for (const query of ['width=0', 'width=1000000000', 'height=nan', 'group=none', 'camera=1,2', 'colour=red', 'power=1e999', 'look=%01',
         'x'.repeat(400)])

@@ -35,7 +35,7 @@ test('a hundred viewers of one view: one render, one encode, a hundred sends', {
         client.say({ type: 'follow', session });
     await Promise.all(all.map((c) => c.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0)));
     const mover = new Mover(leader, 20);
-    await sleep(4000); // until all have the best quality
+    await sleep(4000); // waits until all clients have the best quality
     mover.stop();
     await sleep(500);
     const start = await metrics(plant.port, ...names);
@@ -81,7 +81,7 @@ test('fifty clients that take nothing cost next to nothing', { skip }, async () 
     }
     const moreKb = residentKb(pid) - beforeKb;
     console.log(`# ${STALLED} stalled clients: ${moreKb} kB more`);
-    const picturesKb = 3 * 1280 * 720 * 4 / 1024; // pictures in flight at that moment: two being drawn, one being encoded
+    const picturesKb = 3 * 1280 * 720 * 4 / 1024; // bytes of the pictures in flight at that moment: two being drawn, one being encoded
     assert.ok(sanitized || moreKb <= 5 * 1024 + picturesKb, `${moreKb} kB more`);
 });
 
@@ -186,7 +186,7 @@ test(`random connects, drags, stalls and cuts for ${SOAK_S} s: nothing grows`, {
     assert.ok(late < 1.5 * early + 20, `latency grew from ${early.toFixed(1)} to ${late.toFixed(1)} ms`);
     assert.ok(sanitized || grownKb < 8 * 1024, `memory grew by ${grownKb} kB`);
     const patience = performance.now() + 180000;
-    for (; openForClients().length > filesBefore.length; await sleep(250)) // the last clients' files may close later
+    for (; openForClients().length > filesBefore.length; await sleep(250)) // files opened for the last clients may close later
         assert.ok(performance.now() < patience, `open:\n${openForClients().join('\n')}\nbefore:\n${filesBefore.join('\n')}`);
     assert.equal(steady.closed.code, 1000);
 });

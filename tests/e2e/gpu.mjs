@@ -149,7 +149,7 @@ const WISHES = [
 const USUAL = {
     isolines: null, light: [0.4, -0.5, 0.8], ghost: [], selected: null, colormap: 'relief', clip: null, split: null,
 };
-const LITTLE_BYTES = 20000, WITHOUT_MS = 600, BUSY_TIMES = 8; // factor on waiting times when the machine is busy
+const LITTLE_BYTES = 20000, WITHOUT_MS = 600, BUSY_TIMES = 8; // BUSY_TIMES: factor on waiting times when the machine is busy
 
 function wish(client, { width = SIZES[3][0], height = SIZES[3][1], ...params }) {
     client.params = (client.params ?? 0) + 1;
@@ -207,7 +207,7 @@ test('what there was no room for comes once there is room, whole, and without be
         came.push(await shown(client));
     }
     assert.ok(refused.filter(Boolean).length > WISHES.length / 2, `refused: ${refused}`);
-    faults.set('losses', 1); // everything is created again, with enough memory
+    faults.set('losses', 1); // a context loss: everything is created again, now with enough memory
     for (const [i, one] of WISHES.entries()) {
         wish(client, one);
         const right = await shown(client);
@@ -228,7 +228,7 @@ test('a driver that restarts is waited for, and room: nothing else draws meanwhi
     aim(client, 3);
     await client.until('attempts at another context', () => faults.get('refusals') === 0 && faults.get('made') > made, PATIENCE_MS);
     assert.equal(await status(), 503);
-    faults.set('hardware', 1); // the GPU is back, but without memory
+    faults.set('hardware', 1); // the GPU is back, but has no free memory
     await client.until('another attempt', () => /out of GPU memory for the plant/.test(plant.daemon.said), PATIENCE_MS);
     assert.equal(await status(), 503);
     faults.set('room_bytes', 0);

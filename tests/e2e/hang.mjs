@@ -119,7 +119,7 @@ test('a display with a trend and alarms, and a desk with hardly any height, go o
     await wall.close();
     const desk = await openPage(plant.url, { viewport: { width: 844, height: 150 } }), { page } = desk;
     await waitForPicture(page);
-    for (const height of [150, 100, 40]) { // the last heights leave a viewport of height 0
+    for (const height of [150, 100, 40]) { // the last window heights leave a viewport of height 0
         await page.setViewportSize({ width: 844, height });
         await drawCallouts(page, null);
         await shoot(page, `hang-desk-844x${height}`);

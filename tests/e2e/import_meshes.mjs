@@ -213,7 +213,7 @@ test('a signal ends it, and nothing is left behind', { skip }, () => inFolder(as
     program.stderr.on('data', (bytes) => said += bytes);
     const ended = once(program, 'close');
     await until(() => existsSync(join(folder, 'plant')) && readdirSync(join(folder, 'plant')).length > 0);
-    await setTimeout(300); // time for the reader to begin
+    await setTimeout(300); // gives the reader time to begin
     program.kill('SIGINT');
     const [code] = await ended;
     assert.equal(code, 1, said);

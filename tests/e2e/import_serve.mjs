@@ -164,7 +164,8 @@ test('files on their way: four at most, and none that drips', options, async () 
             drip.timer = setInterval(() => socket.write('x'), 500);
             drips.push(drip);
         }
-        for (let status = 200; status !== 503; await new Promise((done) => setTimeout(done, 100))) { // until all four uploads have begun
+        // waits until all four uploads have begun
+        for (let status = 200; status !== 503; await new Promise((done) => setTimeout(done, 100))) {
             ({ status } = await put('fifth.glb'));
             assert.ok([200, 503].includes(status), `${status}`);
         }
@@ -497,7 +498,7 @@ function namesIn(path) {
 }
 const seenRows = (text, status) => text.split('\n').filter((line) => line.includes(`,${status},`));
 
-const large = sweep(test, () => {}); // walk.mjs does the same with a plant room
+const large = sweep(test, () => {}); // only in long runs; walk.mjs does the same with a plant room
 large('400,000 triangles and 300 tags: a first picture within 5 minutes of the first command', { skip: noData, timeout: 4e5 }, async () => {
     const models = ['models/duplex_mep.glb', 'models/plm_plant_5parts.glb'].map((name) => join(DATA, name));
     const list = join(mkdtempSync(join(tmpdir(), 'plantcast-list-')), 'tags.csv');
@@ -563,7 +564,7 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         assert.equal(own.read('plant.yaml').match(/type: modbus/g).length, 1, 'the first one was changed');
         assert.match(own.read('tags.csv'), /^E-101\.TT-01,400001,Float,.*,plc,temperature,E-101,/m);
         const still = join(own.root, 'still.csv'), tags = ['E-101.TT-01', 'P-201A.TT-01', 'P-201B.PT-01'];
-        writeFileSync(still, `Time_s,${tags}\n0,60,50,8\n`); // each change would have a picture drawn
+        writeFileSync(still, `Time_s,${tags}\n0,60,50,8\n`); // constant values, because each change would have a picture drawn
         sim = new Program('plantcast-sim', [join(own.folder, 'plant.yaml'), '--values', still,
             ...tags.flatMap((tag) => ['--map', `${tag}=${tag}`])]);
         await sim.line(/^plantcast-sim: listening/m);

@@ -105,7 +105,7 @@ test('IGES without groups, and as Open CASCADE writes an assembly', { skip }, ()
     assert.ok(near(all.size, [0.1, 0.2, 0.3]), JSON.stringify(all));
     assert.deepEqual(layers.map(({ name, triangles, properties }) => [name, triangles, properties.Layer]),
         [['Layer 1', 6, '1'], ['Layer 2', 6, '2']]);
-    const skid = nodes('skid.igs'); // the program that wrote this file supports one level only
+    const skid = nodes('skid.igs'); // the program that wrote skid.igs supports only one level of assemblies
     assert.ok(near(skid[0].size, [2, 1, 0.32]), JSON.stringify(skid[0]));
     assert.deepEqual(skid.slice(1, 6).map(({ name }) => name), ['Skid S-100', 'Plate:1', 'Casing:1', 'Motor:1', 'Casing:1']);
     assert.ok(near(skid[5].size, [0.2, 0.2, 0.3]) && near(skid[5].centre, [0.3, 0.7, 0.15]), JSON.stringify(skid[5]));

@@ -181,7 +181,7 @@ test('a package that this Debian does not have is left out if it is optional, an
     mkdirSync(bin);
     cpSync('deploy/deps', join(tree, 'deploy/deps'));
     const program = (name, script) => writeFileSync(join(bin, name), `#!/bin/sh\n${script}\n`, { mode: 0o755 });
-    program('dpkg-query', 'exit 1'); // pretends that no package is installed
+    program('dpkg-query', 'exit 1'); // a fake dpkg-query that reports no package as installed
     program('apt-cache', 'case $2 in known*) echo "  Candidate: 1.0" ;; none*) echo "  Candidate: (none)" ;; esac');
     program('apt-get', `[ $1 = update ] || echo "$@" >>${root}/installed; case "$*" in *" none"*) exit 100 ;; esac`);
     program('id', 'echo 0');

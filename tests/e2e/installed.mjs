@@ -29,7 +29,7 @@ before(async () => {
     browser = await openPage(`http://127.0.0.1:${server.address().port}/?lang=en`);
     page = browser.page;
     await page.waitForFunction(() => globalThis.plantcast);
-    await page.evaluate(async () => { // the page does this when it was loaded over https
+    await page.evaluate(async () => { // registers the service worker, as the page does when it was loaded over https
         await navigator.serviceWorker.register('service.js');
         await navigator.serviceWorker.ready;
     });

@@ -28,7 +28,7 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     plant.addAlarms();
-    const tags = readFileSync(path('tags.csv'), 'utf8'); // an alarm of PI-1 stays until it is reset
+    const tags = readFileSync(path('tags.csv'), 'utf8'); // changes the tag list so that an alarm of PI-1 stays until it is reset
     writeFileSync(path('tags.csv'), tags.replace('Stale s,H', 'Stale s,H,Latch').replace(/,1,90$/gm, ',600,90,')
         .replace(/^(PI-1.*,)$/m, '$11'));
     plant.giveDeviceTime();
@@ -150,13 +150,13 @@ test('on a full disk each kind is answered with "not kept", and why; once there 
     t.after(free);
     const unkept = [], unaudited = [];
     for (const [i, [name, message, type]] of ACTIONS.entries()) {
-        if (/^(remove|revoke|unshelve|put back)/.test(name)) // these need an action that was not kept
+        if (/^(remove|revoke|unshelve|put back)/.test(name)) // these actions undo one that could not be kept
             continue;
         fill();
         const { answer, client } = await act(message, type, i + 1);
         client.close();
         if (isDone(answer))
-            continue; // the disk had room: the check below then expects the action
+            continue; // the disk had room for this action, so the check below expects it to be kept
         unkept.push(name);
         assert.match(whyNot(answer), FULL, `${name}: ${JSON.stringify(answer)}`);
         if (answer.unaudited)
@@ -199,7 +199,7 @@ test('what is answered as done is there after a kill -9 in that moment, and in t
         const line = trail().slice(lines).find((one) => one.event === event && one.result === 'done');
         assert.ok(line, `${name} is not in the trail`);
     }
-    const { status } = await upload('part.obj', 'v 0 0 0\n'); // its line in the audit trail follows within a second
+    const { status } = await upload('part.obj', 'v 0 0 0\n'); // the upload's line in the audit trail follows within a second
     await killed();
     assert.equal(status, 200);
     assert.deepEqual((await fetched('/api/v1/import')).files.map(({ name, bytes }) => [name, bytes]), [['part.obj', 8]]);

@@ -200,11 +200,11 @@ test('what somebody saves while tags are matched is not replaced', { skip: notBu
         const ended = new Promise((done) => child.once('exit', done)), watched = watch(folder);
         let said = '';
         child.stderr.on('data', (piece) => { said += piece; });
-        watched.on('change', (_, name) => { // the program has matched and now checks the result
+        watched.on('change', (_, name) => { // a change of the trial file: the program has matched and now checks the result
             if (!/^\.trial/.test(name) || stopped || child.exitCode !== null)
                 return;
             child.kill('SIGSTOP');
-            stopped = existsSync(join(folder, `.trial.${child.pid}.yaml`)); // the result is not written yet
+            stopped = existsSync(join(folder, `.trial.${child.pid}.yaml`)); // the trial file exists, so the result is not written yet
             if (stopped)
                 writeFileSync(join(folder, 'matches.csv'), mine);
             child.kill('SIGCONT');
@@ -238,7 +238,7 @@ test('killed between two files, left over, at once, out of disk: a valid plant, 
             good(run('plantcast', 'match', whole, ...args));
             const replacedAt = names.map((name) => statSync(join(whole, name), { bigint: true }).ctimeNs);
             assert.deepEqual(replacedAt, replacedAt.toSorted((a, b) => Number(a - b)), 'the order of names');
-            for (let replaced = 0; replaced <= names.length; replaced++) { // files are renamed in this order
+            for (let replaced = 0; replaced <= names.length; replaced++) { // names of the files in the order in which they are renamed
                 rmSync(plant, { recursive: true, force: true });
                 cpSync(first, plant, { recursive: true });
                 for (const name of names.slice(0, replaced))
@@ -246,7 +246,7 @@ test('killed between two files, left over, at once, out of disk: a valid plant, 
                 for (const left of ['tags.csv.4194304.new', 'matches.csv.4194304.3.new', '.trial.4194304.yaml'])
                     writeFileSync(join(plant, left), 'half of a li'); // no process has this number
                 const others = [`tags.csv.${process.pid}.new`, 'tags.csv.4194304.7.new'], hourAgo = Date.now() / 1000 - 3600;
-                for (const name of others) // another process is writing it, on this machine or in another container
+                for (const name of others) // files that another process is writing, on this machine or in another container
                     writeFileSync(join(plant, name), 'half of a li');
                 for (const name of readdirSync(plant).filter((each) => /4194304/.test(each) && each !== others[1]))
                     utimesSync(join(plant, name), hourAgo, hourAgo);

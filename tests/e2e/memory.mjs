@@ -48,7 +48,7 @@ test('under its bound, whatever somebody tries', options, async (t) => {
             [most, mostOf] = [now, await gauges()];
         assert.ok(now <= BOUND_MB, `after ${n} uses, the last of them ${name}: ${now} MB; ${told(mostOf)}`);
         const { bound, drawing, ...kept } = await gauges(), sum = Object.values(kept).reduce((a, b) => a + b);
-        assert.ok(sum <= bound * 1.1, // the present picture may exceed the limit
+        assert.ok(sum <= bound * 1.1, // memory that the present picture needs may exceed the limit
             `${sum} MB of ${bound} are kept, beside ${drawing} to draw the next picture in: ${told(kept)}`);
         if (random() < LEAVES) {
             await one.leave();
@@ -63,7 +63,7 @@ test('under its bound, whatever somebody tries', options, async (t) => {
 });
 
 test('when all have gone it is what it was', options, async (t) => {
-    await one?.leave(); // whatever the first test's result was
+    await one?.leave(); // leaves whatever the first test's result was
     const began = performance.now();
     while (megabytes('VmRSS') > GROWN * start && performance.now() - began < REST_MS)
         await sleep(250);

@@ -105,7 +105,7 @@ test('JSON: by path, with the time and the quality that it states', options, asy
     assert.ok(left.age_ms >= 3000 && left.age_ms < 9000, `${left.age_ms} ms`);
     await until('TI-2', { ...good, value: 17.25 });
     await until('PI-1', { ...good, value: 4 });
-    await publisher.tell('line/temps', { right: 18, meta: at(0, 0x40930000) }); // the left tag is not in this message
+    await publisher.tell('line/temps', { right: 18, meta: at(0, 0x40930000) }); // this message does not contain the left tag
     await until('TI-2', { quality_name: 'Uncertain_SensorNotAccurate', value: 18 });
     await until('TI-1', { ...good, value: 40.5 });
     await publisher.tell('line/temps', { right: 99, meta: at(-60000) }); // older than the present value
@@ -137,11 +137,11 @@ test('a gateway that publishes what has changed: no tag gets the value of anothe
     let tags = await plant.tags();
     for (const name of ['A1', 'A2', 'A3', 'F1', 'F9'])
         assert.deepEqual([tags[name].quality_name, tags[name].value], ['Bad_NoMatch', null], name);
-    await tell(['G.A1', 21], ['G.A2', 23], ['G.A3', 24]); // all three, each at its tag's index
+    await tell(['G.A1', 21], ['G.A2', 23], ['G.A3', 24]); // all three tags, each at its own index of the array
     for (const [name, value] of [['A3', 24], ['A1', 21], ['F1', 21], ['F2', 23]])
         await until(name, { ...good, value });
     await tell(['G.A3', 34], ['G.A1', 31, false]);
-    await until('F1', { quality_name: 'Bad' }); // the quality of its own item
+    await until('F1', { quality_name: 'Bad' }); // the quality of the tag's own item in the message
     tags = await plant.tags();
     assert.equal(tags.A1.quality_name, 'Bad_NoMatch');
     assert.equal(tags.F2.value, 23); // no message mentioned it

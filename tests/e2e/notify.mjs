@@ -134,7 +134,8 @@ notify:
         await calm(plant, EXTRA);
         await plant.startDaemon();
         await isCalm(plant);
-        plant.daemon.child.kill('SIGSTOP'); // so that the daemon reads all of them at once, however long setting them takes
+        // stops the daemon meanwhile, so that it reads all values at once, however long setting them takes
+        plant.daemon.child.kill('SIGSTOP');
         for (let i = 0; i < EXTRA; i++)
             await set(plant, `X-${i}`, limits.high);
         plant.daemon.child.kill('SIGCONT');
@@ -151,7 +152,7 @@ notify:
         await until('the other one has given up', async () => await metric(plant, 'plantcast_notify_failed_total{recipient="ops"}') >= 2);
         assert.equal(await metric(plant, 'plantcast_notify_waiting{recipient="ops"}'), EXTRA);
         const took_ms = [];
-        for (let i = 0; i < 5; i++) { // slower requests may be due to other load
+        for (let i = 0; i < 5; i++) { // five requests, because slow ones may be due to other load
             const asked = performance.now();
             await fetch(`http://127.0.0.1:${plant.port}/api/v1/alarms?limit=1`);
             took_ms.push(performance.now() - asked);

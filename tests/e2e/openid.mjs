@@ -205,7 +205,7 @@ test('a code, a state or a whole answer once more, another browser, another issu
 
 test('keys that are rotated are fetched, not more often than they may be', { skip: skip || long }, async () => {
     provider.rotate();
-    await sleep(10500); // since the last request for keys
+    await sleep(10500); // waits since the last request for keys, so that keys may be requested again
     assert.equal((await new Browser().signIn()).status, 303);
     const asked = () => provider.asked.filter((url) => url === '/jwks').length, before_ = asked();
     provider.change = (claims, header) => { header.kid = 'made up'; };
@@ -397,7 +397,7 @@ test('what people cost the loop: a log-in, a request by cookie, and their rights
     };
     let browser;
     const login = await cost(PEOPLE, async (i) => {
-        provider.sub = `s${i % (PEOPLE / 16)}`; // a person may have 16 sessions at most
+        provider.sub = `s${i % (PEOPLE / 16)}`; // one user (sub) may have 16 sessions at most, so several users are needed
         assert.equal((await (browser = new Browser()).signIn()).status, 303);
     });
     const asks = (headers) => cost(REQUESTS, async () => (await fetch(`http://127.0.0.1:${port}/api/v1/me`, { headers })).arrayBuffer());
@@ -409,7 +409,7 @@ test('what people cost the loop: a log-in, a request by cookie, and their rights
     while (refreshed() < from + PEOPLE)
         await sleep(20);
     const check = (loop() - began) / PEOPLE;
-    provider.claims.groups = []; // no signed-in person is left for the next tests
+    provider.claims.groups = []; // removes all rights, so that no signed-in user is left for the next tests
     for (let i = 0; i < 400 && provider.live.size > 0; i++)
         await sleep(50);
     assert.equal(provider.live.size, 0);
@@ -426,7 +426,7 @@ test('keys that cannot be had end nobody; signing out during a check leaves no r
     t.after(() => { Object.assign(provider, { keysStatus: 200, delay_ms: 0 }); });
     const browser = new Browser();
     await browser.signIn();
-    await sleep(10500); // long enough that keys may be requested again
+    await sleep(10500); // waits long enough that keys may be requested again
     provider.keysStatus = 503;
     provider.rotate();
     await plant.daemon.line(/openid: http.*keys.*stays so/);

@@ -148,7 +148,7 @@ test('a list is saved: the difference first, then in force for all, the old one 
     assert.equal(readFileSync(tagsFile, 'utf8'), old);
 
     engineer.say('save_tags', { seq: ++seq, confirm: diff.hash });
-    engineer.say('save_tags', { seq: ++seq, confirm: diff.hash }); // the same again, at the same time
+    engineer.say('save_tags', { seq: ++seq, confirm: diff.hash }); // sends the same message again while the first one is carried out
     const answers = [await engineer.text('tags_saved', 60000), await engineer.text('tags_saved', 60000)];
     const saved = answers.find((answer) => answer.saved), refused = answers.find((answer) => !answer.saved);
     assert.match(refused.errors.join(), /another list is being put in force/);

@@ -13,7 +13,7 @@ import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { until as waitFor } from './support/until.mjs';
 
 const skip = notBuilt() || (missingPostgres() ?? false);
-const AWAY_MS = sweep(600000, 0); // additional time for which the database is away
+const AWAY_MS = sweep(600000, 0); // additional time for which the database is away in long runs
 const options = { skip, timeout: 240000 + AWAY_MS };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const TAGS = ['TI-1', 'TI-2', 'PI-1'];
@@ -90,7 +90,7 @@ async function assertSame(from) {
     const lacks = (all, of) => [...all.keys()].filter((key) => !of.has(key));
     const keyed = (rows) => new Map(rows.map(([tag, us, value, quality]) => [`${tag} ${us} ${quality}`, value]));
     let api, sql, here, there;
-    const isSame = async () => { // the database lags behind the files by some seconds
+    const isSame = async () => { // repeated, because the database lags behind the files by some seconds
         api = [];
         for (const tag of TAGS) {
             const url = `http://127.0.0.1:${plant.port}/api/v1/history?tags=${tag}&from=${from / 1e6}&to=${to / 1e6}&points=20000`;

@@ -63,7 +63,7 @@ test('a long answer comes whole, in pieces', options, async () => {
     const csv = await (await fetch(`${url}${all}&format=csv`)).text();
     assert.equal(csv.split('Tag,Time').length, 2, 'one line that names the columns');
     assert.equal((await get(plant.port, all, 'HEAD')).status, 200);
-    const old = await new Promise((done) => { // the end of the connection ends the body
+    const old = await new Promise((done) => { // HTTP/1.0: the end of the connection ends the body
         const socket = connect(plant.port, '127.0.0.1', () => socket.write(head(all).replace('1.1', '1.0')));
         let said = '';
         socket.on('data', (bytes) => { said += bytes; });
@@ -102,7 +102,8 @@ test('who asks for all, all the time, leaves others their answers', options, asy
             had += bytes.length;
             if (!going)
                 socket.destroy();
-            else if (bytes.toString('latin1', 0, 12).endsWith(' 503')) // the server has not noticed yet that the earlier connections closed
+            // 503: the server has not noticed yet that the earlier connections closed
+            else if (bytes.toString('latin1', 0, 12).endsWith(' 503'))
                 setTimeout(() => socket.write(head(all)), 200);
             else if (bytes.subarray(-5).toString() === '0\r\n\r\n')
                 socket.write(head(all));

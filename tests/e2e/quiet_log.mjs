@@ -12,7 +12,7 @@ const options = { skip: notBuilt(), timeout: 280000 };
 const DAY_BYTES = 10e6, DAY_S = 24 * 3600;
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, token;
-const costs = {}; // bytes and lines of each kind of event
+const costs = {}; // bytes and lines of the log for each kind of event
 
 before(async () => {
     if (options.skip)
@@ -36,7 +36,7 @@ after(() => plant?.destroy());
 const said = () => plant.daemon.said;
 // Returns how much the log grew while an event happened `times` times, and for a while after.
 async function measure(what, times, happen, settleMs = 3000) {
-    await sleep(1500); // repeated lines are counted for a second
+    await sleep(1500); // waits, because repeated log lines are counted for a second
     const from = said().length;
     for (let i = 0; i < times; i++)
         await happen(i);

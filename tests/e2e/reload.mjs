@@ -12,7 +12,7 @@ import { until } from './support/until.mjs';
 
 const skip = notBuilt();
 const options = { skip, timeout: 300000 };
-const patienceMs = 100000; // a reload takes a second, but longer on a busy machine
+const patienceMs = 100000; // timeout: a reload takes a second, but longer on a busy machine
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, tagsFile, firstTags;
 
@@ -167,7 +167,7 @@ test('who waits too long for an answer is told so, and can ask again', options, 
         const pipe = join(other.folder, 'pipe');
         renameSync(tags, pipe);
         renameSync(aside, tags);
-        let again; // the empty pipe is refused, also for requests made before that is known; 503 on a slow machine
+        let again; // the empty pipe is refused as a tag list, also for requests made before that is known; 503 on a slow machine
         for (let i = 0; i < 100 && again?.status !== 200; i++) {
             try {
                 closeSync(openSync(pipe, constants.O_WRONLY | constants.O_NONBLOCK)); // releases the reload that waits for the pipe

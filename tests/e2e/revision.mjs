@@ -289,10 +289,12 @@ test('killed in the middle, or out of disk: the old plant or the new one', patie
         child.kill('SIGKILL');
         await ended;
         const now = filesOf(plant), hourAgo = new Date(Date.now() - 3600000);
-        writeFileSync(join(plant, `.trial.${child.pid}.yaml`), ''); // like a program that was killed while it tried the new plant file
+        // leaves a trial file, like a program that was killed while it tried the new plant file
+        writeFileSync(join(plant, `.trial.${child.pid}.yaml`), '');
         for (const name of readdirSync(plant).filter((left) => left.includes(`.${child.pid}.`))) // a file of the last minute may be in use
             utimesSync(join(plant, name), hourAgo, hourAgo);
-        const untouched = Object.keys(old).every((name) => now[name] === old[name]); // otherwise the next import completes this one
+        // untouched: the import changed nothing; otherwise the next import completes this one
+        const untouched = Object.keys(old).every((name) => now[name] === old[name]);
         kept += untouched;
         if (untouched)
             good(run('plantcastd', '--check', join(plant, 'plant.yaml')));

@@ -127,7 +127,8 @@ for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 't
     test(`if ${what} hangs, the watchdog ends the daemon within ${WITHIN_S} s; before, it lives`, { skip, timeout: 240000 }, async (t) => {
         const service = serve(['--port', '0'], ['--watchdog', String(WATCHDOG_S)]);
         await service.said(/^notify: READY=1$/m);
-        await service.said(/(notify: WATCHDOG=1[^]*){6}/); // 2 s apart, so six last longer than the watchdog's interval
+        // watchdog messages are 2 s apart, so six take longer than the watchdog's interval
+        await service.said(/(notify: WATCHDOG=1[^]*){6}/);
         service.order(`freeze ${thread}`);
         await service.said(new RegExp(`^frozen: ${thread}$`, 'm'));
         const began = performance.now();
@@ -141,7 +142,7 @@ for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 't
 
 test('connections wait in the socket of the manager while the daemon is started again; it says when it will be back',
     { skip, timeout: 120000 }, async () => {
-        const service = serve(['--port', '1'], ['--socket']); // which plantcastd ignores when it gets a socket
+        const service = serve(['--port', '1'], ['--socket']); // plantcastd ignores --port when it gets a socket
         const port = Number((await service.said(/^port: (\d+)$/m))[1]);
         assert.equal((await get(port, '/readyz')).status, 200, 'asked before anything ran');
         assert.equal(runProgram('plantcast', ['ready', `http://127.0.0.1:${port}/`]).code, 0);
@@ -245,7 +246,7 @@ test('metrics: build, process and certificate; no old name of one that was renam
     assert.equal(made.status, 0, String(made.stderr));
     const port = await freePort(), service = serve(['--port', String(port), '--tls-cert', cert, '--tls-key', key]);
     await service.said(/^notify: READY=1$/m);
-    await new Promise((done) => setTimeout(done, 3000)); // longer than an interval of the supervision
+    await new Promise((done) => setTimeout(done, 3000)); // waits longer than an interval of the supervision
     const text = spawnSync('curl', ['-s', '--cacert', cert, `https://127.0.0.1:${port}/metrics`], { encoding: 'utf8' }).stdout;
     const number = (name) => Number(text.match(new RegExp(`^${name} (.*)$`, 'm'))?.[1]);
     assert.match(text, /^plantcast_build_info\{version="[\d.]+",commit="\w+"\} 1$/m);

@@ -272,7 +272,7 @@ test('a session says what it wants signed, and is told why something is not', { 
     client.say({ type: 'camera', seq: 2, eye: [4, -3, 2], target: [1, 0, 0], up: [0.2, 0.1, 1], fov: 40 });
     client.say({ type: 'sign', frames: 'refined' });
     const signed = await client.frameWhere('a signed frame', (one) => one.flags & FLAG.signed && one.camera_seq === 2);
-    const { code, out, err } = redraw(signed.payload); // a split, clipped and tilted view
+    const { code, out, err } = redraw(signed.payload); // the view was split, clipped and tilted
     assert.equal(code, 0, out + err);
     client.say({ type: 'params', seq: 3, split: null, show: 'difference', baseline: 'now' });
     assert.match((await client.text('error')).text, /has no name/);
@@ -286,7 +286,7 @@ test('the page saves what is on its screen, signed, and a picture with legend an
     try {
         await waitForPicture(page);
         await waitForHealth(page, 'live');
-        await page.evaluate(() => { // records the pixels on the screen when a signed frame was drawn, and its statement
+        await page.evaluate(() => { // records the pixels on the screen when a signed frame is drawn, and the frame's statement
             const { session, viewport: { context, canvas } } = globalThis.plantcast, { drawn } = session;
             session.drawn = (of, ...more) => {
                 drawn.call(session, of, ...more);
@@ -499,7 +499,7 @@ test('the loop does not wait for a signature: 10,000 readings are stated and sig
     assert.equal(plant.prepare().code, 0);
     await plant.daemon.stop();
     chmodSync(path('server.pem'), 0o600);
-    await plant.sim.stop(); // changing readings would be work of the loop, too
+    await plant.sim.stop(); // stops the simulator, because changing readings would be work of the event loop, too
     await plant.startDaemon('--signing-key', path('server.pem'));
     const { pid } = plant.daemon.child, count = 10;
     const whole = await fetchPicture('width=320&height=200');

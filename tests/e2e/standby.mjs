@@ -88,13 +88,14 @@ test('kill -9, there and back: within 5 s the other polls; what operators did is
         anna.say({ type: 'note', seq: 50 + round, text: `round ${round}`, asset: 'E-101' });
         await anna.text('noted');
         anna.close();
-        const cut = round === 3 ? two.other(core).toOther : null; // in the last round the standby misses what the leader records
+        // the last round cuts the link to the standby, which then misses what the leader records
+        const cut = round === 3 ? two.other(core).toOther : null;
         if (cut) {
             await cut.cut();
             cutAt = (Date.now() + 100) * 1000;
             await sleep(2000);
             await feeding();
-            await sleep(2500); // all recorded points have been sent
+            await sleep(2500); // waits until the leader has sent all recorded points
             killedAt = Date.now() * 1000;
         }
         const { leads, pause_ms } = await two.takeOver(t, core, kill(core, 'SIGKILL'));
@@ -136,7 +137,7 @@ function isOfRest(points, us, value, quality) {
     return [all[next - 1], all[next]].every((one) => one && one[1] === value && one[2] === quality);
 }
 
-const FEW = 50; // points may wait to be sent: there are always new ones
+const FEW = 50; // points that may wait to be sent: there are always new ones
 
 test('history is whole: what the database has is what the API has, and the gaps are the take-overs', options, async () => {
     await sleep(5000);
@@ -147,7 +148,8 @@ test('history is whole: what the database has is what the API has, and the gaps 
     for (const node of [core, two.other(core)].map((one) => one.node))
         await until('the files are up to date', async () => await node.metric('plantcast_history_waiting_points') < FEW, 30);
     await until('the database is up to date', async () => await core.node.metric('plantcast_postgres_waiting_points') < FEW, 30);
-    for (const [one, often] of [[core, 2], [two.other(core), 1]]) // twice for the core whose standby went away and came back
+    // [core, how often it must have read what it lacked]: twice for the core whose standby went away and came back
+    for (const [one, often] of [[core, 2], [two.other(core), 1]])
         await until('what it lacked is read', () => one.program.said.split('polls devices and owns').pop()
             .match(/points of \d+ s when another core led are read/g)?.length >= often, 60);
     const to = Math.floor(Date.now() / 1000 - 3) * 1e6;
@@ -176,7 +178,7 @@ test('history is whole: what the database has is what the API has, and the gaps 
 });
 
 test('nobody was told of an alarm twice, and the journal has each change once, on both', options, async () => {
-    // a message may be repeated because its sender was killed
+    // messages by id, because a killed sender may repeat one
     const messages = [...new Map(hook.taken.map((one) => [one.id, one])).values()];
     const told = messages.flatMap(({ alarms }) => alarms.map(({ tag, state, raised }) => `${tag} ${state} ${raised}`));
     assert.deepEqual(told.filter((one, i) => told.indexOf(one) !== i), []);
@@ -219,7 +221,7 @@ test('a standby that is loading its plant takes over as fast', options, async (t
     const { pause_ms } = await two.takeOver(t, core, kill(core, 'SIGKILL'));
     assert.doesNotMatch(other.program.said, /reload:/);
     renameSync(`${list}.kept`, list);
-    writeFileSync(`${list}.fifo`, ''); // the waiting reload continues and finds that the list is no file
+    writeFileSync(`${list}.fifo`, ''); // lets the waiting reload continue and find that the list is no regular file
     await other.program.line(/reload:/);
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);

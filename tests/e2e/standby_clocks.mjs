@@ -85,7 +85,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await move(two);
             await two.restart(other);
             await two.followed(one);
-            await sleep(7000); // the newest samples have been sent by then
+            await sleep(7000); // waits until the newest samples have been sent
             const { rows } = await json(one.node, '/api/v1/alarms/journal?tag=TI-1');
             const events = rows.map(({ kind, event }) => `${kind} ${event}`);
             assert.equal(new Set(events).size, events.length, `each once: ${events}`);

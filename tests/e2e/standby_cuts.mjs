@@ -147,7 +147,7 @@ test('of bids that the database takes up at the same time one is taken', options
     const waiting = () => server.ask("SELECT 1 FROM pg_stat_activity WHERE wait_event_type = 'Lock' AND query LIKE 'UPDATE lease%'").length;
     try {
         await Promise.all([two.start('one'), two.start('two')]);
-        await sleep(4000); // both have asked for the lease
+        await sleep(4000); // waits until both cores have asked for the lease
         await until('bids that wait', () => waiting() >= 4);
         t.diagnostic(`${waiting()} bids wait`);
     } finally {
@@ -178,7 +178,7 @@ test('a standby of another version is named, shows nothing, votes, and takes ove
     await until('its promise', async () => await core.node.metric('plantcast_core_standby_differs') === 1);
     assert.equal(await core.node.metric('plantcast_core_standby'), 0, 'of another version it is no standby');
     assert.equal(await (await core.node.fetch('/readyz')).text(), 'ok, but no standby follows: the log says why\n');
-    await core.toDatabase.cut(); // the standby's promise alone keeps the lead
+    await core.toDatabase.cut(); // cuts the database: now only the standby's promise keeps the leader in its role
     await two.goesOn(t, core, 4);
     await core.toDatabase.mend();
     const { leads } = await two.takeOver(t, core, kill(core, 'SIGTERM'));

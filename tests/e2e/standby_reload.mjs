@@ -34,7 +34,7 @@ const valuesOf = async (core, from_us, to_us) => {
 test('what was recorded behind a cut is read although the plant is loaded anew meanwhile', options, async (t) => {
     const core = await two.leader(), other = two.other(core), from_us = Date.now() * 1000;
     await other.toOther.cut();
-    for (let i = 0; i < CUT_S * 2; i++) { // the other core misses these changes
+    for (let i = 0; i < CUT_S * 2; i++) { // changes that the other core misses because of the cut
         await two.plant.tell(`set TI-1 ${i % 2 ? 71 : 31}`);
         await sleep(500);
     }

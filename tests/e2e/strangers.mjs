@@ -119,7 +119,7 @@ test('anyone who looks on is told of no reading, tag or person, and follows nobo
         assert.equal((await stranger.text('error')).code, 'bad_field', String(session));
     }
     assert.ok(Math.abs(engineer.welcome.session - welcome.session) > 1000 && Number.isSafeInteger(welcome.session));
-    stranger.say({ type: 'follow', session: engineer.welcome.session }); // from a link that the engineer shared
+    stranger.say({ type: 'follow', session: engineer.welcome.session }); // the session number comes from a link that the engineer shared
     const following = await stranger.text('following');
     assert.deepEqual([following.session, following.sensors, following.baselines], [engineer.welcome.session, {}, []]);
     stranger.say({ type: 'follow', session: null });
@@ -133,7 +133,7 @@ test('anyone who looks on is told of no reading, tag or person, and follows nobo
     assert.ok(picks.some((pick) => pick.asset && pick.position), 'what is there may be asked');
     assert.ok(picks.every((pick) => pick.value === null && pick.nearest.length === 0 && pick.sensor === null));
     await plant.tell('set TI-1 82.5');
-    await new Promise((done) => setTimeout(done, 1500)); // longer than any message about the change takes
+    await new Promise((done) => setTimeout(done, 1500)); // waits longer than any message about the change takes
     const types = new Set(stranger.texts.map((m) => m.type));
     for (const type of ['tags', 'markers', 'alarms', 'proofs', 'alarmed'])
         assert.ok(!types.has(type), type);
@@ -229,7 +229,7 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
     const engineer = await PlainClient.open(plant.port);
     assert.equal((await engineer.hello({ token: tokens.engineer })).role, 'engineer');
     engineer.close();
-    await plant.daemon.line(/token engineer-1/); // the earlier log lines exist by then, too
+    await plant.daemon.line(/token engineer-1/); // waits for this log line: the earlier ones exist by then, too
     assert.equal(lines(/login from 127\.0\.0\.1 by HTTP: token \(unknown\), role none: refused, nobody's \(\d within/g).length, 6);
     assert.equal(lines(/by HTTP: token operator-1, role operator: refused, its time is over/g).length, 1);
     assert.equal(lines(/by stream: token \(unknown\), role none: refused/g).length, 1);
@@ -285,7 +285,8 @@ function speak(text, secure = false, idleMs = 0) {
 
 const ENDING = 'a header whose name is the beginning of a known one ends its request within seconds, with 408';
 test(ENDING, { skip, timeout: 60000 }, async () => {
-    await serve('--limit', 'address-connections=2000', '--limit', 'patience=60'); // so that the idle timeout does not end it first
+    // a long idle timeout, so that it does not end the connection first
+    await serve('--limit', 'address-connections=2000', '--limit', 'patience=60');
     const names = [...new Set(KNOWN.flatMap((name) => [...name].map((_, i) => name.slice(0, i + 1))))], heads = {};
     const said = await Promise.all(names.map((name) => speak(`GET /healthz HTTP/1.1\r\nHost: localhost\r\n${name}: 1\r\n\r\n`)));
     said.forEach((text) => { heads[text.slice(9, 12)] = 1 + (heads[text.slice(9, 12)] ?? 0); });
@@ -298,7 +299,8 @@ test(ENDING, { skip, timeout: 60000 }, async () => {
 
 test('over TLS, too; a connection that has asked for nothing yet stays open', { skip, timeout: 60000 }, async () => {
     await serve(...tls, '--limit', 'patience=60');
-    const head = 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n', idleMs = 4000; // twice the 2 s after which a head is ended
+    // twice the 2 s after which an incomplete request head is ended
+    const head = 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n', idleMs = 4000;
     const [stuck, idle] = await Promise.all([speak(`${head}Acc: 1\r\n\r\n`, true), speak(`${head}\r\n`, true, idleMs)]);
     assert.match(stuck, /^HTTP\/1\.[01] 408 /);
     assert.match(idle, /^HTTP\/1\.1 200/);

@@ -154,7 +154,7 @@ test('a server that dies or hangs: a card within 3 s, and pictures again by them
         const port = plant.port, begun = Date.now();
         plant.daemon.child.kill(signal);
         const { at } = await reader.until(({ card }) => card);
-        // 3 s, and the reader's own buffers on a loaded machine
+        // limit: 3 s, and the reader's own buffers on a loaded machine
         promise(t, `${signal}: to the card on the reader's screen`, at - begun, 3400);
         if (signal === 'SIGSTOP') {
             plant.daemon.child.kill('SIGCONT');
@@ -180,7 +180,7 @@ test('counters are for this machine alone, and connections that say nothing keep
         await assert.rejects(fetch(`http://${elsewhere.address}:${ports.http}/metrics`));
     const idle = Array.from({ length: 20 }, () => connect(ports.http, '127.0.0.1').on('error', () => {}).resume());
     idle[0].write('GET /metrics HT');
-    // 0: the connection was closed, because there are more than 8
+    // status 0: the connection was closed, because there are more than 8
     const answered = () => http('/metrics').then(({ status }) => status, () => 0);
     for (const end = Date.now() + 60000; await answered() !== 200; await new Promise((done) => setTimeout(done, 100)))
         assert.ok(Date.now() < end, 'connections that say nothing are not closed');
@@ -206,7 +206,7 @@ test('a token that is none, or is revoked, and a view that is not there: a card 
     const begun = Date.now();
     assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'video']).code, 0);
     const { at } = await reader.until(({ card }) => card);
-    promise(t, 'to the card', at - begun, 5400); // 3 s for the server's message, 1 s to the next picture, and the reader's buffers
+    promise(t, 'to the card', at - begun, 5400); // limit: 3 s for the server's message, 1 s to the next picture, and the reader's buffers
     assert.match(program.said, /does not take this token/);
     await reader.stop();
     await program.stop();
@@ -296,7 +296,8 @@ test('a token for one view shows that view, and no other; losing it ends the pic
         assert.equal(reader.frames.some(({ card }) => !card), shown);
         if (shown) {
             const refused = readFileSync(join(folder, 'audit'), 'utf8').split('/api/v1/views').length - 1;
-            await new Promise((done) => setTimeout(done, 6000)); // a permitted client would request views every 5 s
+            // waits longer than the 5 s after which a permitted client would request views again
+            await new Promise((done) => setTimeout(done, 6000));
             assert.equal(readFileSync(join(folder, 'audit'), 'utf8').split('/api/v1/views').length - 1, refused);
             assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'lobby']).code, 0);
             await reader.until(({ card }) => card);

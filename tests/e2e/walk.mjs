@@ -58,7 +58,8 @@ test('what the page says is typed, and what it shows comes', { skip, timeout: 40
             for (const line of said)
                 assert.ok(out.includes(line), `${command}: on the page:\n${line}\nit said:\n${out}`);
             console.log(`# ${command}: as on the page, ${said.length} lines`);
-            if (/^plantcast match/.test(command) && said.length > 0) // the expected file content is printed below the command
+            // the page prints the expected content of matches.csv below the command
+            if (/^plantcast match/.test(command) && said.length > 0)
                 for (const line of blocks(page, '').find((code) => code.startsWith('Tag,Status')).trim().split('\n'))
                     assert.ok(readFileSync(join(folder, 'plant/matches.csv'), 'utf8').includes(`${line}\n`), line);
             if (/^plantcastd --port/.test(command)) {
@@ -88,7 +89,7 @@ test('what the page says is clicked, and what it shows comes', { skip, timeout: 
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-walk-')), device = await freePort(), running = [];
     const section = page.slice(page.indexOf('## On a page'), page.indexOf('## 1. The model'));
     const written = section.slice(section.indexOf('1. ')).replace(/\s+/g, ' ');
-    let at = 0; // how far the section was read
+    let at = 0; // how far into the section the test has read
     const read = (text) => {
         const found = written.indexOf(text, at);
         assert.ok(found >= 0, `not on the page, or before what was done last: ${text}`);
@@ -174,7 +175,7 @@ test('what the page says is clicked, and what it shows comes', { skip, timeout: 
         await room.mouse.up();
         await room.waitForFunction(() => globalThis.plantcast.session.model.placed.size === 1);
         assert.equal(await room.locator('#engineer .off').count(), 0, 'it is on its equipment');
-        await room.mouse.move(640, 5); // so that no card covers the picture
+        await room.mouse.move(640, 5); // moves the pointer away, so that no card covers the picture
         await arrive(room);
         await shoot(room, 'page-4-placed');
         await room.locator('#engineer').getByRole('button', { name: named('Save …') }).click();

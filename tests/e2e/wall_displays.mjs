@@ -68,7 +68,7 @@ test('each pane shows what it is for', options, async () => {
         const { clientWidth, clientHeight } = document.querySelector('.pane.views iframe').contentDocument.getElementById('viewport');
         return clientWidth > 400 && clientHeight > 300;
     }, null, { timeout: 30000 });
-    await page.waitForFunction(() => { // from the home camera, with the pane's final shape
+    await page.waitForFunction(() => { // waits for a picture from the home camera with the pane's final shape
         const { session } = document.querySelector('.pane.views iframe').contentWindow.plantcast, { width, height } = session.size;
         const { eye } = session.homeIn(width, height);
         return session.picture?.camera.eye.every((m, i) => Math.abs(m - eye[i]) < 0.01);
@@ -156,7 +156,7 @@ test('a view that names what the plant does not have is not shown, and said', op
     await right.locator('h2 .about', { hasText: 'Temperature' }).waitFor({ timeout: 60000 });
     assert.equal(await right.locator('.why').isVisible(), false);
     await shoot(other.page, 'wall-display-wrong-view');
-    await plant.ask('set TI-2 95'); // showing an alarm in the pane is still possible
+    await plant.ask('set TI-2 95'); // an alarm can still be shown in the pane
     await other.page.waitForFunction(() => document.querySelector('.pane.views.called:not(.unshown, .coming)'), null, { timeout: 60000 });
     assert.equal(await left.locator('iframe').isVisible(), true);
     await plant.ask('set TI-2 20');

@@ -46,7 +46,7 @@ const live = (since) => wall.page.waitForFunction(([picture, words]) => {
 }, [since.picture, since.words], { polling: 200 });
 
 test(`${LOSSES} losses: each is said, and ends by itself`, options, async (t) => {
-    await wall.page.waitForFunction(() => globalThis.wall?.panes.length > 0); // until then another page is loaded
+    await wall.page.waitForFunction(() => globalThis.wall?.panes.length > 0); // waits for the wall; until then another page is loaded
     await live({ picture: 0, words: 0 });
     let slowest = 0;
     for (let i = 0; i < LOSSES; i++) {

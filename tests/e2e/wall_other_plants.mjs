@@ -166,7 +166,8 @@ test('a paired display asks for what it shows, and for nothing else', options, a
 test('its picture, its name and the age of its readings; a server that is gone and since when; and back', options, async () => {
     const screen = { viewport: { width: SIZE[0], height: SIZE[1] } };
     const { page, close, errors } = await openPage(`http://127.0.0.1:${plant.port}/wall.html?wall=room`, screen,
-        `top === window && sessionStorage.setItem('plantcast.token', '${tokens.display}')`); // frames in the page are sandboxed
+        // only in the top window, because frames in the page are sandboxed
+        `top === window && sessionStorage.setItem('plantcast.token', '${tokens.display}')`);
     const image = page.locator('.pane.snapshot img').first(), card = page.locator('.pane.snapshot .gone').first();
     const title = () => page.locator('.pane.snapshot h2').first().textContent();
     await image.waitFor();

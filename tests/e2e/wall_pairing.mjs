@@ -196,7 +196,7 @@ test('its secret reads nothing but its display, before it has said a word', opti
         const { values } = await tiles.text('tags', 20000);
         values.forEach(([tag]) => read.add(tag));
     }
-    assert.deepEqual([...read].sort((a, b) => a - b), mine.sort((a, b) => a - b)); // only the readings that its display shows
+    assert.deepEqual([...read].sort((a, b) => a - b), mine.sort((a, b) => a - b)); // the display reads only the tags that it shows
     const frame = await tiles.frameWhere('a picture', () => true);
     assert.deepEqual([frame.width, frame.height], [16, 16]);
     assert.equal(tiles.texts.filter(({ type }) => ['markers', 'proofs'].includes(type)).length, 0);
@@ -206,8 +206,9 @@ test('its secret reads nothing but its display, before it has said a word', opti
         assert.match((await tiles.text('error')).text, /this token is that of display 2 of wall room/, message.type);
     }
     await pictures.hello({ width: 640, height: 480 });
-    assert.equal((await pictures.text('tags', 20000)).values.length, 3); // an alarm may move the camera to any place of the plant
-    pictures.say({ type: 'pick', seq: 1, x: 320, y: 240 }); // and the display picks to find a side from which that place is visible
+    // all tags, because an alarm may move the camera to any place of the plant
+    assert.equal((await pictures.text('tags', 20000)).values.length, 3);
+    pictures.say({ type: 'pick', seq: 1, x: 320, y: 240 }); // the display uses picks to find a side from which that place is visible
     assert.equal((await pictures.text('picked', 20000)).seq, 1);
     assert.deepEqual((await pictures.text('views', 20000)).list.map(({ id: view }) => view), ['whole']);
     pictures.close();

@@ -50,7 +50,8 @@ async function wholePicture() {
 }
 
 const pictureOf = ({ width, height, rgb }) => ({ width, height, at: (x, y) => [0, 1, 2].map((i) => rgb[3 * (y * width + x) + i]) });
-const isNear = (a, b) => a.every((value, i) => Math.abs(value - b[i]) < 40); // pictures are sent as JPEG or H.264
+// colours may differ a little, because pictures are sent as JPEG or H.264
+const isNear = (a, b) => a.every((value, i) => Math.abs(value - b[i]) < 40);
 
 // Returns the smallest share of pixels in two displays that equal the large picture: along the seam, at the lower edge between legend and
 // corner, and where a box is, which is neither white nor grey.

@@ -27,7 +27,8 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     plant.addAlarms();
-    const tags = join(plant.folder, 'tags.csv'); // so that there is no other alarm, however busy the machine is
+    // prevents stale and Bad readings, so that there is no other alarm, however busy the machine is
+    const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1,90$/gm, ',600,90'));
     writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000') + WALLS);
     assert.equal(plant.prepare().code, 0);
@@ -87,7 +88,7 @@ test('alarms are marked behind something, and of a quantity that is not shown', 
         const { top, bottom } = legend.getBoundingClientRect();
         return [top < 0, bottom > innerHeight + 4, legend.scrollHeight > legend.clientHeight + 1];
     });
-    assert.deepEqual(cut, [false, false, false]); // burn-in shifts move all displays by up to 3 pixels
+    assert.deepEqual(cut, [false, false, false]); // nothing is cut off, although burn-in shifts move all displays by up to 3 pixels
     for (const [i, { page }] of pages.entries())
         await shoot(page, `wall-tile-marks-${i + 1}`);
     said({ type: 'alarm', action: 'acknowledge', alarms: [['TI-2', 'H'], ['PI-1', 'H']], name: 'kim' });
@@ -103,7 +104,7 @@ test('notes and where a desk points stand where they are', options, async () => 
     note('Manhole open', { asset: 'P-101A' });
     const { id } = await crew.text('noted');
     await pages[1].page.locator('.marks .note', { hasText: 'Manhole open' }).waitFor();
-    // repeated, because the pointer disappears after some seconds
+    // points repeatedly, because the pointer disappears after some seconds
     const here = () => point([0, 0, 0.5]), pointing = setInterval(here, 1000);
     try {
         here();

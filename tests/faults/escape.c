@@ -165,7 +165,7 @@ static void try_process(void)
     if (attached)
         ptrace(PTRACE_DETACH, pid, NULL, NULL);
     result("take-descriptor", takes_a_descriptor());
-    result("kill", kill(pid, SIGURG) == 0); /* ignored by default, so it does no harm */
+    result("kill", kill(pid, SIGURG) == 0); /* SIGURG is ignored by default, so it does no harm */
     result("kill-probe", kill(pid, 0) == 0);
     result("tgkill", syscall(SYS_tgkill, pid, pid, SIGURG) == 0);
     result("tkill", syscall(SYS_tkill, pid, SIGURG) == 0);
@@ -452,7 +452,7 @@ int main(int argc, char **argv)
     try_all();
     if (argc > 2 && !write_triangle(argv[2]))
         return 3;
-    execl("/bin/sh", "sh", "-c", "echo shell succeeded", NULL); /* last, because it replaces this program */
+    execl("/bin/sh", "sh", "-c", "echo shell succeeded", NULL); /* the last attempt, because it replaces this program */
     result("shell", false);
     return 0;
 }

@@ -30,9 +30,9 @@ struct faults {
     uint32_t hardware;    /* report the renderer as a GPU; set before the first context is created */
     uint64_t room_bytes;  /* limit on the bytes of all buffers and textures; 0: unlimited */
     /* --- below: written by this library */
-    uint32_t lost, contexts;  /* lost: losses so far; contexts: existing contexts */
+    uint32_t lost, contexts;  /* lost: number of losses so far; contexts: number of existing contexts */
     uint64_t used_bytes, most_bytes;
-    uint32_t objects, refused; /* objects: existing ones; refused: allocations that exceeded the limit */
+    uint32_t objects, refused; /* objects: number of existing objects; refused: allocations that exceeded the limit */
     uint32_t made;             /* contexts created so far */
 };
 

@@ -76,7 +76,7 @@ test('every ring is in a label or a call-out, within the picture and over no leg
         const list = [...boxes.values()];
         assert.ok(list.every((a) => a.left >= 0 && a.top >= 0 && a.right <= right && a.bottom <= bottom));
         if (bottom * 0.2 < 60 && right - 90 < 165)
-            continue; // next to the legend there is hardly room for one label
+            continue; // skips pictures that have hardly room for one label next to the legend
         for (const [i, a] of list.entries())
             assert.ok([legend, ...list.slice(0, i)].every((b) => a.left >= b.right || b.left >= a.right || a.top >= b.bottom ||
                 b.top >= a.bottom));

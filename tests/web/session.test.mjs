@@ -274,11 +274,11 @@ test('what lies over the picture goes by the parameters that the picture shows',
     assert.deepEqual([session.shown.group, session.shown.split, news()], ['temperature', null, 0]);
     draw(1);
     assert.deepEqual([session.shown.group, session.shown.split, news()], ['pressure', null, 1]);
-    draw(3); // the second parameters were never drawn
+    draw(3); // the frame shows the third parameters; the second ones were never drawn
     assert.deepEqual([session.shown, news()], [session.params, 1]);
     draw(3);
     assert.equal(news(), 0);
-    socket.fail(); // also while there is no connection
+    socket.fail(); // parameters may also be set while there is no connection
     session.setParams({ group: 'temperature' });
     clock.advance(500);
     sockets[1].accept();
@@ -515,7 +515,7 @@ test('whoever leads no longer follows: the camera is that of what is shown then,
                 socket.say(step);
         });
         assert.deepEqual(session.camera.eye, [5, 8, 7], how);
-        assert.equal(events.at(-1)[0], 'camera', how); // the page's address shows it, too
+        assert.equal(events.at(-1)[0], 'camera', how); // the new camera is also written to the page's address
         const said = events.length, sent = socket.sent.length;
         session.flush();
         assert.equal(socket.sent.length, sent, 'the server knows it');

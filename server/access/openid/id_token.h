@@ -21,7 +21,7 @@ struct id_token_expected {
 enum id_token_fault {
     ID_TOKEN_GOOD,
     ID_TOKEN_BAD,
-    ID_TOKEN_NO_KEY, /* the token's key is not among them: the provider may have a new one */
+    ID_TOKEN_NO_KEY, /* the key that signed the token is not among the provider's known keys: the provider may have a new one */
 };
 
 /* Verifies a token. If it is good, writes its claims to *claims (json_decref); otherwise *why (static text) says what is wrong. */

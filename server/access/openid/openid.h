@@ -32,12 +32,12 @@ char *openid_begin(struct openid *openid, const uint8_t address[16], const char 
                    char binding[SIGN_IN_SECRET_CHARS + 1], const char **why);
 
 struct openid_return { /* what a browser brings back from the provider; the texts may be NULL */
-    uint64_t request;  /* identifies the answer in openid_collect() */
+    uint64_t request;  /* number of the request, which identifies its answer in openid_collect() */
     const char *state, *code, *iss, *error, *binding, *from;
 };
 enum openid_finish {
     OPENID_WAITS,   /* the answer will come later (openid_collect) */
-    OPENID_FOREIGN, /* no log-in of that browser waits for this, so it is a replay or a forgery; only counted */
+    OPENID_FOREIGN, /* no log-in of that browser waits for this answer of the provider, so it is a replay or a forgery; only counted */
     OPENID_FULL,    /* too many log-ins wait; this one must be begun again */
 };
 /* Passes on what the browser brought back. */
@@ -47,7 +47,9 @@ enum openid_result {
     OPENID_LET_IN,
     OPENID_REFUSED, /* recorded: the user logged in at the provider but may not use this server */
     OPENID_GUESSED, /* recorded, and counted like a wrong token: the code was invalid */
-    OPENID_AWAY,    /* not a guess, for example the provider does not answer or refuses us: not recorded each time */
+    /* the log-in failed without a guess at a secret, for example because the provider does not answer or refuses this server: not
+       recorded each time */
+    OPENID_AWAY,
 };
 
 struct openid_answer {

@@ -14,7 +14,7 @@ enum { OPENID_CODES = 64, OPENID_CODES_OF_ADDRESS = 16 }; /* maximum number of c
 struct openid_job { /* a code that a browser brought back, or a token to revoke */
     uint64_t request;
     struct sign_in sign_in;
-    char *code, *from, *revoke; /* revoke: a refresh token; then the other texts are unused */
+    char *code, *from, *revoke; /* revoke: a refresh token to revoke; NULL: redeem `code` */
     struct openid_job *next;
 };
 

@@ -17,8 +17,8 @@ static const int at_once[OPENID_TASKS] = {
 struct task {
     struct openid *openid;
     enum openid_task kind;
-    struct openid_job *job; /* for a code or a revocation */
-    struct person person;   /* for a check: a copy that owns its texts */
+    struct openid_job *job; /* job of a code or of a revocation; NULL for the other kinds */
+    struct person person;   /* for a check of rights: a copy of the person, which owns its texts */
     int64_t began_ns;
 };
 

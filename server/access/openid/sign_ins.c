@@ -15,7 +15,7 @@ static const int64_t PATIENCE_NS = 600 * NS_PER_S; /* maximum time for a user to
 struct sign_ins {
     struct sign_in *begun;
     size_t begun_count, begun_capacity;
-    struct person *people; /* in the order in which people signed in */
+    struct person *people; /* signed-in people in the order in which they signed in */
     size_t count, capacity;
     uint64_t next_number;
 };

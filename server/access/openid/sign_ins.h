@@ -8,13 +8,13 @@ enum { SIGN_IN_SECRET_CHARS = 43, SIGN_IN_PATH_BYTES = 1024, SIGN_INS = 4096, SI
 
 struct sign_in { /* a log-in that was redirected to the provider */
     char state[SIGN_IN_SECRET_CHARS + 1], nonce[SIGN_IN_SECRET_CHARS + 1], verifier[SIGN_IN_SECRET_CHARS + 1];
-    char binding[SIGN_IN_SECRET_CHARS + 1]; /* cookie of the browser that began it */
+    char binding[SIGN_IN_SECRET_CHARS + 1]; /* cookie of the browser that began the log-in */
     char path[SIGN_IN_PATH_BYTES];          /* page to return to */
     uint8_t address[16];
     int64_t began_ns; /* monotonic; 0: the entry is free */
 };
 
-struct person {                 /* a signed-in person; owns its texts */
+struct person {                 /* a signed-in person; the struct owns its texts */
     struct token_holder holder; /* its hash is that of the session cookie */
     char *sub, *refresh_token, *access_token;
     char *id_token; /* the newest ID token */

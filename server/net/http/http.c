@@ -296,12 +296,13 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     case LWS_CALLBACK_HTTP_BODY: return *slot ? import_take_body(server_context_of(wsi), *slot, in, len) : 0;
     case LWS_CALLBACK_HTTP_BODY_COMPLETION: return *slot ? import_end_body(server_context_of(wsi), *slot) : 0;
     case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(server_context_of(wsi), *slot) : 0;
-    case LWS_CALLBACK_HTTP_DROP_PROTOCOL: /* also comes when the connection is upgraded to a WebSocket */
+    case LWS_CALLBACK_HTTP_DROP_PROTOCOL: /* this event also comes when the connection is upgraded to a WebSocket */
     case LWS_CALLBACK_CLOSED_HTTP: request_end(server_context_of(wsi), slot); return 0;
     case LWS_CALLBACK_TIMER: return stuck_head_look(server_context_of(wsi), wsi);
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
         stuck_head_arrived(wsi);
-        connection_set_answered(server_context_of(wsi), wsi, true); /* streams have their own goodbye when the server shuts down */
+        /* streams get a close frame of their own when the server shuts down, so they do not count as unanswered */
+        connection_set_answered(server_context_of(wsi), wsi, true);
         return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(server_context_of(wsi), wsi) : -1;
     case LWS_CALLBACK_ESTABLISHED: { /* only a WebSocket without subprotocol gets here */
         static unsigned char text[] = "the subprotocol is " WIRE_SUBPROTOCOL;

@@ -36,10 +36,10 @@ struct http_exchange {
     } pieces;             /* the headers were sent and the body follows in pieces: chunked, or up to the end of the connection */
     bool last_piece;      /* `body` is the last piece */
     uint64_t client;      /* id under which the request waits (request_await) */
-    int64_t until_ns;     /* monotonic: then the request is answered with "not ready" */
+    int64_t until_ns;     /* monotonic time at which a waiting request is answered with "not ready" */
     bool reloads;         /* the request waits for a reload of the plant */
     struct upload_body *body_in; /* upload in progress; NULL: none */
-    const char *step;     /* for an import request: its path, static, for the audit trail */
+    const char *step;     /* path of an import request (static text), for the audit trail */
     struct asked *asked;  /* frame or pick for which the request waits; NULL: none */
     struct http_exchange *next; /* next in server->snapshots */
 };

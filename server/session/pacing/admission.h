@@ -17,7 +17,7 @@ struct admission_window { /* measurements of one second of drawing */
     int64_t data_wait_ns; /* longest time from a changed reading to its frame; 0: no frame was due to a reading */
 };
 
-struct address_share {  /* the use of one client address; zero-initialise */
+struct address_share {  /* use of the server by one client address; zero-initialise */
     uint64_t account;   /* value of frame_request.account in the address's sessions */
     bool exempt_pixels; /* the limit on the pixels of one address does not apply */
     int64_t pixels;     /* pixels of all views of the address */

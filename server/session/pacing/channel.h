@@ -14,7 +14,7 @@
 enum { CHANNEL_LAST = 3 };
 struct channel_last { /* ring of the last samples; zero-initialise */
     double at[CHANNEL_LAST];
-    int count; /* samples so far; see channel.c for how it wraps */
+    int count; /* number of samples so far; channel_on_ack() keeps it small, so it is no total */
 };
 
 struct channel {                     /* zero-initialise; in all members 0 means not measured yet */
@@ -29,7 +29,7 @@ struct channel {                     /* zero-initialise; in all members 0 means 
 
 struct channel_ack {
     size_t bytes;    /* bytes of this frame and of the earlier frames that the acknowledgement covers */
-    int64_t sent_ns; /* when the first of these frames was sent */
+    int64_t sent_ns; /* when the first of the acknowledged frames was sent */
     int64_t now_ns;
     int64_t decode_ns; /* decoding time as reported by the client; negative: not reported */
 };

@@ -18,7 +18,7 @@ struct pacer_note {    /* facts about a frame that are needed when it is acknowl
 struct pacer_flight {
     uint32_t seq;
     size_t bytes;
-    bool written;                /* all its bytes were written to the socket */
+    bool written;                /* all bytes of the frame were written to the socket */
     int64_t sent_ns, written_ns; /* monotonic: when the first byte was written; when the last byte was written */
     struct pacer_note note;
 };

@@ -10,7 +10,7 @@
 static const int64_t LATE_NS = 3 * NS_PER_S; /* the other tiles wait this long for a slow one before it is dropped */
 /* how long a slow tile is dropped; doubles each time, up to the maximum */
 static const int64_t OUT_NS = 10 * NS_PER_S, MAX_OUT_NS = 320 * NS_PER_S;
-static const int64_t KEPT_UP_NS = 60 * NS_PER_S; /* after keeping up for this long, the next drop starts with OUT_NS again */
+static const int64_t KEPT_UP_NS = 60 * NS_PER_S; /* a tile that keeps up for this long is dropped for only OUT_NS the next time */
 
 bool session_is_tile(const struct session *session)
 {
@@ -40,7 +40,7 @@ void session_tile_move(struct session *session, struct burn_shift shift, int64_t
     session->tile.moved = true;
     if (!session->demand.data)
         session->demand.data_ns = now_ns;
-    session->demand.data = true; /* requests the same picture, cut at another position */
+    session->demand.data = true; /* requests the same picture, cut at another position because of the shift */
 }
 
 void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq)

@@ -14,11 +14,11 @@ struct kept_view {
     char secret[RESUME_CHARS + 1];
     struct token_holder holder;
     struct resumed what;
-    int64_t until_ns; /* expiry of the view, set when its connection is lost */
+    int64_t until_ns; /* expiry of the kept view, set when its connection is lost */
 };
 
 struct resumes {
-    struct kept_view *kept; /* in the order in which the clients disconnected */
+    struct kept_view *kept; /* kept views in the order in which their clients disconnected */
     size_t count, capacity;
 };
 

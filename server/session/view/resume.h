@@ -22,7 +22,7 @@ struct resumed {
     struct view view;
     struct codec_list codecs;
     double pixel_ratio;
-    uint64_t called;      /* number by which other sessions follow it */
+    uint64_t called;      /* number by which other sessions follow the resumed session */
     double speed;         /* playback speed, where view.at_us is an instant */
     struct session *live; /* session that is still connected and must be closed now; NULL: its connection is lost */
 };

@@ -45,7 +45,7 @@ async function findings(on, rules = RULES, within = null) {
         await on.evaluate(readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8'));
     const { violations } = await on.evaluate(([runOnly, part]) =>
         globalThis.axe.run(part ? { include: [[part]] } : document, { runOnly, resultTypes: ['violations'], preload: !part }),
-    [rules, within]); // preloading style sheets is only needed for rules of the whole page
+    [rules, within]); // axe-core needs preloaded style sheets only for rules about the whole page
     return violations.flatMap(({ id, nodes }) => nodes.map((node) => `${id}: ${node.target.join(' ')} ${node.any[0]?.message ?? ''}`));
 }
 
@@ -124,7 +124,7 @@ async function lookAtTools(look) {
     await page.locator('#token[open]').waitFor();
     await look('token');
     await page.keyboard.press('Escape');
-    await page.evaluate(() => document.body.classList.remove('denied')); // a welcome message removes this class, too
+    await page.evaluate(() => document.body.classList.remove('denied')); // removes this class like a `welcome` message does
 }
 
 const WALL = { viewport: sweep({ width: 3840, height: 2160 }, { width: 1920, height: 1080 }) };
@@ -194,7 +194,7 @@ test('panels open and close by keys, and the focus goes along', options, async (
     await page.locator('#viewport').focus();
     await page.keyboard.press('/');
     await page.keyboard.type('TI');
-    await page.keyboard.press('Escape'); // the first Escape clears the search
+    await page.keyboard.press('Escape'); // the first Escape clears the search field
     assert.deepEqual(await page.evaluate(() => [document.activeElement.id, document.activeElement.value]), ['assets-search', '']);
     await page.keyboard.press('Escape'); // the second Escape returns the keys to the picture
     assert.equal(await page.evaluate(() => document.activeElement.id), 'viewport');

@@ -87,7 +87,7 @@ for (const name of WALKED) {
             assert.deepEqual(await amiss(page), [], 'flown to');
             assert.equal(await inSight(page, 'TI-1'), 'in sight');
             await shoot(page, `room-${file}-alarm`);
-            await press('#card .trend'); // fails if anything covers the button
+            await press('#card .trend'); // press() fails if anything covers the button
             await page.locator('#trend-chart canvas').waitFor();
             await press('#time-toggle');
             await page.locator('#time-slider').waitFor();
@@ -100,7 +100,7 @@ for (const name of WALKED) {
             await press('#engineer-toggle');
             await page.locator('#engineer').waitFor();
             assert.equal(await page.locator('#alarms').isVisible(), false, 'one of both');
-            if (listed) { // it must also be possible to switch back and forth
+            if (listed) { // it must also be possible to switch between alarms and the engineer's panel and back
                 await press('#alarm-strip');
                 await page.locator('#engineer').waitFor({ state: 'hidden' });
                 await press('#engineer-toggle');
@@ -191,7 +191,7 @@ test('what says that the picture is old lies over no legend', options, async () 
                 const [a, b] = ['banner', 'legend'].map((id) => document.getElementById(id).getBoundingClientRect());
                 return b.width === 0 || a.bottom <= b.top || a.right <= b.left;
             }, null, { timeout: 20000 }).catch(() => assert.fail(name));
-            if (name !== 'phone across') // on this screen both do not fit, so one is cut off
+            if (name !== 'phone across') // the phone's screen has no room for both texts, so one is cut off
                 assert.deepEqual(await amiss(page), [], name);
             await shoot(page, `old-${name.replace(' ', '-')}`);
         } finally {

@@ -74,7 +74,7 @@ for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
             if (sweep(true, false)) // by default accessible.mjs checks all panels in German
                 await everyPanel(page, look);
             else
-                await page.evaluate(() => { // select an asset, so that its readings are listed
+                await page.evaluate(() => { // selects an asset, so that its readings are listed
                     const { session } = globalThis.plantcast;
                     session.setParams({ selected: session.model.assets[0].id });
                 });
@@ -84,7 +84,7 @@ for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
             assert.ok((await page.locator('.reading .value').allTextContents()).some((text) => number.test(text)));
             for (const [name, { viewport }] of [['tablet', TABLET], ['phone', PHONE]]) {
                 await page.setViewportSize(viewport);
-                // if the page is narrow from the start, it has this style sheet at once
+                // a page that is narrow from the start has this style sheet at once
                 await page.waitForFunction(() => innerWidth > 1023 ||
                     [...document.styleSheets].some(({ href }) => href?.endsWith('/narrow.css')));
                 await settle(page);

@@ -81,7 +81,7 @@ test('a decoder that passes the trial and then breaks is left for JPEG, for good
     const { decode } = VideoDecoder.prototype;
     let count = 0;
     VideoDecoder.prototype.decode = function decodeSome(chunk) {
-        if (++count > 3) // two of them are the trial
+        if (++count > 3) // the first two chunks are the decoder's trial
             throw new DOMException('it broke', 'EncodingError');
         return decode.call(this, chunk);
     };

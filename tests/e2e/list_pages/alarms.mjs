@@ -20,7 +20,7 @@ before(async () => {
     await waitForHealth(page, 'live');
     tags = await page.evaluate(() => globalThis.plantcast.session.model.tags.map(({ name, group, limits }) => ({ name, group, limits })));
     await plant.freeze(tags.map(({ name }) => name));
-    for (const { name, limits } of tags.filter((tag) => tag.limits.H !== null)) // all values are between L and H
+    for (const { name, limits } of tags.filter((tag) => tag.limits.H !== null)) // sets all values between their limits L and H
         await plant.ask(`set ${name} ${((limits.L ?? 0) + limits.H) / 2}`);
 });
 after(async () => {
@@ -131,7 +131,7 @@ test('a shelf needs a reason, and keeps the alarm from being seen', options, asy
     await row.waitFor();
     assert.match(await row.textContent(), /Shelved.*until \d\d:\d\d, by local, transmitter is being changed/s);
     await row.locator('button[data-action="unshelve"]').click();
-    await page.locator(`#alarms-list li[data-alarm="${id}"].calls`).waitFor(); /* the alarm is listed again, as if new */
+    await page.locator(`#alarms-list li[data-alarm="${id}"].calls`).waitFor(); /* the alarm is listed again as if it were new */
 });
 
 test('a click flies there, in its own group, and back to normal is said', options, async () => {
@@ -150,7 +150,7 @@ test('a click flies there, in its own group, and back to normal is said', option
 });
 
 const rowOf = (name) => page.locator('#alarms-list li').filter({ has: page.locator('.what b', { hasText: new RegExp(`^${name}$`) }) });
-const settleAll = async () => { // no value is beyond a limit, and no alarm waits for acknowledgement
+const settleAll = async () => { // sets all values within their limits and acknowledges all alarms
     for (const { name, limits } of tags.filter((tag) => tag.limits.H !== null))
         await plant.ask(`set ${name} ${((limits.L ?? 0) + limits.H) / 2}`);
     const gone = () => globalThis.plantcast.session.model.alarms.counts().active === 0;

@@ -78,7 +78,8 @@ test('a click selects and flies there; what is known of it and its links are sho
     await page.locator('#assets-list .asset', { hasText: 'E 137' }).click();
     await page.waitForFunction((eye) => Math.hypot(...globalThis.plantcast.session.camera.eye.map((x, i) => x - eye[i])) > 1, camera.eye);
     assert.equal((await view(page)).params.selected, 'E-137');
-    await page.waitForFunction(() => document.querySelector('#asset-about')?.textContent); // the script for it is loaded on first use
+    // the script that shows the asset's data is loaded on first use
+    await page.waitForFunction(() => document.querySelector('#asset-about')?.textContent);
     assert.match(await page.locator('#asset-about').textContent(),
         /E 137.*box 137.*Unit 4.*1\.0 × 1\.0 × 1\.0 m.*100.*MakerExample WorksBuilt2007/);
     const link = page.locator('#asset-about a');
@@ -100,7 +101,7 @@ test('what is picked in 3D is selected there, a marker with its tag', options, a
     await page.mouse.click(box.x, box.y);
     await page.waitForFunction(() => globalThis.plantcast.session.params.selected === 'E-137');
     await page.locator('#place').waitFor();
-    await page.keyboard.press('Escape'); // a card may cover the marker
+    await page.keyboard.press('Escape'); // closes the card, which may cover the marker
     await page.mouse.click(marker.x, marker.y);
     await page.waitForFunction(() => /TI-137-0/.test(document.querySelector('.reading[aria-selected="true"]')?.textContent));
     assert.equal(await page.locator('#card .links a').getAttribute('href'), 'https://dcs.example/faceplate?tag=TI-137-0');
@@ -157,13 +158,14 @@ test('20,000 tags scroll smoothly', options, async (t) => {
     const middle = (list, part = 0.5) => list[Math.floor(list.length * part)];
     t.diagnostic(`pictures every ${middle(frames).toFixed(1)} ms (95 %: ${middle(frames, 0.95).toFixed(1)}), of which the list takes ` +
         `${middle(work).toFixed(2)} ms (95 %: ${middle(work, 0.95).toFixed(2)}); ${rows} rows in the page`);
-    assert.ok(middle(work, 0.2) < 16, `more than a picture has: ${middle(work, 0.2)} ms`); // slower frames waited for the processor
+    // 20 % quantile: in slower frames the page waited for the processor
+    assert.ok(middle(work, 0.2) < 16, `more than a picture has: ${middle(work, 0.2)} ms`);
     assert.ok(rows < 80, `${rows} rows`);
     await shoot(page, 'assets-20000');
 });
 
 // Garbage is collected before each measurement; one second of use by default, half an hour in `make test-long`.
-const USE_S = Number(process.env.USE_S ?? sweep(10, 0.8)), EACH = sweep(4, 1); // a panel is opened or closed at every EACH-th action
+const USE_S = Number(process.env.USE_S ?? sweep(10, 0.8)), EACH = sweep(4, 1); // EACH: a panel is opened or closed at every EACH-th action
 // By default a panel is used ten times, so half the growth is allowed of what twenty uses may cause.
 const MOST = sweep({ share: 0.1, megabytes: 2, nodes: 500 }, { share: 0.05, megabytes: 1, nodes: 250 });
 const isSteady = (before, after) => after.megabytes < before.megabytes * (1 + MOST.share) + MOST.megabytes &&
@@ -200,7 +202,7 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 2
         search.dispatchEvent(new Event('input'));
         await new Promise((done) => setTimeout(done, 500));
     }, [ms, EACH]);
-    await use(sweep(3000, 500)); // creates everything that is created only once
+    await use(sweep(3000, 500)); // first use, which creates everything that is created only once
     let before = await heap(), after;
     // A busy machine creates part of that later. A leak grows every time.
     for (let times = 0; times < 4 && !(after && isSteady(before, after)); times++) {

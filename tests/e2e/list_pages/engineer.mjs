@@ -60,7 +60,7 @@ test('a tag that stands nowhere is put onto the surface by a click, and its fiel
     await says('#engineer .tags li', 'TI-9 spare.*stands nowhere yet');
     await page.locator('#engineer .tags button').first().click();
     await says('#engineer .hint', '^TI-9: click on the surface');
-    await land(page); // the panel's opening has moved the picture
+    await land(page); // waits because the panel's opening has moved the picture
     const { x, y } = await at([0.2, -0.5, 0.2]);
     await page.mouse.click(x, y);
     await says('#engineer .moves', 'TI-9 on E-101 .*\\d{3}along the surface');
@@ -137,7 +137,7 @@ test('walk: who moved is pointed out, swapped ones too; a value that fits proves
     await says('#engineer .count', '^0 of 4 proven');
     await page.locator('#engineer .part:not([hidden]) .tags button', { hasText: 'TI-1' }).click();
     await says('#engineer .judge output', '^now 80');
-    await page.waitForTimeout(700); // some readings, to measure the noise
+    await page.waitForTimeout(700); // waits for some readings, from which the noise is measured
     await button('Watch').click();
     await plant.tell('set TI-2 60');
     await says('#engineer .judge .note', 'TI-2 moved, not TI-1: are they swapped');

@@ -58,7 +58,7 @@ test('an alarm says at which value it was raised, and the present one', options,
     await waitForText(desk.page, '#alarm-newest', '^TI-1 High high, raised at 95\\.5 °C, now 95\\.5 °C \\(limit 90\\.0 °C\\)$');
     await plant.tell('set TI-1 70.25');
     await waitForText(desk.page, '#alarm-newest', 'TI-1 High.*now 70\\.3 °C');
-    await plant.tell('set TI-1 40'); // the cause has gone, and the alarm is not acknowledged
+    await plant.tell('set TI-1 40'); // the value is normal again, and the alarm is not acknowledged
     await waitForText(desk.page, '#alarm-newest', 'raised at .* now 40\\.0 °C \\(limit');
     await waitForText(german.page, '#alarm-newest', 'ausgelöst bei .*, jetzt 40,0 °C \\(Grenzwert');
     await desk.page.locator('#alarm-strip').click();

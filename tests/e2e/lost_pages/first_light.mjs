@@ -13,7 +13,7 @@ const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
 const GROUP = 'temperature';
 const SCREEN = { viewport: sweep({ width: 1920, height: 1080 }, { width: 1024, height: 640 }) };
-const QUIET_MS = 1500; // longer than any picture under way takes
+const QUIET_MS = 1500; // longer than any picture takes that is under way
 let plant, browser, page;
 
 before(async () => {
@@ -54,7 +54,7 @@ test('live frames arrive, and the page says so', options, async () => {
     const picture = await grab(page);
     assert.ok(contrast(picture) > 10, `contrast ${contrast(picture)}`);
     const box = await page.locator('#viewport').boundingBox();
-    await waitForWhole(Math.round(box.width), Math.round(box.height)); // one picture pixel per screen pixel
+    await waitForWhole(Math.round(box.width), Math.round(box.height)); // the picture has one pixel per screen pixel
     assert.match(await page.locator('#clock').textContent(), /^\w{3} \d+, \d{4} \d\d:\d\d:\d\d UTC/);
     await page.locator('#age', { hasText: /^\d+(\.\d)? s$/ }).waitFor();
     await shoot(page, 'desktop');
@@ -127,7 +127,8 @@ const waitForMeasured = (count) => page.waitForFunction((least) =>
     globalThis.plantcast.session.model.readings.filter(({ quality }) => quality === 'good').length >= least, count, { timeout: 60000 });
 
 test('the daemon dies: said in words, the picture stays; it returns: the same view, by itself', options, async () => {
-    await page.evaluate(async () => (await import('/app/startup.js')).probeCodecs()); // otherwise the page does this at some later picture
+    // probes codecs now; otherwise the page does so at some later picture
+    await page.evaluate(async () => (await import('/app/startup.js')).probeCodecs());
     await page.evaluate(() => globalThis.plantcast.session.setParams({ distance: 'euclidean', ramp_interval: 20 }));
     await settle(page, QUIET_MS);
     const before = await grab(page), asked = await view(page), tags = await measured(), coded = await codec();

@@ -85,7 +85,8 @@ test('nginx without the lines for WebSocket is named on the page, with these lin
         }
         assert.equal(runProgram('plantcast', ['ready', `http://127.0.0.1:${plant.port}/`]).code, 0);
         await stop();
-        stop = await startNginx(port, PASSES, `127.0.0.1:${plant.port}`); // the handshake arrives with a host name that is not the page's
+        // the proxy passes the handshake on with a host name that is not the page's
+        stop = await startNginx(port, PASSES, `127.0.0.1:${plant.port}`);
         await shown(desk.page, /his origin is not allowed/);
         await stop();
         stop = await startNginx(port, PASSES);

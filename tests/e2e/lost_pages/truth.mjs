@@ -110,7 +110,7 @@ test('a tablet that slept knows that its picture is old, until the server speaks
             session.connection.socket.onmessage = null; // like a dead line
             Date.now = () => real() + 7 * 3600e3;
         });
-        await page.waitForFunction(() => { // visible only until the page has reached the server again
+        await page.waitForFunction(() => { // this notice is visible only until the page has reached the server again
             const banner = document.getElementById('banner');
             return /This picture is 7 h old/.test(banner.textContent) && ['silent', 'lost'].includes(banner.dataset.kind) &&
                 document.getElementById('viewport').classList.contains('is-old');
@@ -127,7 +127,7 @@ test('a tablet whose date is wrong tells ages and the plant\'s time all the same
         assert.ok(await far() < -3 * 86400e3 + 60000, 'its date is wrong');
         const told = () => page.evaluate(() => ({ clock: document.getElementById('clock').textContent,
             age: document.getElementById('age').textContent, health: document.getElementById('health').dataset.kind }));
-        // also while the clock is set back; set forward, it would look like a sleep
+        // the age must also be right while the clock is set back; set forward, it would look like a sleep
         const ages = await page.evaluate(() => new Promise((done) => {
             const seen = [], timer = setInterval(() => {
                 seen.push(document.getElementById('age').textContent);
@@ -234,7 +234,7 @@ test('legend and markers are of the picture that is seen, however late the one c
 test('a page that was kept from another version loads itself anew, once', options, async () => {
     const asked = [];
     await withPage(url, TABLET, async (page, browser) => {
-        await page.goto('about:blank'); // so that the page requests no more parts
+        await page.goto('about:blank'); // leaves the page, so that it requests no more parts
         browser.page.on('domcontentloaded', () => asked.push('loaded'));
         let first = true;
         await page.route('**/made/version.js', (route) => {
@@ -292,7 +292,7 @@ test('by https it is installed: it opens without its server, says so, and is liv
         const client = await page.context().newCDPSession(page);
         assert.deepEqual((await client.send('Page.getInstallabilityErrors')).installabilityErrors, []);
         await page.waitForFunction(() => navigator.serviceWorker.controller);
-        await page.reload(); // through the service worker, which caches the files
+        await page.reload(); // reloads through the service worker, which caches the files
         await waitForPicture(page);
         await waitForHealth(page, 'live');
         const keptNow = () => page.evaluate(async () => (await Promise.all((await caches.keys()).map(async (name) =>

@@ -89,9 +89,10 @@ const press = async (page, key) => {
 const isSaid = (page) => page.locator('#toast', { hasText: 'could not be loaded' }).waitFor();
 
 test('a part that cannot be loaded says so, and comes by itself once it can be', options, async () => {
-    const parts = [['m', 'app/help/timings.css', '#timings'], ['y', 'core/history.js', '#timeline'], // some later parts load this file, too
+    // some parts later in this list load this file, too
+    const parts = [['m', 'app/help/timings.css', '#timings'], ['y', 'core/history.js', '#timeline'],
         ['p', 'app/picture/picture.html', '#picture-panel.open'], ['v', 'app/views/views.js', '#views.open']];
-    const words = [['v', 'words/lazy.en.js', '#views.open']]; // the words of all lazily loaded parts
+    const words = [['v', 'words/lazy.en.js', '#views.open']]; // file with the words of all lazily loaded parts
     const away = (page, file) => page.route(`**/${file}*`, (route) => route.abort());
     for (const all of [parts, words])
         await withPage(async (page) => {
@@ -102,12 +103,12 @@ test('a part that cannot be loaded says so, and comes by itself once it can be',
                 await press(page, key);
                 await isSaid(page);
                 assert.equal(await page.locator(opened).isVisible(), false, file);
-                await press(page, key); // pressing again does not close it
+                await press(page, key); // pressing the key again does not close the part
                 await page.unroute(`**/${file}*`);
                 await page.locator(opened).waitFor();
                 await page.waitForFunction(() => globalThis.plantcast.session.picture); // the page goes on working
             }
-        }, (page) => all === words && away(page, all[0][1])); // a ring around a late reading would fetch them earlier
+        }, (page) => all === words && away(page, all[0][1])); // blocked early: an alarm ring would fetch the words
 });
 
 test('no part says anything before the words of parts are there', options, () => {
@@ -182,7 +183,7 @@ test('a drag that began before what steers was there is followed, however long t
     const { x, y, width, height } = await page.locator('#viewport').boundingBox(), [left, top] = [x + width / 2, y + height / 2];
     await page.mouse.move(left, top);
     await page.mouse.down();
-    await page.waitForTimeout(2500); // longer than a click is delayed for
+    await page.waitForTimeout(2500); // longer than the page delays a click
     await page.mouse.move(left + 90, top, { steps: 3 });
     assert.equal(await isCameraControllerThere(page), false);
     assert.deepEqual(await eye(page), ELSEWHERE.eye);
@@ -193,7 +194,7 @@ test('a drag that began before what steers was there is followed, however long t
 
 test('what a hand points at is said, though it moved no more since', options, () => withPage(async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ occluded }) => !occluded));
-    await land(page); // so that the pointed marker stands still
+    await land(page); // waits until the marker that is pointed at stands still
     const marker = await page.evaluate(() => {
         const { x, y } = globalThis.plantcast.overlay.markers.find(({ occluded }) => !occluded);
         return [x, y];

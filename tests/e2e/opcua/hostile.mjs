@@ -48,7 +48,7 @@ test('what lies about sizes is left, named, and costs nothing', options, async (
         const liar = await tellLies(server.port, lies);
         try {
             let moreMb = await meet(before);
-            if (moreMb >= MOST_MB) { // repeated, because a busy machine may cause this once: a real leak costs it each time
+            if (moreMb >= MOST_MB) { // measures again, because a busy machine may use more memory once: a real leak costs it each time
                 await plant.daemon.stop();
                 moreMb = Math.min(moreMb, await meet(before));
             }
@@ -147,7 +147,7 @@ test('a server whose clock is before its certificate is read, and said; a certif
     await plant.said(/BadCertificateTimeInvalid: the server's certificate: certificate is not yet valid/);
     assert.equal((await server.tell({})).sessions, 0);
     await plant.daemon.stop();
-    await server.restart({ ahead_s: -3600, certificate: 'today' }); // valid since half an hour ago, by the daemon's clock
+    await server.restart({ ahead_s: -3600, certificate: 'today' }); // the certificate became valid half an hour ago by the daemon's clock
     await plant.run(server.security('', 'us'), ROWS);
     await server.set('TI-1', 35);
     const { age_ms } = await plant.until('TI-1', { ...good, value: 35 });

@@ -136,7 +136,7 @@ test(`${MANY} nodes, and changes of all of them`, options, async () => {
 });
 
 test('plantcast tags --browse writes a tag list that is read as it is', options, async () => {
-    await server.anew({ many: MANY }); // more than fit into one answer
+    await server.anew({ many: MANY }); // the server has more nodes than fit into one answer
     const url = `opc.tcp://127.0.0.1:${server.port}`, at = (file) => join(server.folder, file);
     const secure = ['--certificate', at('client.crt'), '--key', at('client.key'), '--trusted', at('trusted')];
     const { code, out, err } = browse(url, ...secure);

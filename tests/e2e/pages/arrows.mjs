@@ -9,7 +9,7 @@ import { DESKTOP, FLYING, openPage, PHONE, settle, shoot, waitForPicture } from 
 import { notBuilt, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
-// the sensor whose direction goes Bad; other readings stay uncertain while the device is away
+// LOST: bearing of the sensor whose direction goes Bad; other readings stay uncertain while the device is away
 const SENSORS = [0, 90, 180, 270], LOST = 270;
 let plant, browser;
 
@@ -70,7 +70,8 @@ tags: tags.csv
     await plant.startDaemon();
     for (const [i, degrees] of SENSORS.entries()) {
         await plant.tell(`set ${speedTag(degrees)} ${6 + 2 * i}`);
-        await plant.tell(`set ${bearingTag(degrees)} ${(360 - degrees) % 360}`); // counter-clockwise around the tank, seen from above
+        // the direction: counter-clockwise around the tank, seen from above
+        await plant.tell(`set ${bearingTag(degrees)} ${(360 - degrees) % 360}`);
     }
     browser = await openPage(`http://127.0.0.1:${plant.port}/`, { ...DESKTOP, ...FLYING });
     await waitForPicture(browser.page);
@@ -200,7 +201,7 @@ test('where a direction is lost it is unknown, and only there', options, async (
 test('dashed arrows are those of uncertain readings, and the legend says so', options, async () => {
     const key = browser.page.locator('.legend .arrow-key');
     assert.doesNotMatch(await key.textContent(), /Uncertain/);
-    await plant.tell('pause'); // no communication: the last usable values are shown
+    await plant.tell('pause'); // the device stops answering: the last usable values are shown
     await until('uncertain', ({ rows }) => rows.some((row) => row[5]));
     await browser.page.waitForFunction(() => /Uncertain/.test(document.querySelector('.legend .arrow-key')?.textContent));
     await settle(browser.page);
@@ -247,7 +248,8 @@ test('on a phone no choice of Display is cut; legends have units, and nothing th
             assert.equal(found.below, show === 'value' ? 1 : 0, what);
             assert.equal(found.why.length > 20, show !== 'value', what);
             keys ||= found.keys;
-            assert.equal(found.keys, show === 'value' ? keys : keys - 1, what); // without a value there is no uncertainty, so one key less
+            // without a value there is no uncertainty, so the legend has one key less
+            assert.equal(found.keys, show === 'value' ? keys : keys - 1, what);
         }
         await shoot(page, `display-phone-${language}`);
         assert.deepEqual(errors, []);

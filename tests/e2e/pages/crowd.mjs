@@ -9,7 +9,7 @@ import { openPage, shoot, waitForHealth, waitForPicture } from '../support/brows
 import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 120000 };
-const MANY = 100, ACROSS = 10, REACH_PX = 15; // distance within which a click hits a marker
+const MANY = 100, ACROSS = 10, REACH_PX = 15; // REACH_PX: distance within which a click hits a marker
 const TO_THE_SIDE = { eye: [3.25, 0, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 45 };
 let plant, browser;
 

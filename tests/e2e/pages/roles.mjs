@@ -11,7 +11,7 @@ const absent = missing(), chromium = process.env.CHROMIUM ?? '/usr/bin/chromium'
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync(chromium) ? 'chromium is not installed' : false;
 const options = { skip, timeout: 200000 };
 const SCREENS = { viewer: PHONE, operator: { ...TABLET, viewport: { width: 768, height: 1024 } }, engineer: TABLET };
-// actions on a new alarm, where the mode allows them
+// actions that each role may take on a new alarm, if the alarm mode allows them
 const DOES = { viewer: [], operator: ['acknowledge', 'shelve'], engineer: ['acknowledge', 'shelve'] };
 const pages = {};
 let plant, browsers;
@@ -23,7 +23,7 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     appendFileSync(plant.file, 'alarms: local\n');
-    plant.keepFresh(); // so that there is only the intended alarm
+    plant.keepFresh(); // prevents stale readings, so that there is only the intended alarm
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H' : ',60')).join('\n'));
     assert.equal(plant.prepare().code, 0);
@@ -32,7 +32,7 @@ before(async () => {
         runProgram('plantcast', ['token', 'add', file, '--role', role, '--name', `${role}-1`]).out.trim();
     const tokens = Object.fromEntries(Object.keys(SCREENS).map((role) => [role, make(role)]));
     chmodSync(file, 0o600);
-    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]]) // before the daemon reads: there is one alarm
+    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]]) // set before the daemon first reads, so that there is one alarm
         await plant.tell(`set ${tag} ${value}`);
     await plant.startDaemon('--behind-proxy', '--host', 'plant.example', '--tokens', file);
     browsers = await Promise.all(Object.entries(SCREENS).map(async ([role, screen]) => {

@@ -18,7 +18,7 @@ const SHELL = '/usr/bin/chromium-headless-shell';
 const HEADLESS = sweep(CHROMIUM, existsSync(SHELL) && !process.env.CHROMIUM ? SHELL : CHROMIUM);
 const QUIET = [
     '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
-    '--disable-sync', '--host-resolver-rules=MAP plant.example 127.0.0.1', // maps this name to the loopback address
+    '--disable-sync', '--host-resolver-rules=MAP plant.example 127.0.0.1', // maps the host name plant.example to the loopback address
 ];
 const PATIENCE_MS = 120000; // limit for everything that waits for a page, even on a very busy machine
 export const SCREENSHOTS = join(BUILD, 'screenshots');
@@ -73,7 +73,7 @@ async function profileWith(args, shape) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
     const whole = { executablePath: CHROMIUM, ...shape, args: [...QUIET, ...args] };
     const context = await playwright().chromium.launchPersistentContext(folder, whole);
-    process.once('exit', () => { // at exit, because a closed browser goes on writing for a while
+    process.once('exit', () => { // removed at exit, because a closed browser goes on writing for a while
         try {
             rmSync(folder, { recursive: true, force: true });
         } catch {
@@ -118,7 +118,7 @@ async function leave(page, kind) {
     await page.unrouteAll({ behavior: 'ignoreErrors' });
     await page.evaluate(() => sessionStorage.clear());
     await page.goto('about:blank');
-    await page.mouse.move(-1, -1); // so that the pointer is over nothing in the next page
+    await page.mouse.move(-1, -1); // moves the pointer away, so that it is over nothing in the next page
     const client = await page.context().newCDPSession(page);
     await client.send('Storage.clearDataForOrigin', { origin, storageTypes: 'all' });
     await client.detach();

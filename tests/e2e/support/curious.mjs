@@ -5,7 +5,7 @@ import { http, PlainClient } from './plain_client.mjs';
 
 const SIZES = [[640, 360], [1280, 720], [1366, 768], [1920, 1080], [390, 844], [1024, 1366]];
 const PATIENCE_MS = 120000, QUIET_MS = 10000;
-const REFINED_MS = 30000; // a busy machine may show only previews of new readings for longer
+const REFINED_MS = 30000; // maximum wait for a refined picture: a busy machine may show only previews of new readings for longer
 const get = (port, path) => http(port, `GET ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`, { timeoutMs: PATIENCE_MS });
 
 // Returns a generator of numbers 0 <= x < 1, the same for the same seed (mulberry32).

@@ -63,7 +63,7 @@ export function alteredFilms(film) {
         ['turned', alter(patched(`${TRAK}/tkhd`, 48, 'ffff0000')), else_('tkhd')],
         ['the whole film turned', alter(patched('moov/mvhd', 44, 'ffff0000')), else_('mvhd')],
         ['wider', alter(patched(`${TRAK}/tkhd`, 84, '0282')), else_('tkhd')],
-        ['another size of samples', alter((one, at) => { // in every box that states it
+        ['another size of samples', alter((one, at) => { // changes the size in every box that states it
             if (at === AVC1)
                 one.writeUInt16BE(one.readUInt16BE(32) + 16, 32);
             if (at === `${TRAK}/tkhd`)

@@ -82,7 +82,7 @@ export class Nodes {
         chmodSync(nodes.tokenFile, 0o600);
         await nodes.plant.startSim();
         nodes.all = [];
-        nodes.trustsLocal = true; // until a test changes it: daemons treat local connections as engineers
+        nodes.trustsLocal = true; // until a test changes this: daemons treat local connections as engineers
         return nodes;
     }
 

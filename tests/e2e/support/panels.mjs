@@ -35,7 +35,7 @@ export async function everyPanel(page, f) {
         await f(name);
     };
     await page.waitForFunction(() => globalThis.plantcast.session.recorded && globalThis.plantcast.session.model.alarms.list().length > 0);
-    await land(page); // so that clicked objects stand still
+    await land(page); // waits for the camera, so that clicked objects stand still
     await f('page');
     const places = await page.evaluate(() => {
         const { model } = globalThis.plantcast.session;
@@ -47,7 +47,8 @@ export async function everyPanel(page, f) {
     await page.locator('#card').waitFor();
     await f('card');
     await page.mouse.click(at[1].x - 6, at[1].y + 30);
-    await page.locator('#place').waitFor({ timeout: 10000 }).catch(async () => { // a card or a label appeared meanwhile and covered it
+    // clicks again, because a card or a label appeared meanwhile and covered the place
+    await page.locator('#place').waitFor({ timeout: 10000 }).catch(async () => {
         await page.keyboard.press('Escape');
         await page.mouse.click(at[1].x - 6, at[1].y + 30);
     });

@@ -158,7 +158,7 @@ export class CuttableLink {
             far.on('data', (bytes) => near.write(bytes));
             near.on('data', (bytes) => {
                 count += bytes.length;
-                if (link.cutAfter && count >= link.cutAfter) { // the server has received a part
+                if (link.cutAfter && count >= link.cutAfter) { // cuts the link after the server has received a part of the message
                     far.write(bytes.subarray(0, bytes.length / 2), () => link.cut());
                     link.cutAfter = 0;
                 } else {

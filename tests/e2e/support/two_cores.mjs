@@ -46,7 +46,8 @@ export class TwoCores {
   deadband_percent: 0
   postgres: { url: "${url}", login: login }
 ${more}`);
-        cpSync(plant.prepared, join(plant.folder, 'two.prepared'), { recursive: true }); // two.yaml has another port and the same equipment
+        // two.yaml differs only in its port, so the prepared equipment is copied
+        cpSync(plant.prepared, join(plant.folder, 'two.prepared'), { recursive: true });
         const prepared = runProgram('plantcast-prep', [two.file]);
         if (prepared.code !== 0)
             throw new Error(prepared.err);

@@ -35,7 +35,7 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
     const minus = (a, b) => a.map((v, i) => v - b[i]), dot = (a, b) => a.reduce((sum, v, i) => sum + v * b[i], 0);
     const cross = ([a, b, c], [d, e, f]) => [b * f - c * e, c * d - a * f, a * e - b * d], unit = (a) => a.map((v) => v / Math.hypot(...a));
-    const seenFrom = ({ eye, target, up, fov }) => (point) => { // in multiples of the picture's height, from its centre
+    const seenFrom = ({ eye, target, up, fov }) => (point) => { // projects a point; in multiples of the picture's height, from its centre
         const forward = unit(minus(target, eye)), right = unit(cross(forward, up)), d = minus(point, eye);
         const far = 2 * Math.tan((fov * Math.PI) / 360) * dot(d, forward);
         return [dot(d, right) / far, -dot(d, cross(right, forward)) / far];
@@ -61,7 +61,7 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
             }
         return ends.length > 100 ? bounds(ends.map(([x, y]) => [(x * viewport.width) / width, (y * viewport.height) / height])) : null;
     };
-    const whiteAt = ([x, y]) => { // the disc of a marker is white
+    const whiteAt = ([x, y]) => { // whether the disc of a marker is drawn at a position: the disc is white
         const { data } = marks.getContext('2d').getImageData(Math.round(x * ratio), Math.round(y * ratio), 1, 1);
         return Math.min(...data) > 200;
     };
@@ -73,7 +73,7 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
         const shown = seenFrom(session.picture.camera), asked = seenFrom(session.camera);
         globalThis.frames.push({
             eye: session.picture.camera.eye, coloured: coloured(),
-            box: bounds(corners.map((corner) => inPage(shown, corner)).map(([x, y]) => // the part inside of the picture
+            box: bounds(corners.map((corner) => inPage(shown, corner)).map(([x, y]) => // the part of the box inside of the picture
                 [Math.max(0, Math.min(viewport.width, x)), Math.max(0, Math.min(viewport.height, y))])),
             markers: overlay.markers.filter(({ occluded }) => !occluded).map((marker) => {
                 const at = inPage(shown, marker.tag.position), { x, y } = overlay.placeOf(marker);

@@ -37,7 +37,8 @@ before(async () => {
     const imported = runProgram('plantcast', ['history', 'import', plant.file, join(plant.folder, 'series.csv')]);
     assert.equal(imported.code, 0, imported.err);
     await plant.startSim();
-    for (const [tag, value] of [['TI-1', 50], ['TI-2', 40], ['PI-1', 5]]) // so that there is only the alarm that a test raises
+    // sets normal values, so that there is only the alarm that a test raises
+    for (const [tag, value] of [['TI-1', 50], ['TI-2', 40], ['PI-1', 5]])
         await plant.tell(`set ${tag} ${value}`);
     await plant.startDaemon();
     browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1280, height: 720 } });
@@ -140,7 +141,7 @@ test('in the dark theme the chart is dark, and its lines and limits are read', o
     const rgbOf = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
     const { ground, lines, limit, grave, ink } = await page.evaluate(() => globalThis.plantcast.trends.look);
     await page.waitForFunction((is) => getComputedStyle(document.getElementById('trends')).backgroundColor === is,
-        `rgb(${rgbOf(ground).join(', ')})`); // the panel has that colour, too, once its style sheet is loaded
+        `rgb(${rgbOf(ground).join(', ')})`); // the panel has the colour `ground`, too, once its style sheet is loaded
     assert.ok(Math.max(...rgbOf(ground)) < 90, ground);
     for (const colour of [...lines, limit, grave, ink])
         assert.ok(contrastRatio(rgbOf(colour), rgbOf(ground)) >= 4.5, `${colour} on ${ground}`);
@@ -185,7 +186,7 @@ test('a gap is a gap in the picture too', options, async () => {
 test('it plays, pauses, and goes back to live', options, async () => {
     await travel(page, (BEGIN_S + 100) * 1e6);
     await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, (BEGIN_S + 100) * 1e6);
-    // playback reaches the present after 48 s; on a busy machine before another picture
+    // at this speed playback reaches the present after 48 s, on a busy machine before another picture
     await page.locator('#time-speed').selectOption('60');
     await page.locator('#time-play').click();
     await page.waitForFunction((us) => globalThis.plantcast.session.picture.dataTimeUs > us, (BEGIN_S + 160) * 1e6);
@@ -280,7 +281,7 @@ test('marks lead to their instant, from alarm to alarm, and to a date', options,
     await page.locator('#time-span').selectOption('2592000');
     await page.locator('#time-slider').focus();
     await page.keyboard.press('ArrowRight');
-    await instantOf(us + 60e6); // a minute, although a step of the 2000-step slider would be 21 minutes
+    await instantOf(us + 60e6); // a step of one minute, although a step of the 2000-step slider would be 21 minutes
     await page.locator('#time-span').selectOption('3600');
     await page.locator('#time-live').click();
     await waitForHealth(page, 'live');

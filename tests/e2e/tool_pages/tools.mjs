@@ -40,7 +40,7 @@ const placeOf = (point) => drawnAt(page, point);
 test('values stand still, and go on again', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.session.model.readings[0].value === 80);
     const since = await page.evaluate(() => globalThis.plantcast.session.clockUs());
-    await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 5e6, since); // it has been 80 for that long
+    await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 5e6, since); // waits until TI-1 has been 80 for 5 s
     await page.locator('#hold').click();
     await waitForHealth(page, 'past');
     await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
@@ -161,7 +161,7 @@ test('the picture that is kept is the one that is seen', options, async () => {
     assert.match(file.suggestedFilename(), /^Two boxes \d{4}-\d\d-\d\dT\d\d-\d\d-\d\dZ\.png$/);
     const kept = await readPng(page, readFileSync(await file.path()));
     assert.ok(contrast(kept) > 5);
-    const { mean } = deltaE(shown, kept); // the saved picture also contains markers, legend and clock
+    const { mean } = deltaE(shown, kept); // CIELAB difference: only the saved picture contains markers, legend and clock
     assert.ok(mean < 4, `they differ by ${mean}`);
     await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'difference', baseline: 'now' }));
     await page.locator('#snapshot').click();
@@ -366,7 +366,7 @@ test('others follow; the lead is handed over, and what is shown stays', options,
         await page.waitForFunction((words) => document.getElementById('following').textContent.includes(words), `view of session ${heir}`);
         await second.page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
         await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
-        await second.page.waitForFunction(() => { // it may have received the lead before its first picture
+        await second.page.waitForFunction(() => { // the second session may have received the lead before its first picture
             const { picture, paramsSeq } = globalThis.plantcast.session;
             return picture?.paramsSeq === paramsSeq;
         });
@@ -390,7 +390,7 @@ test('dark, and light again; it stays as it was left', options, async () => {
     await page.keyboard.press('z');
     await waitForTheme('dark');
     await settle(page);
-    await page.waitForFunction(() => { // the background of the plant, too
+    await page.waitForFunction(() => { // the background of the picture must be dark, too
         const canvas = document.getElementById('picture');
         return Math.max(...canvas.getContext('2d').getImageData(4, Math.floor(canvas.height / 2), 1, 1).data.slice(0, 3)) < 110;
     });
